@@ -1,0 +1,42 @@
+// An xsimd batch as a scalar: one design per lane.
+//
+// xsimd 8.1 lets the ternary operator and `if` compile on an AVX-512 mask and takes wrong lanes, so kernels use
+// select(), any() and all() only.
+#pragma once
+
+#include <xsimd/xsimd.hpp>
+
+#include "wingbeat/core/scalar.hpp"
+
+namespace wingbeat {
+
+template <class Arch>
+using Batch = xsimd::batch<double, Arch>;
+
+template <class Arch>
+struct ScalarTraits<xsimd::batch<double, Arch>> {
+  using Mask = xsimd::batch_bool<double, Arch>;
+  static constexpr int lanes = int(xsimd::batch<double, Arch>::size);
+};
+
+template <class Arch>
+Batch<Arch> select(const xsimd::batch_bool<double, Arch>& mask, const Batch<Arch>& a, const Batch<Arch>& b) {
+  return xsimd::select(mask, a, b);
+}
+
+template <class Arch>
+bool any(const xsimd::batch_bool<double, Arch>& mask) {
+  return xsimd::any(mask);
+}
+
+template <class Arch>
+bool all(const xsimd::batch_bool<double, Arch>& mask) {
+  return xsimd::all(mask);
+}
+
+template <class Arch>
+double value_of(const Batch<Arch>& x) {
+  return x.get(0);
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,181 @@
+// Cycle metrics: what one flapping cycle costs and gives; model.md section 4, eqs (15-20, 23-26).
+#pragma once
+
+#include <array>
+#include <limits>
+#include <string_view>
+
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/core/scalar.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
+
+namespace wingbeat {
+
+/// Every metric of a cycle, in the order of reports and data sets.
+enum class Metric {
+  voltage,
+  frequency,
+  current_mean,
+  current_peak,
+  power_electrical,
+  power_motor,
+  power_motor_reference,
+  power_friction,
+  power_aerodynamic,
+  power_reactive,
+  power_copper,
+  power_viscous,
+  power_loss,
+  power_residual,
+  lift_mean,
+  lift_peak,
+  rod_force_peak,
+  rod_force_mean,
+  stroke_amplitude,
+  flapping_velocity_peak,
+  angle_of_attack_min,
+  crank_speed_min,
+  crank_speed_max,
+  efficiency_system,
+  efficiency_motor,
+  efficiency_mechanism,
+  floquet_multiplier_max,
+  lift_to_weight
+};
+inline constexpr int metric_count = int(Metric::lift_to_weight) + 1;
+
+/// How a metric is named outside the program.
+struct MetricInfo {
+  const char* key;        ///< as in JSON and data sets, e.g. "frequency_hz"
+  const char* unit;       ///< UDUNITS
+  const char* long_name;  ///< plain words
+};
+
+/// Names, units and descriptions of all metrics, indexed by Metric.
+const std::array<MetricInfo, metric_count>& metric_table();
+
+/// The metric with that key, or metric_count if there is none.
+int metric_index(std::string_view key);
+
+/// Stands for a metric that a design does not have (no mass given, 0/0); reported as null.
+inline constexpr double absent = std::numeric_limits<double>::quiet_NaN();
+
+template <Scalar S>
+struct Metrics {
+  std::array<S, metric_count> values;
+
+  S& operator[](Metric m) { return values[std::size_t(m)]; }
+  const S& operator[](Metric m) const { return values[std::size_t(m)]; }
+};
+
+/// Quantities integrated over the TIME of a cycle.
+enum class Integral {
+  time,           ///< dt: the period [s]
+  current,        ///< i [A s]
+  current_square, ///< i^2
+  speed_square,   ///< omega^2
+  electrical_work, ///< v i [J] (eq 15)
+  motor_work,     ///< T_m omega [J] (eq 16)
+  friction_work,  ///< T_f omega [J] (eq 18)
+  aero_work,      ///< M_aero beta' [J] (eq 19)
+  reactive_work,  ///< |(N_w J_w beta'' + N_w k beta) beta'| [J] (eq 23)
+  residual_work,  ///< F (h omega - g beta') [J]: what the formulation fails to conserve
+  lift,           ///< lift [N s]
+  rod_force       ///< |F| [N s]
+};
+inline constexpr int integral_count = int(Integral::rod_force) + 1;
+
+template <Scalar S>
+using CycleIntegrals = std::array<S, integral_count>;
+
+/// The time integrands at one instant, indexed by Integral.
+template <Scalar S>
+CycleIntegrals<S> integrands(const Vehicle<S>& v, const Motion<S>& m, const S& omega, const Branch<S>& branch) {
+  const S stroke_speed = branch.stroke * m.stroke_velocity;
+  const S i = m.current;
+  return {S(1.0),
+          i,
+          square(i),
+          square(omega),
+          m.voltage * i,
+          m.motor_torque * omega,
+          m.friction_torque * omega,
+          m.aero_moment * m.stroke_velocity,
+          branch.stored_power * m.stored_moment * m.stroke_velocity,
+          m.rod_force * (m.kinematics.crank_lever * omega - m.kinematics.wing_lever * m.stroke_velocity),
+          lift_force(v.wings, stroke_speed),
+          branch.force * m.rod_force};
+}
+
+/// Quantities of which a cycle's extreme value is a metric.
+enum class Extreme { current, lift, rod_force, flapping_velocity, crank_speed_min, crank_speed_max };
+inline constexpr int extreme_count = int(Extreme::crank_speed_max) + 1;
+
+template <Scalar S>
+using CycleExtremes = std::array<S, extreme_count>;
+
+/// The value whose maximum over the cycle is sought for each Extreme (the crank speed's minimum with its sign turned):
+/// i [A], lift [N], |F| [N], |beta'| [rad/s], -omega and omega [rad/s].
+template <Scalar S>
+CycleExtremes<S> extreme_candidates(const Vehicle<S>& v, const Motion<S>& m, const S& omega, const Branch<S>& branch) {
+  const S stroke_speed = branch.stroke * m.stroke_velocity;
+  return {m.current, lift_force(v.wings, stroke_speed), branch.force * m.rod_force, stroke_speed, -omega, omega};
+}
+
+/// What metrics need beside the motion itself.
+struct Reporting {
+  double mass = absent;                   ///< [kg]
+  double bench_torque_constant = absent;  ///< K_ref of eq (17) [N m/A]
+};
+
+inline Reporting reporting_of(const Design<double>& d) {
+  return {d.mass.value_or(absent), d.bench_torque_constant.value_or(absent)};
+}
+
+/// The metrics of a cycle from its integrals and extremes. `extremes` holds the maxima of extreme_candidates().
+/// Floquet multiplier: of the orbit, or `absent`.
+template <Scalar S>
+Metrics<S> cycle_metrics(const Vehicle<S>& v, const CycleIntegrals<S>& integrals, const CycleExtremes<S>& extremes,
+                         const S& floquet_multiplier_max, const Reporting& reporting) {
+  const auto total = [&](Integral which) -> const S& { return integrals[std::size_t(which)]; };
+  const auto peak = [&](Extreme which) -> const S& { return extremes[std::size_t(which)]; };
+  const S f = S(1.0) / total(Integral::time);
+  const auto ratio = [](const S& a, const S& b) {
+    const auto defined = b > S(0.0);
+    return select(defined, a / select(defined, b, S(1.0)), S(absent));
+  };
+
+  Metrics<S> m;
+  m[Metric::voltage] = v.voltage;
+  m[Metric::frequency] = f;
+  m[Metric::current_mean] = f * total(Integral::current);
+  m[Metric::current_peak] = peak(Extreme::current);
+  m[Metric::power_electrical] = f * total(Integral::electrical_work);
+  m[Metric::power_motor] = f * total(Integral::motor_work);
+  m[Metric::power_motor_reference] = S(two_pi * reporting.bench_torque_constant) * f * m[Metric::current_mean];
+  m[Metric::power_friction] = f * total(Integral::friction_work);
+  m[Metric::power_aerodynamic] = f * total(Integral::aero_work);
+  m[Metric::power_reactive] = f * total(Integral::reactive_work);
+  m[Metric::power_copper] = v.motor.armature_resistance * f * total(Integral::current_square);
+  m[Metric::power_viscous] = v.motor.viscous_damping * f * total(Integral::speed_square);
+  m[Metric::power_loss] = m[Metric::power_electrical] - m[Metric::power_aerodynamic];
+  m[Metric::power_residual] = f * total(Integral::residual_work);
+  m[Metric::lift_mean] = f * total(Integral::lift);
+  m[Metric::lift_peak] = peak(Extreme::lift);
+  m[Metric::rod_force_peak] = peak(Extreme::rod_force);
+  m[Metric::rod_force_mean] = f * total(Integral::rod_force);
+  m[Metric::stroke_amplitude] = stroke_amplitude(v.crank);
+  m[Metric::flapping_velocity_peak] = peak(Extreme::flapping_velocity);
+  m[Metric::angle_of_attack_min] =
+      S(degrees_per_radian) * angle_of_attack(v.wings, peak(Extreme::flapping_velocity));
+  m[Metric::crank_speed_min] = -peak(Extreme::crank_speed_min);
+  m[Metric::crank_speed_max] = peak(Extreme::crank_speed_max);
+  m[Metric::efficiency_system] = ratio(m[Metric::power_aerodynamic], m[Metric::power_electrical]);
+  m[Metric::efficiency_motor] = ratio(m[Metric::power_motor], m[Metric::power_electrical]);
+  m[Metric::efficiency_mechanism] = ratio(m[Metric::power_aerodynamic], m[Metric::power_motor]);
+  m[Metric::floquet_multiplier_max] = floquet_multiplier_max;
+  m[Metric::lift_to_weight] = m[Metric::lift_mean] / S(reporting.mass * standard_gravity);
+  return m;
+}
+
+}  // namespace wingbeat

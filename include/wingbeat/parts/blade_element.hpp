@@ -1,0 +1,150 @@
+// Quasi-steady blade-element aerodynamics of all wings together; model.md section 3, eqs (2-4, 12-14).
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/core/scalar.hpp"
+#include "wingbeat/core/status.hpp"
+
+namespace wingbeat {
+
+/// offset + amplitude * wave(rate * alpha + phase), the wave being sine for lift and cosine for drag.
+template <Scalar S>
+struct CoefficientWave {
+  S offset;     ///< [1]
+  S amplitude;  ///< [1]
+  S rate;       ///< multiplies the angle of attack [1]
+  S phase;      ///< [rad]
+
+  template <Scalar T>
+  CoefficientWave<T> cast() const {
+    return {T(offset), T(amplitude), T(rate), T(phase)};
+  }
+};
+
+/// Lift and drag coefficient against angle of attack as natural cubic splines through a table; the end values hold
+/// outside the table.
+class CoefficientTable {
+ public:
+  /// `alpha` [rad] strictly growing, at least three rows. Throws ParameterError naming the row.
+  CoefficientTable(std::vector<double> alpha, std::vector<double> lift, std::vector<double> drag);
+
+  struct Cubic {
+    double x0, a, b, c, d;  ///< a + b t + c t^2 + d t^3, t = x - x0
+  };
+  /// The polynomial piece that holds at alpha; a constant outside the table.
+  Cubic lift_piece(double alpha) const { return piece(lift_, alpha); }
+  Cubic drag_piece(double alpha) const { return piece(drag_, alpha); }
+
+  const std::vector<double>& alpha() const { return alpha_; }
+  const std::vector<double>& lift() const { return lift_values_; }
+  const std::vector<double>& drag() const { return drag_values_; }
+
+ private:
+  Cubic piece(const std::vector<Cubic>& pieces, double alpha) const;
+  std::vector<double> alpha_, lift_values_, drag_values_;
+  std::vector<Cubic> lift_, drag_;
+};
+
+/// Translational force coefficients: two waves, or a table where one is given.
+template <Scalar S>
+struct ForceCoefficients {
+  CoefficientWave<S> lift;
+  CoefficientWave<S> drag;
+  std::shared_ptr<const CoefficientTable> table = nullptr;
+
+  template <Scalar T>
+  ForceCoefficients<T> cast() const {
+    return {lift.template cast<T>(), drag.template cast<T>(), table};
+  }
+};
+
+/// "translational-2022": C_L = 0.225 + 1.58 sin(2.13 alpha - 7.2 deg), C_D = 1.92 - 1.55 cos(2.04 alpha - 9.82 deg),
+/// eqs (12, 13) of the 2022 friction paper.
+inline ForceCoefficients<double> translational_2022() {
+  return {{0.225, 1.58, 2.13, -7.2 / degrees_per_radian}, {1.92, -1.55, 2.04, -9.82 / degrees_per_radian}, nullptr};
+}
+
+/// Aerodynamics of all wings. Positive stroke velocity beta' meets a positive moment that opposes it.
+template <Scalar S>
+struct BladeElement {
+  S air_density;        ///< rho [kg/m3], >= 0
+  S pitch_coefficient;  ///< C_alpha: alpha = pi/2 - C_alpha |beta'| [s], >= 0 (eq 14)
+  S s2;                 ///< S_2 of all wings [m4], >= 0
+  S s3;                 ///< S_3 of all wings [m5], >= 0
+  ForceCoefficients<S> coefficients;
+
+  template <Scalar T>
+  BladeElement<T> cast() const {
+    return {T(air_density), T(pitch_coefficient), T(s2), T(s3), coefficients.template cast<T>()};
+  }
+};
+
+void validate(const BladeElement<double>& wings);
+
+namespace detail {
+
+inline double evaluate(const CoefficientTable::Cubic& p, double x) {
+  const double t = x - p.x0;
+  return p.a + t * (p.b + t * (p.c + t * p.d));
+}
+
+/// A table piece at alpha for any scalar: the piece is chosen by value, the polynomial carries the derivatives.
+template <Scalar S, class Choose>
+S evaluate_table(const Choose& choose, const S& alpha) {
+  if constexpr (ScalarTraits<S>::lanes == 1) {
+    const CoefficientTable::Cubic p = choose(value_of(alpha));
+    const S t = alpha - S(p.x0);
+    return S(p.a) + t * (S(p.b) + t * (S(p.c) + t * S(p.d)));
+  } else {
+    constexpr int lanes = ScalarTraits<S>::lanes;
+    alignas(64) double values[lanes];
+    alpha.store_aligned(values);
+    for (double& x : values) x = evaluate(choose(x), x);
+    return S::load_aligned(values);
+  }
+}
+
+}  // namespace detail
+
+/// C_L (eq 12) at angle of attack alpha [rad].
+template <Scalar S>
+S lift_coefficient(const ForceCoefficients<S>& c, const S& alpha) {
+  using std::sin;
+  if (c.table) return detail::evaluate_table([&](double x) { return c.table->lift_piece(x); }, alpha);
+  return c.lift.offset + c.lift.amplitude * sin(c.lift.rate * alpha + c.lift.phase);
+}
+
+/// C_D (eq 13) at angle of attack alpha [rad].
+template <Scalar S>
+S drag_coefficient(const ForceCoefficients<S>& c, const S& alpha) {
+  using std::cos;
+  if (c.table) return detail::evaluate_table([&](double x) { return c.table->drag_piece(x); }, alpha);
+  return c.drag.offset + c.drag.amplitude * cos(c.drag.rate * alpha + c.drag.phase);
+}
+
+/// Geometric angle of attack alpha [rad] at stroke speed |beta'| [rad/s]: passive pitching (eq 14).
+template <Scalar S>
+S angle_of_attack(const BladeElement<S>& w, const S& stroke_speed) {
+  return S(pi / 2.0) - w.pitch_coefficient * stroke_speed;
+}
+
+/// Lift [N] of all wings, normal to the stroke plane (eq 2), at stroke speed |beta'| [rad/s].
+template <Scalar S>
+S lift_force(const BladeElement<S>& w, const S& stroke_speed) {
+  const S C_L = lift_coefficient(w.coefficients, angle_of_attack(w, stroke_speed));
+  return S(0.5) * w.air_density * C_L * square(stroke_speed) * w.s2;
+}
+
+/// Magnitude of the aerodynamic moment [N m] of all wings about the hinges (eq 3), at stroke speed |beta'| [rad/s];
+/// it opposes the stroke velocity.
+template <Scalar S>
+S drag_moment(const BladeElement<S>& w, const S& stroke_speed) {
+  const S C_D = drag_coefficient(w.coefficients, angle_of_attack(w, stroke_speed));
+  return S(0.5) * w.air_density * C_D * square(stroke_speed) * w.s3;
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,83 @@
+// DC motor, its constants referred to the output (crank) shaft; model.md sections 1 and 2, eqs (9-11).
+#pragma once
+
+#include "wingbeat/core/scalar.hpp"
+#include "wingbeat/core/status.hpp"
+
+namespace wingbeat {
+
+/// A DC motor seen from the output shaft. Positive torque drives the crank towards larger crank angle.
+template <Scalar S>
+struct Motor {
+  S armature_resistance;     ///< R_a [ohm], > 0
+  S armature_inductance;     ///< L_a [H], >= 0; 0 makes the current algebraic
+  S torque_constant;         ///< K = n K_b [N m/A = V s/rad], > 0
+  S inertia;                 ///< J = J_G + n^2 J_m [kg m2], > 0
+  S viscous_damping;         ///< b = b_G + n^2 b_m [N m s/rad], >= 0
+  S friction_torque = S(0);  ///< constant friction torque of the motor itself [N m], >= 0
+
+  template <Scalar T>
+  Motor<T> cast() const {
+    return {T(armature_resistance), T(armature_inductance), T(torque_constant),
+            T(inertia),             T(viscous_damping),     T(friction_torque)};
+  }
+};
+
+/// Motor-shaft constants with a gearbox of ratio n (motor turns per output turn).
+template <Scalar S>
+struct GearMotor {
+  S gear_ratio;           ///< n [1], > 0
+  Motor<S> motor_shaft;   ///< K_b, J_m, b_m and friction torque at the motor shaft
+  S gear_inertia = S(0);  ///< J_G of the gearbox at the output shaft [kg m2], >= 0
+  S gear_damping = S(0);  ///< b_G of the gearbox at the output shaft [N m s/rad], >= 0
+};
+
+/// Motor-shaft constants referred to the output shaft: K = n K_b, J = J_G + n^2 J_m, b = b_G + n^2 b_m, friction torque
+/// times n; resistance and inductance are unchanged (model.md section 1).
+template <Scalar S>
+Motor<S> at_output_shaft(const GearMotor<S>& geared) {
+  const S n = geared.gear_ratio;
+  const Motor<S>& m = geared.motor_shaft;
+  return {m.armature_resistance,
+          m.armature_inductance,
+          n * m.torque_constant,
+          geared.gear_inertia + n * n * m.inertia,
+          geared.gear_damping + n * n * m.viscous_damping,
+          n * m.friction_torque};
+}
+
+/// Throws ParameterError unless every constant lies in its physical range.
+inline void validate(const Motor<double>& m) {
+  require(m.armature_resistance > 0.0, "motor.armature_resistance", "must be > 0", "ohm", m.armature_resistance);
+  require(m.armature_inductance >= 0.0, "motor.armature_inductance", "must be >= 0", "H", m.armature_inductance);
+  require(m.torque_constant > 0.0, "motor.torque_constant", "must be > 0", "N m/A", m.torque_constant);
+  require(m.inertia > 0.0, "motor.inertia", "must be > 0", "kg m2", m.inertia);
+  require(m.viscous_damping >= 0.0, "motor.viscous_damping", "must be >= 0", "N m s/rad", m.viscous_damping);
+  require(m.friction_torque >= 0.0, "motor.friction_torque", "must be >= 0", "N m", m.friction_torque);
+}
+
+/// Electrical side of the motor at crank speed omega and current i.
+template <Scalar S>
+struct MotorLoads {
+  S torque;           ///< K i [N m]
+  S drag_torque;      ///< b omega [N m], opposes rotation
+  S voltage_reserve;  ///< v - R_a i - K omega [V], what is left to change the current: L_a di/dt
+  S power_copper;     ///< R_a i^2 [W]
+  S power_viscous;    ///< b omega^2 [W]
+};
+
+/// Loads and losses of the motor (eqs 9-11) at terminal voltage v [V], current i [A], crank speed omega [rad/s].
+template <Scalar S>
+MotorLoads<S> motor_loads(const Motor<S>& m, const S& v, const S& i, const S& omega) {
+  return {m.torque_constant * i, m.viscous_damping * omega, v - m.armature_resistance * i - m.torque_constant * omega,
+          m.armature_resistance * i * i, m.viscous_damping * omega * omega};
+}
+
+/// Steady speed without load and friction, K v / (K^2 + R_a b) [rad/s]: the closed form of the wingless condition.
+template <Scalar S>
+S no_load_speed(const Motor<S>& m, const S& v) {
+  return m.torque_constant * v /
+         (m.torque_constant * m.torque_constant + m.armature_resistance * m.viscous_damping);
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,90 @@
+// Wing planforms and the two chord moments that quasi-steady blade elements need; model.md section 3, eqs (2, 3).
+#pragma once
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/core/scalar.hpp"
+#include "wingbeat/core/status.hpp"
+
+namespace wingbeat {
+
+enum class PlanformShape { semi_ellipse, rectangle, tabulated, moments };
+
+/// One wing's outline. Lengths run from the wing root; the hub offset shifts the root away from the hinge.
+template <Scalar S>
+struct Planform {
+  PlanformShape shape = PlanformShape::moments;
+  S length = S(0);      ///< R, root to tip [m], > 0
+  S root_chord = S(0);  ///< c_0 [m], > 0
+  S hub_offset = S(0);  ///< hinge to wing root [m], >= 0
+  /// Tabulated chord: (distance from the root [m], chord [m]), at least two rows, distances growing; linear between.
+  std::vector<std::pair<double, double>> chord_table = {};
+  S s2 = S(0);  ///< moments given outright: S_2 of all wings [m4], >= 0
+  S s3 = S(0);  ///< moments given outright: S_3 of all wings [m5], >= 0
+};
+
+/// S_2 = N_w integral c r^2 dr [m4] and S_3 = N_w integral c r^3 dr [m5], r measured from the hinge.
+template <Scalar S>
+struct ChordMoments {
+  S s2;
+  S s3;
+};
+
+void validate(const Planform<double>& planform);
+
+namespace detail {
+
+/// Moments about the hinge from moments m_n = integral c x^n dx about the root: r = x + offset, expanded.
+template <Scalar S>
+ChordMoments<S> shift_moments(const S& m0, const S& m1, const S& m2, const S& m3, const S& d) {
+  return {m2 + S(2.0) * d * m1 + d * d * m0, m3 + S(3.0) * d * m2 + S(3.0) * d * d * m1 + d * d * d * m0};
+}
+
+}  // namespace detail
+
+/// Chord moments of ONE wing about the hinge; `moments` holds the moments of all wings and is not for this function.
+/// Semi-ellipse: c = c_0 sqrt(1 - (x/R)^2), root moments pi c_0 R/4, c_0 R^2/3, pi c_0 R^3/16, 2 c_0 R^4/15.
+template <Scalar S>
+ChordMoments<S> one_wing_moments(const Planform<S>& p) {
+  const S R = p.length;
+  const S c_0 = p.root_chord;
+  const S d = p.hub_offset;
+  if (p.shape == PlanformShape::semi_ellipse) {
+    return detail::shift_moments<S>(pi / 4.0 * c_0 * R, c_0 * R * R / 3.0, pi / 16.0 * c_0 * R * R * R,
+                                    2.0 / 15.0 * c_0 * R * R * R * R, d);
+  }
+  if (p.shape == PlanformShape::rectangle) {
+    return detail::shift_moments<S>(c_0 * R, c_0 * R * R / 2.0, c_0 * R * R * R / 3.0, c_0 * R * R * R * R / 4.0, d);
+  }
+  double m[4] = {0.0, 0.0, 0.0, 0.0};
+  for (std::size_t row = 1; row < p.chord_table.size(); ++row) {
+    const auto [x0, c0] = p.chord_table[row - 1];
+    const auto [x1, c1] = p.chord_table[row];
+    // Chord linear on [x0, x1]: three-point Gauss is exact for chord times x^3.
+    const double half = 0.5 * (x1 - x0), mid = 0.5 * (x0 + x1);
+    constexpr double node = 0.77459666924148337704;  // sqrt(3/5)
+    for (const auto& [at, weight] : {std::pair{-node, 5.0 / 9.0}, {0.0, 8.0 / 9.0}, {node, 5.0 / 9.0}}) {
+      const double x = mid + half * at;
+      const double chord = c0 + (c1 - c0) * (x - x0) / (x1 - x0);
+      double power = weight * half * chord;
+      for (double& moment : m) {
+        moment += power;
+        power *= x;
+      }
+    }
+  }
+  return detail::shift_moments<S>(S(m[0]), S(m[1]), S(m[2]), S(m[3]), d);
+}
+
+/// S_2 [m4] and S_3 [m5] of all `count` wings.
+template <Scalar S>
+ChordMoments<S> chord_moments(const Planform<S>& p, const S& count) {
+  if (p.shape == PlanformShape::moments) return {p.s2, p.s3};
+  const ChordMoments<S> one = one_wing_moments(p);
+  return {count * one.s2, count * one.s3};
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,102 @@
+// Slider-crank mechanism: crank, rod, vertical slider and wing hinge; model.md sections 1 and 2, eqs (1, 5, 21).
+#pragma once
+
+#include <cmath>
+
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/core/scalar.hpp"
+#include "wingbeat/core/status.hpp"
+
+namespace wingbeat {
+
+/// How the rod force turns the wings (model.md section 2).
+enum class Formulation {
+  rod_force,    ///< the paper's eq (1) as printed: g = H (sin gamma tan beta + cos gamma); does not conserve power
+  virtual_work  ///< straight frictionless guide: g = H cos gamma / cos^2 beta; F h omega = F g beta' identically
+};
+
+/// Geometry of the mechanism. The crank angle theta is measured from the horizontal and grows with rotation.
+template <Scalar S>
+struct SliderCrank {
+  S crank_radius;       ///< r_c [m], > 0, < l
+  S rod_length;         ///< l [m], > r_c
+  S hinge_offset;       ///< H, horizontal distance slider to wing hinge [m], > 0
+  S mid_stroke_height;  ///< y_0, slider height over the crank axis at stroke angle zero [m]; l unless given
+  Formulation formulation = Formulation::rod_force;
+
+  template <Scalar T>
+  SliderCrank<T> cast() const {
+    return {T(crank_radius), T(rod_length), T(hinge_offset), T(mid_stroke_height), formulation};
+  }
+};
+
+inline void validate(const SliderCrank<double>& c) {
+  require(c.crank_radius > 0.0, "transmission.crank_radius", "must be > 0", "m", c.crank_radius);
+  require(c.rod_length > c.crank_radius, "transmission.rod_length", "must be longer than the crank radius", "m",
+          c.rod_length);
+  require(c.hinge_offset > 0.0, "transmission.hinge_offset", "must be > 0", "m", c.hinge_offset);
+  require(std::isfinite(c.mid_stroke_height), "transmission.mid_stroke_height", "must be finite", "m",
+          c.mid_stroke_height);
+}
+
+/// Position of the mechanism and its levers at one crank angle.
+template <Scalar S>
+struct CrankKinematics {
+  S slider_height;  ///< y = r_c sin theta + l cos gamma [m]
+  S stroke_angle;   ///< beta [rad], tan beta = (y - y_0) / H
+  S stroke_slope;   ///< B1 = d beta / d theta [1]
+  S stroke_curve;   ///< B2 = d2 beta / d theta2 [1]
+  S wing_lever;     ///< g: moment on both wings per unit rod force [m]
+  S crank_lever;    ///< h = cos gamma dy/dtheta: torque on the crank per unit rod force [m]
+};
+
+/// Kinematics at a crank angle given by its sine and cosine. Beta' = B1 omega, beta'' = B1 omega' + B2 omega^2.
+template <Scalar S>
+CrankKinematics<S> crank_kinematics(const SliderCrank<S>& c, const S& sin_theta, const S& cos_theta) {
+  using std::atan;
+  using std::sqrt;
+  const S r_c = c.crank_radius;
+  const S H = c.hinge_offset;
+  const S ratio = r_c / c.rod_length;
+  const S sin_gamma = ratio * cos_theta;
+  const S cos_gamma = sqrt(S(1.0) - sin_gamma * sin_gamma);
+  const S sec_gamma = S(1.0) / cos_gamma;
+  const S tan_gamma = sin_gamma * sec_gamma;
+
+  const S y = r_c * sin_theta + c.rod_length * cos_gamma;
+  const S dy = r_c * (cos_theta + sin_theta * tan_gamma);
+  const S ddy = r_c * (cos_theta * tan_gamma - sin_theta - ratio * square(sin_theta) * sec_gamma * square(sec_gamma));
+
+  const S per_H = S(1.0) / H;
+  const S tan_beta = (y - c.mid_stroke_height) * per_H;
+  const S sec2_beta = S(1.0) + square(tan_beta);
+  const S cos2_beta = S(1.0) / sec2_beta;
+
+  CrankKinematics<S> k;
+  k.slider_height = y;
+  k.stroke_angle = atan(tan_beta);
+  k.stroke_slope = dy * per_H * cos2_beta;
+  k.stroke_curve = ddy * per_H * cos2_beta - S(2.0) * tan_beta * square(k.stroke_slope);
+  k.wing_lever = c.formulation == Formulation::rod_force ? H * (sin_gamma * tan_beta + cos_gamma)
+                                                         : H * cos_gamma * sec2_beta;
+  k.crank_lever = cos_gamma * dy;
+  return k;
+}
+
+/// Half the peak-to-peak stroke angle [rad], reached at crank angles +-90 degrees (the dead centres).
+template <Scalar S>
+S stroke_amplitude(const SliderCrank<S>& c) {
+  using std::atan;
+  const S top = atan((c.rod_length + c.crank_radius - c.mid_stroke_height) / c.hinge_offset);
+  const S bottom = atan((c.rod_length - c.crank_radius - c.mid_stroke_height) / c.hinge_offset);
+  return S(0.5) * (top - bottom);
+}
+
+/// The hinge offset H [m] that gives a stroke amplitude [rad] with the mid-stroke at y_0 = l: tan(amplitude) = r_c / H.
+template <Scalar S>
+S hinge_offset_for(const S& amplitude, const S& crank_radius) {
+  using std::tan;
+  return crank_radius / tan(amplitude);
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,41 @@
+// Torsional spring at each wing hinge, at rest at stroke angle zero; model.md eqs (21, 22).
+#pragma once
+
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/core/scalar.hpp"
+#include "wingbeat/core/status.hpp"
+
+namespace wingbeat {
+
+template <Scalar S>
+struct HingeSpring {
+  S stiffness = S(0);  ///< k of ONE hinge spring [N m/rad], >= 0
+
+  template <Scalar T>
+  HingeSpring<T> cast() const {
+    return {T(stiffness)};
+  }
+};
+
+inline void validate(const HingeSpring<double>& s) {
+  require(s.stiffness >= 0.0, "spring.stiffness", "must be >= 0", "N m/rad", s.stiffness);
+}
+
+template <Scalar S>
+struct SpringLoads {
+  S moment;  ///< k beta [N m], returns the wing to stroke angle zero
+  S energy;  ///< k beta^2 / 2 [J]
+};
+
+template <Scalar S>
+SpringLoads<S> spring_loads(const HingeSpring<S>& s, const S& beta) {
+  return {s.stiffness * beta, S(0.5) * s.stiffness * square(beta)};
+}
+
+/// Stiffness k = J_w (2 pi f_s)^2 [N m/rad] that makes a wing of inertia J_w [kg m2] resonate at f_s [Hz] (eq 22).
+template <Scalar S>
+S stiffness_for_resonance(const S& wing_inertia, const S& resonance) {
+  return wing_inertia * square(S(two_pi) * resonance);
+}
+
+}  // namespace wingbeat

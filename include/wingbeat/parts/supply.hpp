@@ -1,0 +1,54 @@
+// What feeds the motor terminals; model.md section 1, v.
+#pragma once
+
+#include <cmath>
+
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/core/scalar.hpp"
+#include "wingbeat/core/status.hpp"
+
+namespace wingbeat {
+
+enum class SupplyType { constant, sine, pwm };
+
+template <Scalar S>
+struct Supply {
+  SupplyType type = SupplyType::constant;
+  S voltage = S(0);    ///< constant: v; sine: amplitude; pwm: voltage while switched on [V], >= 0
+  S frequency = S(0);  ///< sine: drive frequency; pwm: switching frequency [Hz], > 0
+  S duty = S(1);       ///< pwm: fraction of a period switched on [1], 0 to 1
+
+  template <Scalar T>
+  Supply<T> cast() const {
+    return {type, T(voltage), T(frequency), T(duty)};
+  }
+};
+
+inline void validate(const Supply<double>& s) {
+  require(s.voltage >= 0.0, s.type == SupplyType::sine ? "supply.amplitude" : "supply.voltage", "must be >= 0", "V",
+          s.voltage);
+  if (s.type != SupplyType::constant) {
+    require(s.frequency > 0.0, "supply.frequency", "must be > 0", "Hz", s.frequency);
+  }
+  if (s.type == SupplyType::pwm) {
+    require(s.duty >= 0.0 && s.duty <= 1.0, "supply.duty", "must lie between 0 and 1", "1", s.duty);
+  }
+}
+
+/// Terminal voltage [V] at time t [s].
+inline double voltage_at(const Supply<double>& s, double t) {
+  if (s.type == SupplyType::sine) return s.voltage * std::sin(two_pi * s.frequency * t);
+  if (s.type == SupplyType::pwm) {
+    const double phase = s.frequency * t - std::floor(s.frequency * t);
+    return phase < s.duty ? s.voltage : 0.0;
+  }
+  return s.voltage;
+}
+
+/// The constant voltage [V] that steady flapping sees: v itself, the mean over a switching period for pwm.
+template <Scalar S>
+S mean_voltage(const Supply<S>& s) {
+  return s.type == SupplyType::pwm ? s.duty * s.voltage : s.voltage;
+}
+
+}  // namespace wingbeat

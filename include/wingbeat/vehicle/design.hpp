@@ -1,0 +1,93 @@
+// Every parameter of a vehicle as its designer states it: the aggregate behind a vehicle file. resolve() in
+// vehicle/vehicle.hpp turns it into the constants the equations use.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "wingbeat/parts/blade_element.hpp"
+#include "wingbeat/parts/friction.hpp"
+#include "wingbeat/parts/motor.hpp"
+#include "wingbeat/parts/planform.hpp"
+#include "wingbeat/parts/slider_crank.hpp"
+#include "wingbeat/parts/spring.hpp"
+#include "wingbeat/parts/supply.hpp"
+
+namespace wingbeat {
+
+/// Environment of a test: model.md section 3.
+enum class Condition {
+  air,
+  vacuum,   ///< no aerodynamics, wings present
+  wingless  ///< no wing: rod force zero
+};
+
+/// [motor]: constants at the output shaft, or at the motor shaft with a gear ratio.
+template <Scalar S>
+struct MotorDesign {
+  std::optional<S> gear_ratio;  ///< given: the constants below are the motor shaft's
+  Motor<S> constants;
+  S gear_inertia = S(0);  ///< J_G [kg m2], only with gear_ratio
+  S gear_damping = S(0);  ///< b_G [N m s/rad], only with gear_ratio
+};
+
+/// [transmission] of type slider-crank. Exactly one of hinge offset and stroke amplitude is given.
+template <Scalar S>
+struct TransmissionDesign {
+  S crank_radius = S(0);                ///< r_c [m]
+  S rod_length = S(0);                  ///< l [m]
+  std::optional<S> hinge_offset;        ///< H [m]
+  std::optional<S> stroke_amplitude;    ///< half peak to peak [rad], 0 to pi/2; fixes H for the given crank
+  std::optional<S> mid_stroke_height;   ///< y_0 [m]; l unless given
+  Formulation formulation = Formulation::rod_force;
+};
+
+/// [friction]: one law and its coefficient.
+template <Scalar S>
+struct FrictionDesign {
+  FrictionLaw law = FrictionLaw::none;
+  S coefficient = S(0);  ///< radius [m], damping [N m s/rad], coefficient [N m s2/rad2] or torque [N m] by law
+};
+
+/// [spring]: at most one of the two; neither means no spring.
+template <Scalar S>
+struct SpringDesign {
+  std::optional<S> stiffness;  ///< k of one hinge spring [N m/rad]
+  std::optional<S> resonance;  ///< f_s [Hz]; k = J_w (2 pi f_s)^2
+};
+
+/// [wing]
+template <Scalar S>
+struct WingDesign {
+  S count = S(2);    ///< N_w
+  S inertia = S(0);  ///< J_w of ONE wing about its hinge [kg m2]
+  Planform<S> planform;
+};
+
+/// [aerodynamics]
+template <Scalar S>
+struct AerodynamicsDesign {
+  S air_density = S(0);        ///< rho [kg/m3]
+  S pitch_coefficient = S(0);  ///< C_alpha [s]
+  std::string coefficients_name = "translational-2022";  ///< the named set, or "custom" or "table"
+  ForceCoefficients<S> coefficients;
+};
+
+template <Scalar S>
+struct Design {
+  std::string name;
+  std::optional<S> mass;                   ///< [kg]; enables lift_to_weight
+  std::optional<S> bench_torque_constant;  ///< K_ref of eq (17) [N m/A]
+  Supply<S> supply;
+  MotorDesign<S> motor;
+  TransmissionDesign<S> transmission;
+  FrictionDesign<S> friction;
+  SpringDesign<S> spring;
+  WingDesign<S> wing;
+  AerodynamicsDesign<S> aerodynamics;
+};
+
+/// Throws ParameterError, naming the vehicle-file key, for the first parameter out of its physical range.
+void validate(const Design<double>& design);
+
+}  // namespace wingbeat

@@ -1,0 +1,177 @@
+// A vehicle ready for the equations of motion, and the equations themselves; model.md section 2.
+#pragma once
+
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/core/scalar.hpp"
+#include "wingbeat/parts/blade_element.hpp"
+#include "wingbeat/parts/friction.hpp"
+#include "wingbeat/parts/motor.hpp"
+#include "wingbeat/parts/slider_crank.hpp"
+#include "wingbeat/parts/spring.hpp"
+#include "wingbeat/vehicle/design.hpp"
+
+namespace wingbeat {
+
+inline constexpr double standard_gravity = 9.80665;  ///< [m/s2], CGPM 1901
+
+/// The constants of one vehicle in one condition, all referred to the output shaft.
+template <Scalar S>
+struct Vehicle {
+  S voltage;  ///< v that steady flapping sees [V]
+  Motor<S> motor;
+  SliderCrank<S> crank;
+  Friction<S> friction;
+  HingeSpring<S> spring;
+  S wing_count;    ///< N_w
+  S wing_inertia;  ///< J_w of one wing [kg m2]; 0 when wingless
+  BladeElement<S> wings;
+
+  template <Scalar T>
+  Vehicle<T> cast() const {
+    return {T(voltage),
+            motor.template cast<T>(),
+            crank.template cast<T>(),
+            friction.template cast<T>(),
+            spring.template cast<T>(),
+            T(wing_count),
+            T(wing_inertia),
+            wings.template cast<T>()};
+  }
+};
+
+/// The vehicle that a design describes, in a condition. Does not check ranges: validate(design) does.
+template <Scalar S>
+Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air) {
+  Vehicle<S> v;
+  v.voltage = mean_voltage(design.supply);
+  const MotorDesign<S>& m = design.motor;
+  v.motor = m.gear_ratio ? at_output_shaft(GearMotor<S>{*m.gear_ratio, m.constants, m.gear_inertia, m.gear_damping})
+                         : m.constants;
+
+  const TransmissionDesign<S>& t = design.transmission;
+  v.crank.crank_radius = t.crank_radius;
+  v.crank.rod_length = t.rod_length;
+  v.crank.hinge_offset =
+      t.hinge_offset ? *t.hinge_offset : hinge_offset_for<S>(*t.stroke_amplitude, t.crank_radius);
+  v.crank.mid_stroke_height = t.mid_stroke_height ? *t.mid_stroke_height : t.rod_length;
+  v.crank.formulation = t.formulation;
+
+  const S& coefficient = design.friction.coefficient;
+  switch (design.friction.law) {
+    case FrictionLaw::none: break;
+    case FrictionLaw::load_proportional: v.friction.radius = coefficient; break;
+    case FrictionLaw::viscous: v.friction.damping = coefficient; break;
+    case FrictionLaw::quadratic: v.friction.quadratic = coefficient; break;
+    case FrictionLaw::constant: v.friction.torque = coefficient; break;
+  }
+
+  const bool wings = condition != Condition::wingless;
+  v.wing_count = design.wing.count;
+  v.wing_inertia = wings ? design.wing.inertia : S(0.0);
+  if (wings && design.spring.stiffness) v.spring.stiffness = *design.spring.stiffness;
+  if (wings && design.spring.resonance) {
+    v.spring.stiffness = stiffness_for_resonance(design.wing.inertia, *design.spring.resonance);
+  }
+
+  const bool air = condition == Condition::air;
+  const ChordMoments<S> moments = chord_moments(design.wing.planform, design.wing.count);
+  v.wings.air_density = air ? design.aerodynamics.air_density : S(0.0);
+  v.wings.pitch_coefficient = design.aerodynamics.pitch_coefficient;
+  v.wings.s2 = wings ? moments.s2 : S(0.0);
+  v.wings.s3 = wings ? moments.s3 : S(0.0);
+  v.wings.coefficients = design.aerodynamics.coefficients;
+  return v;
+}
+
+/// Which smooth branch of the kinked equations holds, each +-1.
+template <Scalar S>
+struct Branch {
+  S stroke;         ///< sign of beta'
+  S force;          ///< sign of the rod force F
+  S direction;      ///< sign of omega; +1 in steady flapping
+  S stored_power;   ///< sign of (N_w J_w beta'' + N_w k beta) beta', for the reactive power (eq 23) alone
+};
+
+/// Everything that acts at one instant.
+template <Scalar S>
+struct Motion {
+  CrankKinematics<S> kinematics;
+  S crank_acceleration;   ///< omega' [rad/s2]
+  S current_rate;         ///< di/dt [A/s]; 0 where L_a = 0
+  S current;              ///< i [A]
+  S voltage;              ///< v at the terminals [V]
+  S rod_force;            ///< F [N], positive when the crank pushes the slider up
+  S force_switch;         ///< has the sign of F on either branch while the uniqueness condition holds [N kg m2]
+  S stroke_velocity;      ///< beta' [rad/s]
+  S stroke_acceleration;  ///< beta'' [rad/s2]
+  S aero_moment;          ///< M_aero of all wings [N m], along beta'
+  S friction_torque;      ///< T_f on the crank, the motor's own friction included [N m]
+  S motor_torque;         ///< T_m = F h + T_f [N m] (eq 5)
+  S stored_moment;        ///< N_w J_w beta'' + N_w k beta [N m]
+};
+
+/// J + A (h + s mu r_e) [kg m2], the divisor of omega' on the branch s (model.md section 2). The equations have one
+/// solution while it is positive for s = +1 and s = -1 and the lever g is positive.
+template <Scalar S>
+S effective_inertia(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& s) {
+  const S A = v.wing_count * v.wing_inertia * k.stroke_slope / k.wing_lever;
+  return v.motor.inertia + A * (k.crank_lever + s * v.friction.radius);
+}
+
+/// Rod force and accelerations at crank angle theta (given by sine and cosine), crank speed omega [rad/s] and current
+/// i [A] under the terminal voltage v_t [V], on a given branch (model.md section 2, eqs 1, 5-11, 21).
+template <Scalar S>
+Motion<S> motion_at(const Vehicle<S>& v, const S& sin_theta, const S& cos_theta, const S& omega, const S& i,
+                    const S& v_t, const Branch<S>& branch) {
+  Motion<S> m;
+  m.kinematics = crank_kinematics(v.crank, sin_theta, cos_theta);
+  const CrankKinematics<S>& k = m.kinematics;
+  const S B1 = k.stroke_slope;
+  const S B2 = k.stroke_curve;
+  const S N_J = v.wing_count * v.wing_inertia;
+  const S N_k_beta = v.wing_count * spring_loads(v.spring, k.stroke_angle).moment;
+  m.stroke_velocity = B1 * omega;
+  const S stroke_speed = branch.stroke * m.stroke_velocity;
+  m.aero_moment = branch.stroke * drag_moment(v.wings, stroke_speed);
+
+  const S J = v.motor.inertia;
+  const S A = N_J * B1 / k.wing_lever;
+  const S C = (N_J * B2 * square(omega) + m.aero_moment + N_k_beta) / k.wing_lever;
+  const S load_free = load_free_friction(v.friction, omega, branch.direction) +
+                      branch.direction * v.motor.friction_torque;
+  const MotorLoads<S> motor = motor_loads(v.motor, v_t, i, omega);
+  const S drive = motor.torque - motor.drag_torque - load_free;
+  // mu r_e |F| sign(omega) = s mu r_e F with s = sign(F) sign(omega), on this branch.
+  const S lever = k.crank_lever + branch.force * branch.direction * v.friction.radius;
+  const S divisor = S(1.0) / (J + A * lever);
+
+  m.current = i;
+  m.voltage = v_t;
+  m.force_switch = J * C + A * drive;
+  m.rod_force = m.force_switch * divisor;
+  m.crank_acceleration = (drive - C * lever) * divisor;
+  m.stroke_acceleration = B1 * m.crank_acceleration + B2 * square(omega);
+  m.friction_torque = load_friction(v.friction, branch.force * m.rod_force, branch.direction) + load_free;
+  m.motor_torque = m.rod_force * k.crank_lever + m.friction_torque;
+  m.stored_moment = N_J * m.stroke_acceleration + N_k_beta;
+  m.current_rate = motor.voltage_reserve;  // L_a di/dt; divided by L_a below where there is an inductance
+  if (value_of(v.motor.armature_inductance) > 0.0) m.current_rate = m.current_rate / v.motor.armature_inductance;
+  return m;
+}
+
+/// The current [A] where L_a = 0: i = (v - K omega) / R_a.
+template <Scalar S>
+S algebraic_current(const Vehicle<S>& v, const S& v_t, const S& omega) {
+  return (v_t - v.motor.torque_constant * omega) / v.motor.armature_resistance;
+}
+
+/// Kinetic and elastic energy of rotor, wings, springs and inductance [J].
+template <Scalar S>
+S stored_energy(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& omega, const S& i) {
+  return S(0.5) * v.motor.inertia * square(omega) +
+         S(0.5) * v.wing_count * v.wing_inertia * square(k.stroke_slope * omega) +
+         v.wing_count * spring_loads(v.spring, k.stroke_angle).energy +
+         S(0.5) * v.motor.armature_inductance * square(i);
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,47 @@
+#include "wingbeat/cycle/metrics.hpp"
+
+namespace wingbeat {
+
+const std::array<MetricInfo, metric_count>& metric_table() {
+  static const std::array<MetricInfo, metric_count> table = {{
+      {"voltage_v", "V", "supply voltage"},
+      {"frequency_hz", "Hz", "flapping frequency"},
+      {"current_mean_a", "A", "mean current"},
+      {"current_peak_a", "A", "peak current"},
+      {"power_electrical_w", "W", "mean electrical input power"},
+      {"power_motor_w", "W", "mean motor output power"},
+      {"power_motor_reference_w", "W", "bench estimate of the motor output power"},
+      {"power_friction_w", "W", "mean friction loss"},
+      {"power_aerodynamic_w", "W", "mean aerodynamic power"},
+      {"power_reactive_w", "W", "mean absolute reactive power"},
+      {"power_copper_w", "W", "mean copper loss of the motor"},
+      {"power_viscous_w", "W", "mean viscous loss of the motor"},
+      {"power_loss_w", "W", "mean total loss"},
+      {"power_residual_w", "W", "mean power the transmission formulation fails to conserve"},
+      {"lift_mean_n", "N", "mean lift"},
+      {"lift_peak_n", "N", "peak lift"},
+      {"rod_force_peak_n", "N", "peak magnitude of the rod force"},
+      {"rod_force_mean_n", "N", "mean magnitude of the rod force"},
+      {"stroke_amplitude_rad", "rad", "stroke amplitude, half peak to peak"},
+      {"flapping_velocity_peak_rad_per_s", "rad/s", "peak flapping velocity"},
+      {"angle_of_attack_min_deg", "degree", "smallest angle of attack"},
+      {"crank_speed_min_rad_per_s", "rad/s", "smallest crank speed"},
+      {"crank_speed_max_rad_per_s", "rad/s", "largest crank speed"},
+      {"efficiency_system", "1", "system efficiency"},
+      {"efficiency_motor", "1", "motor efficiency"},
+      {"efficiency_mechanism", "1", "mechanism efficiency"},
+      {"floquet_multiplier_max", "1", "largest modulus of the orbit's Floquet multipliers"},
+      {"lift_to_weight", "1", "mean lift over weight"},
+  }};
+  return table;
+}
+
+int metric_index(std::string_view key) {
+  const auto& table = metric_table();
+  for (int m = 0; m < metric_count; ++m) {
+    if (key == table[std::size_t(m)].key) return m;
+  }
+  return metric_count;
+}
+
+}  // namespace wingbeat

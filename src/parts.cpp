@@ -1,0 +1,112 @@
+// Range checks and the coefficient table: the untemplated half of parts/.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "wingbeat/core/status.hpp"
+#include "wingbeat/parts/blade_element.hpp"
+#include "wingbeat/parts/planform.hpp"
+
+namespace wingbeat {
+
+std::string range_message(const char* expected, const char* unit, double value) {
+  char text[160];
+  std::snprintf(text, sizeof text, "%s [%s], got %.10g", expected, unit, value);
+  return text;
+}
+
+void require(bool condition, const char* key, const char* expected, const char* unit, double value) {
+  if (!condition || !std::isfinite(value)) throw ParameterError(key, range_message(expected, unit, value));
+}
+
+void validate(const Planform<double>& p) {
+  if (p.shape == PlanformShape::moments) {
+    require(p.s2 >= 0.0, "wing.planform.s2", "must be >= 0", "m4", p.s2);
+    require(p.s3 >= 0.0, "wing.planform.s3", "must be >= 0", "m5", p.s3);
+    return;
+  }
+  require(p.hub_offset >= 0.0, "wing.planform.hub_offset", "must be >= 0", "m", p.hub_offset);
+  if (p.shape == PlanformShape::tabulated) {
+    if (p.chord_table.size() < 2) {
+      throw ParameterError("wing.planform.file", "the chord table needs at least two rows");
+    }
+    for (std::size_t row = 0; row < p.chord_table.size(); ++row) {
+      const auto [x, chord] = p.chord_table[row];
+      const std::string where = "row " + std::to_string(row + 1) + " of the chord table";
+      if (!(std::isfinite(x) && std::isfinite(chord) && x >= 0.0 && chord >= 0.0)) {
+        throw ParameterError("wing.planform.file", where + " must hold a distance and a chord >= 0");
+      }
+      if (row > 0 && !(x > p.chord_table[row - 1].first)) {
+        throw ParameterError("wing.planform.file", where + " must lie farther from the root than the row before it");
+      }
+    }
+    return;
+  }
+  require(p.length > 0.0, "wing.planform.length", "must be > 0", "m", p.length);
+  require(p.root_chord > 0.0, "wing.planform.root_chord", "must be > 0", "m", p.root_chord);
+}
+
+void validate(const BladeElement<double>& w) {
+  require(w.air_density >= 0.0, "aerodynamics.air_density", "must be >= 0", "kg/m3", w.air_density);
+  require(w.pitch_coefficient >= 0.0, "aerodynamics.pitch_coefficient", "must be >= 0", "s", w.pitch_coefficient);
+  require(w.s2 >= 0.0, "wing.planform.s2", "must be >= 0", "m4", w.s2);
+  require(w.s3 >= 0.0, "wing.planform.s3", "must be >= 0", "m5", w.s3);
+}
+
+namespace {
+
+/// Second derivatives of the natural cubic spline through (x, y), by the tridiagonal (Thomas) algorithm.
+std::vector<double> natural_spline_curvature(const std::vector<double>& x, const std::vector<double>& y) {
+  const std::size_t n = x.size();
+  std::vector<double> curvature(n, 0.0), upper(n, 0.0), right(n, 0.0);
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    const double h0 = x[i] - x[i - 1], h1 = x[i + 1] - x[i];
+    const double diagonal = 2.0 * (h0 + h1) - h0 * upper[i - 1];
+    upper[i] = h1 / diagonal;
+    right[i] = (6.0 * ((y[i + 1] - y[i]) / h1 - (y[i] - y[i - 1]) / h0) - h0 * right[i - 1]) / diagonal;
+  }
+  for (std::size_t i = n - 1; i-- > 1;) curvature[i] = right[i] - upper[i] * curvature[i + 1];
+  return curvature;
+}
+
+std::vector<CoefficientTable::Cubic> spline_pieces(const std::vector<double>& x, const std::vector<double>& y) {
+  const std::vector<double> m = natural_spline_curvature(x, y);
+  std::vector<CoefficientTable::Cubic> pieces;
+  pieces.push_back({x.front(), y.front(), 0.0, 0.0, 0.0});
+  for (std::size_t i = 0; i + 1 < x.size(); ++i) {
+    const double h = x[i + 1] - x[i];
+    pieces.push_back({x[i], y[i], (y[i + 1] - y[i]) / h - h * (2.0 * m[i] + m[i + 1]) / 6.0, m[i] / 2.0,
+                      (m[i + 1] - m[i]) / (6.0 * h)});
+  }
+  pieces.push_back({x.back(), y.back(), 0.0, 0.0, 0.0});
+  return pieces;
+}
+
+}  // namespace
+
+CoefficientTable::CoefficientTable(std::vector<double> alpha, std::vector<double> lift, std::vector<double> drag)
+    : alpha_(std::move(alpha)), lift_values_(std::move(lift)), drag_values_(std::move(drag)) {
+  const char* key = "aerodynamics.coefficients";
+  if (alpha_.size() < 3) throw ParameterError(key, "the coefficient table needs at least three rows");
+  if (lift_values_.size() != alpha_.size() || drag_values_.size() != alpha_.size()) {
+    throw ParameterError(key, "every row of the coefficient table needs an angle, a lift and a drag coefficient");
+  }
+  for (std::size_t row = 0; row < alpha_.size(); ++row) {
+    const std::string where = "row " + std::to_string(row + 1) + " of the coefficient table";
+    if (!(std::isfinite(alpha_[row]) && std::isfinite(lift_values_[row]) && std::isfinite(drag_values_[row]))) {
+      throw ParameterError(key, where + " must hold three finite numbers");
+    }
+    if (row > 0 && !(alpha_[row] > alpha_[row - 1])) {
+      throw ParameterError(key, where + " must have a larger angle of attack than the row before it");
+    }
+  }
+  lift_ = spline_pieces(alpha_, lift_values_);
+  drag_ = spline_pieces(alpha_, drag_values_);
+}
+
+CoefficientTable::Cubic CoefficientTable::piece(const std::vector<Cubic>& pieces, double alpha) const {
+  const auto after = std::upper_bound(alpha_.begin(), alpha_.end(), alpha);
+  return pieces[std::size_t(after - alpha_.begin())];
+}
+
+}  // namespace wingbeat
