@@ -17,26 +17,12 @@ template <class Arch>
 struct ScalarTraits<xsimd::batch<double, Arch>> {
   using Mask = xsimd::batch_bool<double, Arch>;
   static constexpr int lanes = int(xsimd::batch<double, Arch>::size);
+  static Batch<Arch> select(const Mask& mask, const Batch<Arch>& a, const Batch<Arch>& b) {
+    return xsimd::select(mask, a, b);
+  }
+  static bool any(const Mask& mask) { return xsimd::any(mask); }
+  static bool all(const Mask& mask) { return xsimd::all(mask); }
+  static double value_of(const Batch<Arch>& x) { return x.get(0); }
 };
-
-template <class Arch>
-Batch<Arch> select(const xsimd::batch_bool<double, Arch>& mask, const Batch<Arch>& a, const Batch<Arch>& b) {
-  return xsimd::select(mask, a, b);
-}
-
-template <class Arch>
-bool any(const xsimd::batch_bool<double, Arch>& mask) {
-  return xsimd::any(mask);
-}
-
-template <class Arch>
-bool all(const xsimd::batch_bool<double, Arch>& mask) {
-  return xsimd::all(mask);
-}
-
-template <class Arch>
-double value_of(const Batch<Arch>& x) {
-  return x.get(0);
-}
 
 }  // namespace wingbeat

@@ -14,16 +14,10 @@ template <int N>
 struct ScalarTraits<ceres::Jet<double, N>> {
   using Mask = bool;
   static constexpr int lanes = 1;
+  static Jet<N> select(bool mask, const Jet<N>& a, const Jet<N>& b) { return mask ? a : b; }
+  static bool any(bool mask) { return mask; }
+  static bool all(bool mask) { return mask; }
+  static double value_of(const Jet<N>& x) { return x.a; }
 };
-
-template <int N>
-ceres::Jet<double, N> select(bool mask, const ceres::Jet<double, N>& a, const ceres::Jet<double, N>& b) {
-  return mask ? a : b;
-}
-
-template <int N>
-double value_of(const ceres::Jet<double, N>& x) {
-  return x.a;
-}
 
 }  // namespace wingbeat

@@ -8,8 +8,8 @@
 
 namespace wingbeat {
 
-/// What the library needs to know of a scalar type: `Mask`, the result of comparing two scalars, and `lanes`.
-/// Specialised for each scalar; a type without a specialisation is not a Scalar.
+/// What the library needs to know of a scalar type; specialised for each, a type without a specialisation is not a
+/// Scalar. `Mask` is the result of comparing two scalars, `lanes` the number of designs side by side.
 template <class S>
 struct ScalarTraits {};
 
@@ -17,6 +17,10 @@ template <>
 struct ScalarTraits<double> {
   using Mask = bool;
   static constexpr int lanes = 1;
+  static double select(bool mask, double a, double b) { return mask ? a : b; }
+  static bool any(bool mask) { return mask; }
+  static bool all(bool mask) { return mask; }
+  static double value_of(double x) { return x; }
 };
 
 template <class S>
@@ -26,13 +30,25 @@ template <Scalar S>
 using Mask = typename ScalarTraits<S>::Mask;
 
 /// `a` where the mask holds, else `b`.
-inline double select(bool mask, double a, double b) { return mask ? a : b; }
+template <Scalar S>
+S select(const Mask<S>& mask, const S& a, const S& b) {
+  return ScalarTraits<S>::select(mask, a, b);
+}
 
-/// True if the mask holds in any (in every) lane.
-inline bool any(bool mask) { return mask; }
-inline bool all(bool mask) { return mask; }
+/// True if the mask of an S holds in any (in every) lane.
+template <Scalar S>
+bool any(const Mask<S>& mask) {
+  return ScalarTraits<S>::any(mask);
+}
+template <Scalar S>
+bool all(const Mask<S>& mask) {
+  return ScalarTraits<S>::all(mask);
+}
 
 /// The plain number inside a scalar, derivatives dropped; of a batch, lane 0.
-inline double value_of(double x) { return x; }
+template <Scalar S>
+double value_of(const S& x) {
+  return ScalarTraits<S>::value_of(x);
+}
 
 }  // namespace wingbeat

@@ -1,0 +1,87 @@
+// The slider-crank vehicle as a periodic system in crank angle: what solve/ integrates (model.md section 2).
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/solve/lap.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
+
+namespace wingbeat {
+
+/// States crank speed omega and, with inductance (N = 2), current i; independent variable crank angle from 0 to 2 pi.
+/// Valid while omega > 0.
+template <Scalar S, int N>
+struct CrankSystem {
+  using Real = S;
+  using State = std::array<S, N>;
+  using Quadrature = CycleIntegrals<S>;
+  using Switches = std::array<S, 2>;  ///< force_switch, stored_moment
+  static constexpr int state_switches = 1;  ///< of these, only the force bends the solution
+  using Signs = std::array<S, 3>;     ///< of the rod force, of the stored moment, of the stroke velocity
+
+  Vehicle<S> vehicle;
+  S speed_floor = S(0.0);    ///< below this crank speed [rad/s] the crank counts as stopped
+  S current_scale = S(0.0);  ///< v / R_a [A], scale of errors in the current
+
+  template <Scalar T>
+  CrankSystem<T, N> cast() const {
+    return {vehicle.template cast<T>(), T(speed_floor), T(current_scale)};
+  }
+
+  static double period() { return two_pi; }
+
+  /// beta' changes sign where dy/dtheta = 0: at the dead centres.
+  static const std::array<solve::FixedNode, 2>& fixed_nodes() {
+    static constexpr std::array<solve::FixedNode, 2> nodes = {{{0.5 * pi, 2}, {1.5 * pi, 2}}};
+    return nodes;
+  }
+  static Signs start_signs() { return {S(1.0), S(1.0), S(1.0)}; }
+
+  bool admissible(const State& y) const { return y[0] > speed_floor; }
+
+  State error_scale(const State& y) const {
+    State scale;
+    scale[0] = y[0];
+    if constexpr (N == 2) {
+      using std::abs;
+      scale[1] = abs(y[1]) + S(0.1) * current_scale;
+    }
+    return scale;
+  }
+
+  S current(const State& y) const {
+    if constexpr (N == 2) {
+      return y[1];
+    } else {
+      return algebraic_current(vehicle, vehicle.voltage, y[0]);
+    }
+  }
+
+  static Branch<S> branch(const Signs& signs) { return {signs[2], signs[0], S(1.0), signs[1] * signs[2]}; }
+
+  Motion<S> motion(const S& theta, const State& y, const Signs& signs) const {
+    using std::cos;
+    using std::sin;
+    return motion_at(vehicle, S(sin(theta)), S(cos(theta)), y[0], current(y), vehicle.voltage, branch(signs));
+  }
+
+  template <bool quadratures>
+  solve::Rates<CrankSystem> rates(const S& theta, const State& y, const Signs& signs) const {
+    const Motion<S> m = motion(theta, y, signs);
+    const S per_omega = S(1.0) / y[0];
+    solve::Rates<CrankSystem> r;
+    r.dy[0] = m.crank_acceleration * per_omega;
+    if constexpr (N == 2) r.dy[1] = m.current_rate * per_omega;
+    r.switches = {m.force_switch, m.stored_moment};
+    if constexpr (quadratures) {
+      const CycleIntegrals<S> in_time = integrands(vehicle, m, y[0], branch(signs));
+      for (std::size_t q = 0; q < in_time.size(); ++q) r.dq[q] = in_time[q] * per_omega;
+    }
+    return r;
+  }
+};
+
+}  // namespace wingbeat

@@ -1,0 +1,26 @@
+// The energy books of a cycle: where the supply's power goes, and whether the account closes; model.md section 4.
+#pragma once
+
+#include "wingbeat/cycle/metrics.hpp"
+
+namespace wingbeat {
+
+/// Mean powers of a cycle [W]. P_e = copper + viscous + friction + aerodynamic + residual, to the solver's accuracy.
+struct EnergyAudit {
+  double electrical;   ///< P_e
+  double copper;       ///< R_a mean(i^2)
+  double viscous;      ///< b mean(omega^2)
+  double friction;     ///< mean(T_f omega)
+  double aerodynamic;  ///< mean(M_aero beta')
+  double residual;     ///< what the formulation fails to conserve; zero to rounding for virtual-work
+  double imbalance;    ///< P_e minus all of these: zero but for the error of the solution
+};
+
+inline EnergyAudit energy_audit(const Metrics<double>& m) {
+  EnergyAudit a{m[Metric::power_electrical], m[Metric::power_copper],      m[Metric::power_viscous],
+                m[Metric::power_friction],   m[Metric::power_aerodynamic], m[Metric::power_residual], 0.0};
+  a.imbalance = a.electrical - a.copper - a.viscous - a.friction - a.aerodynamic - a.residual;
+  return a;
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,382 @@
+// One lap of a piecewise smooth system over its period: adaptive steps, every change of branch located.
+//
+// A lap is a list of steps, each on one smooth branch. Branches end at fixed nodes, known in advance, and at switches:
+// functions of the solution whose sign changes are found. The right-hand side is continuous there, so an error e in the
+// position of a switch costs O(e^2) in everything: positions are needed to the square root of the tolerance only.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <vector>
+
+#include "wingbeat/solve/explicit_step.hpp"
+
+namespace wingbeat::solve {
+
+/// A branch sign that flips at a known position. Signs with index below the number of switches are located instead.
+struct FixedNode {
+  double x;
+  std::size_t sign;
+};
+
+/// A sign change that was located in a lap, or is expected from the lap before.
+struct SwitchNode {
+  double x;
+  std::size_t sign;
+};
+
+/// One accepted step: everything needed to repeat it or to evaluate the solution inside it.
+template <class System>
+struct Step {
+  double x;
+  double h;
+  typename System::State y;  ///< at x
+  typename System::Signs signs;
+  Rates<System> first;            ///< rates at (x, y)
+  typename System::Quadrature dq; ///< integrals over the step
+};
+
+enum class LapStatus {
+  complete,
+  barrier,        ///< the state reached the edge of the admissible region
+  too_many_steps  ///< the step limit was reached (a stiff system, for an explicit method)
+};
+
+template <class System>
+struct Lap {
+  std::vector<Step<System>> steps;
+  std::vector<SwitchNode> switches;  ///< located; on entry of run_lap, the expected ones
+  typename System::State end;
+  LapStatus status = LapStatus::complete;
+  double stop = 0.0;         ///< where the lap ended [same unit as the period]
+  double largest_step = 0.0; ///< first guess for the next lap's steps
+};
+
+struct LapOptions {
+  double tolerance = 1e-6;  ///< of each step, relative to System::error_scale
+  int max_steps = 2000;
+  double first_step = 0.3;  ///< as a fraction of the period / (2 pi)
+  int switches = 1000;      ///< locate the first so many switches only; the others keep their first sign
+};
+
+namespace detail {
+
+/// Cubic Hermite state inside a step from its end values and slopes, at the fraction t of the step h.
+template <class System>
+typename System::State hermite(const typename System::State& y0, const typename System::State& dy0,
+                               const typename System::State& y1, const typename System::State& dy1, double h, double t) {
+  typename System::State y;
+  const double s = 1.0 - t;
+  for (std::size_t n = 0; n < y.size(); ++n) {
+    y[n] = s * s * (1.0 + 2.0 * t) * y0[n] + t * t * (3.0 - 2.0 * t) * y1[n] + h * t * s * (s * dy0[n] - t * dy1[n]);
+  }
+  return y;
+}
+
+template <class System>
+double scaled_error(const System& system, const StepResult<System>& step, double tolerance) {
+  const typename System::State scale = system.error_scale(step.y);
+  double sum3 = 0.0, sum5 = 0.0;
+  for (std::size_t n = 0; n < scale.size(); ++n) {
+    const double per = 1.0 / (tolerance * scale[n]);
+    sum3 += step.error3[n] * step.error3[n] * per * per;
+    sum5 += step.error5[n] * step.error5[n] * per * per;
+  }
+  // Hairer's combination of both embedded formulas, of order 8 in the step.
+  const double denominator = sum5 + 0.01 * sum3;
+  return denominator > 0.0 ? sum5 / std::sqrt(denominator * double(scale.size())) : 0.0;
+}
+
+/// Position tolerance of a switch: its square must vanish beside the tolerance.
+inline double switch_tolerance(double tolerance) { return 0.05 * std::sqrt(tolerance); }
+
+/// Drives one lap; see run_lap.
+template <bool quadratures, class System>
+class LapDriver {
+ public:
+  using State = typename System::State;
+  using Signs = typename System::Signs;
+  static constexpr std::size_t switch_count = std::tuple_size_v<typename System::Switches>;
+
+  LapDriver(const System& system, const LapOptions& options, Lap<System>& lap)
+      : system_(system),
+        options_(options),
+        lap_(lap),
+        located_(std::min(switch_count, std::size_t(options.switches))),
+        position_tolerance_(switch_tolerance(options.tolerance)) {}
+
+  void run(const State& start) {
+    begin(start);
+    const double period = system_.period();
+    double h = lap_.largest_step > 0.0 ? lap_.largest_step : options_.first_step * period / 6.283185307179586;
+    lap_.largest_step = 0.0;
+    while (x_ < period) {
+      if (int(lap_.steps.size()) >= options_.max_steps) return stop(LapStatus::too_many_steps);
+      if (h < 1e-12 * period) return stop(LapStatus::barrier);
+      double node = period;
+      if (fixed_ < system_.fixed_nodes().size()) node = std::min(node, system_.fixed_nodes()[fixed_].x);
+      while (expected_ < plan_.size() && plan_[expected_].x <= x_ + position_tolerance_) ++expected_;
+      // An expected switch right before a node is left to be found there: steps of no length help nobody.
+      const bool to_switch = expected_ < plan_.size() && plan_[expected_].x < node - position_tolerance_;
+      const double target = to_switch ? plan_[expected_].x : node;
+
+      const double left = target - x_;
+      const double pieces = std::ceil(0.999 * left / h);
+      const bool reaches = pieces <= 1.0;
+      double step = reaches ? left : left / pieces;
+      StepResult<System> result = explicit_step<quadratures>(system_, x_, y_, step, signs_, first_);
+      if (!result.admissible) {
+        h = 0.25 * step;
+        continue;
+      }
+      const double error = scaled_error(system_, result, options_.tolerance);
+      const double factor = error > 0.0 ? 0.9 * std::pow(error, -0.125) : 5.0;
+      if (!(error <= 1.0)) {
+        h = step * std::clamp(factor, 0.1, 0.9);
+        if (!std::isfinite(error)) h = 0.25 * step;
+        continue;
+      }
+      double x1 = reaches ? target : x_ + step;
+      Rates<System> last = system_.template rates<quadratures>(x1, result.y, signs_);
+      bool flip = false;
+      std::size_t flipped = switch_count;
+      if (reaches && to_switch && end_on_expected(node, step, result, last)) {
+        flip = true;
+        flipped = plan_[expected_].sign;
+        x1 = x_ + step;
+      }
+      const std::size_t crossed = crossed_switch(last, flipped);
+      if (crossed < switch_count) {
+        if (!locate(crossed, step, result, last)) {
+          // The switch lies where the step begins: flip there and take the step again.
+          flip_here(crossed);
+          continue;
+        }
+        x1 = x_ + step;
+        flip = true;
+        flipped = crossed;
+      }
+      accept(x1, step, result, last);
+      if (flip) {
+        flip_here(flipped);
+      } else if (reaches && !to_switch && x1 < period) {
+        pass_fixed_nodes();
+      }
+      h = std::max(h, step) * std::clamp(factor, 0.3, 3.0);
+      if (!reaches || factor < 1.0) h = step * std::clamp(factor, 0.3, 3.0);
+    }
+    stop(LapStatus::complete);
+  }
+
+ private:
+  void begin(const State& start) {
+    plan_.swap(lap_.switches);
+    lap_.switches.clear();
+    lap_.steps.clear();
+    x_ = 0.0;
+    y_ = start;
+    signs_ = system_.start_signs();
+    // A switch may depend on the signs of those before it.
+    for (std::size_t k = 0; k < switch_count; ++k) {
+      const Rates<System> rates = system_.template rates<quadratures>(x_, y_, signs_);
+      signs_[k] = rates.switches[k] >= 0.0 ? 1.0 : -1.0;
+    }
+    first_ = system_.template rates<quadratures>(x_, y_, signs_);
+    remember_switch_scale(first_);
+  }
+
+  void stop(LapStatus status) {
+    lap_.status = status;
+    lap_.stop = x_;
+    lap_.end = y_;
+  }
+
+  void remember_switch_scale(const Rates<System>& rates) {
+    for (std::size_t k = 0; k < switch_count; ++k) {
+      switch_scale_[k] = std::max(switch_scale_[k], std::abs(rates.switches[k]));
+    }
+  }
+
+  /// Moves the end of a step onto the expected switch there; false if that is not near, or beyond the next node.
+  bool end_on_expected(double node, double& step, StepResult<System>& result, Rates<System>& last) {
+    const std::size_t k = plan_[expected_].sign;
+    const double near_end = 0.95;
+    const State before = hermite<System>(y_, first_.dy, result.y, last.dy, step, near_end);
+    const double slope = (last.switches[k] -
+                          system_.template rates<false>(x_ + near_end * step, before, signs_).switches[k]) /
+                         ((1.0 - near_end) * step);
+    if (slope * signs_[k] >= 0.0) return false;
+    double moved = step;
+    for (int correction = 0; correction < 3; ++correction) {
+      const double off = last.switches[k] / slope;
+      if (std::abs(off) <= position_tolerance_) return true;
+      moved -= off;
+      if (!(moved > 0.7 * step && moved < 1.3 * step && x_ + moved < node)) return false;
+      const StepResult<System> again = explicit_step<quadratures>(system_, x_, y_, moved, signs_, first_);
+      if (!again.admissible) return false;
+      result = again;
+      step = moved;
+      last = system_.template rates<quadratures>(x_ + step, result.y, signs_);
+    }
+    return false;
+  }
+
+  /// The switch that was crossed first in a step, or switch_count; `ended_on` is not looked at. Zero counts as not
+  /// crossed.
+  std::size_t crossed_switch(const Rates<System>& last, std::size_t ended_on) {
+    remember_switch_scale(last);
+    std::size_t crossed = switch_count;
+    if (flips_here_ >= 2 * int(switch_count)) return crossed;
+    double at = 2.0;
+    for (std::size_t k = 0; k < located_; ++k) {
+      if (last.switches[k] * signs_[k] >= 0.0 || std::abs(last.switches[k]) < 1e-15 * switch_scale_[k]) continue;
+      if (k == ended_on) continue;
+      const double from = std::max(0.0, first_.switches[k] * signs_[k]);
+      const double fraction = from / (from + std::abs(last.switches[k]));
+      if (fraction < at) {
+        at = fraction;
+        crossed = k;
+      }
+    }
+    return crossed;
+  }
+
+  /// Shortens the step to end where switch k changes sign; false if that is at its very start.
+  bool locate(std::size_t k, double& step, StepResult<System>& result, Rates<System>& last) {
+    const double whole = step;
+    const State y1 = result.y;
+    const State dy1 = last.dy;
+    const auto value = [&](double at) {
+      const State y = hermite<System>(y_, first_.dy, y1, dy1, whole, at / whole);
+      return system_.template rates<false>(x_ + at, y, signs_).switches[k] * signs_[k];
+    };
+    // Illinois: keeps the bracket, converges superlinearly.
+    double lo = 0.0, hi = whole;
+    double f_lo = first_.switches[k] * signs_[k], f_hi = last.switches[k] * signs_[k];
+    if (f_lo <= 1e-15 * switch_scale_[k]) {
+      // A sign may have been flipped a little before its zero: look past it.
+      lo = std::min(2.0 * position_tolerance_, 0.5 * whole);
+      f_lo = value(lo);
+      if (f_lo <= 0.0) return false;
+    }
+    const double close_enough = 0.1 * position_tolerance_;
+    double at = hi, slope = (f_hi - f_lo) / whole;
+    for (int iteration = 0, side = 0; iteration < 60 && hi - lo > close_enough; ++iteration) {
+      const double next = (lo * f_hi - hi * f_lo) / (f_hi - f_lo);
+      const double f = value(next);
+      if (next != at && iteration > 0) slope = (f - (at == hi ? f_hi : f_lo)) / (next - at);
+      const double moved = std::abs(next - at);
+      at = next;
+      if (f < 0.0) {
+        hi = next;
+        f_hi = f;
+        if (side == -1) f_lo *= 0.5;
+        side = -1;
+      } else {
+        lo = next;
+        f_lo = f;
+        if (side == 1) f_hi *= 0.5;
+        side = 1;
+      }
+      if (f == 0.0 || (iteration > 0 && moved < close_enough)) break;
+    }
+    if (at < 1e-3 * position_tolerance_) return false;
+    // The Hermite state is of lower order than the step: correct with steps that end at the switch.
+    for (int correction = 0; correction < 4; ++correction) {
+      step = at;
+      result = explicit_step<quadratures>(system_, x_, y_, step, signs_, first_);
+      last = system_.template rates<quadratures>(x_ + step, result.y, signs_);
+      const double off = slope != 0.0 ? last.switches[k] * signs_[k] / slope : 0.0;
+      if (std::abs(off) <= position_tolerance_ || at - off <= 0.0) break;
+      at -= off;
+    }
+    return true;
+  }
+
+  void accept(double x1, double step, const StepResult<System>& result, const Rates<System>& last) {
+    lap_.steps.push_back({x_, step, y_, signs_, first_, result.dq});
+    lap_.largest_step = std::max(lap_.largest_step, step);
+    x_ = x1;
+    y_ = result.y;
+    first_ = last;
+    flips_here_ = 0;
+  }
+
+  /// Flips a located sign at the present position.
+  void flip_here(std::size_t k) {
+    signs_[k] = -signs_[k];
+    ++flips_here_;
+    lap_.switches.push_back({x_, k});
+    first_ = system_.template rates<quadratures>(x_, y_, signs_);
+  }
+
+  void pass_fixed_nodes() {
+    while (fixed_ < system_.fixed_nodes().size() && system_.fixed_nodes()[fixed_].x <= x_) {
+      const std::size_t k = system_.fixed_nodes()[fixed_].sign;
+      signs_[k] = -signs_[k];
+      ++fixed_;
+    }
+    first_ = system_.template rates<quadratures>(x_, y_, signs_);
+  }
+
+  const System& system_;
+  const LapOptions& options_;
+  Lap<System>& lap_;
+  const std::size_t located_;
+  const double position_tolerance_;
+  std::vector<SwitchNode> plan_;
+  std::size_t expected_ = 0;
+  std::size_t fixed_ = 0;
+  int flips_here_ = 0;
+  double x_ = 0.0;
+  State y_;
+  Signs signs_;
+  Rates<System> first_;
+  std::array<double, switch_count> switch_scale_{};
+};
+
+}  // namespace detail
+
+/// Integrates one lap from `start` at x = 0. `lap.switches` may hold expected positions (those of the lap before), which
+/// saves finding them again. With `quadratures`, every step records its integrals. Never throws, never loops for ever.
+template <bool quadratures, class System>
+void run_lap(const System& system, const typename System::State& start, const LapOptions& options, Lap<System>& lap) {
+  detail::LapDriver<quadratures, System>(system, options, lap).run(start);
+}
+
+/// Repeats the steps of a lap, mesh and branches frozen, from `start`; the scalar of `system` may differ from the lap's
+/// (derivatives). Returns the state at the end; the integrals are added to `*totals` where given.
+template <bool quadratures, class System, class Recorded>
+typename System::State repeat_lap(const System& system, const typename System::State& start,
+                                  const Lap<Recorded>& lap, typename System::Quadrature* totals = nullptr) {
+  using Real = typename System::Real;
+  typename System::State y = start;
+  for (const Step<Recorded>& step : lap.steps) {
+    typename System::Signs signs;
+    for (std::size_t k = 0; k < signs.size(); ++k) signs[k] = Real(step.signs[k]);
+    const Rates<System> first = system.template rates<quadratures>(Real(step.x), y, signs);
+    const StepResult<System> result = explicit_step<quadratures>(system, Real(step.x), y, Real(step.h), signs, first);
+    if constexpr (quadratures) {
+      for (std::size_t q = 0; q < result.dq.size(); ++q) (*totals)[q] = (*totals)[q] + result.dq[q];
+    }
+    y = result.y;
+  }
+  return y;
+}
+
+/// The step that holds x.
+template <class System>
+const Step<System>& step_at(const Lap<System>& lap, double x) {
+  const auto after = std::upper_bound(lap.steps.begin(), lap.steps.end(), x,
+                                      [](double at, const Step<System>& step) { return at < step.x; });
+  return after == lap.steps.begin() ? lap.steps.front() : *(after - 1);
+}
+
+/// The solution at x inside a recorded step, by a shorter step of the same method: as accurate as the lap itself.
+template <bool quadratures, class System>
+StepResult<System> evaluate_inside(const System& system, const Step<System>& step, double x) {
+  return explicit_step<quadratures>(system, step.x, step.y, x - step.x, step.signs, step.first);
+}
+
+}  // namespace wingbeat::solve

@@ -1,0 +1,13 @@
+// Dense linear algebra for systems of a few states, kept out of the templates.
+#pragma once
+
+namespace wingbeat::solve {
+
+/// Solves A x = b in place (A row-major n x n, destroyed; b becomes x) by LU with partial pivoting.
+/// False if A is singular to working precision.
+bool solve_linear(int n, double* matrix, double* right_hand_side);
+
+/// Largest modulus of the eigenvalues of a row-major n x n matrix.
+double spectral_radius(int n, const double* matrix);
+
+}  // namespace wingbeat::solve

@@ -1,0 +1,34 @@
+#include "wingbeat/solve/linear.hpp"
+
+// g++ 12 takes Eigen's unrolled loops for uses of uninitialised memory.
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#include <Eigen/Dense>
+#include <cmath>
+
+namespace wingbeat::solve {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+bool solve_linear(int n, double* matrix, double* right_hand_side) {
+  const Eigen::Map<RowMajor> A(matrix, n, n);
+  Eigen::Map<Eigen::VectorXd> b(right_hand_side, n);
+  const Eigen::PartialPivLU<RowMajor> lu(A);
+  if (!(lu.rcond() > 1e-15)) return false;
+  b = lu.solve(b).eval();
+  return b.allFinite();
+}
+
+double spectral_radius(int n, const double* matrix) {
+  if (n == 1) return std::abs(matrix[0]);
+  if (n == 2) {
+    const double half_trace = 0.5 * (matrix[0] + matrix[3]);
+    const double determinant = matrix[0] * matrix[3] - matrix[1] * matrix[2];
+    const double half_difference = 0.5 * (matrix[0] - matrix[3]);
+    const double discriminant = half_difference * half_difference + matrix[1] * matrix[2];
+    return discriminant >= 0.0 ? std::abs(half_trace) + std::sqrt(discriminant) : std::sqrt(determinant);
+  }
+  const Eigen::MatrixXd A = Eigen::Map<const RowMajor>(matrix, n, n);
+  return A.eigenvalues().cwiseAbs().maxCoeff();
+}
+
+}  // namespace wingbeat::solve

@@ -1,0 +1,93 @@
+#include "wingbeat/cycle/record.hpp"
+
+#include <algorithm>
+
+namespace wingbeat {
+namespace {
+
+template <class Recorded>
+WaveformRow row_inside(const Recorded& recorded, const solve::Step<decltype(Recorded::system)>& step, double start_time,
+                       double theta) {
+  const auto& system = recorded.system;
+  const auto result = solve::evaluate_inside<true>(system, step, theta);
+  const Motion<double> m = system.motion(theta, result.y, step.signs);
+  const double speed = step.signs[2] * m.stroke_velocity;
+  WaveformRow row;
+  row.time = start_time + result.dq[std::size_t(Integral::time)];
+  row.crank_angle = theta;
+  row.crank_speed = result.y[0];
+  row.current = m.current;
+  row.stroke_angle = m.kinematics.stroke_angle;
+  row.flapping_velocity = m.stroke_velocity;
+  row.angle_of_attack_deg = degrees_per_radian * angle_of_attack(system.vehicle.wings, speed);
+  row.lift = lift_force(system.vehicle.wings, speed);
+  row.aero_moment = m.aero_moment;
+  row.rod_force = m.rod_force;
+  row.motor_torque = m.motor_torque;
+  row.friction_torque = m.friction_torque;
+  return row;
+}
+
+}  // namespace
+
+bool CycleRecord::empty() const {
+  return std::visit([](const auto& recorded) { return recorded.lap.steps.empty(); }, laps_);
+}
+
+CycleIntegrals<double> CycleRecord::integrals() const {
+  return std::visit(
+      [](const auto& recorded) {
+        CycleIntegrals<double> sum{};
+        for (const auto& step : recorded.lap.steps) {
+          for (std::size_t q = 0; q < sum.size(); ++q) sum[q] += step.dq[q];
+        }
+        return sum;
+      },
+      laps_);
+}
+
+double CycleRecord::period() const { return integrals()[std::size_t(Integral::time)]; }
+
+WaveformRow CycleRecord::at(double theta) const {
+  return std::visit(
+      [&](const auto& recorded) {
+        double time = 0.0;
+        const auto& step = solve::step_at(recorded.lap, theta);
+        for (const auto* before = recorded.lap.steps.data(); before != &step; ++before) {
+          time += before->dq[std::size_t(Integral::time)];
+        }
+        return row_inside(recorded, step, time, theta);
+      },
+      laps_);
+}
+
+std::vector<WaveformRow> CycleRecord::waveform(int count) const {
+  return std::visit(
+      [&](const auto& recorded) {
+        std::vector<WaveformRow> rows;
+        rows.reserve(std::size_t(count));
+        const double period_time = period();
+        std::size_t n = 0;
+        double start_time = 0.0;
+        const auto& steps = recorded.lap.steps;
+        for (int k = 0; k < count; ++k) {
+          const double time = period_time * k / (count - 1);
+          while (n + 1 < steps.size() && start_time + steps[n].dq[std::size_t(Integral::time)] <= time) {
+            start_time += steps[n].dq[std::size_t(Integral::time)];
+            ++n;
+          }
+          // Newton for the crank angle at this time: d theta / dt = omega.
+          double theta = steps[n].x + std::min(steps[n].h, (time - start_time) * steps[n].y[0]);
+          WaveformRow row = row_inside(recorded, steps[n], start_time, theta);
+          for (int iteration = 0; iteration < 20 && std::abs(row.time - time) > 1e-14 * period_time; ++iteration) {
+            theta = std::clamp(theta + (time - row.time) * row.crank_speed, steps[n].x, steps[n].x + steps[n].h);
+            row = row_inside(recorded, steps[n], start_time, theta);
+          }
+          rows.push_back(row);
+        }
+        return rows;
+      },
+      laps_);
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,212 @@
+#include "wingbeat/cycle/static_balance.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace wingbeat {
+namespace {
+
+constexpr int angle_count = 48;
+
+struct UnitCircle {
+  std::array<double, angle_count> angle, sine, cosine;
+};
+
+const UnitCircle& unit_circle() {
+  static const UnitCircle circle = [] {
+    UnitCircle c;
+    for (std::size_t n = 0; n < angle_count; ++n) {
+      c.angle[n] = two_pi * double(n) / angle_count;
+      c.sine[n] = std::sin(c.angle[n]);
+      c.cosine[n] = std::cos(c.angle[n]);
+    }
+    return c;
+  }();
+  return circle;
+}
+
+CrankKinematics<double> kinematics_at(const Vehicle<double>& v, double theta) {
+  return crank_kinematics(v.crank, std::sin(theta), std::cos(theta));
+}
+
+double least_inertia(const Vehicle<double>& v, const CrankKinematics<double>& k) {
+  return std::min(effective_inertia(v, k, 1.0), effective_inertia(v, k, -1.0));
+}
+
+double constant_friction(const Vehicle<double>& v) { return v.friction.torque + v.motor.friction_torque; }
+
+double static_rod_force(const Vehicle<double>& v, const CrankKinematics<double>& k) {
+  return v.wing_count * spring_loads(v.spring, k.stroke_angle).moment / k.wing_lever;
+}
+
+/// Golden-section minimum of f on [a, b].
+template <class F>
+std::pair<double, double> minimise(const F& f, double a, double b) {
+  constexpr double golden = 0.6180339887498949;
+  double x1 = b - golden * (b - a), x2 = a + golden * (b - a), f1 = f(x1), f2 = f(x2);
+  while (b - a > 1e-9) {
+    if (f1 < f2) {
+      b = x2, x2 = x1, f2 = f1, x1 = b - golden * (b - a), f1 = f(x1);
+    } else {
+      a = x1, x1 = x2, f1 = f2, x2 = a + golden * (b - a), f2 = f(x2);
+    }
+  }
+  return f1 < f2 ? std::pair{x1, f1} : std::pair{x2, f2};
+}
+
+/// Least value over the circle from samples, refined around the least sample where `refine` says it matters.
+template <class F>
+std::pair<double, double> least_on_circle(const F& f, const std::array<double, angle_count>& samples, double refine) {
+  const std::size_t n = std::size_t(std::min_element(samples.begin(), samples.end()) - samples.begin());
+  const double angle = unit_circle().angle[n];
+  if (samples[n] > refine) return {angle, samples[n]};
+  const double step = two_pi / angle_count;
+  const auto refined = minimise(f, angle - step, angle + step);
+  return refined.second < samples[n] ? std::pair{wrap_angle(refined.first), refined.second}
+                                     : std::pair{angle, samples[n]};
+}
+
+/// Zero of f between a and b, f(a) and f(b) of different sign.
+template <class F>
+double bisect(const F& f, double a, double b) {
+  const bool positive = f(a) > 0.0;
+  for (int n = 0; n < 60; ++n) {
+    const double mid = 0.5 * (a + b);
+    (f(mid) > 0.0) == positive ? a = mid : b = mid;
+  }
+  return 0.5 * (a + b);
+}
+
+}  // namespace
+
+double advance_torque(const Vehicle<double>& v, double crank_angle) {
+  const CrankKinematics<double> k = kinematics_at(v, crank_angle);
+  const double F_s = static_rod_force(v, k);
+  return v.motor.torque_constant * v.voltage / v.motor.armature_resistance - F_s * k.crank_lever -
+         v.friction.radius * std::abs(F_s) - constant_friction(v);
+}
+
+double lock_margin(const Vehicle<double>& v, double crank_angle) {
+  const CrankKinematics<double> k = kinematics_at(v, crank_angle);
+  const double F_s = static_rod_force(v, k);
+  const double drive = v.motor.torque_constant * v.voltage / v.motor.armature_resistance - F_s * k.crank_lever;
+  return v.friction.radius * std::abs(F_s) + constant_friction(v) - std::abs(drive);
+}
+
+StaticBalance static_balance(const Vehicle<double>& v) {
+  StaticBalance s{};
+  s.stall_torque = v.motor.torque_constant * v.voltage / v.motor.armature_resistance;
+  s.breakaway_torque = constant_friction(v);
+  s.has_wings = v.wing_inertia > 0.0;
+  s.inertia_least = v.motor.inertia;
+  s.lever_least = v.crank.hinge_offset;
+  s.advance_least = s.stall_torque - s.breakaway_torque;
+  if (!s.has_wings) return s;
+
+  const UnitCircle& circle = unit_circle();
+  const bool springs = v.spring.stiffness > 0.0;
+  std::array<double, angle_count> inertia, lever, advance;
+  for (std::size_t n = 0; n < angle_count; ++n) {
+    const CrankKinematics<double> k = crank_kinematics(v.crank, circle.sine[n], circle.cosine[n]);
+    inertia[n] = least_inertia(v, k);
+    lever[n] = k.wing_lever;
+    if (springs) {
+      const double F_s = static_rod_force(v, k);
+      advance[n] = s.advance_least - F_s * k.crank_lever - v.friction.radius * std::abs(F_s);
+    }
+  }
+  std::tie(s.inertia_angle, s.inertia_least) = least_on_circle(
+      [&](double angle) { return least_inertia(v, kinematics_at(v, angle)); }, inertia, 0.3 * v.motor.inertia);
+  std::tie(s.lever_angle, s.lever_least) = least_on_circle(
+      [&](double angle) { return kinematics_at(v, angle).wing_lever; }, lever, 0.1 * v.crank.hinge_offset);
+  if (springs) {
+    std::tie(s.advance_angle, s.advance_least) = least_on_circle(
+        [&](double angle) { return advance_torque(v, angle); }, advance, 0.2 * s.stall_torque);
+  }
+  return s;
+}
+
+std::vector<LockInterval> lock_intervals(const Vehicle<double>& v) {
+  constexpr int samples = 1440;
+  const auto margin = [&](double angle) { return lock_margin(v, angle); };
+  std::vector<LockInterval> found;
+  // Start where the crank does not lock, so that no interval is cut in two.
+  int start = 0;
+  while (start < samples && margin(two_pi * start / samples) >= 0.0) ++start;
+  if (start == samples) return {{0.0, two_pi, 0.0, margin(0.0)}};
+
+  double before = two_pi * start / samples, margin_before = margin(before);
+  LockInterval open{};
+  bool is_open = false;
+  for (int n = start + 1; n <= start + samples; ++n) {
+    const double angle = two_pi * n / samples, at = margin(angle);
+    if (!is_open && at < 0.0 && margin_before < 0.0) {
+      // Thin intervals, down to the single angles that a spring alone leaves, show as a change of the net torque's sign.
+      const auto net = [&](double x) { return advance_torque(v, x); };
+      if ((net(before) > 0.0) != (net(angle) > 0.0)) {
+        const double edge = bisect(net, before, angle);
+        if (margin(edge) > -1e-9 * v.motor.torque_constant * v.voltage / v.motor.armature_resistance) {
+          found.push_back({edge, edge, wrap_angle(edge), std::max(0.0, margin(edge))});
+        }
+      }
+    } else if (!is_open && at >= 0.0) {
+      open = {bisect(margin, before, angle), angle, angle, at};
+      is_open = true;
+    } else if (is_open && at >= 0.0) {
+      if (at > open.margin) open.angle = angle, open.margin = at;
+    } else if (is_open) {
+      open.to = bisect(margin, before, angle);
+      if (open.from >= two_pi) open.from -= two_pi, open.to -= two_pi;
+      open.angle = wrap_angle(open.angle);
+      found.push_back(open);
+      is_open = false;
+    }
+    before = angle;
+    margin_before = at;
+  }
+  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.from < b.from; });
+  return found;
+}
+
+std::vector<double> balanced_speeds(const Vehicle<double>& v) {
+  const UnitCircle& circle = unit_circle();
+  constexpr int stride = 2, speeds = 10;
+  const double no_load = no_load_speed(v.motor, v.voltage);
+  const bool has_wings = v.wing_inertia > 0.0;
+  std::array<CrankKinematics<double>, angle_count / stride> kinematics;
+  if (has_wings) {
+    for (std::size_t n = 0; n < kinematics.size(); ++n) {
+      kinematics[n] = crank_kinematics(v.crank, circle.sine[stride * n], circle.cosine[stride * n]);
+    }
+  }
+  const double N_J = v.wing_count * v.wing_inertia;
+  const auto surplus = [&](double omega) {
+    double load = 0.0;
+    for (const CrankKinematics<double>& k : kinematics) {
+      if (!has_wings) break;
+      const double velocity = k.stroke_slope * omega;
+      const double moment = N_J * k.stroke_curve * square(omega) +
+                            std::copysign(drag_moment(v.wings, std::abs(velocity)), velocity) +
+                            v.wing_count * spring_loads(v.spring, k.stroke_angle).moment;
+      const double F = moment / k.wing_lever;
+      load += F * k.crank_lever + v.friction.radius * std::abs(F);
+    }
+    return v.motor.torque_constant * algebraic_current(v, v.voltage, omega) - v.motor.viscous_damping * omega -
+           v.motor.friction_torque - load_free_friction(v.friction, omega, 1.0) - load / double(kinematics.size());
+  };
+
+  std::vector<double> roots;
+  double before = 0.02 * no_load, surplus_before = surplus(before);
+  for (int n = 1; n <= speeds; ++n) {
+    const double omega = no_load * n / speeds, at = surplus(omega);
+    if (surplus_before > 0.0 && at <= 0.0) {
+      roots.push_back(before + (omega - before) * surplus_before / (surplus_before - at));
+    }
+    before = omega;
+    surplus_before = at;
+  }
+  return roots;
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,173 @@
+#include "wingbeat/cycle/steady_flapping.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "wingbeat/cycle/extremes.hpp"
+
+namespace wingbeat {
+namespace {
+
+using solve::PeriodicOptions;
+using solve::PeriodicStatus;
+using solve::PeriodicSummary;
+
+template <class... Args>
+std::string format(const char* pattern, Args... args) {
+  char text[400];
+  std::snprintf(text, sizeof text, pattern, args...);
+  return text;
+}
+
+double in_degrees(double angle) { return degrees_per_radian * angle; }
+
+/// Searches for a rotating orbit and fills the result from it.
+template <int N>
+class OrbitSearch {
+ public:
+  OrbitSearch(const Vehicle<double>& vehicle, const SteadyOptions& options)
+      : options_(options),
+        system_{vehicle, 1e-4 * no_load_speed(vehicle.motor, vehicle.voltage),
+                vehicle.voltage / vehicle.motor.armature_resistance} {}
+
+  /// One search from crank speed omega at crank angle zero; without a current, the quasi-steady one is assumed.
+  bool from(double omega, double current = absent) {
+    if (!(omega > system_.speed_floor)) return false;
+    if constexpr (N == 2) {
+      state_ = {omega, std::isfinite(current) ? current
+                                              : algebraic_current(system_.vehicle, system_.vehicle.voltage, omega)};
+    } else {
+      state_ = {omega};
+    }
+    const auto jets = [](const CrankSystem<double, N>& s) { return s.template cast<Jet<N>>(); };
+    const int laps_before = summary_.laps;
+    summary_ = solve::solve_periodic(system_, state_, jets,
+                                     PeriodicOptions{.tolerance = options_.tolerance, .stability = options_.stability},
+                                     lap_);
+    summary_.laps += laps_before;
+    return summary_.status == PeriodicStatus::converged;
+  }
+
+  const PeriodicSummary& summary() const { return summary_; }
+  double frequency() const {
+    double period = 0.0;
+    for (const auto& step : lap_.steps) period += step.dq[std::size_t(Integral::time)];
+    return 1.0 / period;
+  }
+  double crank_speed() const { return lap_.steps.front().y[0]; }
+
+  void fill(SteadyFlapping& result) {
+    result.crank_speed = crank_speed();
+    result.current = system_.current(lap_.steps.front().y);
+    const CycleExtremes<double> extremes = lap_extremes(system_, lap_, options_.tolerance);
+    result.record = CycleRecord(CycleRecord::Recorded<N>{system_, std::move(lap_)});
+    result.metrics = cycle_metrics(system_.vehicle, result.record.integrals(), extremes,
+                                   summary_.floquet_multiplier_max, options_.reporting);
+  }
+
+ private:
+  const SteadyOptions& options_;
+  CrankSystem<double, N> system_;
+  std::array<double, N> state_{};
+  solve::Lap<CrankSystem<double, N>> lap_;
+  PeriodicSummary summary_;
+};
+
+std::string stall_detail(const StaticBalance& s) {
+  return format("the motor never starts: its stall torque %.4g N m does not exceed the constant friction %.4g N m",
+                s.stall_torque, s.breakaway_torque);
+}
+
+std::string jam_detail(const StaticBalance& s) {
+  if (s.lever_least <= 0.0) {
+    return format("the rod force loses its lever on the wings at crank angle %.1f deg (least lever %.3g m)",
+                  in_degrees(s.lever_angle), s.lever_least);
+  }
+  return format("the equations of motion lose their unique solution at crank angle %.1f deg: the rotor is too light "
+                "for the friction (effective inertia %.3g kg m2)",
+                in_degrees(s.inertia_angle), s.inertia_least);
+}
+
+std::string lock_list(const Vehicle<double>& vehicle) {
+  std::string text;
+  for (const LockInterval& lock : lock_intervals(vehicle)) {
+    if (!text.empty()) text += ", ";
+    text += lock.to - lock.from < 1e-6 ? format("%.1f deg", in_degrees(lock.angle))
+                                       : format("%.1f to %.1f deg", in_degrees(lock.from), in_degrees(lock.to));
+  }
+  return text;
+}
+
+template <int N>
+SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& options, const StartUp& start_up) {
+  SteadyFlapping result;
+  result.metrics.values.fill(absent);
+  result.balance = static_balance(vehicle);
+  const StaticBalance& statics = result.balance;
+  if (statics.stalled()) {
+    result.status = FlappingStatus::stalled;
+    result.detail = stall_detail(statics);
+    return result;
+  }
+
+  OrbitSearch<N> orbit(vehicle, options);
+  bool found = false, several = false;
+  if (!statics.can_jam()) {
+    const std::vector<double> speeds = balanced_speeds(vehicle);
+    several = speeds.size() > 1;
+    found = !speeds.empty() && orbit.from(speeds.front());
+    // The fastest start: if laps from there fail, no slower one can be expected to last.
+    if (!found) found = orbit.from(no_load_speed(vehicle.motor, vehicle.voltage));
+  }
+
+  const bool doubtful = statics.can_jam() || statics.can_lock() || several || !found;
+  if (doubtful && start_up) {
+    const StartUpOutcome outcome = start_up(vehicle);
+    if (outcome.status != FlappingStatus::flapping) {
+      result.status = outcome.status;
+      result.detail = outcome.detail;
+      if (found) {
+        result.detail += format("; a rotating orbit at %.4g Hz exists for a faster start", orbit.frequency());
+      }
+      result.summary = orbit.summary();
+      return result;
+    }
+    if (outcome.settled && !(found && std::abs(orbit.crank_speed() - outcome.crank_speed) <
+                                          1e-3 * outcome.crank_speed)) {
+      found = orbit.from(outcome.crank_speed, outcome.current);
+    }
+  }
+  result.summary = orbit.summary();
+  if (found) {
+    result.status = FlappingStatus::flapping;
+    result.detail = format("steady flapping at %.4g Hz", orbit.frequency());
+    if (statics.can_lock()) {
+      result.detail += start_up ? "; once stopped, the crank also locks at crank angles "
+                                : "; the crank also locks at crank angles ";
+      result.detail += lock_list(vehicle);
+    }
+    orbit.fill(result);
+    return result;
+  }
+  if (statics.can_jam()) {
+    result.status = FlappingStatus::jammed;
+    result.detail = jam_detail(statics);
+  } else {
+    result.status = FlappingStatus::locked;
+    result.detail = format("no rotating orbit: laps end at crank angle %.1f deg (%s)", in_degrees(result.summary.stop),
+                           result.summary.message.c_str());
+    if (statics.can_lock()) result.detail += "; the crank locks at crank angles " + lock_list(vehicle);
+  }
+  return result;
+}
+
+}  // namespace
+
+SteadyFlapping find_steady_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
+                                    const StartUp& start_up) {
+  return vehicle.motor.armature_inductance > 0.0 ? search<2>(vehicle, options, start_up)
+                                                 : search<1>(vehicle, options, start_up);
+}
+
+}  // namespace wingbeat
