@@ -18,6 +18,14 @@ bool solve_linear(int n, double* matrix, double* right_hand_side) {
   return b.allFinite();
 }
 
+bool invert(int n, double* matrix) {
+  Eigen::Map<RowMajor> A(matrix, n, n);
+  const Eigen::PartialPivLU<RowMajor> lu(A);
+  if (!(lu.rcond() > 1e-15)) return false;
+  A = lu.inverse().eval();
+  return A.allFinite();
+}
+
 double spectral_radius(int n, const double* matrix) {
   if (n == 1) return std::abs(matrix[0]);
   if (n == 2) {

@@ -9,7 +9,7 @@ template <class Recorded>
 WaveformRow row_inside(const Recorded& recorded, const solve::Step<decltype(Recorded::system)>& step, double start_time,
                        double theta) {
   const auto& system = recorded.system;
-  const auto result = solve::evaluate_inside<true>(system, step, theta);
+  const auto result = solve::evaluate_inside<true>(system, recorded.lap, step, theta);
   const Motion<double> m = system.motion(theta, result.y, step.signs);
   const double speed = step.signs[2] * m.stroke_velocity;
   WaveformRow row;

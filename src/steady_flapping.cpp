@@ -40,11 +40,13 @@ class OrbitSearch {
     } else {
       state_ = {omega};
     }
-    const auto jets = [](const CrankSystem<double, N>& s) { return s.template cast<Jet<N>>(); };
+    PeriodicOptions periodic{.tolerance = options_.tolerance, .stability = options_.stability};
     const int laps_before = summary_.laps;
-    summary_ = solve::solve_periodic(system_, state_, jets,
-                                     PeriodicOptions{.tolerance = options_.tolerance, .stability = options_.stability},
-                                     lap_);
+    summary_ = solve::solve_periodic(system_, state_, periodic, lap_);
+    if (summary_.status == PeriodicStatus::too_many_steps) {
+      periodic.method = solve::Method::radau;
+      summary_ = solve::solve_periodic(system_, state_, periodic, lap_);
+    }
     summary_.laps += laps_before;
     return summary_.status == PeriodicStatus::converged;
   }

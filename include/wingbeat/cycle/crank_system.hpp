@@ -20,6 +20,10 @@ struct CrankSystem {
   using Quadrature = CycleIntegrals<S>;
   using Switches = std::array<S, 2>;  ///< force_switch, stored_moment
   static constexpr int state_switches = 1;  ///< of these, only the force bends the solution
+  /// Integrals whose error limits the steps. Not those that may vanish up to rounding.
+  static constexpr std::array<std::size_t, 5> controlled_integrals = {
+      std::size_t(Integral::time), std::size_t(Integral::friction_work), std::size_t(Integral::aero_work),
+      std::size_t(Integral::reactive_work), std::size_t(Integral::lift)};
   using Signs = std::array<S, 3>;     ///< of the rod force, of the stored moment, of the stroke velocity
 
   Vehicle<S> vehicle;

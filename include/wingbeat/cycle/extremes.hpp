@@ -31,21 +31,29 @@ CycleExtremes<double> lap_extremes(const CrankSystem<double, N>& system,
     return extreme_candidates(along.vehicle, m, state[0], Along::branch(signs));
   };
 
+  // A piece of a step on which the slope falls from d0 > 0 to d1 < 0.
   struct Bracket {
     const solve::Step<CrankSystem<double, N>>* step;
-    double v0, d0, v1, d1;
-    double estimate;
-    double x;
+    double x0, v0, d0, x1, v1, d1;
+    double x, estimate;  // of the maximum
   };
-  // The maximum of the cubic through end values and slopes, d0 > 0 > d1.
-  const auto cubic_maximum = [](double h, Bracket& b) {
-    const double slope = (b.v1 - b.v0) / h;
+  // The maximum of the cubic through end values and slopes.
+  const auto estimate_maximum = [](Bracket& b) {
+    const double h = b.x1 - b.x0, slope = (b.v1 - b.v0) / h;
     const double z = b.d0 + b.d1 - 3.0 * slope;
     const double root = std::sqrt(std::max(z * z - b.d0 * b.d1, 0.0));
     const double t = std::clamp((b.d0 + root - z) / (b.d0 - b.d1 + 2.0 * root), 0.0, 1.0);
     const double c2 = 3.0 * slope - 2.0 * b.d0 - b.d1, c3 = b.d0 + b.d1 - 2.0 * slope;
+    b.x = b.x0 + h * t;
     b.estimate = b.v0 + h * t * (b.d0 + t * (c2 + t * c3));
-    return t;
+  };
+  // Where the cubic through end values and slopes turns twice, the middle between its turns; 0 elsewhere.
+  const auto between_turns = [](double h, double v0, double d0, double v1, double d1) {
+    const double slope = (v1 - v0) / h;
+    const double c2 = 3.0 * slope - 2.0 * d0 - d1, c3 = d0 + d1 - 2.0 * slope;
+    if (c3 == 0.0 || c2 * c2 <= 3.0 * c3 * d0) return 0.0;
+    const double middle = -c2 / (3.0 * c3), half = std::sqrt(c2 * c2 - 3.0 * c3 * d0) / std::abs(3.0 * c3);
+    return middle - half > 0.0 && middle + half < 1.0 ? middle : 0.0;
   };
 
   CycleExtremes<double> best;
@@ -59,13 +67,26 @@ CycleExtremes<double> lap_extremes(const CrankSystem<double, N>& system,
     if (!same_branch) at = candidates(step.x, step.y, step.first.dy, step.signs);
     const auto& y1 = last ? lap.end : lap.steps[n + 1].y;
     const auto& dy1 = last ? lap.steps.front().first.dy : lap.steps[n + 1].first.dy;
-    const Candidates end = candidates(step.x + step.h, y1, dy1, step.signs);
+    const double x1 = step.x + step.h;
+    const Candidates end = candidates(x1, y1, dy1, step.signs);
     for (std::size_t c = 0; c < extreme_count; ++c) {
       best[c] = std::max({best[c], at[c].a, end[c].a});
-      const double d0 = at[c].v[0], d1 = end[c].v[0];
-      if (!(d0 > 0.0 && d1 < 0.0)) continue;
-      Bracket bracket{&step, at[c].a, d0, end[c].a, d1, 0.0, 0.0};
-      bracket.x = step.x + step.h * cubic_maximum(step.h, bracket);
+      Bracket bracket{&step, step.x, at[c].a, at[c].v[0], x1, end[c].a, end[c].v[0], 0.0, 0.0};
+      if (!(bracket.d0 > 0.0 && bracket.d1 < 0.0)) {
+        const double t = between_turns(step.h, bracket.v0, bracket.d0, bracket.v1, bracket.d1);
+        if (t == 0.0) continue;
+        const auto y = solve::detail::hermite<CrankSystem<double, N>>(step.y, step.first.dy, y1, dy1, step.h, t);
+        const double x = step.x + t * step.h;
+        const auto dy = system.template rates<false>(x, y, step.signs).dy;
+        const Derivative middle = candidates(x, y, dy, step.signs)[c];
+        if (middle.v[0] > 0.0) {
+          bracket.x0 = x, bracket.v0 = middle.a, bracket.d0 = middle.v[0];
+        } else {
+          bracket.x1 = x, bracket.v1 = middle.a, bracket.d1 = middle.v[0];
+        }
+        if (!(bracket.d0 > 0.0 && bracket.d1 < 0.0)) continue;
+      }
+      estimate_maximum(bracket);
       brackets[c].push_back(bracket);
     }
     at = end;
@@ -79,26 +100,25 @@ CycleExtremes<double> lap_extremes(const CrankSystem<double, N>& system,
       // The cubic's own error is a small part of what it rises over its ends.
       const double doubt = 0.2 * (b.estimate - std::min(b.v0, b.v1)) + 1e-3 * (highest - lowest_candidate);
       if (b.estimate + doubt < highest) continue;
-      double x0 = b.step->x, x1 = b.step->x + b.step->h, x = b.x;
       for (int iteration = 0; iteration < 30; ++iteration) {
-        const auto inside = solve::evaluate_inside<false>(system, *b.step, x);
-        const auto rates = system.template rates<false>(x, inside.y, b.step->signs);
-        const Derivative value = candidates(x, inside.y, rates.dy, b.step->signs)[c];
+        const auto inside = solve::evaluate_inside<false>(system, lap, *b.step, b.x);
+        const auto rates = system.template rates<false>(b.x, inside.y, b.step->signs);
+        const Derivative value = candidates(b.x, inside.y, rates.dy, b.step->signs)[c];
         const double v = value.a, d = value.v[0];
-        // What is left to gain, from the steeper of the two secants of the slope.
-        const double curvature = std::max(std::abs((b.d0 - d) / (x - x0)), std::abs((d - b.d1) / (x1 - x)));
+        // What is left to gain, from the flatter of the two secants of the slope.
+        const double curvature = std::min(std::abs((b.d0 - d) / (b.x - b.x0)), std::abs((d - b.d1) / (b.x1 - b.x)));
         const double gain = curvature > 0.0 ? 0.5 * d * d / curvature : 0.0;
         best[c] = std::max(best[c], v);
-        if (!(gain > 0.03 * tolerance * std::abs(v)) || x1 - x0 < 1e-13) {
+        if (!(gain > 0.03 * tolerance * std::abs(v)) || b.x1 - b.x0 < 1e-13) {
           best[c] = std::max(best[c], v + gain);
           break;
         }
         if (d > 0.0) {
-          x0 = x, b.v0 = v, b.d0 = d;
+          b.x0 = b.x, b.v0 = v, b.d0 = d;
         } else {
-          x1 = x, b.v1 = v, b.d1 = d;
+          b.x1 = b.x, b.v1 = v, b.d1 = d;
         }
-        x = x0 + (x1 - x0) * cubic_maximum(x1 - x0, b);
+        estimate_maximum(b);
       }
     }
   }

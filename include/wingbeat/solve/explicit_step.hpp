@@ -66,6 +66,8 @@ struct StepResult {
   typename System::Quadrature dq;  ///< integrals over the step; meaningful with quadratures only
   typename System::State error3;   ///< error of the embedded third-order formula
   typename System::State error5;   ///< error of the embedded fifth-order formula
+  typename System::Quadrature integral_error3;  ///< the same of the integrals
+  typename System::Quadrature integral_error5;
   bool admissible = true;          ///< false: a stage left the region where the equations hold
 };
 
@@ -82,6 +84,7 @@ constexpr void unroll(std::index_sequence<j...>, F&& f) {
 /// Quadrature, Switches, Signs and
 ///   template <bool quadratures> Rates<System> rates(const Real& x, const State& y, const Signs& branch) const
 ///   bool admissible(const State& y) const
+///   static controlled_integrals: indices of the integrals whose error is wanted
 /// The system's equations must be smooth on the branch over the whole step.
 template <bool quadratures, class System>
 StepResult<System> explicit_step(const System& system, const typename System::Real& x, const typename System::State& y,
@@ -97,6 +100,10 @@ StepResult<System> explicit_step(const System& system, const typename System::Re
   k[0] = first.dy;
   if constexpr (quadratures) {
     for (std::size_t q = 0; q < integrals; ++q) result.dq[q] = dop853::b[0] * first.dq[q];
+    for (const std::size_t q : System::controlled_integrals) {
+      result.integral_error3[q] = dop853::e3[0] * first.dq[q];
+      result.integral_error5[q] = dop853::e5[0] * first.dq[q];
+    }
   }
   detail::unroll(std::make_index_sequence<stages - 1>{}, [&](auto before) {
     constexpr std::size_t stage = before + 1;
@@ -117,7 +124,13 @@ StepResult<System> explicit_step(const System& system, const typename System::Re
     const Rates<System> rates = system.template rates<quadratures>(x + dop853::c[stage] * h, at, branch);
     k[stage] = rates.dy;
     if constexpr (quadratures && dop853::b[stage] != 0.0) {
-      for (std::size_t q = 0; q < integrals; ++q) result.dq[q] = result.dq[q] + dop853::b[stage] * rates.dq[q];
+      for (std::size_t q = 0; q < integrals; ++q) {
+        result.dq[q] = result.dq[q] + dop853::b[stage] * rates.dq[q];
+      }
+      for (const std::size_t q : System::controlled_integrals) {
+        result.integral_error3[q] = result.integral_error3[q] + dop853::e3[stage] * rates.dq[q];
+        result.integral_error5[q] = result.integral_error5[q] + dop853::e5[stage] * rates.dq[q];
+      }
     }
   });
   if (!result.admissible) return result;
@@ -137,7 +150,13 @@ StepResult<System> explicit_step(const System& system, const typename System::Re
     result.error5[n] = h * fifth;
   }
   if constexpr (quadratures) {
-    for (std::size_t q = 0; q < integrals; ++q) result.dq[q] = h * result.dq[q];
+    for (std::size_t q = 0; q < integrals; ++q) {
+      result.dq[q] = h * result.dq[q];
+    }
+    for (const std::size_t q : System::controlled_integrals) {
+      result.integral_error3[q] = h * result.integral_error3[q];
+      result.integral_error5[q] = h * result.integral_error5[q];
+    }
   }
   result.admissible = system.admissible(result.y);
   return result;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "wingbeat/solve/explicit_step.hpp"
+#include "wingbeat/solve/implicit_step.hpp"
 
 namespace wingbeat::solve {
 
@@ -37,6 +38,11 @@ struct Step {
   typename System::Quadrature dq; ///< integrals over the step
 };
 
+enum class Method {
+  explicit_pair,  ///< explicit_step, order 8
+  radau           ///< implicit_step, order 9, for stiff laps
+};
+
 enum class LapStatus {
   complete,
   barrier,        ///< the state reached the edge of the admissible region
@@ -49,16 +55,27 @@ struct Lap {
   std::vector<SwitchNode> switches;  ///< located; on entry of run_lap, the expected ones
   typename System::State end;
   LapStatus status = LapStatus::complete;
+  Method method = Method::explicit_pair;
   double stop = 0.0;         ///< where the lap ended [same unit as the period]
   double largest_step = 0.0; ///< first guess for the next lap's steps
 };
 
 struct LapOptions {
+  Method method = Method::explicit_pair;
   double tolerance = 1e-6;  ///< of each step, relative to System::error_scale
   int max_steps = 2000;
   double first_step = 0.3;  ///< as a fraction of the period / (2 pi)
   int switches = 1000;      ///< locate the first so many switches only; the others keep their first sign
 };
+
+/// One step by either method.
+template <bool quadratures, class System>
+StepResult<System> take_step(Method method, const System& system, const typename System::Real& x,
+                             const typename System::State& y, const typename System::Real& h,
+                             const typename System::Signs& branch, const Rates<System>& first) {
+  return method == Method::explicit_pair ? explicit_step<quadratures>(system, x, y, h, branch, first)
+                                         : implicit_step<quadratures>(system, x, y, h, branch, first);
+}
 
 namespace detail {
 
@@ -74,8 +91,10 @@ typename System::State hermite(const typename System::State& y0, const typename 
   return y;
 }
 
-template <class System>
-double scaled_error(const System& system, const StepResult<System>& step, double tolerance) {
+/// Error of a step relative to the tolerance; `integral_scale` holds the size of each integral over the whole lap.
+template <bool quadratures, class System>
+double scaled_error(const System& system, const StepResult<System>& step, double tolerance,
+                    const typename System::Quadrature& integral_scale) {
   const typename System::State scale = system.error_scale(step.y);
   double sum3 = 0.0, sum5 = 0.0;
   for (std::size_t n = 0; n < scale.size(); ++n) {
@@ -83,9 +102,19 @@ double scaled_error(const System& system, const StepResult<System>& step, double
     sum3 += step.error3[n] * step.error3[n] * per * per;
     sum5 += step.error5[n] * step.error5[n] * per * per;
   }
-  // Hairer's combination of both embedded formulas, of order 8 in the step.
+  // Hairer's combination of both embedded formulas, of order 8 in the step (radau has one, error5, alone).
   const double denominator = sum5 + 0.01 * sum3;
-  return denominator > 0.0 ? sum5 / std::sqrt(denominator * double(scale.size())) : 0.0;
+  double error = denominator > 0.0 ? sum5 / std::sqrt(denominator * double(scale.size())) : 0.0;
+  if constexpr (quadratures) {
+    for (const std::size_t q : System::controlled_integrals) {
+      if (!(integral_scale[q] > 0.0)) continue;
+      const double per = 1.0 / (tolerance * integral_scale[q]);
+      const double fifth = std::abs(step.integral_error5[q]) * per, third = std::abs(step.integral_error3[q]) * per;
+      const double denominator_q = std::hypot(fifth, 0.1 * third);
+      if (denominator_q > 0.0) error = std::max(error, fifth * fifth / denominator_q);
+    }
+  }
+  return error;
 }
 
 /// Position tolerance of a switch: its square must vanish beside the tolerance.
@@ -104,13 +133,17 @@ class LapDriver {
         options_(options),
         lap_(lap),
         located_(std::min(switch_count, std::size_t(options.switches))),
-        position_tolerance_(switch_tolerance(options.tolerance)) {}
+        position_tolerance_(switch_tolerance(options.tolerance)),
+        error_exponent_(options.method == Method::explicit_pair ? -1.0 / dop853::order
+                                                                : -1.0 / (RadauTableau::stages + 1)) {}
 
   void run(const State& start) {
     begin(start);
     const double period = system_.period();
     double h = lap_.largest_step > 0.0 ? lap_.largest_step : options_.first_step * period / 6.283185307179586;
     lap_.largest_step = 0.0;
+    // A step must not jump over the shape of what is integrated along.
+    const double longest = quadratures ? period / 12.0 : period;
     while (x_ < period) {
       if (int(lap_.steps.size()) >= options_.max_steps) return stop(LapStatus::too_many_steps);
       if (h < 1e-12 * period) return stop(LapStatus::barrier);
@@ -122,16 +155,16 @@ class LapDriver {
       const double target = to_switch ? plan_[expected_].x : node;
 
       const double left = target - x_;
-      const double pieces = std::ceil(0.999 * left / h);
+      const double pieces = std::ceil(0.999 * left / std::min(h, longest));
       const bool reaches = pieces <= 1.0;
       double step = reaches ? left : left / pieces;
-      StepResult<System> result = explicit_step<quadratures>(system_, x_, y_, step, signs_, first_);
+      StepResult<System> result = take_step<quadratures>(options_.method, system_, x_, y_, step, signs_, first_);
       if (!result.admissible) {
         h = 0.25 * step;
         continue;
       }
-      const double error = scaled_error(system_, result, options_.tolerance);
-      const double factor = error > 0.0 ? 0.9 * std::pow(error, -0.125) : 5.0;
+      const double error = scaled_error<quadratures>(system_, result, options_.tolerance, integral_scale_);
+      const double factor = error > 0.0 ? 0.9 * std::pow(error, error_exponent_) : 5.0;
       if (!(error <= 1.0)) {
         h = step * std::clamp(factor, 0.1, 0.9);
         if (!std::isfinite(error)) h = 0.25 * step;
@@ -141,12 +174,19 @@ class LapDriver {
       Rates<System> last = system_.template rates<quadratures>(x1, result.y, signs_);
       bool flip = false;
       std::size_t flipped = switch_count;
-      if (reaches && to_switch && end_on_expected(node, step, result, last)) {
-        flip = true;
-        flipped = plan_[expected_].sign;
+      if (reaches && to_switch) {
+        flip = end_on_expected(node, step, result, last);
+        if (flip) flipped = plan_[expected_].sign;
         x1 = x_ + step;
       }
-      const std::size_t crossed = crossed_switch(last, flipped);
+      std::size_t crossed = crossed_switch(last, flipped);
+      if (crossed == switch_count && crossed_twice(step, result, last, flipped)) {
+        // Two sign changes within the step: end it between them.
+        flip = false;
+        flipped = switch_count;
+        x1 = x_ + step;
+        crossed = crossed_switch(last, flipped);
+      }
       if (crossed < switch_count) {
         if (!locate(crossed, step, result, last)) {
           // The switch lies where the step begins: flip there and take the step again.
@@ -171,6 +211,7 @@ class LapDriver {
 
  private:
   void begin(const State& start) {
+    lap_.method = options_.method;
     plan_.swap(lap_.switches);
     lap_.switches.clear();
     lap_.steps.clear();
@@ -184,6 +225,8 @@ class LapDriver {
     }
     first_ = system_.template rates<quadratures>(x_, y_, signs_);
     remember_switch_scale(first_);
+    integral_scale_ = {};
+    remember_integral_scale();
   }
 
   void stop(LapStatus status) {
@@ -213,7 +256,7 @@ class LapDriver {
       if (std::abs(off) <= position_tolerance_) return true;
       moved -= off;
       if (!(moved > 0.7 * step && moved < 1.3 * step && x_ + moved < node)) return false;
-      const StepResult<System> again = explicit_step<quadratures>(system_, x_, y_, moved, signs_, first_);
+      const StepResult<System> again = take_step<quadratures>(options_.method, system_, x_, y_, moved, signs_, first_);
       if (!again.admissible) return false;
       result = again;
       step = moved;
@@ -240,6 +283,30 @@ class LapDriver {
       }
     }
     return crossed;
+  }
+
+  /// Looks for a switch that changes sign and back within a step; if there is one, shortens the step to end in between.
+  bool crossed_twice(double& step, StepResult<System>& result, Rates<System>& last, std::size_t ended_on) {
+    for (const double t : {0.5, 0.25, 0.75}) {
+      if (step * t < 2.0 * position_tolerance_ || step < 0.02) return false;
+      const State y = hermite<System>(y_, first_.dy, result.y, last.dy, step, t);
+      const Rates<System> inside = system_.template rates<false>(x_ + t * step, y, signs_);
+      for (std::size_t k = 0; k < located_; ++k) {
+        if (k == ended_on || inside.switches[k] * signs_[k] >= -1e-6 * switch_scale_[k]) continue;
+        const double shorter = t * step;
+        const StepResult<System> again =
+            take_step<quadratures>(options_.method, system_, x_, y_, shorter, signs_, first_);
+        if (!again.admissible) return false;
+        const Rates<System> at = system_.template rates<quadratures>(x_ + shorter, again.y, signs_);
+        if (at.switches[k] * signs_[k] >= 0.0) continue;
+        step = shorter;
+        result = again;
+        last = at;
+        return true;
+      }
+      if (t == 0.5 && step < 0.2) return false;
+    }
+    return false;
   }
 
   /// Shortens the step to end where switch k changes sign; false if that is at its very start.
@@ -285,7 +352,7 @@ class LapDriver {
     // The Hermite state is of lower order than the step: correct with steps that end at the switch.
     for (int correction = 0; correction < 4; ++correction) {
       step = at;
-      result = explicit_step<quadratures>(system_, x_, y_, step, signs_, first_);
+      result = take_step<quadratures>(options_.method, system_, x_, y_, step, signs_, first_);
       last = system_.template rates<quadratures>(x_ + step, result.y, signs_);
       const double off = slope != 0.0 ? last.switches[k] * signs_[k] / slope : 0.0;
       if (std::abs(off) <= position_tolerance_ || at - off <= 0.0) break;
@@ -301,6 +368,16 @@ class LapDriver {
     y_ = result.y;
     first_ = last;
     flips_here_ = 0;
+    remember_integral_scale();
+  }
+
+  void remember_integral_scale() {
+    if constexpr (quadratures) {
+      // A lap's integral is a good part of its largest integrand times the period.
+      for (std::size_t q = 0; q < first_.dq.size(); ++q) {
+        integral_scale_[q] = std::max(integral_scale_[q], 0.3 * system_.period() * std::abs(first_.dq[q]));
+      }
+    }
   }
 
   /// Flips a located sign at the present position.
@@ -325,6 +402,7 @@ class LapDriver {
   Lap<System>& lap_;
   const std::size_t located_;
   const double position_tolerance_;
+  const double error_exponent_;
   std::vector<SwitchNode> plan_;
   std::size_t expected_ = 0;
   std::size_t fixed_ = 0;
@@ -334,6 +412,7 @@ class LapDriver {
   Signs signs_;
   Rates<System> first_;
   std::array<double, switch_count> switch_scale_{};
+  typename System::Quadrature integral_scale_;
 };
 
 }  // namespace detail
@@ -356,7 +435,8 @@ typename System::State repeat_lap(const System& system, const typename System::S
     typename System::Signs signs;
     for (std::size_t k = 0; k < signs.size(); ++k) signs[k] = Real(step.signs[k]);
     const Rates<System> first = system.template rates<quadratures>(Real(step.x), y, signs);
-    const StepResult<System> result = explicit_step<quadratures>(system, Real(step.x), y, Real(step.h), signs, first);
+    const StepResult<System> result =
+        take_step<quadratures>(lap.method, system, Real(step.x), y, Real(step.h), signs, first);
     if constexpr (quadratures) {
       for (std::size_t q = 0; q < result.dq.size(); ++q) (*totals)[q] = (*totals)[q] + result.dq[q];
     }
@@ -375,8 +455,8 @@ const Step<System>& step_at(const Lap<System>& lap, double x) {
 
 /// The solution at x inside a recorded step, by a shorter step of the same method: as accurate as the lap itself.
 template <bool quadratures, class System>
-StepResult<System> evaluate_inside(const System& system, const Step<System>& step, double x) {
-  return explicit_step<quadratures>(system, step.x, step.y, x - step.x, step.signs, step.first);
+StepResult<System> evaluate_inside(const System& system, const Lap<System>& lap, const Step<System>& step, double x) {
+  return take_step<quadratures>(lap.method, system, step.x, step.y, x - step.x, step.signs, step.first);
 }
 
 }  // namespace wingbeat::solve

@@ -7,6 +7,9 @@ namespace wingbeat::solve {
 /// False if A is singular to working precision.
 bool solve_linear(int n, double* matrix, double* right_hand_side);
 
+/// Replaces a row-major n x n matrix by its inverse; false if it is singular to working precision.
+bool invert(int n, double* matrix);
+
 /// Largest modulus of the eigenvalues of a row-major n x n matrix.
 double spectral_radius(int n, const double* matrix);
 

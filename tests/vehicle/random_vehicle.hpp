@@ -1,0 +1,65 @@
+// Random, physically valid vehicles around the reference vehicle of the 2022 friction paper.
+#pragma once
+
+#include <random>
+
+#include "wingbeat/vehicle/vehicle.hpp"
+
+namespace wingbeat {
+
+/// The reference design (rod-force formulation, 3 V, no springs); numbers as in data/designs/friction2022.toml.
+inline Design<double> reference_design() {
+  Design<double> d;
+  d.name = "reference";
+  d.mass = 3.34e-3;
+  d.bench_torque_constant = 7.664e-3;
+  d.supply.voltage = 3.0;
+  d.motor.constants = {9.0, 29e-3, 0.01, 1.5e-7, 3.6e-6, 0.0};
+  d.transmission = {5e-3, 20e-3, 6e-3, {}, {}, Formulation::rod_force};
+  d.friction = {FrictionLaw::load_proportional, 2.5e-3};
+  d.wing.inertia = 7.205e-8;
+  d.wing.planform.s2 = 2.457e-6;
+  d.wing.planform.s3 = 1.048e-7;
+  d.aerodynamics.air_density = 1.225;
+  d.aerodynamics.pitch_coefficient = 5e-3;
+  d.aerodynamics.coefficients = translational_2022();
+  return d;
+}
+
+/// A design whose every parameter is drawn around the reference: some lock, stall or jam. `spread` is the largest factor
+/// up or down of most parameters.
+inline Design<double> random_design(std::mt19937_64& random, double spread = 2.0) {
+  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  const auto around = [&](double value, double factor) {
+    return value * std::exp(uniform(-std::log(factor), std::log(factor)));
+  };
+  Design<double> d = reference_design();
+  d.supply.voltage = uniform(1.0, 6.0);
+  Motor<double>& m = d.motor.constants;
+  m.armature_resistance = around(m.armature_resistance, spread);
+  m.armature_inductance = uniform(0.0, 1.0) < 0.15 ? 0.0 : around(m.armature_inductance, 10.0 * spread);
+  m.torque_constant = around(m.torque_constant, spread);
+  m.inertia = around(m.inertia, spread);
+  m.viscous_damping = around(m.viscous_damping, spread);
+  m.friction_torque = uniform(0.0, 1.0) < 0.3 ? uniform(0.0, 2e-3) : 0.0;
+  auto& t = d.transmission;
+  t.crank_radius = around(5e-3, 1.6);
+  t.rod_length = t.crank_radius * uniform(2.0, 8.0);
+  t.hinge_offset = t.crank_radius * uniform(0.8, 3.0);
+  t.formulation = uniform(0.0, 1.0) < 0.5 ? Formulation::rod_force : Formulation::virtual_work;
+  switch (std::uniform_int_distribution<int>(0, 6)(random)) {
+    case 0: d.friction = {FrictionLaw::none, 0.0}; break;
+    case 1: d.friction = {FrictionLaw::viscous, around(3e-6, 3.0)}; break;
+    case 2: d.friction = {FrictionLaw::quadratic, around(2e-8, 3.0)}; break;
+    case 3: d.friction = {FrictionLaw::constant, around(4e-4, 3.0)}; break;
+    default: d.friction = {FrictionLaw::load_proportional, around(2.5e-3, 2.0)};
+  }
+  if (uniform(0.0, 1.0) < 0.5) d.spring.stiffness = around(1.377e-3, 3.0);
+  d.wing.inertia = around(d.wing.inertia, spread);
+  d.wing.planform.s2 = around(d.wing.planform.s2, spread);
+  d.wing.planform.s3 = around(d.wing.planform.s3, spread);
+  d.aerodynamics.pitch_coefficient = around(5e-3, 1.5);
+  return d;
+}
+
+}  // namespace wingbeat
