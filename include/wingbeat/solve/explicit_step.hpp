@@ -10,6 +10,8 @@
 #include <tuple>
 #include <utility>
 
+#include "wingbeat/core/scalar.hpp"
+
 namespace wingbeat::solve {
 
 namespace dop853 {
@@ -68,6 +70,7 @@ struct StepResult {
   typename System::State error5;   ///< error of the embedded fifth-order formula
   typename System::Quadrature integral_error3;  ///< the same of the integrals
   typename System::Quadrature integral_error5;
+  typename System::Switches lowest;  ///< least switch times its sign over the later stages: < 0 hints at a crossing
   bool admissible = true;          ///< false: a stage left the region where the equations hold
 };
 
@@ -123,6 +126,14 @@ StepResult<System> explicit_step(const System& system, const typename System::Re
     }
     const Rates<System> rates = system.template rates<quadratures>(x + dop853::c[stage] * h, at, branch);
     k[stage] = rates.dy;
+    // The first stages are of too low an order to tell.
+    if constexpr (stage >= 5) {
+      for (std::size_t w = 0; w < rates.switches.size(); ++w) {
+        const Real signed_switch = rates.switches[w] * branch[w];
+        result.lowest[w] = stage == 5 ? signed_switch
+                                      : select(signed_switch < result.lowest[w], signed_switch, result.lowest[w]);
+      }
+    }
     if constexpr (quadratures && dop853::b[stage] != 0.0) {
       for (std::size_t q = 0; q < integrals; ++q) {
         result.dq[q] = result.dq[q] + dop853::b[stage] * rates.dq[q];

@@ -102,6 +102,13 @@ StepResult<System> implicit_step(const System& system, const typename System::Re
   }
   if (converged_at < 0) return result;
 
+  for (std::size_t w = 0; w < result.lowest.size(); ++w) {
+    result.lowest[w] = rates[0].switches[w] * branch[w];
+    for (std::size_t j = 1; j < stages; ++j) {
+      const Real signed_switch = rates[j].switches[w] * branch[w];
+      result.lowest[w] = select(signed_switch < result.lowest[w], signed_switch, result.lowest[w]);
+    }
+  }
   result.y = stage[stages - 1];
   if constexpr (quadratures) {
     for (std::size_t q = 0; q < result.dq.size(); ++q) {

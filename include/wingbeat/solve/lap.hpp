@@ -287,8 +287,12 @@ class LapDriver {
 
   /// Looks for a switch that changes sign and back within a step; if there is one, shortens the step to end in between.
   bool crossed_twice(double& step, StepResult<System>& result, Rates<System>& last, std::size_t ended_on) {
+    bool suspected = false;
+    for (std::size_t k = 0; k < located_; ++k) {
+      suspected = suspected || (k != ended_on && result.lowest[k] < -1e-6 * switch_scale_[k]);
+    }
+    if (!suspected || step < 4.0 * position_tolerance_) return false;
     for (const double t : {0.5, 0.25, 0.75}) {
-      if (step * t < 2.0 * position_tolerance_ || step < 0.02) return false;
       const State y = hermite<System>(y_, first_.dy, result.y, last.dy, step, t);
       const Rates<System> inside = system_.template rates<false>(x_ + t * step, y, signs_);
       for (std::size_t k = 0; k < located_; ++k) {
@@ -304,7 +308,6 @@ class LapDriver {
         last = at;
         return true;
       }
-      if (t == 0.5 && step < 0.2) return false;
     }
     return false;
   }

@@ -134,7 +134,7 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   lap.switches.clear();
   lap.largest_step = 0.0;
 
-  const std::array<double, 3> tolerances = {std::max(fine, 1e-2), std::max(fine, 1e-3), fine};
+  const std::array<double, 3> tolerances = {std::max(fine, 1e-2), std::max(fine, 1e-4), fine};
   State y = guess;
   double residual = 1.0, before_tolerance = tolerances[0];
   for (std::size_t level = 0; summary.laps < options.max_laps;) {

@@ -101,7 +101,7 @@ struct Motion {
   S current;              ///< i [A]
   S voltage;              ///< v at the terminals [V]
   S rod_force;            ///< F [N], positive when the crank pushes the slider up
-  S force_switch;         ///< has the sign of F on either branch while the uniqueness condition holds [N kg m2]
+  S force_switch;         ///< has the sign of F on either branch while the equations have one solution [N kg m3]
   S stroke_velocity;      ///< beta' [rad/s]
   S stroke_acceleration;  ///< beta'' [rad/s2]
   S aero_moment;          ///< M_aero of all wings [N m], along beta'
@@ -130,26 +130,28 @@ Motion<S> motion_at(const Vehicle<S>& v, const S& sin_theta, const S& cos_theta,
   const S B2 = k.stroke_curve;
   const S N_J = v.wing_count * v.wing_inertia;
   const S N_k_beta = v.wing_count * spring_loads(v.spring, k.stroke_angle).moment;
+  const S g = k.wing_lever;
   m.stroke_velocity = B1 * omega;
   const S stroke_speed = branch.stroke * m.stroke_velocity;
   m.aero_moment = branch.stroke * drag_moment(v.wings, stroke_speed);
 
+  // F = A omega' + C of model.md, both sides times g, which saves dividing by it twice.
   const S J = v.motor.inertia;
-  const S A = N_J * B1 / k.wing_lever;
-  const S C = (N_J * B2 * square(omega) + m.aero_moment + N_k_beta) / k.wing_lever;
+  const S A_g = N_J * B1;
+  const S C_g = N_J * B2 * square(omega) + m.aero_moment + N_k_beta;
   const S load_free = load_free_friction(v.friction, omega, branch.direction) +
                       branch.direction * v.motor.friction_torque;
   const MotorLoads<S> motor = motor_loads(v.motor, v_t, i, omega);
   const S drive = motor.torque - motor.drag_torque - load_free;
   // mu r_e |F| sign(omega) = s mu r_e F with s = sign(F) sign(omega), on this branch.
   const S lever = k.crank_lever + branch.force * branch.direction * v.friction.radius;
-  const S divisor = S(1.0) / (J + A * lever);
+  const S divisor = S(1.0) / (J * g + A_g * lever);
 
   m.current = i;
   m.voltage = v_t;
-  m.force_switch = J * C + A * drive;
+  m.force_switch = J * C_g + A_g * drive;
   m.rod_force = m.force_switch * divisor;
-  m.crank_acceleration = (drive - C * lever) * divisor;
+  m.crank_acceleration = (drive * g - C_g * lever) * divisor;
   m.stroke_acceleration = B1 * m.crank_acceleration + B2 * square(omega);
   m.friction_torque = load_friction(v.friction, branch.force * m.rod_force, branch.direction) + load_free;
   m.motor_torque = m.rod_force * k.crank_lever + m.friction_torque;
