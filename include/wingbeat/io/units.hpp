@@ -1,0 +1,43 @@
+// Quantities with units, read through UDUNITS-2.
+#pragma once
+
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace wingbeat {
+
+/// A text that is not the quantity asked for. what() is the end of a sentence, without file and key:
+/// `expected a length such as "5 mm", got "5 kg"`.
+class UnitError : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
+
+/// The SI value of a quantity such as "5 mm", "1.377e-3 N m/rad" or "22 Hz", where `expected_unit` is the SI unit of
+/// what is asked for ("m", "N m/rad", "Hz", "1"). A number without a unit is taken as SI. Decimal prefixes are exact:
+/// "29 mH" is the double 0.029. Throws UnitError; std::runtime_error where the unit database cannot be read.
+///
+/// Angles are kept apart although UDUNITS counts the radian as 1:
+/// - radians may be left out of a compound unit ("N m" for "N m/rad") but not added ("N m/rad" for "N m"), except that
+///   a torque constant may be written V s/rad;
+/// - a frequency may be written as an angular speed and is divided by 2 pi: "1320 rpm" is 22 Hz. An angular speed may
+///   not be written as a frequency, nor may Hz stand inside any other unit;
+/// - an angle needs a unit of angle: a percentage is not one.
+/// Refused too: units with an offset (degC), a logarithm or a factor ("5 2 mm"), and reciprocals (s for Hz).
+double parse_quantity(std::string_view text, std::string_view expected_unit);
+
+/// What a number in `unit` is multiplied by to give SI, under the rules of parse_quantity.
+double unit_factor(std::string_view unit, std::string_view expected_unit);
+
+/// What to write for a quantity in an SI unit, for messages: `a length such as "5 mm"` for "m".
+std::string quantity_example(std::string_view unit);
+
+/// Text fit for a message: control characters escaped, cut after `longest` bytes.
+std::string one_line(std::string_view text, std::size_t longest = 60);
+
+/// The same in double quotes.
+std::string in_quotes(std::string_view text);
+
+}  // namespace wingbeat

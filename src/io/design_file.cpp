@@ -1,0 +1,325 @@
+#include "wingbeat/io/design_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <system_error>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "table_csv.hpp"
+#include "toml_document.hpp"
+#include "wingbeat/io/design_keys.hpp"
+#include "wingbeat/io/units.hpp"
+
+namespace wingbeat {
+
+namespace {
+
+std::string message_text(const std::string& file, int line, int column, const std::string& key,
+                         const std::string& message) {
+  std::string text = file;
+  if (line > 0) text += fmt::format(":{}:{}", line, column);
+  if (!key.empty()) text += ": " + key;
+  return text + ": " + message;
+}
+
+constexpr std::string_view wave_coefficients[] = {"aerodynamics.coefficients.lift", "aerodynamics.coefficients.drag"};
+
+constexpr CsvColumn chord_columns[] = {{"distance", "m"}, {"chord", "m"}};
+constexpr CsvColumn coefficient_columns[] = {{"alpha", "rad"}, {"cl", "1"}, {"cd", "1"}};
+
+class Reader {
+ public:
+  Reader(const Document& document, const TableLoader& load_table) : document_(document), load_table_(load_table) {}
+
+  Design<double> read() {
+    Design<double> d{};
+    require_sections();
+    if (const Value* name = document_.find("vehicle.name")) d.name = text_of(*name, "vehicle.name", "a text");
+    d.supply.type = choice("supply.type", supply_types);
+    read_transmission_type();
+    d.transmission.formulation = document_.find("transmission.formulation")
+                                     ? choice("transmission.formulation", formulations)
+                                     : Formulation::rod_force;
+    d.friction.law = choice("friction.type", friction_laws);
+    if (!document_.has_section("wing.planform")) {
+      missing("wing.planform",
+              "a table such as { shape = \"semi-ellipse\", length = \"63 mm\", root_chord = \"25 mm\" }");
+    }
+    d.wing.planform.shape = choice("wing.planform.shape", planform_shapes);
+    check_alternatives();
+    read_coefficients(d.aerodynamics);
+    read_numbers(d);
+    if (d.wing.planform.shape == PlanformShape::tabulated) read_chords(d.wing.planform);
+    check(d);
+    return d;
+  }
+
+ private:
+  void require_sections() const {
+    constexpr std::pair<std::string_view, std::string_view> required[] = {
+        {"supply", "the voltage at the motor terminals"},
+        {"motor", "the motor's constants"},
+        {"transmission", "the mechanism between motor and wings"},
+        {"friction", "the friction law; without friction write type = \"none\""},
+        {"wing", "the wings' number, inertia and planform"},
+        {"aerodynamics", "air density, pitch coefficient and force coefficients"}};
+    for (const auto& [section, holds] : required) {
+      if (!document_.has_section(section)) {
+        document_.locate(section).refuse(std::string(section), fmt::format("missing section [{}]: {}", section, holds));
+      }
+    }
+  }
+
+  [[noreturn]] void missing(std::string_view path, std::string_view expected) const {
+    const auto dot = path.rfind('.');
+    const std::string section(path.substr(0, dot));
+    document_.locate(section).refuse(std::string(path), fmt::format("missing in [{}]; expected {}", section, expected));
+  }
+
+  [[noreturn]] void wrong(const Value& value, std::string_view path, std::string_view expected) const {
+    value.origin.refuse(std::string(path), fmt::format("expected {}, got {}", expected, kind_of(value)));
+  }
+
+  const std::string& text_of(const Value& value, std::string_view path, std::string_view expected) const {
+    if (value.kind != Value::Kind::text) wrong(value, path, expected);
+    return value.text;
+  }
+
+  const std::string& required_text(std::string_view path) const {
+    const std::string_view expected = find_key<double>(path)->range;
+    const Value* value = document_.find(path);
+    if (!value) missing(path, expected);
+    return text_of(*value, path, expected);
+  }
+
+  template <class E, std::size_t N>
+  E choice(std::string_view path, const std::pair<std::string_view, E> (&names)[N]) const {
+    const std::string& given = required_text(path);
+    for (const auto& [name, value] : names) {
+      if (name == given) return value;
+    }
+    if (given == "battery") unsupported(path, given);
+    wrong(*document_.find(path), path, find_key<double>(path)->range);
+  }
+
+  [[noreturn]] void unsupported(std::string_view path, std::string_view given) const {
+    document_.locate(path).refuse(std::string(path), fmt::format("{} is not supported yet; expected {}", given,
+                                                                 find_key<double>(path)->range));
+  }
+
+  void read_transmission_type() const {
+    const std::string_view path = "transmission.type";
+    const std::string& type = required_text(path);
+    if (type == "direct") unsupported(path, type);
+    if (type != "slider-crank") wrong(*document_.find(path), path, find_key<double>(path)->range);
+  }
+
+  double number_of(const Value& value, std::string_view path, std::string_view unit) const {
+    if (value.kind == Value::Kind::number) {
+      if (!std::isfinite(value.number)) wrong(value, path, quantity_example(unit));
+      return value.number;
+    }
+    if (value.kind != Value::Kind::text) wrong(value, path, quantity_example(unit));
+    try {
+      return parse_quantity(value.text, unit);
+    } catch (const UnitError& error) {
+      value.origin.refuse(std::string(path), error.what());
+    }
+  }
+
+  /// True if the choices made so far leave a place for the key; refuses a key that is given without one.
+  bool belongs(const KeyText& key) const {
+    if (key.only_with.empty()) return true;
+    const Requirement requirement = requirement_of(key.only_with);
+    const Value* choice = document_.find(requirement.key);
+    if (choice && requirement.allows(choice->text)) return true;
+    if (const Value* value = document_.find(key.path)) {
+      if (!choice) {
+        value->origin.refuse(std::string(key.path), fmt::format("needs {}, which is not given", requirement.key));
+      }
+      value->origin.refuse(std::string(key.path),
+                           fmt::format("belongs to {0} = {1}, but {0} is {2}", requirement.key,
+                                       fmt::join(requirement.values, " or "), in_quotes(choice->text)));
+    }
+    return false;
+  }
+
+  void read_numbers(Design<double>& d) const {
+    for (const auto& key : vehicle_keys<double>()) {
+      if (!belongs(key) || !key.set) continue;
+      if (const Value* value = document_.find(key.path)) {
+        key.set(d, number_of(*value, key.path, key.unit));
+      } else if (key.fallback == "required") {
+        missing(key.path, quantity_example(key.unit));
+      }
+    }
+  }
+
+  void check_alternatives() const {
+    const bool tabulated = document_.find("wing.planform.shape")->text == "tabulated";
+    const std::tuple<std::string_view, std::string_view, bool> pairs[] = {
+        {"transmission.hinge_offset", "transmission.stroke_amplitude", true},
+        {"spring.stiffness", "spring.resonance", document_.has_section("spring")},
+        {"wing.planform.file", "wing.planform.chords", tabulated}};
+    for (const auto& [one, other, required] : pairs) {
+      const Value* first = document_.find(one);
+      const Value* second = document_.find(other);
+      const auto leaf = [](std::string_view path) { return path.substr(path.rfind('.') + 1); };
+      if (first && second) {
+        second->origin.refuse(std::string(other), fmt::format("give {} or {}, not both", leaf(one), leaf(other)));
+      }
+      if (required && !first && !second) {
+        const std::string_view unit = find_key<double>(one)->unit;
+        missing(one, unit.empty() ? std::string("the name of a CSV file, or chords instead")
+                                  : fmt::format("{}, or {} instead", quantity_example(unit), leaf(other)));
+      }
+    }
+  }
+
+  void read_coefficients(AerodynamicsDesign<double>& a) const {
+    const std::string path = "aerodynamics.coefficients", table_path = path + ".table";
+    const char* expected = "\"translational-2022\" or a table of coefficients";
+    a.coefficients = translational_2022();
+    a.coefficients_name = "translational-2022";
+    if (const Value* name = document_.find(path)) {
+      if (name->kind != Value::Kind::text || name->text != a.coefficients_name) wrong(*name, path, expected);
+    }
+    if (!document_.has_section(path)) return;
+    if (const Value* table = document_.find(table_path)) {
+      for (const std::string_view wave : wave_coefficients) {
+        if (document_.has_section(wave)) {
+          document_.locate(wave).refuse(std::string(wave), "give table, or lift and drag, not both");
+        }
+      }
+      const auto rows = read_table(*table, table_path, coefficient_columns);
+      std::array<std::vector<double>, 3> columns;
+      for (const auto& row : rows) {
+        for (std::size_t n = 0; n < 3; ++n) columns[n].push_back(row[n]);
+      }
+      try {
+        a.coefficients.table = std::make_shared<CoefficientTable>(columns[0], columns[1], columns[2]);
+      } catch (const ParameterError& error) {
+        table->origin.refuse(table_path, error.reason());
+      }
+      a.coefficients.lift = {};
+      a.coefficients.drag = {};
+      a.coefficients_name = "table";
+      return;
+    }
+    // The numbers themselves come with the others.
+    for (const auto& key : vehicle_keys<double>()) {
+      if (key.set && key.path.starts_with(path + ".") && !document_.find(key.path)) {
+        missing(key.path, quantity_example(key.unit));
+      }
+    }
+  }
+
+  void read_chords(Planform<double>& planform) const {
+    const std::string_view path = document_.find("wing.planform.file") ? "wing.planform.file" : "wing.planform.chords";
+    const Value& value = *document_.find(path);
+    const bool in_place = path == "wing.planform.chords";
+    if (!in_place) text_of(value, path, "the name of a CSV file");
+    if (in_place && value.kind != Value::Kind::array) wrong(value, path, "rows [distance, chord]");
+    for (const auto& row : read_table(value, path, chord_columns)) planform.chord_table.emplace_back(row[0], row[1]);
+  }
+
+  /// Rows of SI numbers from an array of rows in place, or from the CSV file of that name.
+  template <std::size_t N>
+  std::vector<std::array<double, N>> read_table(const Value& value, std::string_view path,
+                                                const CsvColumn (&columns)[N]) const {
+    std::vector<std::array<double, N>> rows;
+    if (value.kind == Value::Kind::array) {
+      for (const Value& row : value.items) {
+        const std::size_t number = rows.size() + 1;
+        if (row.kind != Value::Kind::array || row.items.size() != N) {
+          value.origin.refuse(std::string(path), fmt::format("row {} must hold {} values", number, N));
+        }
+        std::array<double, N> numbers;
+        for (std::size_t n = 0; n < N; ++n) numbers[n] = number_of(row.items[n], path, columns[n].unit);
+        rows.push_back(numbers);
+      }
+      return rows;
+    }
+    if (value.kind != Value::Kind::text) wrong(value, path, "the name of a CSV file, or rows");
+    if (!load_table_) value.origin.refuse(std::string(path), "table files cannot be read here; give the rows in place");
+    try {
+      for (const auto& row : parse_csv(load_table_(value.text), one_line(value.text), columns)) {
+        std::array<double, N> numbers;
+        std::copy_n(row.begin(), N, numbers.begin());
+        rows.push_back(numbers);
+      }
+      return rows;
+    } catch (const std::runtime_error& error) {
+      value.origin.refuse(std::string(path), error.what());
+    }
+  }
+
+  void check(const Design<double>& d) const {
+    try {
+      validate(d);
+    } catch (const ParameterError& error) {
+      std::string key = error.key();
+      if (key == "wing.planform.file" && !document_.find(key)) key = "wing.planform.chords";
+      document_.locate(key).refuse(key, error.reason());
+    }
+  }
+
+  const Document& document_;
+  const TableLoader& load_table_;
+};
+
+}  // namespace
+
+InputError::InputError(std::string file, int line, int column, std::string key, const std::string& message)
+    : std::runtime_error(message_text(file, line, column, key, message)),
+      file_(std::move(file)),
+      line_(line),
+      column_(column),
+      key_(std::move(key)) {}
+
+std::string read_text_file(const std::filesystem::path& file) {
+  constexpr std::size_t largest = 4u << 20;
+  const std::string name = file.string();
+  const auto refuse = [&](const std::string& message) { throw InputError(name, 0, 0, "", message); };
+  if (name.find('\0') != std::string::npos) throw InputError(one_line(name), 0, 0, "", "not a file name");
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) {
+    const bool missing = !error || error == std::errc::no_such_file_or_directory;
+    refuse(missing ? "no such file" : "cannot be read: " + error.message());
+  }
+  if (std::filesystem::is_directory(status)) refuse("is a directory, not a file");
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) refuse(fmt::format("cannot be read: {}", std::strerror(errno)));
+  std::string text(largest + 1, '\0');
+  stream.read(text.data(), std::streamsize(text.size()));
+  if (stream.bad()) refuse("cannot be read");
+  text.resize(std::size_t(stream.gcount()));
+  if (text.size() > largest) refuse("larger than 4 MB, which no vehicle file or table is");
+  return text;
+}
+
+Design<double> parse_design(std::string_view text, std::string_view file_name, std::span<const std::string> overrides,
+                            const TableLoader& load_table) {
+  Document document = parse_document(text, file_name);
+  apply_overrides(document, overrides);
+  return Reader(document, load_table).read();
+}
+
+Design<double> read_design(const std::filesystem::path& file, std::span<const std::string> overrides) {
+  const std::filesystem::path folder = file.parent_path();
+  return parse_design(read_text_file(file), file.string(), overrides,
+                      [&](const std::string& name) { return read_text_file(folder / name); });
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,64 @@
+// A vehicle file as a flat list of known keys, each with its place in the file; the only user of toml++.
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "wingbeat/io/design_file.hpp"
+
+namespace wingbeat {
+
+/// Where a value stands.
+struct Origin {
+  std::string file;  ///< file name, or "--set KEY=VALUE"
+  int line = 0;
+  int column = 0;
+  bool overridden = false;
+
+  [[noreturn]] void refuse(const std::string& key, const std::string& message) const {
+    throw InputError(file, line, column, key, message);
+  }
+};
+
+struct Value {
+  enum class Kind { text, number, array, table, other };
+  Kind kind = Kind::other;
+  std::string text;  ///< the text; of `other` what it is: "a boolean"
+  double number = 0.0;
+  std::vector<Value> items;  ///< of an array
+  Origin origin;
+};
+
+/// "a number", "an array": what a value is, for messages.
+std::string kind_of(const Value& value);
+
+struct Document {
+  std::string file_name;
+  int last_line = 1;
+  std::map<std::string, Value, std::less<>> values;     ///< by dotted path
+  std::map<std::string, Origin, std::less<>> sections;  ///< by dotted path
+
+  const Value* find(std::string_view path) const;
+  bool has_section(std::string_view path) const;
+  /// The place of a key, of the closest section around it, or the end of the file.
+  Origin locate(std::string_view path) const;
+};
+
+/// Throws InputError for text that is not TOML and for unknown keys.
+Document parse_document(std::string_view text, std::string_view file_name);
+
+/// Applies overrides as read_design documents it.
+void apply_overrides(Document& document, std::span<const std::string> overrides);
+
+/// The two sides of "KEY = VALUE|VALUE" in KeyText::only_with.
+struct Requirement {
+  std::string_view key;
+  std::vector<std::string_view> values;  ///< empty: the key need only be given
+  bool allows(std::string_view value) const;
+};
+Requirement requirement_of(std::string_view only_with);
+
+}  // namespace wingbeat

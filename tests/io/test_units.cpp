@@ -1,0 +1,111 @@
+#include "wingbeat/io/units.hpp"
+
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <thread>
+#include <vector>
+
+#include "wingbeat/core/math.hpp"
+
+namespace wingbeat {
+namespace {
+
+std::string refusal(std::string_view text, std::string_view unit) {
+  try {
+    return "accepted as " + std::to_string(parse_quantity(text, unit));
+  } catch (const UnitError& error) {
+    return error.what();
+  }
+}
+
+TEST(Units, DecimalPrefixesAreExact) {
+  EXPECT_EQ(parse_quantity("5 mm", "m"), 0.005);
+  EXPECT_EQ(parse_quantity("29 mH", "H"), 0.029);
+  EXPECT_EQ(parse_quantity("3.34 g", "kg"), 0.00334);
+  EXPECT_EQ(parse_quantity("0.1e3 um", "m"), 0.0001);
+  EXPECT_EQ(parse_quantity("2.5 cm4", "m4"), 2.5e-8);
+  EXPECT_EQ(parse_quantity("-5e-1 mm", "m"), -0.0005);
+  EXPECT_EQ(parse_quantity("0e99 mm", "m"), 0.0);
+}
+
+TEST(Units, AnSiUnitIsTheNumberItself) {
+  EXPECT_EQ(parse_quantity("1.377e-3 N m/rad", "N m/rad"), 1.377e-3);
+  EXPECT_EQ(parse_quantity("22 Hz", "Hz"), 22.0);
+  EXPECT_EQ(parse_quantity("9 ohm", "ohm"), 9.0);
+  EXPECT_EQ(parse_quantity("7.205e-8 kg m2", "kg m2"), 7.205e-8);
+  EXPECT_EQ(parse_quantity("1.225 kg/m3", "kg/m3"), 1.225);
+  EXPECT_EQ(parse_quantity("2.457e-6 m4", "m4"), 2.457e-6);
+  EXPECT_EQ(parse_quantity("3e-9 N m s2/rad2", "N m s2/rad2"), 3e-9);
+  EXPECT_EQ(parse_quantity("0.005", "m"), 0.005);
+  EXPECT_EQ(parse_quantity("+.5", "1"), 0.5);
+}
+
+TEST(Units, SpellingsOfWordProcessors) {
+  EXPECT_EQ(parse_quantity("5\u00a0mm", "m"), 0.005);
+  EXPECT_EQ(parse_quantity("2 m⁴", "m4"), 2.0);
+  EXPECT_EQ(parse_quantity("9 Ω", "ohm"), 9.0);
+  EXPECT_EQ(parse_quantity("1.5e-7 kg·m²", "kg m2"), 1.5e-7);
+  EXPECT_DOUBLE_EQ(parse_quantity("2°", "rad"), 2.0 / degrees_per_radian);
+}
+
+TEST(Units, Angles) {
+  EXPECT_DOUBLE_EQ(parse_quantity("9.82 deg", "rad"), 9.82 / degrees_per_radian);
+  EXPECT_DOUBLE_EQ(parse_quantity("0.25 rev", "rad"), pi / 2.0);
+  EXPECT_DOUBLE_EQ(parse_quantity("1000 rpm", "rad/s"), 1000.0 * two_pi / 60.0);
+  EXPECT_DOUBLE_EQ(parse_quantity("1320 rpm", "Hz"), 22.0);
+  EXPECT_DOUBLE_EQ(parse_quantity("1 rad/s", "Hz"), 1.0 / two_pi);
+  EXPECT_DOUBLE_EQ(parse_quantity("1 mV/rpm", "N m/A"), 60e-3 / two_pi);
+  EXPECT_EQ(parse_quantity("0.01 V s/rad", "N m/A"), 0.01);
+  EXPECT_EQ(parse_quantity("1.4 N m", "N m/rad"), 1.4);
+  EXPECT_EQ(refusal("5 Hz", "rad"), "expected an angle such as \"40 deg\", got \"5 Hz\"");
+  EXPECT_EQ(refusal("5 %", "rad"), "expected an angle such as \"40 deg\", got \"5 %\"");
+  EXPECT_EQ(refusal("5 Hz", "rad/s"),
+            "expected an angular speed such as \"100 rad/s\", got \"5 Hz\"; name the angle, as in rad/s, deg/s or rpm");
+  EXPECT_EQ(refusal("1 V/Hz", "N m/A"),
+            "expected a torque constant such as \"0.01 N m/A\", got \"1 V/Hz\"; a cycle is 2 pi rad, so write s or "
+            "rad/s instead of Hz");
+  EXPECT_EQ(refusal("1 N m/rad", "N m"), "expected a torque such as \"0.1 mN m\", got \"1 N m/rad\"");
+  EXPECT_EQ(refusal("5 deg", "1"), "expected a number such as 2, got \"5 deg\"");
+}
+
+TEST(Units, RefusesWhatIsNotTheQuantity) {
+  EXPECT_EQ(refusal("5 kg", "m"), "expected a length such as \"5 mm\", got \"5 kg\"");
+  EXPECT_EQ(refusal("5 s", "Hz"), "expected a frequency such as \"22 Hz\", got \"5 s\"");
+  EXPECT_EQ(refusal("5 furlog", "m"),
+            "expected a length such as \"5 mm\", got \"5 furlog\" with the unknown unit \"furlog\"");
+  EXPECT_EQ(refusal("5 degC", "K"), "expected a quantity in K, got \"5 degC\"; \"degC\" has an offset or a logarithm");
+  for (const char* text : {"mm", "nan mm", "inf", "-inf", "", " ", "+-5 mm", "five mm"}) {
+    EXPECT_THAT(refusal(text, "m"), testing::HasSubstr(", which does not begin with a number")) << text;
+  }
+  for (const char* text : {"5 2 mm", "5 m 2", "5 m.5", "5 mm - 3", "5 3", "5 3/m"}) {
+    EXPECT_THAT(refusal(text, "m"), testing::HasSubstr(", which holds a second number")) << text;
+  }
+  EXPECT_EQ(refusal("5,3 mm", "m"),
+            "expected a length such as \"5 mm\", got \"5,3 mm\"; write a decimal point, not a comma");
+  for (const char* text : {"1e400 m", "1e308 km", "1e-400 m"}) {
+    EXPECT_THAT(refusal(text, "m"), testing::HasSubstr(", a number too large or too small to store")) << text;
+  }
+  EXPECT_EQ(parse_quantity("0.2 1/s", "Hz"), 0.2);
+  EXPECT_EQ(parse_quantity("0.2 s-1", "Hz"), 0.2);
+}
+
+TEST(Units, MessagesStayOnOneLine) {
+  EXPECT_EQ(in_quotes("a\nb\x01"), "\"a\\nb\\x01\"");
+  EXPECT_EQ(in_quotes(std::string(59, 'a') + "éb"), "\"" + std::string(59, 'a') + "...\"");
+}
+
+TEST(Units, ThreadsShareTheDatabase) {
+  std::vector<std::thread> threads;
+  std::vector<double> results(4, 0.0);
+  for (double& result : results) {
+    threads.emplace_back([&result] {
+      for (int n = 0; n < 200; ++n) result += parse_quantity("1 N m s/rad", "N m s/rad");
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_THAT(results, testing::Each(200.0));
+}
+
+}  // namespace
+}  // namespace wingbeat
