@@ -25,7 +25,7 @@ using StartUp = std::function<StartUpOutcome(const Vehicle<double>&)>;
 struct SteadyOptions {
   double tolerance = 1e-6;  ///< wanted relative accuracy of every metric; 1e-12 is the tightest that makes sense
   bool stability = true;    ///< compute floquet_multiplier_max
-  Reporting reporting;
+  Reporting reporting = {};
 };
 
 struct SteadyFlapping {

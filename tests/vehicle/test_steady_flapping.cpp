@@ -1,0 +1,330 @@
+// The orbit solver on vehicles: known orbits, closed forms, energy books, ways of not flapping.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "vehicle/random_vehicle.hpp"
+#include "vehicle/reference_vehicle.hpp"
+#include "wingbeat/cycle/energy_audit.hpp"
+#include "wingbeat/cycle/steady_flapping.hpp"
+#include "wingbeat/study/run.hpp"
+
+namespace wingbeat {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double tightest = 1e-12;
+
+/// Largest relative deviation of metrics, the residual power and the Floquet multiplier apart: these may be zero.
+double largest_deviation(const Metrics<double>& a, const Metrics<double>& b, std::string* where = nullptr) {
+  double largest = 0.0;
+  for (int k = 0; k < metric_count; ++k) {
+    if (Metric(k) == Metric::power_residual || Metric(k) == Metric::floquet_multiplier_max) continue;
+    const double x = a.values[std::size_t(k)], y = b.values[std::size_t(k)];
+    // An angle of attack near zero degrees has no meaningful relative error.
+    const double scale = Metric(k) == Metric::angle_of_attack_min ? std::max(std::abs(x), 10.0) : std::abs(x);
+    EXPECT_EQ(std::isnan(x), std::isnan(y)) << metric_table()[std::size_t(k)].key;
+    if (std::isnan(x) || scale == 0.0) continue;
+    const double deviation = std::abs(y - x) / scale;
+    if (deviation > largest) {
+      largest = deviation;
+      if (where) *where = metric_table()[std::size_t(k)].key;
+    }
+  }
+  return largest;
+}
+
+struct KnownOrbit {
+  bool springs;
+  double crank_speed, current, frequency, power_electrical, lift_mean, rod_force_mean, rod_force_peak;
+  double kinks[2];
+};
+
+// data/published/orbits2022.json, good to 14 digits.
+const KnownOrbit known_orbits[] = {
+    {false, 178.90084085877027, 0.15316164053388573, 21.952226143327449, 0.54023365078787118, 0.0087391846723811966,
+     0.26513989876954032, 0.45536141663819993, {0.751467892605991, 3.63210320230321}},
+    {true, 170.18923875426399, 0.16199813776982407, 23.430706596318597, 0.50926842859058386, 0.011644327876553516,
+     0.1851194883045969, 0.38663637234591627, {two_pi - 1.34160883181093, 1.31688933007742}}};
+
+TEST(SteadyFlapping, ReproducesKnownOrbitsToTheToleranceAskedFor) {
+  for (const KnownOrbit& known : known_orbits) {
+    const Vehicle<double> vehicle = reference_vehicle(known.springs);
+    for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10, tightest}) {
+      const SteadyFlapping found = find_steady_flapping(vehicle, {.tolerance = tolerance});
+      ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+      const auto near = [&](double value, double expected) {
+        EXPECT_NEAR(value / expected, 1.0, tolerance) << "tolerance " << tolerance << ", springs " << known.springs;
+      };
+      const WaveformRow bottom = found.record.at(1.5 * pi);
+      near(bottom.crank_speed, known.crank_speed);
+      near(bottom.current, known.current);
+      near(found.metrics[Metric::frequency], known.frequency);
+      near(found.metrics[Metric::power_electrical], known.power_electrical);
+      near(found.metrics[Metric::lift_mean], known.lift_mean);
+      near(found.metrics[Metric::rod_force_mean], known.rod_force_mean);
+      near(found.metrics[Metric::rod_force_peak], known.rod_force_peak);
+    }
+  }
+}
+
+TEST(SteadyFlapping, LocatesTheSignChangesOfTheRodForce) {
+  for (const KnownOrbit& known : known_orbits) {
+    const SteadyFlapping found = find_steady_flapping(reference_vehicle(known.springs), {.tolerance = tightest});
+    for (const double kink : known.kinks) {
+      EXPECT_LT(found.record.at(kink - 1e-5).rod_force * found.record.at(kink + 1e-5).rod_force, 0.0);
+      EXPECT_NEAR(found.record.at(kink).rod_force, 0.0, 1e-9);
+    }
+  }
+}
+
+TEST(SteadyFlapping, TakesAFewLapsFromACoarseGuess) {
+  const SteadyFlapping found = find_steady_flapping(reference_vehicle(), {.tolerance = 1e-6});
+  EXPECT_LE(found.summary.laps, 6);
+  EXPECT_LE(found.summary.residual, 1e-6);
+  EXPECT_EQ(found.summary.newton_steps, 0);
+  EXPECT_NEAR(found.metrics[Metric::floquet_multiplier_max], 9.7514e-5, 1e-8);
+}
+
+TEST(SteadyFlapping, FloquetMultiplierPredictsHowADisturbanceFades) {
+  const Vehicle<double> vehicle = reference_vehicle(true);
+  const SteadyFlapping found = find_steady_flapping(vehicle, {.tolerance = tightest});
+  CrankSystem<double, 2> system{vehicle, 1e-3, 1.0 / 3.0};
+  solve::Lap<CrankSystem<double, 2>> lap;
+  solve::LapOptions options{.tolerance = 1e-13};
+  // The slow mode is what a disturbance looks like one lap later.
+  std::array<double, 2> y = {found.crank_speed * 1.005, found.current};
+  solve::run_lap<false>(system, y, options, lap);
+  const double after_one = lap.end[0] - found.crank_speed;
+  solve::run_lap<false>(system, lap.end, options, lap);
+  const double after_two = lap.end[0] - found.crank_speed;
+  EXPECT_NEAR(std::abs(after_two / after_one) / found.metrics[Metric::floquet_multiplier_max], 1.0, 0.02);
+}
+
+TEST(SteadyFlapping, WinglessSpeedIsTheClosedForm) {
+  for (const double inductance : {29e-3, 1e-7, 0.0}) {
+    Vehicle<double> vehicle = wingless_vehicle();
+    vehicle.motor.armature_inductance = inductance;
+    const SteadyFlapping found = find_steady_flapping(vehicle, {.tolerance = tightest});
+    ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+    const double omega = no_load_speed(vehicle.motor, vehicle.voltage);
+    EXPECT_NEAR(found.metrics[Metric::frequency] * two_pi / omega, 1.0, 1e-11);
+    EXPECT_NEAR(found.metrics[Metric::current_mean] / (vehicle.motor.viscous_damping * omega / 0.01), 1.0, 1e-10);
+    EXPECT_EQ(found.metrics[Metric::lift_mean], 0.0);
+    EXPECT_EQ(found.metrics[Metric::rod_force_peak], 0.0);
+    EXPECT_TRUE(std::isnan(found.metrics[Metric::efficiency_mechanism]));
+  }
+}
+
+TEST(SteadyFlapping, VacuumWithoutFrictionCostsMotorLossesOnly) {
+  Vehicle<double> vehicle = reference_vehicle(true);
+  vehicle.crank.formulation = Formulation::virtual_work;
+  vehicle.friction.radius = 0.0;
+  vehicle.wings.air_density = 0.0;
+  const SteadyFlapping found = find_steady_flapping(vehicle, {.tolerance = tightest});
+  ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+  const EnergyAudit audit = energy_audit(found.metrics);
+  EXPECT_NEAR((audit.copper + audit.viscous) / audit.electrical, 1.0, 1e-11);
+  EXPECT_EQ(audit.aerodynamic, 0.0);
+  EXPECT_EQ(audit.friction, 0.0);
+}
+
+TEST(SteadyFlapping, EnergyBooksCloseAndTightenWithTheTolerance) {
+  for (const bool springs : {false, true}) {
+    for (const Formulation formulation : {Formulation::rod_force, Formulation::virtual_work}) {
+      Vehicle<double> vehicle = reference_vehicle(springs);
+      vehicle.crank.formulation = formulation;
+      for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10, tightest}) {
+        const SteadyFlapping found = find_steady_flapping(vehicle, {.tolerance = tolerance});
+        const EnergyAudit audit = energy_audit(found.metrics);
+        EXPECT_LT(std::abs(audit.imbalance), tolerance * audit.electrical);
+        if (formulation == Formulation::virtual_work) {
+          EXPECT_LT(std::abs(audit.residual), 1e-15) << "virtual work conserves power identically";
+        } else {
+          EXPECT_GT(audit.residual, 0.05 * found.metrics[Metric::power_motor]) << "about a tenth of P_m";
+          EXPECT_LT(audit.residual, 0.15 * found.metrics[Metric::power_motor]);
+        }
+      }
+    }
+  }
+}
+
+TEST(SteadyFlapping, MetricsOfRandomVehiclesMeetTheToleranceAskedFor) {
+  std::mt19937_64 random(20220101);
+  int flapping = 0, outside = 0;
+  for (int n = 0; n < 400; ++n) {
+    const Design<double> design = random_design(random);
+    const Vehicle<double> vehicle = resolve(design);
+    const SteadyOptions loose{.tolerance = 1e-6, .reporting = reporting_of(design)};
+    const SteadyFlapping found = find_steady_flapping(vehicle, loose);
+    SteadyOptions tight = loose;
+    tight.tolerance = 1e-10;
+    const SteadyFlapping reference = find_steady_flapping(vehicle, tight);
+    ASSERT_EQ(found.status, reference.status) << "vehicle " << n;
+    if (found.status != FlappingStatus::flapping) continue;
+    ++flapping;
+    std::string where;
+    const double deviation = largest_deviation(reference.metrics, found.metrics, &where);
+    EXPECT_LT(deviation, 1e-5) << "vehicle " << n << ", " << where;
+    if (deviation > 1e-6) ++outside;
+    const EnergyAudit audit = energy_audit(reference.metrics);
+    EXPECT_LT(std::abs(audit.imbalance), 1e-9 * audit.electrical) << "vehicle " << n;
+  }
+  EXPECT_GT(flapping, 300);
+  EXPECT_LE(outside, flapping / 100);
+}
+
+TEST(SteadyFlapping, StiffVehiclesApproachTheAlgebraicCurrent) {
+  Vehicle<double> vehicle = reference_vehicle(true);
+  vehicle.motor.armature_inductance = 0.0;
+  const SteadyFlapping algebraic = find_steady_flapping(vehicle, {.tolerance = 1e-11});
+  double before = 1.0;
+  for (const double inductance : {1e-5, 1e-7, 1e-9}) {
+    vehicle.motor.armature_inductance = inductance;
+    const SteadyFlapping found = find_steady_flapping(vehicle, {.tolerance = 1e-11});
+    ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+    const double apart =
+        std::abs(found.metrics[Metric::power_copper] / algebraic.metrics[Metric::power_copper] - 1.0);
+    EXPECT_LT(apart, 0.02 * before) << "first order in the inductance";
+    before = apart;
+  }
+  EXPECT_LT(before, 1e-7);
+}
+
+TEST(SteadyFlapping, PeaksAreNotSamples) {
+  for (const bool springs : {false, true}) {
+    const SteadyFlapping found = find_steady_flapping(reference_vehicle(springs), {.tolerance = 1e-10});
+    double lift = 0.0, force = 0.0, velocity = 0.0, current = 0.0, fastest = 0.0, slowest = 1e9;
+    for (const WaveformRow& row : found.record.waveform(20001)) {
+      lift = std::max(lift, row.lift);
+      force = std::max(force, std::abs(row.rod_force));
+      velocity = std::max(velocity, std::abs(row.flapping_velocity));
+      current = std::max(current, row.current);
+      fastest = std::max(fastest, row.crank_speed);
+      slowest = std::min(slowest, row.crank_speed);
+    }
+    // Samples miss a peak from below, by the square of their distance.
+    const auto peaks_above = [](double peak, double sample) {
+      EXPECT_GE(peak, sample * (1.0 - 1e-10));
+      EXPECT_LT(peak, sample * (1.0 + 1e-6));
+    };
+    peaks_above(found.metrics[Metric::lift_peak], lift);
+    peaks_above(found.metrics[Metric::rod_force_peak], force);
+    peaks_above(found.metrics[Metric::flapping_velocity_peak], velocity);
+    peaks_above(found.metrics[Metric::current_peak], current);
+    peaks_above(found.metrics[Metric::crank_speed_max], fastest);
+    EXPECT_NEAR(found.metrics[Metric::crank_speed_min] / slowest, 1.0, 1e-6);
+  }
+}
+
+TEST(SteadyFlapping, WaveformIsOneConsistentCycle) {
+  const SteadyFlapping found = find_steady_flapping(reference_vehicle(true), {.tolerance = 1e-10});
+  const std::vector<WaveformRow> rows = found.record.waveform(721);
+  ASSERT_EQ(rows.size(), 721u);
+  EXPECT_NEAR(rows.front().crank_angle, 0.0, 1e-12);
+  EXPECT_NEAR(rows.back().crank_angle, two_pi, 1e-9);
+  EXPECT_NEAR(rows.back().crank_speed, rows.front().crank_speed, 1e-7);
+  double lift = 0.0;
+  for (std::size_t n = 1; n < rows.size(); ++n) {
+    const double dt = rows[n].time - rows[n - 1].time;
+    EXPECT_NEAR(dt, found.record.period() / 720.0, 1e-12);
+    lift += 0.5 * dt * (rows[n].lift + rows[n - 1].lift);
+  }
+  EXPECT_NEAR(lift / found.record.period() / found.metrics[Metric::lift_mean], 1.0, 1e-5);
+}
+
+TEST(NotFlapping, StalledByTheMotorsOwnFriction) {
+  Vehicle<double> vehicle = reference_vehicle();
+  vehicle.motor.friction_torque = 0.0034;
+  const SteadyFlapping found = find_steady_flapping(vehicle);
+  EXPECT_EQ(found.status, FlappingStatus::stalled);
+  EXPECT_EQ(found.detail,
+            "the motor never starts: its stall torque 0.003333 N m does not exceed the constant friction 0.0034 N m");
+  for (const double value : found.metrics.values) EXPECT_TRUE(std::isnan(value));
+  EXPECT_TRUE(found.record.empty());
+}
+
+TEST(NotFlapping, ZeroVoltageStalls) {
+  Vehicle<double> vehicle = reference_vehicle();
+  vehicle.voltage = 0.0;
+  EXPECT_EQ(find_steady_flapping(vehicle).status, FlappingStatus::stalled);
+}
+
+TEST(NotFlapping, LockedBehindAStrongSpring) {
+  Vehicle<double> vehicle = reference_vehicle(true);
+  vehicle.spring.stiffness *= 10.0;
+  const SteadyFlapping found = find_steady_flapping(vehicle, {}, start_up_in_time());
+  EXPECT_EQ(found.status, FlappingStatus::locked) << found.detail;
+  EXPECT_THAT(found.detail, HasSubstr("deg"));
+  const SteadyFlapping by_statics = find_steady_flapping(vehicle);
+  EXPECT_EQ(by_statics.status, FlappingStatus::locked) << by_statics.detail;
+  const std::vector<LockInterval> locks = lock_intervals(vehicle);
+  ASSERT_FALSE(locks.empty());
+  for (const LockInterval& lock : locks) {
+    EXPECT_NEAR(lock_margin(vehicle, lock.from), 0.0, 1e-9);
+    EXPECT_NEAR(lock_margin(vehicle, lock.to), 0.0, 1e-9);
+    EXPECT_GE(lock_margin(vehicle, lock.angle), 0.0);
+  }
+}
+
+TEST(NotFlapping, JammedWithALightRotorAndStrongFriction) {
+  Vehicle<double> vehicle = reference_vehicle();
+  vehicle.motor.inertia = 2e-9;
+  const SteadyFlapping found = find_steady_flapping(vehicle, {}, start_up_in_time());
+  EXPECT_EQ(found.status, FlappingStatus::jammed) << found.detail;
+  const SteadyFlapping by_statics = find_steady_flapping(vehicle);
+  EXPECT_EQ(by_statics.status, FlappingStatus::jammed);
+  EXPECT_THAT(by_statics.detail, HasSubstr("lose their unique solution at crank angle"));
+}
+
+TEST(NotFlapping, SaysSoWhereARotatingOrbitAndALockExist) {
+  // Springs that the static motor torque cannot pass, but a turning crank can.
+  Vehicle<double> vehicle = reference_vehicle(true);
+  vehicle.motor.inertia *= 20.0;
+  bool seen = false;
+  for (double stiffness = 2e-3; stiffness < 8e-3 && !seen; stiffness *= 1.05) {
+    vehicle.spring.stiffness = stiffness;
+    if (!static_balance(vehicle).can_lock()) continue;
+    const SteadyFlapping found = find_steady_flapping(vehicle, {}, start_up_in_time());
+    const SteadyFlapping orbit_alone = find_steady_flapping(vehicle);
+    if (orbit_alone.status != FlappingStatus::flapping) continue;
+    seen = true;
+    if (found.status == FlappingStatus::locked) {
+      EXPECT_THAT(found.detail, HasSubstr("a rotating orbit at"));
+    } else {
+      EXPECT_THAT(found.detail, HasSubstr("the crank also locks at crank angles"));
+    }
+  }
+  EXPECT_TRUE(seen);
+}
+
+// The independent check of everything: the orbit against time integration from rest by another library.
+TEST(OrbitAgainstTransient, RandomVehiclesAgree) {
+  std::mt19937_64 random(42);
+  int flapping = 0, resting = 0;
+  for (int n = 0; n < 220; ++n) {
+    const Design<double> design = random_design(random);
+    const Vehicle<double> vehicle = resolve(design);
+    const Reporting reporting = reporting_of(design);
+    const SteadyFlapping orbit = find_steady_flapping(vehicle, {.tolerance = 1e-8, .reporting = reporting},
+                                                      start_up_in_time());
+    TransientOptions options;
+    options.tolerance = 2e-7;
+    options.reporting = reporting;
+    const TransientResult transient = simulate_start_up(vehicle, options);
+    ASSERT_EQ(orbit.status, transient.status) << "vehicle " << n << ": " << orbit.detail << " / " << transient.detail;
+    ASSERT_TRUE(transient.settled) << "vehicle " << n << ": " << transient.detail;
+    if (orbit.status != FlappingStatus::flapping) {
+      ++resting;
+      continue;
+    }
+    ++flapping;
+    std::string where;
+    EXPECT_LT(largest_deviation(orbit.metrics, *transient.metrics, &where), 1e-6) << "vehicle " << n << ", " << where;
+  }
+  EXPECT_GE(flapping, 180);
+  EXPECT_GE(resting, 5);
+}
+
+}  // namespace
+}  // namespace wingbeat
