@@ -1,0 +1,89 @@
+// Start-up in the time domain by SUNDIALS CVODE: from rest (or any state) to steady flapping, standstill or jam;
+// model.md section 2, 'Not flapping'. Independent of the periodic-orbit solver, so that each can check the other.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "wingbeat/core/status.hpp"
+#include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/parts/supply.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
+
+namespace wingbeat {
+
+struct TransientOptions {
+  double tolerance = 1e-6;  ///< wanted relative accuracy of the metrics of steady flapping [1], 1e-11 to 1e-2
+  double max_time = 0.0;    ///< give up after this time [s]; 0: chosen from the vehicle's own time scales
+  int max_laps = 5000;      ///< give up after this many revolutions
+  long max_steps = 1000000; ///< give up after this many integration steps (about a microsecond each)
+
+  double crank_angle = 0.0;  ///< theta at the start [rad]
+  double crank_speed = 0.0;  ///< omega at the start [rad/s]; negative turns backwards
+  double current = 0.0;      ///< i at the start [A]; without inductance it follows from the voltage instead
+
+  bool record = false;           ///< keep samples (and events of supply switching)
+  double record_interval = 0.0;  ///< time between samples [s]; 0: every step of the integrator
+
+  std::optional<Supply<double>> supply;  ///< replaces the constant vehicle.voltage
+  Reporting reporting;
+  std::function<bool()> cancel;  ///< polled now and then; true ends the computation unsettled
+};
+
+struct TransientEvent {
+  enum class Kind { force_sign_change, standstill, breakaway, revolution, jam, supply_switch };
+  double time;         ///< [s]
+  double crank_angle;  ///< theta, not wrapped [rad]
+  Kind kind;
+};
+
+const char* name_of(TransientEvent::Kind kind);
+
+struct TransientSample {
+  double time;         ///< [s]
+  double crank_angle;  ///< theta, not wrapped [rad]
+  double crank_speed;  ///< omega [rad/s]
+  double current;      ///< i [A]
+};
+
+struct TransientResult {
+  FlappingStatus status = FlappingStatus::locked;
+  bool settled = false;  ///< the verdict is final; false: time, laps or steps ran out first, `status` is the best guess
+  std::string detail;    ///< one sentence with the evidence
+
+  double end_time = 0.0;         ///< time simulated [s]
+  double end_crank_angle = 0.0;  ///< theta then, not wrapped [rad]
+  int laps = 0;                  ///< times that theta passed another multiple of 2 pi, forwards
+  /// [s] Flapping: start of the first lap from which on every lap's frequency is within 1 % of the last one's.
+  /// Otherwise the time at which the crank came to rest for good or jammed.
+  double time_to_steady = 0.0;
+  double inrush_current = 0.0;       ///< highest current of the whole start-up [A]
+  double inrush_current_time = 0.0;  ///< [s]
+
+  std::optional<double> lock_angle;     ///< theta where the crank rests, 0 to 2 pi [rad] (locked, stalled)
+  std::optional<double> torque_margin;  ///< mu r_e |F_s| + T_c - |K v/R_a - F_s h| there [N m]
+  std::optional<double> jam_angle;      ///< theta where the equations lose their unique solution, 0 to 2 pi [rad]
+
+  double crank_speed = 0.0;  ///< omega at theta = 0 (mod 2 pi) at the end of the last lap [rad/s]
+  double current = 0.0;      ///< i there [A]: with crank_speed the state of the periodic orbit
+  std::optional<Metrics<double>> metrics;  ///< of the last lap; floquet_multiplier_max is `absent`
+  CycleIntegrals<double> integrals{};      ///< behind the metrics, per lap
+  int averaged_laps = 0;     ///< laps behind the metrics: 1, or several where the supply has no period in common
+  double lap_scatter = 0.0;  ///< largest relative deviation of a lap's duration from their mean, over those laps
+
+  std::vector<TransientEvent> events;
+  std::vector<TransientSample> samples;
+
+  long steps = 0;             ///< integration steps
+  long rate_evaluations = 0;  ///< evaluations of the equations of motion
+  bool stiff = false;         ///< BDF with Newton was used, otherwise Adams with functional iteration
+};
+
+/// Simulates start-up until the vehicle flaps steadily, rests for good, or jams. Throws ParameterError for parameters
+/// out of range; every outcome, running out of time included, is a result. Rotation direction, sticking and the sign of
+/// the rod force are tracked by root finding; the equations are (1, 5-11, 21) on each smooth branch.
+TransientResult simulate_start_up(const Vehicle<double>& vehicle, const TransientOptions& options = {});
+
+}  // namespace wingbeat

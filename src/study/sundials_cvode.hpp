@@ -1,0 +1,162 @@
+// CVODE behind values and callables: one initial value problem with root functions, integrated step by step.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <new>
+#include <utility>
+#include <vector>
+
+#include <cvode/cvode.h>
+#include <nvector/nvector_serial.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+
+namespace wingbeat::detail {
+
+struct CvodeProblem {
+  int size = 0;
+  int coupled = 0;  ///< the rates depend on the first `coupled` unknowns alone; the rest are quadratures
+  int roots = 0;
+  bool stiff = false;
+  std::function<bool(double t, const double* y, double* rates)> rates;  ///< false: cannot be evaluated there
+  std::function<void(double t, const double* y, double* values)> root_functions;
+  std::function<void(const double* y, double* errors)> tolerated;  ///< admissible local error of each unknown, > 0
+  std::vector<double> typical;  ///< size of the coupled unknowns, for the difference quotients of the Jacobian
+};
+
+/// Owns a CVODE integrator. The address of an object must not change: CVODE keeps it.
+class Cvode {
+ public:
+  enum class Outcome { step, root, stop, failed };
+
+  explicit Cvode(CvodeProblem problem) : problem_(std::move(problem)), found_(std::size_t(problem_.roots)) {
+    const sunindextype n = problem_.size;
+    check(SUNContext_Create(nullptr, &context_) == 0);
+    y_ = N_VNew_Serial(n, context_);
+    dense_ = N_VNew_Serial(n, context_);
+    shifted_.resize(std::size_t(n));
+    shifted_rates_.resize(std::size_t(n));
+    memory_ = CVodeCreate(problem_.stiff ? CV_BDF : CV_ADAMS, context_);
+    check(y_ && dense_ && memory_);
+    CVodeSetErrHandlerFn(memory_, [](int, const char*, const char*, char*, void*) {}, nullptr);
+    N_VConst(0.0, y_);
+    check(CVodeInit(memory_, &rates, 0.0, y_) == CV_SUCCESS);
+    CVodeSetUserData(memory_, this);
+    check(CVodeWFtolerances(memory_, &weights) == CV_SUCCESS);
+    if (problem_.stiff) {
+      matrix_ = SUNDenseMatrix(n, n, context_);
+      linear_ = SUNLinSol_Dense(y_, matrix_, context_);
+      check(matrix_ && linear_ && CVodeSetLinearSolver(memory_, linear_, matrix_) == CV_SUCCESS);
+      check(CVodeSetJacFn(memory_, &jacobian) == CV_SUCCESS);
+    } else {
+      nonlinear_ = SUNNonlinSol_FixedPoint(y_, 0, context_);
+      check(nonlinear_ && CVodeSetNonlinearSolver(memory_, nonlinear_) == CV_SUCCESS);
+    }
+    if (problem_.roots > 0) check(CVodeRootInit(memory_, problem_.roots, &roots) == CV_SUCCESS);
+    CVodeSetNoInactiveRootWarn(memory_);
+    CVodeSetMaxHnilWarns(memory_, -1);
+    CVodeSetMaxErrTestFails(memory_, 30);
+    CVodeSetMaxConvFails(memory_, 30);
+  }
+  Cvode(const Cvode&) = delete;
+  Cvode& operator=(const Cvode&) = delete;
+  ~Cvode() {
+    if (memory_) CVodeFree(&memory_);
+    if (nonlinear_) SUNNonlinSolFree(nonlinear_);
+    if (linear_) SUNLinSolFree(linear_);
+    if (matrix_) SUNMatDestroy(matrix_);
+    if (y_) N_VDestroy(y_);
+    if (dense_) N_VDestroy(dense_);
+    if (context_) SUNContext_Free(&context_);
+  }
+
+  double* state() { return N_VGetArrayPointer(y_); }
+
+  /// Starts afresh from state() at time t. `directions`: which sign changes of each root function count (+1 rising,
+  /// -1 falling, 0 both). `horizon`: a time ahead that bounds the first step. Steps end at `stop` exactly.
+  bool restart(double t, int* directions, double horizon, double stop) {
+    bool good = CVodeReInit(memory_, t, y_) == CV_SUCCESS;
+    if (problem_.roots > 0) good = good && CVodeSetRootDirection(memory_, directions) == CV_SUCCESS;
+    time_ = t;
+    horizon_ = horizon;
+    return good && CVodeSetStopTime(memory_, stop) == CV_SUCCESS;
+  }
+
+  /// One internal step, cut short at a root or at the stop time; state() and time() are there then.
+  Outcome advance() {
+    realtype t = time_;
+    const int flag = CVode(memory_, time_ + horizon_, y_, &t, CV_ONE_STEP);
+    time_ = t;
+    if (flag == CV_ROOT_RETURN) {
+      CVodeGetRootInfo(memory_, found_.data());
+      return Outcome::root;
+    }
+    if (flag == CV_TSTOP_RETURN) return Outcome::stop;
+    if (flag < 0) return Outcome::failed;
+    return Outcome::step;
+  }
+  double time() const { return time_; }
+  bool found(int root) const { return found_[std::size_t(root)] != 0; }
+
+  /// The unknowns, or their derivatives of the given order, at a time within the last internal step.
+  const double* dense(double t, int derivative = 0) {
+    if (CVodeGetDky(memory_, t, derivative, dense_) != CV_SUCCESS) return state();
+    return N_VGetArrayPointer(dense_);
+  }
+
+ private:
+  static void check(bool good) {
+    if (!good) throw std::bad_alloc();
+  }
+  static Cvode& self(void* p) { return *static_cast<Cvode*>(p); }
+
+  static int rates(realtype t, N_Vector y, N_Vector dy, void* p) {
+    return self(p).problem_.rates(t, N_VGetArrayPointer(y), N_VGetArrayPointer(dy)) ? 0 : 1;
+  }
+  static int roots(realtype t, N_Vector y, realtype* values, void* p) {
+    self(p).problem_.root_functions(t, N_VGetArrayPointer(y), values);
+    return 0;
+  }
+  static int weights(N_Vector y, N_Vector w, void* p) {
+    double* weight = N_VGetArrayPointer(w);
+    self(p).problem_.tolerated(N_VGetArrayPointer(y), weight);
+    for (int k = 0; k < self(p).problem_.size; ++k) weight[k] = 1.0 / weight[k];
+    return 0;
+  }
+  static int jacobian(realtype t, N_Vector y, N_Vector fy, SUNMatrix jac, void* p, N_Vector, N_Vector, N_Vector) {
+    Cvode& c = self(p);
+    const int n = c.problem_.size;
+    const double* at = N_VGetArrayPointer(y);
+    const double* f = N_VGetArrayPointer(fy);
+    SUNMatZero(jac);
+    c.shifted_.assign(at, at + n);
+    for (int column = 0; column < c.problem_.coupled; ++column) {
+      // Forward differences: the square root of rounding balances rounding against curvature.
+      const double step = 1.5e-8 * std::max(std::abs(at[column]), c.problem_.typical[std::size_t(column)]);
+      c.shifted_[std::size_t(column)] = at[column] + step;
+      if (!c.problem_.rates(t, c.shifted_.data(), c.shifted_rates_.data())) return 1;
+      realtype* entries = SUNDenseMatrix_Column(jac, column);
+      for (int row = 0; row < n; ++row) entries[row] = (c.shifted_rates_[std::size_t(row)] - f[row]) / step;
+      c.shifted_[std::size_t(column)] = at[column];
+    }
+    return 0;
+  }
+
+  CvodeProblem problem_;
+  std::vector<int> found_;
+  std::vector<double> shifted_, shifted_rates_;
+  SUNContext context_ = nullptr;
+  N_Vector y_ = nullptr;
+  N_Vector dense_ = nullptr;
+  void* memory_ = nullptr;
+  SUNMatrix matrix_ = nullptr;
+  SUNLinearSolver linear_ = nullptr;
+  SUNNonlinearSolver nonlinear_ = nullptr;
+  double time_ = 0.0;
+  double horizon_ = 0.0;
+};
+
+}  // namespace wingbeat::detail
