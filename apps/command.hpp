@@ -1,0 +1,27 @@
+// What the commands of the program share.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace wingbeat::app {
+
+/// Exit status; see docs of the program.
+enum ExitStatus { done = 0, failed = 1, bad_input = 2, does_not_flap = 3 };
+
+extern const char* const version;
+
+/// Writes to standard output at once; throws std::runtime_error if it does not take everything.
+void print(std::string_view text);
+/// One line on standard error, after "wingbeat: ".
+void complain(std::string_view sentence);
+
+/// Each adds one command; its action, which gives the exit status, is stored in `action` when the command is parsed.
+using Action = std::function<int()>;
+void add_run(CLI::App& program, Action& action);
+void add_compare(CLI::App& program, Action& action);
+
+}  // namespace wingbeat::app

@@ -1,0 +1,80 @@
+// wingbeat compare FILE: published values beside ours.
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "command.hpp"
+#include "wingbeat/io/design_file.hpp"
+#include "wingbeat/io/output_file.hpp"
+#include "wingbeat/io/plot.hpp"
+#include "wingbeat/io/published.hpp"
+
+namespace wingbeat::app {
+namespace {
+
+struct Arguments {
+  std::string file;
+  bool json = false;
+  std::string plot_power;
+};
+
+std::string spaced(std::string text) {
+  for (char& c : text) c = c == '_' ? ' ' : c;
+  return text;
+}
+
+int run(const Arguments& arguments) {
+  std::optional<PlotFormat> format;
+  if (!arguments.plot_power.empty()) {
+    format = plot_format(arguments.plot_power);
+    if (!format) {
+      throw InputError("--plot-power " + arguments.plot_power, 0, 0, "", "the name must end in .svg, .pdf or .png");
+    }
+  }
+  const PublishedFile file = read_published(arguments.file);
+  std::optional<OutputFile> plot;
+  if (format) plot.emplace("--plot-power", arguments.plot_power);
+  const Comparison comparison = compare(file);
+
+  bool all_flap = true;
+  std::vector<PowerBar> bars;
+  for (const Comparison::Run& r : comparison.runs) {
+    if (r.result.status != FlappingStatus::flapping || r.result.search.value_or(FrequencySearch{}).outcome ==
+                                                           FrequencyOutcome::too_high) {
+      complain(fmt::format("{} at {} does not flap: {}", spaced(r.design), operating_point(r.voltage, r.frequency),
+                           r.result.detail));
+      all_flap = false;
+      continue;
+    }
+    bars.push_back({fmt::format("{}, {}", operating_point(r.voltage, r.frequency), spaced(r.design)),
+                    energy_audit(r.result.metrics)});
+  }
+  if (plot && !bars.empty()) {
+    plot_powers(bars, "Where the electrical power goes", *format, plot->temporary());
+    plot->commit();
+  }
+  print(arguments.json ? json_comparison(file, comparison) : text_comparison(file, comparison));
+  if (!all_flap) return does_not_flap;
+  return comparison.outside() == 0 ? done : failed;
+}
+
+}  // namespace
+
+void add_compare(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("compare", "Compute published values and show ours beside them");
+  const auto a = std::make_shared<Arguments>();
+  command->add_option("file", a->file, "File of published values (TOML)")->required()->type_name("FILE");
+  command->add_flag("--json", a->json, "Print one JSON object instead of a table");
+  command->add_option("--plot-power", a->plot_power, "Plot the power breakdowns to FILE.svg, .pdf or .png")
+      ->type_name("FILE");
+  command->footer(
+      "\nExample:\n"
+      "  wingbeat compare data/published/friction2022.toml\n\n"
+      "Exit status: 0 all values within their tolerances, 1 some are not, 2 bad input or usage, 3 a vehicle does not\n"
+      "flap.");
+  command->callback([a, &action] { action = [a] { return run(*a); }; });
+}
+
+}  // namespace wingbeat::app

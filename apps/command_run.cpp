@@ -1,0 +1,218 @@
+// wingbeat run VEHICLE: the steady flapping of one vehicle.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "command.hpp"
+#include "wingbeat/io/design_file.hpp"
+#include "wingbeat/io/output_file.hpp"
+#include "wingbeat/io/plot.hpp"
+#include "wingbeat/io/report.hpp"
+#include "wingbeat/io/units.hpp"
+#include "wingbeat/io/waveform_file.hpp"
+#include "wingbeat/study/run.hpp"
+
+namespace wingbeat::app {
+namespace {
+
+constexpr int waveform_rows = 361;
+
+struct Arguments {
+  std::string vehicle;
+  std::vector<std::string> overrides;
+  std::string voltage, frequency;
+  Condition condition = Condition::air;
+  Method method = Method::orbit;
+  std::string tolerance = "1e-6";
+  bool json = false;
+  std::string waveforms, plot, plot_power;
+};
+
+double quantity(const char* option, const std::string& text, const char* unit) {
+  try {
+    const double x = parse_quantity(text, unit);
+    if (!std::isfinite(x)) throw InputError(option, 0, 0, "", "must be finite");
+    return x;
+  } catch (const UnitError& error) {
+    throw InputError(option, 0, 0, "", error.what());
+  }
+}
+
+/// A file to be written, its place reserved before anything is computed.
+class Output {
+ public:
+  Output(const char* option, const std::string& path, const std::string& vehicle) {
+    if (path.empty()) return;
+    std::error_code error;
+    if (std::filesystem::equivalent(path, vehicle, error)) {
+      throw InputError(fmt::format("{} {}", option, path), 0, 0, "", "is the vehicle file itself");
+    }
+    file_.emplace(option, path);
+  }
+  explicit operator bool() const { return file_.has_value(); }
+  OutputFile& operator*() { return *file_; }
+
+ private:
+  std::optional<OutputFile> file_;
+};
+
+std::optional<PlotFormat> checked_plot_format(const char* option, const std::string& path) {
+  if (path.empty()) return std::nullopt;
+  const auto format = plot_format(path);
+  if (!format) {
+    throw InputError(fmt::format("{} {}", option, path), 0, 0, "", "the name must end in .svg, .pdf or .png");
+  }
+  return format;
+}
+
+std::string case_title(const Design<double>& design, const RunResult& result, Condition condition) {
+  std::string title = fmt::format("{}, {}", readable(result.metrics[Metric::voltage], "V"),
+                                  readable(result.metrics[Metric::frequency], "Hz"));
+  if (condition != Condition::air) title += fmt::format(", {}", name_of(condition));
+  if (design.supply.type == SupplyType::sine) title = fmt::format("sine supply, {}", title);
+  return title;
+}
+
+void apply_voltage(Supply<double>& supply, const std::string& text) {
+  if (supply.type == SupplyType::sine) {
+    throw InputError("--voltage", 0, 0, "", "the supply is a sine; use --set supply.amplitude=\"3 V\"");
+  }
+  supply.voltage = quantity("--voltage", text, "V");
+  if (supply.voltage < 0.0) throw InputError("--voltage", 0, 0, "", "must be >= 0 V");
+}
+
+int run(const Arguments& arguments) {
+  RunOptions options;
+  options.condition = arguments.condition;
+  options.method = arguments.method;
+  try {
+    options.tolerance = quantity("--tolerance", arguments.tolerance, "1");
+  } catch (const InputError&) {
+    options.tolerance = absent;
+  }
+  if (!(options.tolerance >= 1e-12 && options.tolerance <= 1e-2)) {
+    throw InputError("--tolerance " + arguments.tolerance, 0, 0, "", "must be a number between 1e-12 and 1e-2");
+  }
+  if (!arguments.frequency.empty()) {
+    options.frequency = quantity("--frequency", arguments.frequency, "Hz");
+    if (!(*options.frequency > 0.0)) throw InputError("--frequency", 0, 0, "", "must be > 0 Hz");
+  }
+
+  bool waveforms_csv_wanted = false;
+  if (!arguments.waveforms.empty()) {
+    const std::string extension = std::filesystem::path(arguments.waveforms).extension().string();
+    if (extension != ".csv" && extension != ".nc") {
+      throw InputError("--waveforms " + arguments.waveforms, 0, 0, "", "the name must end in .csv or .nc");
+    }
+    waveforms_csv_wanted = extension == ".csv";
+  }
+  const auto cycle_format = checked_plot_format("--plot", arguments.plot);
+  const auto power_format = checked_plot_format("--plot-power", arguments.plot_power);
+  if (!arguments.plot.empty() && arguments.plot == arguments.plot_power) {
+    throw InputError("--plot-power " + arguments.plot_power, 0, 0, "", "is the file of --plot");
+  }
+
+  Design<double> design = read_design(arguments.vehicle, arguments.overrides);
+  if (!arguments.voltage.empty()) apply_voltage(design.supply, arguments.voltage);
+  Output waveforms("--waveforms", arguments.waveforms, arguments.vehicle);
+  Output cycle_plot("--plot", arguments.plot, arguments.vehicle);
+  Output power_plot("--plot-power", arguments.plot_power, arguments.vehicle);
+  if (waveforms || cycle_plot) options.waveform_rows = waveform_rows;
+
+  const RunResult result = run_design(design, options);
+  if (result.search && result.search->outcome != FrequencyOutcome::reached &&
+      result.status == FlappingStatus::flapping) {
+    // It flaps, only not at this frequency: no design that fails, but a request that cannot be met.
+    throw InputError("--frequency " + arguments.frequency, 0, 0, "", result.search->detail);
+  }
+  const bool flaps = result.status == FlappingStatus::flapping;
+  const bool has_metrics = std::isfinite(result.metrics[Metric::frequency]);
+
+  if (has_metrics) {
+    const std::string title = case_title(result.design, result, options.condition);
+    if (options.waveform_rows > 0 && result.cycle.empty()) throw std::runtime_error("no whole cycle was recorded");
+    if (waveforms) {
+      if (waveforms_csv_wanted) {
+        (*waveforms).write(waveforms_csv(result.cycle));
+      } else {
+        write_waveforms_netcdf((*waveforms).temporary(), result.cycle,
+                               {.title = fmt::format("One flapping cycle of {}",
+                                                     design.name.empty() ? arguments.vehicle : design.name),
+                                .version = version,
+                                .input = write_design(result.design),
+                                .condition = name_of(options.condition),
+                                .method = name_of(options.method),
+                                .tolerance = options.tolerance});
+      }
+      (*waveforms).commit();
+    }
+    if (cycle_plot) {
+      plot_cycle(result.cycle, result.cycle_voltage, title, *cycle_format, (*cycle_plot).temporary());
+      (*cycle_plot).commit();
+    }
+    if (power_plot) {
+      const PowerBar bar{title, energy_audit(result.metrics)};
+      plot_powers({&bar, 1}, "Where the electrical power goes", *power_format, (*power_plot).temporary());
+      (*power_plot).commit();
+    }
+  }
+
+  print(arguments.json ? json_report(result) : text_report(result, options));
+  if (flaps && has_metrics) return done;
+  if (waveforms || cycle_plot || power_plot) complain("the vehicle does not flap: no file was written");
+  if (flaps || !result.settled) {
+    complain("the simulation did not settle: " + result.detail);
+    return flaps ? failed : does_not_flap;
+  }
+  return does_not_flap;
+}
+
+}  // namespace
+
+void add_run(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("run", "Find the steady flapping of one vehicle and report its metrics");
+  const auto a = std::make_shared<Arguments>();
+  command->add_option("vehicle", a->vehicle, "Vehicle file (TOML)")->required()->type_name("VEHICLE");
+  command->add_option("--set", a->overrides, "Replace a key of the vehicle file; repeatable")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  CLI::Option* voltage =
+      command->add_option("--voltage", a->voltage, "Supply voltage (pwm: while switched on), as \"3 V\"")
+          ->type_name("QUANTITY");
+  command
+      ->add_option("--frequency", a->frequency,
+                   fmt::format("Find the voltage that gives this flapping frequency, as \"22 Hz\"; searched up to {:g} "
+                               "times the voltage that turns the unloaded motor so fast",
+                               frequency_search_span))
+      ->type_name("QUANTITY")
+      ->excludes(voltage);
+  const std::map<std::string, Condition> conditions = {
+      {"air", Condition::air}, {"vacuum", Condition::vacuum}, {"wingless", Condition::wingless}};
+  command->add_option("--condition", a->condition, "air (default), vacuum or wingless")
+      ->type_name("CONDITION")
+      ->transform(CLI::CheckedTransformer(conditions).description(""));
+  const std::map<std::string, Method> methods = {{"orbit", Method::orbit}, {"transient", Method::transient}};
+  command->add_option("--method", a->method, "orbit (default), or transient: simulated from rest")
+      ->type_name("METHOD")
+      ->transform(CLI::CheckedTransformer(methods).description(""));
+  command->add_option("--tolerance", a->tolerance, "Relative accuracy of every metric, 1e-12 to 1e-2 (default 1e-6)")
+      ->type_name("NUMBER");
+  command->add_flag("--json", a->json, "Print one JSON object (SI) instead of a table");
+  command->add_option("--waveforms", a->waveforms, "Write one cycle to FILE.csv or FILE.nc")->type_name("FILE");
+  command->add_option("--plot", a->plot, "Plot one cycle to FILE.svg, .pdf or .png")->type_name("FILE");
+  command->add_option("--plot-power", a->plot_power, "Plot the power breakdown to FILE.svg, .pdf or .png")
+      ->type_name("FILE");
+  command->footer(
+      "\nExample:\n"
+      "  wingbeat run data/designs/friction2022.toml --frequency \"22 Hz\" \\\n"
+      "    --set friction.radius=\"2 mm\" --plot cycle.svg\n\n"
+      "Exit status: 0 steady flapping, 2 bad input or usage, 3 the vehicle does not flap, 1 anything else.");
+  command->callback([a, &action] { action = [a] { return run(*a); }; });
+}
+
+}  // namespace wingbeat::app

@@ -1,0 +1,93 @@
+// The program: parses the command line, runs a command, turns what goes wrong into a sentence and an exit status.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+
+#include "command.hpp"
+#include "wingbeat/core/status.hpp"
+#include "wingbeat/io/design_file.hpp"
+
+namespace wingbeat::app {
+
+const char* const version = WINGBEAT_VERSION;
+
+void print(std::string_view text) {
+  errno = 0;
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+    throw std::runtime_error(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
+  }
+}
+
+void complain(std::string_view sentence) {
+  std::string line = "wingbeat: ";
+  for (const char c : sentence) line += c == '\n' ? ' ' : c;
+  line += '\n';
+  std::fputs(line.c_str(), stderr);
+}
+
+namespace {
+
+/// A file opened later must not land on the number of a stream that the caller has closed.
+bool fill_standard_streams() {
+  const bool output_open = ::fcntl(STDOUT_FILENO, F_GETFD) != -1;
+  for (int file = ::open("/dev/null", O_RDWR); file >= 0 && file <= STDERR_FILENO;) file = ::open("/dev/null", O_RDWR);
+  return output_open;
+}
+
+int run(int argc, char** argv) {
+  CLI::App program("Electromechanical model of flapping-wing micro air vehicles.", "wingbeat");
+  program.set_version_flag("--version", fmt::format("wingbeat {} ({}, {} build)", WINGBEAT_VERSION, WINGBEAT_COMPILER,
+                                                    WINGBEAT_BUILD_TYPE));
+  program.require_subcommand(1);
+  program.footer("\nExample:\n  wingbeat run data/designs/friction2022.toml\n\n"
+                 "Exit status: 0 done, 1 something failed, 2 bad input or usage, 3 the vehicle does not flap.");
+  program.get_formatter()->column_width(34);
+  Action action;
+  add_run(program, action);
+  add_compare(program, action);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& wanted) {
+    // Help and version go through print(), so that a closed or full output is noticed.
+    const CLI::App* asked = &program;
+    for (const CLI::App* command : program.get_subcommands()) asked = command;
+    print(dynamic_cast<const CLI::CallForVersion*>(&wanted) ? std::string(wanted.what()) + "\n"
+                                                            : asked->help("", CLI::AppFormatMode::Normal));
+    return done;
+  } catch (const CLI::ParseError& error) {
+    std::string help = "wingbeat";
+    for (const CLI::App* command : program.get_subcommands()) help += " " + command->get_name();
+    complain(fmt::format("{} (see {} --help)", error.what(), help));
+    return bad_input;
+  }
+  return action();
+}
+
+}  // namespace
+}  // namespace wingbeat::app
+
+int main(int argc, char** argv) {
+  using namespace wingbeat::app;
+  const bool output_open = fill_standard_streams();
+  // A reader that went away is an error of writing like any other.
+  std::signal(SIGPIPE, SIG_IGN);
+  try {
+    if (!output_open) throw std::runtime_error("standard output is closed");
+    return run(argc, argv);
+  } catch (const wingbeat::InputError& error) {
+    complain(error.what());
+    return bad_input;
+  } catch (const wingbeat::ParameterError& error) {
+    complain(error.what());
+    return bad_input;
+  } catch (const std::bad_alloc&) {
+    complain("out of memory");
+  } catch (const std::exception& error) {
+    complain(error.what());
+  }
+  return failed;
+}

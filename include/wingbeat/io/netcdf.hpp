@@ -1,0 +1,74 @@
+// NetCDF-4 files, written through the C API: dimensions, variables of doubles with units, text attributes.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace wingbeat {
+
+/// A NetCDF call that failed. what() is one sentence naming file, action and reason.
+class NetcdfError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A new NetCDF-4 file. Text goes into attributes as characters, never as NC_STRING, which Octave cannot read.
+/// Every member throws NetcdfError.
+class NetcdfFile {
+ public:
+  struct Dimension {
+    int id;
+    std::size_t length;
+  };
+  struct Variable {
+    int id;
+    std::vector<Dimension> dimensions;
+  };
+
+  /// Creates the file, replacing an existing one.
+  explicit NetcdfFile(const std::filesystem::path& file);
+  NetcdfFile(const NetcdfFile&) = delete;
+  NetcdfFile& operator=(const NetcdfFile&) = delete;
+  /// Closes without a word; call close() to learn whether everything was written.
+  ~NetcdfFile();
+
+  Dimension define_dimension(const std::string& name, std::size_t length);
+  /// Doubles over the dimensions, slowest first; none makes a scalar. `unit` as UDUNITS writes it, "1" without one.
+  /// Absent values are written as NaN, which is also what unwritten ones read as.
+  Variable define_variable(const std::string& name, const std::vector<Dimension>& dimensions, const std::string& unit,
+                           const std::string& long_name);
+  void set_attribute(const std::string& name, std::string_view text);
+  void set_attribute(const Variable& variable, const std::string& name, std::string_view text);
+
+  /// The whole variable, last dimension fastest.
+  void write(const Variable& variable, std::span<const double> values);
+  /// The block at `start` of extent `count`, both one entry per dimension.
+  void write(const Variable& variable, std::span<const std::size_t> start, std::span<const std::size_t> count,
+             std::span<const double> values);
+
+  void close();
+
+ private:
+  void check(int status, const std::string& action) const;
+
+  std::string file_;
+  int id_ = -1;
+};
+
+/// What makes a data set one that can be run again: the global attributes of every file the program writes.
+struct Provenance {
+  std::string title;
+  std::string version;    ///< of the program
+  std::string input;      ///< the vehicle file, complete in itself
+  std::string condition;  ///< air, vacuum, wingless
+  std::string method;     ///< orbit, transient
+  double tolerance = 0.0;
+};
+
+void write_provenance(NetcdfFile& file, const Provenance& provenance);
+
+}  // namespace wingbeat

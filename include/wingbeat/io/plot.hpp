@@ -1,0 +1,34 @@
+// Plots through gnuplot, sized for one column of a paper, as SVG, PDF or PNG.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "wingbeat/cycle/energy_audit.hpp"
+#include "wingbeat/cycle/record.hpp"
+
+namespace wingbeat {
+
+enum class PlotFormat { svg, pdf, png };
+
+/// By the extension; empty for any other.
+std::optional<PlotFormat> plot_format(const std::filesystem::path& file);
+
+/// One flapping cycle against time: stroke angle and flapping velocity, lift, rod force, powers. `voltage` holds the
+/// terminal voltage of each row [V]. Throws std::runtime_error, with what to do, where gnuplot is missing or fails.
+void plot_cycle(std::span<const WaveformRow> rows, std::span<const double> voltage, const std::string& title,
+                PlotFormat format, const std::filesystem::path& file);
+
+/// One case of a power breakdown.
+struct PowerBar {
+  std::string label;
+  EnergyAudit audit;
+};
+
+/// Where the electrical input goes, one stacked bar per case. Throws like plot_cycle.
+void plot_powers(std::span<const PowerBar> bars, const std::string& title, PlotFormat format,
+                 const std::filesystem::path& file);
+
+}  // namespace wingbeat

@@ -1,0 +1,47 @@
+// One vehicle in, its steady flapping out, by either method: what `wingbeat run` and every study on top of it need.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "wingbeat/cycle/steady_flapping.hpp"
+#include "wingbeat/study/frequency_search.hpp"
+#include "wingbeat/study/transient.hpp"
+
+namespace wingbeat {
+
+enum class Method {
+  orbit,     ///< periodic orbit in crank angle
+  transient  ///< simulated from rest until steady
+};
+
+struct RunOptions {
+  Condition condition = Condition::air;
+  Method method = Method::orbit;
+  double tolerance = 1e-6;          ///< wanted relative accuracy of every metric, 1e-12 to 1e-2
+  std::optional<double> frequency;  ///< [Hz]; given: the supply's voltage is replaced by the one that yields it
+  int waveform_rows = 0;            ///< instants of one cycle to return, both ends included; 0: none
+};
+
+struct RunResult {
+  FlappingStatus status = FlappingStatus::stalled;
+  std::string detail;  ///< one sentence with the evidence
+  bool settled = true; ///< false: the transient ran out of time, laps or steps; status is the best guess
+  Metrics<double> metrics;  ///< all absent unless flapping
+  std::vector<WaveformRow> cycle;
+  std::vector<double> cycle_voltage;       ///< terminal voltage of each row [V]
+  solve::PeriodicSummary orbit;            ///< of Method::orbit
+  std::optional<TransientResult> start_up; ///< of Method::transient
+  std::optional<FrequencySearch> search;   ///< where a frequency was asked for
+  Design<double> design;                   ///< as computed: with the voltage that was found
+};
+
+/// What a vehicle does from rest, by simulate_start_up: the judge that find_steady_flapping asks in doubt.
+StartUp start_up_in_time(double tolerance = 1e-6);
+
+/// Computes one validated design. Throws ParameterError for a sine supply where Method::orbit or a frequency is asked
+/// for (it has no periodic orbit in crank angle), and for options out of range.
+RunResult run_design(const Design<double>& design, const RunOptions& options = {});
+
+}  // namespace wingbeat

@@ -1,0 +1,187 @@
+#include "wingbeat/study/run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace wingbeat {
+namespace {
+
+constexpr double transient_tightest = 1e-11;
+
+template <class... Args>
+std::string format(const char* pattern, Args... args) {
+  char text[400];
+  std::snprintf(text, sizeof text, pattern, args...);
+  return text;
+}
+
+/// Everything that acts at a state, on the branch that the state itself decides.
+Motion<double> motion_of(const Vehicle<double>& vehicle, double crank_angle, double omega, double i, double v) {
+  const double s = std::sin(crank_angle), c = std::cos(crank_angle);
+  Branch<double> branch{c * omega >= 0.0 ? 1.0 : -1.0, 1.0, omega >= 0.0 ? 1.0 : -1.0, 1.0};
+  const Motion<double> m = motion_at(vehicle, s, c, omega, i, v, branch);
+  if (m.force_switch >= 0.0) return m;
+  branch.force = -1.0;
+  return motion_at(vehicle, s, c, omega, i, v, branch);
+}
+
+WaveformRow row_of(const Vehicle<double>& vehicle, double time, double crank_angle, double omega,
+                   const Motion<double>& m) {
+  const double speed = std::abs(m.stroke_velocity);
+  return {time,
+          crank_angle,
+          omega,
+          m.current,
+          m.kinematics.stroke_angle,
+          m.stroke_velocity,
+          degrees_per_radian * angle_of_attack(vehicle.wings, speed),
+          lift_force(vehicle.wings, speed),
+          m.aero_moment,
+          m.rod_force,
+          m.motor_torque,
+          m.friction_torque};
+}
+
+/// The last whole lap of a simulation, sampled evenly in time. The simulation is repeated with samples about as dense
+/// as the rows asked for; between samples the state follows cubics.
+void last_lap(const Vehicle<double>& vehicle, const Supply<double>& supply, TransientOptions options, int rows,
+              RunResult& result) {
+  options.record = true;
+  options.record_interval = 1.0 / (result.metrics[Metric::frequency] * std::max(rows - 1, 360));
+  const TransientResult run = simulate_start_up(vehicle, options);
+
+  double start = absent, end = absent;
+  for (const TransientEvent& event : run.events) {
+    if (event.kind != TransientEvent::Kind::revolution) continue;
+    start = end;
+    end = event.time;
+  }
+  const auto& samples = run.samples;
+  if (!(end > start) || samples.size() < 4) return;
+  const double start_angle =
+      two_pi * std::round(std::prev(std::upper_bound(samples.begin(), samples.end(), start,
+                                                     [](double t, const TransientSample& s) { return t < s.time; }))
+                              ->crank_angle /
+                          two_pi);
+
+  auto after = samples.begin() + 1;
+  for (int k = 0; k < rows; ++k) {
+    const double time = start + (end - start) * k / (rows - 1);
+    while (after + 1 != samples.end() && after->time < time) ++after;
+    const TransientSample& a = *(after - 1);
+    const TransientSample& b = *after;
+    const double h = b.time - a.time;
+    const double x = (time - a.time) / h;
+    const auto hermite = [&](double ya, double yb, double da, double db) {
+      return ya + x * (h * da + x * (3.0 * (yb - ya) - h * (2.0 * da + db) + x * (2.0 * (ya - yb) + h * (da + db))));
+    };
+    const Motion<double> ma = motion_of(vehicle, a.crank_angle, a.crank_speed, a.current, voltage_at(supply, a.time));
+    const Motion<double> mb = motion_of(vehicle, b.crank_angle, b.crank_speed, b.current, voltage_at(supply, b.time));
+    const double theta = hermite(a.crank_angle, b.crank_angle, a.crank_speed, b.crank_speed);
+    const double omega = hermite(a.crank_speed, b.crank_speed, ma.crank_acceleration, mb.crank_acceleration);
+    const double v = voltage_at(supply, time);
+    const bool inductive = vehicle.motor.armature_inductance > 0.0;
+    // A switching supply kinks the current between samples: there a straight line is the safer guess.
+    const double current = !inductive ? algebraic_current(vehicle, v, omega)
+                           : supply.type == SupplyType::pwm
+                               ? a.current + x * (b.current - a.current)
+                               : hermite(a.current, b.current, ma.current_rate, mb.current_rate);
+    const Motion<double> m = motion_of(vehicle, theta, omega, current, v);
+    result.cycle.push_back(row_of(vehicle, time - start, theta - start_angle, omega, m));
+    result.cycle_voltage.push_back(v);
+  }
+}
+
+void set_voltage(Supply<double>& supply, double voltage) {
+  supply.voltage = supply.type == SupplyType::pwm ? voltage / supply.duty : voltage;
+}
+
+void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunResult& result) {
+  SteadyOptions steady;
+  steady.tolerance = options.tolerance;
+  steady.reporting = reporting_of(result.design);
+  const SteadyFlapping found = find_steady_flapping(vehicle, steady, start_up_in_time());
+  result.status = found.status;
+  result.detail = found.detail;
+  result.metrics = found.metrics;
+  result.orbit = found.summary;
+  if (result.design.supply.type == SupplyType::pwm) {
+    result.detail += format("; the orbit sees the mean voltage of the pwm supply, %.4g V", vehicle.voltage);
+  }
+  if (options.waveform_rows > 1 && !found.record.empty()) {
+    result.cycle = found.record.waveform(options.waveform_rows);
+    result.cycle_voltage.assign(result.cycle.size(), vehicle.voltage);
+  }
+}
+
+void run_transient(const Vehicle<double>& vehicle, const RunOptions& options, RunResult& result) {
+  TransientOptions transient;
+  transient.tolerance = std::max(options.tolerance, transient_tightest);
+  transient.reporting = reporting_of(result.design);
+  transient.supply = result.design.supply;
+  result.start_up = simulate_start_up(vehicle, transient);
+  const TransientResult& found = *result.start_up;
+  result.status = found.status;
+  result.detail = found.detail;
+  result.settled = found.settled;
+  if (found.metrics && found.status == FlappingStatus::flapping) {
+    result.metrics = *found.metrics;
+    if (options.waveform_rows > 1) {
+      last_lap(vehicle, result.design.supply, transient, options.waveform_rows, result);
+    }
+  }
+}
+
+}  // namespace
+
+StartUp start_up_in_time(double tolerance) {
+  return [tolerance](const Vehicle<double>& vehicle) {
+    TransientOptions options;
+    options.tolerance = std::max(tolerance, transient_tightest);
+    const TransientResult r = simulate_start_up(vehicle, options);
+    return StartUpOutcome{r.status, r.settled, r.detail, r.crank_speed, r.current};
+  };
+}
+
+RunResult run_design(const Design<double>& design, const RunOptions& options) {
+  require(options.tolerance >= 1e-12 && options.tolerance <= 1e-2, "tolerance", "must lie between 1e-12 and 1e-2", "1",
+          options.tolerance);
+  const Supply<double>& supply = design.supply;
+  if (supply.type == SupplyType::sine) {
+    if (options.frequency) {
+      throw ParameterError("supply.type", "a sine supply has no voltage that sets the flapping frequency");
+    }
+    if (options.method == Method::orbit) {
+      throw ParameterError("supply.type", "with a sine supply the crank has no periodic orbit in crank angle; simulate "
+                                          "it in time with --method transient");
+    }
+  }
+  RunResult result;
+  result.metrics.values.fill(absent);
+  result.design = design;
+  Vehicle<double> vehicle = resolve(design, options.condition);
+  if (options.frequency) {
+    if (supply.type == SupplyType::pwm && !(supply.duty > 0.0)) {
+      throw ParameterError("supply.duty", "is 0: no voltage reaches the motor, so none sets the flapping frequency");
+    }
+    SteadyOptions steady;
+    steady.tolerance = options.tolerance;
+    result.search = find_voltage_for_frequency(vehicle, *options.frequency, steady, start_up_in_time());
+    if (result.search->outcome != FrequencyOutcome::reached) {
+      result.status = result.search->status;
+      result.detail = result.search->detail;
+      return result;
+    }
+    set_voltage(result.design.supply, result.search->voltage);
+    vehicle.voltage = result.search->voltage;
+  }
+  if (options.method == Method::orbit) {
+    run_orbit(vehicle, options, result);
+  } else {
+    run_transient(vehicle, options, result);
+  }
+  return result;
+}
+
+}  // namespace wingbeat
