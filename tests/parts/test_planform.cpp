@@ -1,0 +1,153 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "parts/expect_error.hpp"
+#include "wingbeat/parts/planform.hpp"
+
+namespace wingbeat {
+namespace {
+
+constexpr double R = 63e-3, c_0 = 25e-3;
+
+Planform<double> shaped(PlanformShape shape, double offset = 0.0) {
+  Planform<double> p;
+  p.shape = shape;
+  p.length = R;
+  p.root_chord = c_0;
+  p.hub_offset = offset;
+  return p;
+}
+
+/// integral over the wing of chord(x) (x + offset)^power dx by Simpson's rule in the angle of x = R sin(angle), in
+/// which the elliptic tip is smooth.
+template <class Chord>
+double moment(const Chord& chord, double offset, int power) {
+  constexpr int intervals = 2000;
+  double sum = 0.0;
+  for (int n = 0; n <= intervals; ++n) {
+    const double angle = 0.5 * pi * n / intervals;
+    const double x = R * std::sin(angle);
+    const double weight = n == 0 || n == intervals ? 1.0 : (n % 2 == 1 ? 4.0 : 2.0);
+    sum += weight * chord(x, angle) * std::pow(x + offset, power) * R * std::cos(angle);
+  }
+  return sum * 0.5 * pi / intervals / 3.0;
+}
+
+TEST(Planform, SemiEllipseWithoutOffsetHasItsClosedForm) {
+  const auto m = one_wing_moments(shaped(PlanformShape::semi_ellipse));
+  EXPECT_DOUBLE_EQ(m.s2, pi * c_0 * R * R * R / 16.0);
+  EXPECT_DOUBLE_EQ(m.s3, 2.0 * c_0 * R * R * R * R / 15.0);
+}
+
+TEST(Planform, SemiEllipseWithOffsetAgreesWithQuadrature) {
+  for (const double offset : {0.0, 2e-3, 8e-3, 30e-3}) {
+    const auto m = one_wing_moments(shaped(PlanformShape::semi_ellipse, offset));
+    const auto chord = [](double, double angle) { return c_0 * std::cos(angle); };
+    EXPECT_NEAR(m.s2, moment(chord, offset, 2), 1e-11 * m.s2);
+    EXPECT_NEAR(m.s3, moment(chord, offset, 3), 1e-11 * m.s3);
+  }
+}
+
+TEST(Planform, RectangleHasItsClosedForm) {
+  for (const double d : {0.0, 8e-3}) {
+    const auto m = one_wing_moments(shaped(PlanformShape::rectangle, d));
+    EXPECT_NEAR(m.s2, c_0 * (std::pow(R + d, 3) - std::pow(d, 3)) / 3.0, 1e-14 * m.s2);
+    EXPECT_NEAR(m.s3, c_0 * (std::pow(R + d, 4) - std::pow(d, 4)) / 4.0, 1e-14 * m.s3);
+  }
+}
+
+TEST(Planform, TabulatedRectangleIsTheRectangle) {
+  for (const double d : {0.0, 8e-3}) {
+    Planform<double> p = shaped(PlanformShape::tabulated, d);
+    p.chord_table = {{0.0, c_0}, {0.2 * R, c_0}, {R, c_0}};
+    const auto m = one_wing_moments(p), exact = one_wing_moments(shaped(PlanformShape::rectangle, d));
+    EXPECT_NEAR(m.s2, exact.s2, 1e-14 * exact.s2);
+    EXPECT_NEAR(m.s3, exact.s3, 1e-14 * exact.s3);
+  }
+}
+
+TEST(Planform, TabulatedTriangleIsExact) {
+  Planform<double> p = shaped(PlanformShape::tabulated);
+  p.chord_table = {{0.0, c_0}, {R, 0.0}};
+  const auto m = one_wing_moments(p);
+  EXPECT_NEAR(m.s2, c_0 * std::pow(R, 3) / 12.0, 1e-14 * m.s2);
+  EXPECT_NEAR(m.s3, c_0 * std::pow(R, 4) / 20.0, 1e-14 * m.s3);
+}
+
+TEST(Planform, TableThatStartsOutboardLeavesTheRootEmpty) {
+  Planform<double> whole = shaped(PlanformShape::rectangle), inner = whole, outer = shaped(PlanformShape::tabulated);
+  inner.length = 0.25 * R;
+  outer.chord_table = {{0.25 * R, c_0}, {R, c_0}};
+  const auto a = one_wing_moments(whole), b = one_wing_moments(inner), c = one_wing_moments(outer);
+  EXPECT_NEAR(c.s2, a.s2 - b.s2, 1e-14 * a.s2);
+  EXPECT_NEAR(c.s3, a.s3 - b.s3, 1e-14 * a.s3);
+}
+
+TEST(Planform, TabulatedChordConvergesToTheSemiEllipse) {
+  const auto exact = one_wing_moments(shaped(PlanformShape::semi_ellipse, 5e-3));
+  double before = 1.0;
+  for (const int rows : {100, 200, 400, 800}) {
+    Planform<double> p = shaped(PlanformShape::tabulated, 5e-3);
+    for (int n = 0; n <= rows; ++n) {
+      const double x = double(n) / rows;
+      p.chord_table.push_back({R * x, c_0 * std::sqrt(1.0 - x * x)});
+    }
+    const auto m = one_wing_moments(p);
+    const double error = std::max(std::abs(m.s2 / exact.s2 - 1.0), std::abs(m.s3 / exact.s3 - 1.0));
+    // The vertical tangent at the tip limits the order to 3/2.
+    EXPECT_LT(error, 0.4 * before) << rows;
+    before = error;
+  }
+  EXPECT_LT(before, 1e-4);
+}
+
+TEST(Planform, MomentsOfAllWingsCountThem) {
+  const auto p = shaped(PlanformShape::semi_ellipse, 3e-3);
+  const auto one = one_wing_moments(p), four = chord_moments(p, 4.0);
+  EXPECT_DOUBLE_EQ(four.s2, 4.0 * one.s2);
+  EXPECT_DOUBLE_EQ(four.s3, 4.0 * one.s3);
+}
+
+TEST(Planform, MomentsGivenOutrightAreThoseOfAllWings) {
+  Planform<double> p;
+  p.s2 = 2.457e-6;
+  p.s3 = 1.048e-7;
+  const auto m = chord_moments(p, 2.0);
+  EXPECT_EQ(m.s2, 2.457e-6);
+  EXPECT_EQ(m.s3, 1.048e-7);
+}
+
+TEST(Planform, PaperVehiclesMomentsAreThoseOfItsEquivalentSemiEllipse) {
+  const auto m = chord_moments(shaped(PlanformShape::semi_ellipse), 2.0);
+  EXPECT_NEAR(m.s2, 2.457e-6, 0.01 * m.s2);
+  EXPECT_NEAR(m.s3, 1.048e-7, 0.01 * m.s3);
+}
+
+TEST(Planform, RefusesShapesOutOfRange) {
+  using P = Planform<double>;
+  const P ellipse = shaped(PlanformShape::semi_ellipse);
+  EXPECT_NO_THROW(validate(ellipse));
+  EXPECT_EQ(refusal(ellipse, [](P& p) { p.length = 0.0; }), "wing.planform.length: must be > 0 [m], got 0");
+  EXPECT_EQ(refusal(ellipse, [](P& p) { p.root_chord = -0.025; }),
+            "wing.planform.root_chord: must be > 0 [m], got -0.025");
+  EXPECT_EQ(refusal(ellipse, [](P& p) { p.hub_offset = -1e-3; }),
+            "wing.planform.hub_offset: must be >= 0 [m], got -0.001");
+  EXPECT_EQ(refusal(P{}, [](P& p) { p.s2 = -1.0; }), "wing.planform.s2: must be >= 0 [m4], got -1");
+  EXPECT_EQ(refusal(P{}, [](P& p) { p.s3 = std::nan(""); }), "wing.planform.s3: must be >= 0 [m5], got nan");
+
+  const auto table_refusal = [](std::vector<std::pair<double, double>> rows) {
+    return refusal(shaped(PlanformShape::tabulated), [&](P& p) { p.chord_table = rows; });
+  };
+  EXPECT_EQ(table_refusal({{0.0, 1.0}, {1.0, 0.0}}), "no error");
+  EXPECT_EQ(table_refusal({{0.0, 1.0}}), "wing.planform.file: the chord table needs at least two rows");
+  EXPECT_EQ(table_refusal({{0.0, 1.0}, {1.0, -1.0}}),
+            "wing.planform.file: row 2 of the chord table must hold a distance and a chord >= 0");
+  EXPECT_EQ(table_refusal({{-0.1, 1.0}, {1.0, 1.0}}),
+            "wing.planform.file: row 1 of the chord table must hold a distance and a chord >= 0");
+  EXPECT_EQ(table_refusal({{0.0, 1.0}, {1.0, 1.0}, {1.0, 0.5}}),
+            "wing.planform.file: row 3 of the chord table must lie farther from the root than the row before it");
+}
+
+}  // namespace
+}  // namespace wingbeat
