@@ -70,7 +70,7 @@ void add_compare(CLI::App& program, Action& action) {
   command->add_option("--plot-power", a->plot_power, "Plot the power breakdowns to FILE.svg, .pdf or .png")
       ->type_name("FILE");
   command->footer(
-      "\nExample:\n"
+      "Example:\n"
       "  wingbeat compare data/published/friction2022.toml\n\n"
       "Exit status: 0 all values within their tolerances, 1 some are not, 2 bad input or usage, 3 a vehicle does not\n"
       "flap.");

@@ -3,9 +3,9 @@
 
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "command.hpp"
@@ -26,8 +26,8 @@ struct Arguments {
   std::string vehicle;
   std::vector<std::string> overrides;
   std::string voltage, frequency;
-  Condition condition = Condition::air;
-  Method method = Method::orbit;
+  std::string condition = "air";
+  std::string method = "orbit";
   std::string tolerance = "1e-6";
   bool json = false;
   std::string waveforms, plot, plot_power;
@@ -41,6 +41,20 @@ double quantity(const char* option, const std::string& text, const char* unit) {
   } catch (const UnitError& error) {
     throw InputError(option, 0, 0, "", error.what());
   }
+}
+
+constexpr std::pair<const char*, Condition> conditions[] = {
+    {"air", Condition::air}, {"vacuum", Condition::vacuum}, {"wingless", Condition::wingless}};
+constexpr std::pair<const char*, Method> methods[] = {{"orbit", Method::orbit}, {"transient", Method::transient}};
+
+template <class E, std::size_t N>
+E choice(const char* option, const std::string& text, const std::pair<const char*, E> (&choices)[N]) {
+  std::string names;
+  for (const auto& [name, value] : choices) {
+    if (text == name) return value;
+    names += fmt::format("{}{}", names.empty() ? "" : &name == &choices[N - 1].first ? " or " : ", ", name);
+  }
+  throw InputError(option, 0, 0, "", fmt::format("must be {}, got {}", names, in_quotes(text)));
 }
 
 /// A file to be written, its place reserved before anything is computed.
@@ -88,8 +102,8 @@ void apply_voltage(Supply<double>& supply, const std::string& text) {
 
 int run(const Arguments& arguments) {
   RunOptions options;
-  options.condition = arguments.condition;
-  options.method = arguments.method;
+  options.condition = choice("--condition", arguments.condition, conditions);
+  options.method = choice("--method", arguments.method, methods);
   try {
     options.tolerance = quantity("--tolerance", arguments.tolerance, "1");
   } catch (const InputError&) {
@@ -185,21 +199,12 @@ void add_run(CLI::App& program, Action& action) {
       command->add_option("--voltage", a->voltage, "Supply voltage (pwm: while switched on), as \"3 V\"")
           ->type_name("QUANTITY");
   command
-      ->add_option("--frequency", a->frequency,
-                   fmt::format("Find the voltage that gives this flapping frequency, as \"22 Hz\"; searched up to {:g} "
-                               "times the voltage that turns the unloaded motor so fast",
-                               frequency_search_span))
+      ->add_option("--frequency", a->frequency, "Find the voltage that gives this flapping frequency, as \"22 Hz\"")
       ->type_name("QUANTITY")
       ->excludes(voltage);
-  const std::map<std::string, Condition> conditions = {
-      {"air", Condition::air}, {"vacuum", Condition::vacuum}, {"wingless", Condition::wingless}};
-  command->add_option("--condition", a->condition, "air (default), vacuum or wingless")
-      ->type_name("CONDITION")
-      ->transform(CLI::CheckedTransformer(conditions).description(""));
-  const std::map<std::string, Method> methods = {{"orbit", Method::orbit}, {"transient", Method::transient}};
+  command->add_option("--condition", a->condition, "air (default), vacuum or wingless")->type_name("CONDITION");
   command->add_option("--method", a->method, "orbit (default), or transient: simulated from rest")
-      ->type_name("METHOD")
-      ->transform(CLI::CheckedTransformer(methods).description(""));
+      ->type_name("METHOD");
   command->add_option("--tolerance", a->tolerance, "Relative accuracy of every metric, 1e-12 to 1e-2 (default 1e-6)")
       ->type_name("NUMBER");
   command->add_flag("--json", a->json, "Print one JSON object (SI) instead of a table");
@@ -207,11 +212,15 @@ void add_run(CLI::App& program, Action& action) {
   command->add_option("--plot", a->plot, "Plot one cycle to FILE.svg, .pdf or .png")->type_name("FILE");
   command->add_option("--plot-power", a->plot_power, "Plot the power breakdown to FILE.svg, .pdf or .png")
       ->type_name("FILE");
-  command->footer(
-      "\nExample:\n"
+  command->footer(fmt::format(
+      "Example:\n"
       "  wingbeat run data/designs/friction2022.toml --frequency \"22 Hz\" \\\n"
       "    --set friction.radius=\"2 mm\" --plot cycle.svg\n\n"
-      "Exit status: 0 steady flapping, 2 bad input or usage, 3 the vehicle does not flap, 1 anything else.");
+      "--frequency searches up to {:g} times the voltage that turns the unloaded motor that fast. With a pwm supply\n"
+      "the orbit and the search see the mean voltage; a sine supply needs --method transient, which also reports\n"
+      "the start-up.\n\n"
+      "Exit status: 0 steady flapping, 2 bad input or usage, 3 the vehicle does not flap, 1 anything else.",
+      frequency_search_span));
   command->callback([a, &action] { action = [a] { return run(*a); }; });
 }
 

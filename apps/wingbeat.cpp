@@ -3,13 +3,18 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <new>
+#include <string>
 
 #include "command.hpp"
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/io/design_file.hpp"
+#include "wingbeat/io/units.hpp"
 
 namespace wingbeat::app {
 
@@ -43,20 +48,25 @@ int run(int argc, char** argv) {
   program.set_version_flag("--version", fmt::format("wingbeat {} ({}, {} build)", WINGBEAT_VERSION, WINGBEAT_COMPILER,
                                                     WINGBEAT_BUILD_TYPE));
   program.require_subcommand(1);
-  program.footer("\nExample:\n  wingbeat run data/designs/friction2022.toml\n\n"
+  program.footer("Example:\n  wingbeat run data/designs/friction2022.toml\n\n"
                  "Exit status: 0 done, 1 something failed, 2 bad input or usage, 3 the vehicle does not flap.");
   program.get_formatter()->column_width(34);
   Action action;
   add_run(program, action);
   add_compare(program, action);
+  const auto named = [&](const CLI::App* command) { return command->get_name() == argv[1]; };
+  if (argc > 1 && argv[1][0] != '-' && program.get_subcommands([&](CLI::App* c) { return named(c); }).empty()) {
+    complain(fmt::format("there is no command {}; see wingbeat --help", in_quotes(argv[1])));
+    return bad_input;
+  }
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& wanted) {
     // Help and version go through print(), so that a closed or full output is noticed.
-    const CLI::App* asked = &program;
-    for (const CLI::App* command : program.get_subcommands()) asked = command;
-    print(dynamic_cast<const CLI::CallForVersion*>(&wanted) ? std::string(wanted.what()) + "\n"
-                                                            : asked->help("", CLI::AppFormatMode::Normal));
+    std::string text = program.help();
+    for (const CLI::App* command : program.get_subcommands()) text = command->help("wingbeat");
+    if (dynamic_cast<const CLI::CallForVersion*>(&wanted)) text = std::string(wanted.what()) + "\n";
+    print(text);
     return done;
   } catch (const CLI::ParseError& error) {
     std::string help = "wingbeat";

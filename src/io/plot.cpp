@@ -95,8 +95,8 @@ constexpr const char* blue_solid = "dt 1 lw 1.3 lc rgb '#0072b2'";
 constexpr const char* vermillion_dashed = "dt (12,6) lw 1.3 lc rgb '#d55e00'";
 constexpr const char* black_dotted = "dt (3,3) lw 1.3 lc rgb '#000000'";
 
-/// A gnuplot script under way. Sizes are those of the printed figure, text in points; everything is placed by its anchor
-/// on the page, because terminals disagree about the width of text.
+/// A gnuplot script under way. Sizes are those of the printed figure, text in points; everything is placed by its
+/// anchor on the page, because terminals disagree about the width of text.
 class Figure {
  public:
   Figure(PlotFormat format, double width, double height) {
@@ -232,8 +232,8 @@ void plot_cycle(std::span<const WaveformRow> rows, std::span<const double> volta
   panel(3, power_in_watt ? "power (W)" : "power (mW)");
   figure.text(in_seconds ? "time (s)" : "time (ms)", 7.5, fmt::format("screen {},0.014 center", 0.5 * (left + right)));
   figure.key_entry(left, key_height, black_dotted, "electrical");
-  figure.key_entry(left + 0.215, key_height, blue_solid, "motor output");
-  figure.key_entry(left + 0.485, key_height, vermillion_dashed, "aerodynamic");
+  figure.key_entry(left + 0.205, key_height, blue_solid, "motor output");
+  figure.key_entry(left + 0.465, key_height, vermillion_dashed, "aerodynamic");
   figure.add("plot $cycle using 1:6 with lines {}, '' using 1:7 with lines {}, '' using 1:8 with lines {}\n",
              black_dotted, blue_solid, vermillion_dashed);
   figure.add("unset multiplot\nunset output\n");
@@ -279,6 +279,7 @@ void plot_powers(std::span<const PowerBar> bars, const std::string& title, PlotF
     double right = 0.0, left = 0.0;
     struct Narrow {
       double at;
+      const char* fill;
       std::string text;
     };
     std::vector<Narrow> narrow;
@@ -299,22 +300,26 @@ void plot_powers(std::span<const PowerBar> bars, const std::string& title, PlotF
         figure.text(shown(power), 6.5, fmt::format("{},{} center textcolor rgb '{}'", middle, y + 0.025, colour));
         figure.text(percent, 6.5, fmt::format("{},{} center textcolor rgb '{}'", middle, y - 0.145, colour));
       } else {
-        narrow.push_back({middle, fmt::format("{} ({})", shown(power), percent)});
+        narrow.push_back({middle, part.fill, fmt::format("{} ({})", shown(power), percent)});
       }
     }
-    // What has no room inside stands above its part, pushed aside by its neighbours.
+    // What has no room inside stands above, with the part's colour, pushed aside by its neighbours.
     std::sort(narrow.begin(), narrow.end(), [](const Narrow& p, const Narrow& q) { return p.at < q.at; });
-    const double room = 0.2 * span;
+    const double room = 0.215 * span;
     double limit = least + 0.5 * room;
     for (Narrow& n : narrow) limit = (n.at = std::max(n.at, limit)) + room;
     limit = span - 0.5 * room;
     for (auto n = narrow.rbegin(); n != narrow.rend(); ++n) limit = (n->at = std::min(n->at, limit)) - room;
-    for (const Narrow& n : narrow) figure.text(n.text, 6.5, fmt::format("{},{} center", n.at, y + 0.225));
-    figure.text(bars[b].label, 7.0, fmt::format("0,{} left", y + 0.42));
+    for (const Narrow& n : narrow) {
+      const double start = n.at - 0.45 * room;
+      figure.box(fmt::format("from {},{} to {},{}", start, y + 0.2, start + 0.018 * span, y + 0.27), n.fill);
+      figure.text(n.text, 6.5, fmt::format("{},{} left", start + 0.025 * span, y + 0.235));
+    }
+    figure.text(bars[b].label, 7.0, fmt::format("0,{} left", y + 0.44));
     figure.text(fmt::format("{} {}", shown(scale * audit.electrical), unit), 7.0,
                 fmt::format("{},{} left", right + 0.012 * span, y - 0.06));
   }
-  figure.add("set xrange [{}:{}]\nset yrange [-0.36:{}]\n", least, span, count - 0.42);
+  figure.add("set xrange [{}:{}]\nset yrange [-0.36:{}]\n", least, span, count - 0.4);
   figure.add("set lmargin at screen 0.04\nset rmargin at screen 0.97\nset tmargin at screen {}\n"
              "set bmargin at screen {}\n",
              1.0 - 0.38 / inches, 0.42 / inches);

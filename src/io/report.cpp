@@ -80,7 +80,10 @@ class Table {
 
 void power_group(Table& table, const Metrics<double>& m) {
   const EnergyAudit a = energy_audit(m);
-  const auto share = [&](double power) { return fmt::format("{:>7.2f} %", 100.0 * power / a.electrical); };
+  const auto share = [&](double power) {
+    const double percent = 100.0 * power / a.electrical;
+    return fmt::format("{:>7.2f} %", std::abs(percent) < 0.005 ? 0.0 : percent);
+  };
   table.group("Power, mean over a cycle                              of input");
   const auto power = [&](const char* name, double value, const char* remark) {
     table.line(name, readable(value, "W"), fmt::format("{}   {}", share(value), remark));
@@ -92,7 +95,7 @@ void power_group(Table& table, const Metrics<double>& m) {
   power("  aerodynamic", a.aerodynamic, "M_aero beta'");
   power("  lost by the formulation", a.residual, "F (h omega - g beta')");
   table.line("  imbalance of these books", readable(a.imbalance, "W"),
-             fmt::format("{:>9.0e}   input minus all of the above", std::abs(a.imbalance / a.electrical)));
+             fmt::format("{:>9.0e}   input minus the above", std::abs(a.imbalance / a.electrical)));
   power("motor output", m[Metric::power_motor], "T_m omega");
   if (std::isfinite(m[Metric::power_motor_reference])) {
     power("  as a test bench estimates it", m[Metric::power_motor_reference], "2 pi f K_ref i");
@@ -202,7 +205,7 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
                                 options.method == Method::orbit ? "periodic orbit" : "simulation from rest",
                                 options.tolerance);
   if (options.method == Method::orbit && result.orbit.laps > 0) {
-    how += fmt::format("; {} laps", result.orbit.laps);
+    how += fmt::format("; {} lap{}", result.orbit.laps, result.orbit.laps == 1 ? "" : "s");
     if (result.orbit.newton_steps > 0) how += fmt::format(", {} Newton steps", result.orbit.newton_steps);
     if (flapping) how += fmt::format(", closed to {:.0e}", result.orbit.residual);
   }
@@ -242,8 +245,7 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
     const double multiplier = m[Metric::floquet_multiplier_max];
     table.group("Stability");
     table.line("largest Floquet multiplier", fmt::format("{:.3g}", multiplier),
-               multiplier < 1.0 ? fmt::format("stable: disturbances shrink to {:.2g} % a cycle", 100.0 * multiplier)
-                                : "unstable: disturbances grow");
+               multiplier < 1.0 ? "below 1: stable" : "not below 1: disturbances do not die out");
   }
   return table.take();
 }

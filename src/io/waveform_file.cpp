@@ -47,7 +47,9 @@ void write_waveforms_netcdf(const std::filesystem::path& path, std::span<const W
   const auto& columns = waveform_columns();
   const NetcdfFile::Dimension time = file.define_dimension(columns.front().name, rows.size());
   std::vector<NetcdfFile::Variable> variables;
-  for (const WaveformColumn& c : columns) variables.push_back(file.define_variable(c.name, {time}, c.unit, c.long_name));
+  for (const WaveformColumn& c : columns) {
+    variables.push_back(file.define_variable(c.name, {time}, c.unit, c.long_name));
+  }
   write_provenance(file, provenance);
   std::vector<double> values(rows.size());
   for (std::size_t c = 0; c < columns.size(); ++c) {

@@ -115,8 +115,8 @@ class Search {
   }
 
   std::string format_slowest(const Trial& slowest) const {
-    return format("%.5g Hz cannot be reached: at %.4g V, the lowest voltage tried, it flaps at %.4g Hz already", target_,
-                  slowest.voltage, *slowest.frequency);
+    return format("%.5g Hz cannot be reached: at %.4g V, the lowest voltage tried, it flaps at %.4g Hz already",
+                  target_, slowest.voltage, *slowest.frequency);
   }
 
   FrequencySearch give_up(const Trial& fastest, const Trial& last) {

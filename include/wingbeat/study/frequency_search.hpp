@@ -27,9 +27,9 @@ struct FrequencySearch {
 /// The search covers voltages up to this multiple of the one that turns the unloaded motor at the wanted frequency.
 inline constexpr double frequency_search_span = 100.0;
 
-/// Finds the constant voltage at which the vehicle flaps at `frequency` [Hz], to within options.tolerance, by a bracketed
-/// solve on find_steady_flapping; a voltage at which it does not flap counts as too low. vehicle.voltage is not used.
-/// Where the frequency is no steady function of the voltage, any of the answers may come out.
+/// Finds the constant voltage at which the vehicle flaps at `frequency` [Hz], to within options.tolerance, by a
+/// bracketed solve on find_steady_flapping; a voltage at which it does not flap counts as too low. vehicle.voltage is
+/// not used. Where the frequency is no steady function of the voltage, any of the answers may come out.
 /// Throws ParameterError unless frequency > 0.
 FrequencySearch find_voltage_for_frequency(const Vehicle<double>& vehicle, double frequency,
                                            const SteadyOptions& options = {}, const StartUp& start_up = {});
