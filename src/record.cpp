@@ -17,7 +17,7 @@ WaveformRow row_inside(const Recorded& recorded, const solve::Step<decltype(Reco
   row.crank_angle = theta;
   row.crank_speed = result.y[0];
   row.current = m.current;
-  row.stroke_angle = m.kinematics.stroke_angle;
+  row.stroke_angle = stroke_angle(m.kinematics);
   row.flapping_velocity = m.stroke_velocity;
   row.angle_of_attack_deg = degrees_per_radian * angle_of_attack(system.vehicle.wings, speed);
   row.lift = lift_force(system.vehicle.wings, speed);

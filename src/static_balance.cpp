@@ -37,7 +37,7 @@ double least_inertia(const Vehicle<double>& v, const CrankKinematics<double>& k)
 double constant_friction(const Vehicle<double>& v) { return v.friction.torque + v.motor.friction_torque; }
 
 double static_rod_force(const Vehicle<double>& v, const CrankKinematics<double>& k) {
-  return v.wing_count * spring_loads(v.spring, k.stroke_angle).moment / k.wing_lever;
+  return spring_moment(v, k) / k.wing_lever;
 }
 
 /// Golden-section minimum of f on [a, b].
@@ -188,7 +188,7 @@ std::vector<double> balanced_speeds(const Vehicle<double>& v) {
       const double velocity = k.stroke_slope * omega;
       const double moment = N_J * k.stroke_curve * square(omega) +
                             std::copysign(drag_moment(v.wings, std::abs(velocity)), velocity) +
-                            v.wing_count * spring_loads(v.spring, k.stroke_angle).moment;
+                            spring_moment(v, k);
       const double F = moment / k.wing_lever;
       load += F * k.crank_lever + v.friction.radius * std::abs(F);
     }

@@ -33,7 +33,7 @@ WaveformRow row_of(const Vehicle<double>& vehicle, double time, double crank_ang
           crank_angle,
           omega,
           m.current,
-          m.kinematics.stroke_angle,
+          stroke_angle(m.kinematics),
           m.stroke_velocity,
           degrees_per_radian * angle_of_attack(vehicle.wings, speed),
           lift_force(vehicle.wings, speed),

@@ -191,7 +191,7 @@ class StartUp {
   double speed_scale_ = 1.0, current_scale_ = 1.0, time_scale_ = 1.0, force_scale_ = 1.0;
   double quadrature_scale_[quadrature_count] = {};
   double constant_friction_ = 0.0;
-  double end_time_ = 0.0;
+  double end_time_ = 0.0, runaway_speed_ = infinity;
   double jam_below_ = -infinity, jam_above_ = infinity;
   double smallest_inertia_ = 0.0;
 
@@ -320,7 +320,7 @@ std::unique_ptr<detail::Cvode> StartUp::integrator(bool measuring) {
 
 double StartUp::static_force(const CrankKinematics<double>& k) const {
   if (wingless_) return 0.0;
-  return vehicle_.wing_count * spring_loads(vehicle_.spring, k.stroke_angle).moment / k.wing_lever;
+  return vehicle_.wing_count * spring_loads(vehicle_.spring, stroke_angle(k)).moment / k.wing_lever;
 }
 
 /// K i - F_s h [N m]: what would turn the crank at rest.
@@ -337,7 +337,7 @@ double StartUp::holding_torque(double theta) const {
 double StartUp::wing_energy() const {
   const CrankKinematics<double> k = kinematics(theta_);
   return 0.5 * vehicle_.wing_count * vehicle_.wing_inertia * square(k.stroke_slope * omega_) +
-         vehicle_.wing_count * spring_loads(vehicle_.spring, k.stroke_angle).energy;
+         vehicle_.wing_count * spring_loads(vehicle_.spring, stroke_angle(k)).energy;
 }
 
 /// di/dt [A/s]; `rates` are needed without inductance only.
@@ -418,6 +418,7 @@ void StartUp::prepare() {
   }
   if (!(speed_scale_ > 0.0)) speed_scale_ = omega_ != 0.0 ? std::abs(omega_) : 1.0;
   if (!(current_scale_ > 0.0)) current_scale_ = std::max(std::abs(i_), K * speed_scale_ / R_a);
+  runaway_speed_ = 1e3 * std::max({speed_scale_, std::abs(omega_), std::abs(i_) * R_a / K});
   const double lap = two_pi / speed_scale_;
   const double electrical = m.armature_inductance / R_a;
   const double wings = vehicle_.wing_count * vehicle_.wing_inertia *
@@ -470,6 +471,9 @@ bool StartUp::out_of_budget() {
     give_up(text("no verdict within %ld integration steps", options_.max_steps));
   } else if (options_.cancel && result_.steps % 512 == 0 && options_.cancel()) {
     give_up("cancelled");
+  } else if (std::abs(omega_) > runaway_speed_) {
+    give_up(text("the crank speeds up without bound (%.3g rad/s): this transmission formulation does not conserve power "
+                 "and feeds it", omega_));
   } else if (t_ >= end_time_) {
     give_up(text("no verdict within %.6g s", end_time_));
   }
@@ -1129,7 +1133,8 @@ void StartUp::give_up(const std::string& why) {
     }
     result_.detail = text("%s; it flaps at %.6g Hz then", why.c_str(), 1.0 / lap_time(n - 1));
   } else {
-    result_.detail = text("%s; the crank does not rotate then, it has been between %.4g and %.4g deg", why.c_str(),
+    result_.detail = text("%s; the crank makes no forward revolutions then, it has been between %.4g and %.4g deg",
+                          why.c_str(),
                           swing_low_ * degrees_per_radian, swing_high_ * degrees_per_radian);
   }
 }

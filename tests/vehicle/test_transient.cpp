@@ -242,7 +242,7 @@ TEST(Transient, WithoutVoltageNothingMoves) {
 double static_torque(const Vehicle<double>& v, double theta, double i) {
   const CrankKinematics<double> k = crank_kinematics(v.crank, std::sin(theta), std::cos(theta));
   return v.motor.torque_constant * i -
-         v.wing_count * v.spring.stiffness * k.stroke_angle / k.wing_lever * k.crank_lever;
+         v.wing_count * v.spring.stiffness * stroke_angle(k) / k.wing_lever * k.crank_lever;
 }
 
 TEST(Transient, LocksAgainstStrongSpringsAndFriction) {
@@ -253,7 +253,7 @@ TEST(Transient, LocksAgainstStrongSpringsAndFriction) {
   EXPECT_TRUE(r.settled);
   ASSERT_TRUE(r.lock_angle && r.torque_margin);
   const CrankKinematics<double> k = crank_kinematics(v.crank, std::sin(*r.lock_angle), std::cos(*r.lock_angle));
-  const double F_s = v.wing_count * v.spring.stiffness * k.stroke_angle / k.wing_lever;
+  const double F_s = v.wing_count * v.spring.stiffness * stroke_angle(k) / k.wing_lever;
   const double margin = v.friction.radius * std::abs(F_s) - std::abs(static_torque(v, *r.lock_angle, 3.0 / 9.0));
   EXPECT_GT(margin, 0.0);
   EXPECT_NEAR(*r.torque_margin, margin, 1e-12);
@@ -397,6 +397,23 @@ TEST(Transient, BudgetsEndUnsettled) {
   const TransientResult cancelled = simulate_start_up(reference_vehicle(), options);
   EXPECT_FALSE(cancelled.settled);
   EXPECT_THAT(cancelled.detail, HasSubstr("cancelled"));
+}
+
+TEST(Transient, RunawayIsNamed) {
+  // Turned backwards, "rod-force" can feed the crank more power than all losses take.
+  Vehicle<double> v = reference_vehicle();
+  v.voltage = 0.02;
+  v.motor = {10.7, 0.0, 1.7e-3, 2.5e-6, 3.6e-5};
+  v.crank = {4.09e-3, 7.52e-3, 2.68e-3, 7.52e-3, Formulation::rod_force};
+  v.friction.radius = 1.7e-4;
+  v.spring.stiffness = 9.6e-4;
+  v.wing_inertia = 2.83e-7;
+  v.wings.air_density = 0.0;
+  TransientOptions options;
+  options.crank_speed = -499.0;
+  const TransientResult r = simulate_start_up(v, options);
+  EXPECT_FALSE(r.settled);
+  EXPECT_THAT(r.detail, HasSubstr("speeds up without bound"));
 }
 
 TEST(Transient, SamplesAtTheIntervalAskedFor) {

@@ -17,6 +17,7 @@ template <class Arch>
 struct ScalarTraits<xsimd::batch<double, Arch>> {
   using Mask = xsimd::batch_bool<double, Arch>;
   static constexpr int lanes = int(xsimd::batch<double, Arch>::size);
+  static constexpr bool differentiates = false;
   static Batch<Arch> select(const Mask& mask, const Batch<Arch>& a, const Batch<Arch>& b) {
     return xsimd::select(mask, a, b);
   }

@@ -9,7 +9,8 @@
 namespace wingbeat {
 
 /// What the library needs to know of a scalar type; specialised for each, a type without a specialisation is not a
-/// Scalar. `Mask` is the result of comparing two scalars, `lanes` the number of designs side by side.
+/// Scalar. `Mask` is the result of comparing two scalars, `lanes` the number of designs side by side,
+/// `differentiates` whether derivatives come along.
 template <class S>
 struct ScalarTraits {};
 
@@ -17,6 +18,7 @@ template <>
 struct ScalarTraits<double> {
   using Mask = bool;
   static constexpr int lanes = 1;
+  static constexpr bool differentiates = false;
   static double select(bool mask, double a, double b) { return mask ? a : b; }
   static bool any(bool mask) { return mask; }
   static bool all(bool mask) { return mask; }

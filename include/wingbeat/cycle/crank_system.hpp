@@ -44,7 +44,7 @@ struct CrankSystem {
   }
   static Signs start_signs() { return {S(1.0), S(1.0), S(1.0)}; }
 
-  bool admissible(const State& y) const { return y[0] > speed_floor; }
+  bool admissible(const State& y) const { return all<S>(y[0] > speed_floor); }
 
   State error_scale(const State& y) const {
     State scale;

@@ -98,7 +98,7 @@ CycleExtremes<double> lap_extremes(const CrankSystem<double, N>& system,
     for (const Bracket& b : brackets[c]) lowest_candidate = std::min({lowest_candidate, b.v0, b.v1});
     for (Bracket b : brackets[c]) {
       // The cubic's own error is a small part of what it rises over its ends.
-      const double doubt = 0.2 * (b.estimate - std::min(b.v0, b.v1)) + 1e-3 * (highest - lowest_candidate);
+      const double doubt = 0.2 * (b.estimate - std::min(b.v0, b.v1)) + 5e-3 * (highest - lowest_candidate);
       if (b.estimate + doubt < highest) continue;
       for (int iteration = 0; iteration < 30; ++iteration) {
         const auto inside = solve::evaluate_inside<false>(system, lap, *b.step, b.x);

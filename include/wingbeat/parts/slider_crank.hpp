@@ -43,7 +43,7 @@ inline void validate(const SliderCrank<double>& c) {
 template <Scalar S>
 struct CrankKinematics {
   S slider_height;  ///< y = r_c sin theta + l cos gamma [m]
-  S stroke_angle;   ///< beta [rad], tan beta = (y - y_0) / H
+  S tan_stroke;     ///< tan beta = (y - y_0) / H [1]
   S stroke_slope;   ///< B1 = d beta / d theta [1]
   S stroke_curve;   ///< B2 = d2 beta / d theta2 [1]
   S wing_lever;     ///< g: moment on both wings per unit rod force [m]
@@ -53,7 +53,6 @@ struct CrankKinematics {
 /// Kinematics at a crank angle given by its sine and cosine. Beta' = B1 omega, beta'' = B1 omega' + B2 omega^2.
 template <Scalar S>
 CrankKinematics<S> crank_kinematics(const SliderCrank<S>& c, const S& sin_theta, const S& cos_theta) {
-  using std::atan;
   using std::sqrt;
   const S r_c = c.crank_radius;
   const S H = c.hinge_offset;
@@ -74,13 +73,20 @@ CrankKinematics<S> crank_kinematics(const SliderCrank<S>& c, const S& sin_theta,
 
   CrankKinematics<S> k;
   k.slider_height = y;
-  k.stroke_angle = atan(tan_beta);
+  k.tan_stroke = tan_beta;
   k.stroke_slope = dy * per_H * cos2_beta;
   k.stroke_curve = ddy * per_H * cos2_beta - S(2.0) * tan_beta * square(k.stroke_slope);
   k.wing_lever = c.formulation == Formulation::rod_force ? H * (sin_gamma * tan_beta + cos_gamma)
                                                          : H * cos_gamma * sec2_beta;
   k.crank_lever = cos_gamma * dy;
   return k;
+}
+
+/// Stroke angle beta [rad]. Apart from the kinematics because only springs and reports need it.
+template <Scalar S>
+S stroke_angle(const CrankKinematics<S>& k) {
+  using std::atan;
+  return atan(k.tan_stroke);
 }
 
 /// Half the peak-to-peak stroke angle [rad], reached at crank angles +-90 degrees (the dead centres).

@@ -124,7 +124,8 @@ StepResult<System> explicit_step(const System& system, const typename System::Re
       result.admissible = false;
       return;
     }
-    const Rates<System> rates = system.template rates<quadratures>(x + dop853::c[stage] * h, at, branch);
+    const Rates<System> rates =
+        system.template rates<quadratures && dop853::b[stage] != 0.0>(x + dop853::c[stage] * h, at, branch);
     k[stage] = rates.dy;
     // The first stages are of too low an order to tell.
     if constexpr (stage >= 5) {

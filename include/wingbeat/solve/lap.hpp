@@ -65,7 +65,7 @@ struct LapOptions {
   double tolerance = 1e-6;  ///< of each step, relative to System::error_scale
   int max_steps = 2000;
   double first_step = 0.3;  ///< as a fraction of the period / (2 pi)
-  int switches = 1000;      ///< locate the first so many switches only; the others keep their first sign
+  int switches = 1000;      ///< end steps on the first so many switches only; the others are noted in passing
 };
 
 /// One step by either method.
@@ -197,6 +197,7 @@ class LapDriver {
         flip = true;
         flipped = crossed;
       }
+      note_others(step, result, last);
       accept(x1, step, result, last);
       if (flip) {
         flip_here(flipped);
@@ -213,6 +214,9 @@ class LapDriver {
   void begin(const State& start) {
     lap_.method = options_.method;
     plan_.swap(lap_.switches);
+    if (located_ < switch_count) {
+      std::erase_if(plan_, [&](const SwitchNode& node) { return node.sign >= located_; });
+    }
     lap_.switches.clear();
     lap_.steps.clear();
     x_ = 0.0;
@@ -362,6 +366,24 @@ class LapDriver {
       at -= off;
     }
     return true;
+  }
+
+  /// Notes the sign changes of switches on which no step needs to end, to the accuracy of a secant.
+  void note_others(double step, const StepResult<System>& result, const Rates<System>& last) {
+    for (std::size_t k = located_; k < switch_count; ++k) {
+      if (last.switches[k] * signs_[k] >= 0.0) continue;
+      const double t = first_.switches[k] / (first_.switches[k] - last.switches[k]);
+      if (t > 0.0 && t < 1.0) {
+        const State y = hermite<System>(y_, first_.dy, result.y, last.dy, step, t);
+        const double f0 = first_.switches[k], f1 = last.switches[k];
+        const double ft = system_.template rates<false>(x_ + t * step, y, signs_).switches[k];
+        // The parabola's zero, by one more secant on the side that holds it.
+        const bool after = (ft > 0.0) == (f0 > 0.0);
+        const double better = after ? t + (1.0 - t) * ft / (ft - f1) : t * f0 / (f0 - ft);
+        lap_.switches.push_back({x_ + better * step, k});
+      }
+      signs_[k] = -signs_[k];
+    }
   }
 
   void accept(double x1, double step, const StepResult<System>& result, const Rates<System>& last) {

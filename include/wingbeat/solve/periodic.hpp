@@ -119,8 +119,8 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   constexpr std::size_t n = std::tuple_size_v<State>;
   constexpr double slow_contraction = 0.1;
   // Local errors add up over a lap: this leaves the metrics of all but the oddest vehicles within the tolerance.
-  const double fine = std::clamp(0.3 * options.tolerance, 1e-13, 1e-3);
-  const double closed = 0.05 * options.tolerance;
+  const double fine = std::clamp(0.5 * options.tolerance, 1e-13, 1e-3);
+  const double closed = 0.15 * options.tolerance;
 
   PeriodicSummary summary;
   const auto failed = [&](LapStatus status) {
@@ -134,16 +134,16 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   lap.switches.clear();
   lap.largest_step = 0.0;
 
-  const std::array<double, 3> tolerances = {std::max(fine, 1e-2), std::max(fine, 1e-4), fine};
+  const std::array<double, 3> tolerances = {std::max(fine, 1e-2), std::max(fine, 3e-5), fine};
   State y = guess;
   double residual = 1.0, before_tolerance = tolerances[0];
   for (std::size_t level = 0; summary.laps < options.max_laps;) {
-    // The first lap needs only the switches that bend the solution itself.
+    // Coarse laps need only the switches that bend the solution itself.
+    const bool is_fine = level + 1 == tolerances.size();
     const LapOptions lap_options = {.method = options.method,
                                     .tolerance = tolerances[level],
                                     .max_steps = level == 0 ? options.max_steps : 10 * options.max_steps,
-                                    .switches = level == 0 ? System::state_switches : 1000};
-    const bool is_fine = level + 1 == tolerances.size();
+                                    .switches = is_fine ? 1000 : System::state_switches};
     if (is_fine) {
       run_lap<true>(system, y, lap_options, lap);
     } else {

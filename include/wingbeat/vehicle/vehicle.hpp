@@ -118,6 +118,14 @@ S effective_inertia(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& s
   return v.motor.inertia + A * (k.crank_lever + s * v.friction.radius);
 }
 
+/// Moment of all hinge springs, N_w k beta [N m].
+template <Scalar S>
+S spring_moment(const Vehicle<S>& v, const CrankKinematics<S>& k) {
+  // Without springs the arc tangent is a tenth of all the work; its derivative by the stiffness is still wanted.
+  if (!ScalarTraits<S>::differentiates && !any<S>(v.spring.stiffness > S(0.0))) return S(0.0);
+  return v.wing_count * spring_loads(v.spring, stroke_angle(k)).moment;
+}
+
 /// Rod force and accelerations at crank angle theta (given by sine and cosine), crank speed omega [rad/s] and current
 /// i [A] under the terminal voltage v_t [V], on a given branch (model.md section 2, eqs 1, 5-11, 21).
 template <Scalar S>
@@ -129,7 +137,7 @@ Motion<S> motion_at(const Vehicle<S>& v, const S& sin_theta, const S& cos_theta,
   const S B1 = k.stroke_slope;
   const S B2 = k.stroke_curve;
   const S N_J = v.wing_count * v.wing_inertia;
-  const S N_k_beta = v.wing_count * spring_loads(v.spring, k.stroke_angle).moment;
+  const S N_k_beta = spring_moment(v, k);
   const S g = k.wing_lever;
   m.stroke_velocity = B1 * omega;
   const S stroke_speed = branch.stroke * m.stroke_velocity;
@@ -172,7 +180,7 @@ template <Scalar S>
 S stored_energy(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& omega, const S& i) {
   return S(0.5) * v.motor.inertia * square(omega) +
          S(0.5) * v.wing_count * v.wing_inertia * square(k.stroke_slope * omega) +
-         v.wing_count * spring_loads(v.spring, k.stroke_angle).energy +
+         v.wing_count * spring_loads(v.spring, stroke_angle(k)).energy +
          S(0.5) * v.motor.armature_inductance * square(i);
 }
 
