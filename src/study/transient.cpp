@@ -418,7 +418,8 @@ void StartUp::prepare() {
   }
   if (!(speed_scale_ > 0.0)) speed_scale_ = omega_ != 0.0 ? std::abs(omega_) : 1.0;
   if (!(current_scale_ > 0.0)) current_scale_ = std::max(std::abs(i_), K * speed_scale_ / R_a);
-  runaway_speed_ = 1e3 * std::max({speed_scale_, std::abs(omega_), std::abs(i_) * R_a / K});
+  const double released = 0.5 * pi * std::sqrt(vehicle_.wing_count * vehicle_.spring.stiffness / m.inertia);
+  runaway_speed_ = 1e3 * std::max({speed_scale_, std::abs(omega_), std::abs(i_) * R_a / K, released});
   const double lap = two_pi / speed_scale_;
   const double electrical = m.armature_inductance / R_a;
   const double wings = vehicle_.wing_count * vehicle_.wing_inertia *
@@ -472,8 +473,8 @@ bool StartUp::out_of_budget() {
   } else if (options_.cancel && result_.steps % 512 == 0 && options_.cancel()) {
     give_up("cancelled");
   } else if (std::abs(omega_) > runaway_speed_) {
-    give_up(text("the crank speeds up without bound (%.3g rad/s): this transmission formulation does not conserve power "
-                 "and feeds it", omega_));
+    give_up(text("the crank speeds up without bound (%.3g rad/s): this transmission formulation does not conserve "
+                 "power and feeds it", omega_));
   } else if (t_ >= end_time_) {
     give_up(text("no verdict within %.6g s", end_time_));
   }
@@ -1134,8 +1135,7 @@ void StartUp::give_up(const std::string& why) {
     result_.detail = text("%s; it flaps at %.6g Hz then", why.c_str(), 1.0 / lap_time(n - 1));
   } else {
     result_.detail = text("%s; the crank makes no forward revolutions then, it has been between %.4g and %.4g deg",
-                          why.c_str(),
-                          swing_low_ * degrees_per_radian, swing_high_ * degrees_per_radian);
+                          why.c_str(), swing_low_ * degrees_per_radian, swing_high_ * degrees_per_radian);
   }
 }
 
