@@ -1,0 +1,27 @@
+// Batches of one instruction set behind plain functions, so that files for different instruction sets share nothing
+// but numbers.
+#pragma once
+
+#include "scalars/kernel.hpp"
+
+namespace wingbeat::lanes {
+
+/// One design at one point, for a lane.
+struct Case {
+  Vehicle<double> vehicle;
+  double theta, omega, current, voltage;
+  double force;  ///< assumed sign of the rod force
+};
+
+/// Evaluates instant() and crank_step() for `count` cases that share formulation, coefficient table and whether there is
+/// an inductance. `out` receives instant_size + step_size numbers for each.
+void evaluate_sse2(const Case* cases, int count, double* out);
+void evaluate_avx2(const Case* cases, int count, double* out);
+void evaluate_avx512(const Case* cases, int count, double* out);
+
+/// Small functions on mixed lanes; the number of the first check that fails, 0 if none does.
+int check_select_sse2();
+int check_select_avx2();
+int check_select_avx512();
+
+}  // namespace wingbeat::lanes

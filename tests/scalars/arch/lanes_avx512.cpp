@@ -1,0 +1,8 @@
+#include "scalars/arch/lanes_impl.hpp"
+
+namespace wingbeat::lanes {
+
+void evaluate_avx512(const Case* cases, int count, double* out) { evaluate<xsimd::avx512f>(cases, count, out); }
+int check_select_avx512() { return check_select<xsimd::avx512f>(); }
+
+}  // namespace wingbeat::lanes

@@ -1,0 +1,178 @@
+// Batches against plain numbers, lane by lane, across every threshold of the equations.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "scalars/arch/lanes.hpp"
+#include "vehicle/random_vehicle.hpp"
+
+namespace wingbeat {
+namespace {
+
+using lanes::Case;
+constexpr int outputs = instant_size + step_size;
+
+struct InstructionSet {
+  const char* name;
+  bool supported;
+  void (*evaluate)(const Case*, int, double*);
+  int (*check_select)();
+};
+
+void PrintTo(const InstructionSet& set, std::ostream* out) { *out << set.name; }
+
+std::vector<InstructionSet> instruction_sets() {
+  return {{"sse2", true, lanes::evaluate_sse2, lanes::check_select_sse2},
+          {"avx2", bool(__builtin_cpu_supports("avx2")) && bool(__builtin_cpu_supports("fma")), lanes::evaluate_avx2,
+           lanes::check_select_avx2},
+          {"avx512", bool(__builtin_cpu_supports("avx512f")) && bool(__builtin_cpu_supports("avx512dq")),
+           lanes::evaluate_avx512, lanes::check_select_avx512}};
+}
+
+class Batches : public testing::TestWithParam<InstructionSet> {
+ protected:
+  void SetUp() override {
+    if (!GetParam().supported) GTEST_SKIP() << "this processor has no " << GetParam().name;
+  }
+  void expect_lanes_as_scalars(const std::vector<Case>& cases);
+};
+
+/// Numbers of one case by plain doubles.
+std::array<double, outputs> scalar_outputs(const Case& c) {
+  const auto at = instant<double>(
+      c.vehicle, {std::sin(c.theta), std::cos(c.theta), c.omega, c.current, c.voltage, c.force, c.force});
+  const auto step = crank_step<double>(c.vehicle, c.theta, {120.0 + std::abs(c.omega), c.current}, 0.1,
+                                       {c.force, 1.0, 1.0});
+  std::array<double, outputs> out;
+  std::copy(at.begin(), at.end(), out.begin());
+  std::copy(step.begin(), step.end(), out.begin() + instant_size);
+  return out;
+}
+
+void Batches::expect_lanes_as_scalars(const std::vector<Case>& cases) {
+  std::vector<double> got(cases.size() * outputs);
+  GetParam().evaluate(cases.data(), int(cases.size()), got.data());
+  // Sums of terms that cancel keep the rounding of their terms: the typical size of an output stands for those.
+  std::array<double, outputs> typical{};
+  std::vector<std::array<double, outputs>> expected;
+  for (const Case& c : cases) {
+    expected.push_back(scalar_outputs(c));
+    for (int n = 0; n < outputs; ++n) {
+      typical[std::size_t(n)] += std::abs(expected.back()[std::size_t(n)]) / double(cases.size());
+    }
+  }
+  constexpr std::size_t step = std::size_t(instant_size) + 2;
+  typical[residual_at] += typical[motor_work_at];
+  typical[step + std::size_t(Integral::residual_work)] += typical[step + std::size_t(Integral::motor_work)];
+  for (std::size_t c = 0; c < cases.size(); ++c) {
+    for (std::size_t n = 0; n < outputs; ++n) {
+      const double value = expected[c][n];
+      // The weights of a step are up to forty times what they add up to.
+      const double rounding = n < instant_size ? 2e-14 : 2e-13;
+      EXPECT_NEAR(got[c * outputs + n], value, rounding * (std::abs(value) + typical[n]))
+          << "case " << c << " output " << n << " at theta " << cases[c].theta << " omega " << cases[c].omega;
+    }
+  }
+}
+
+enum class Inductance { some, none };
+
+/// A vehicle of any friction law, condition and spring; formulation and coefficients as given.
+Vehicle<double> mixed_vehicle(std::mt19937_64& random, Formulation formulation, Inductance inductance) {
+  for (;;) {
+    Design<double> d = random_design(random, 1.4);
+    d.transmission.formulation = formulation;
+    d.motor.constants.armature_inductance = inductance == Inductance::some ? 29e-3 : 0.0;
+    const int condition = std::uniform_int_distribution<int>(0, 5)(random);
+    const Vehicle<double> v = resolve(
+        d, condition == 0 ? Condition::wingless : condition == 1 ? Condition::vacuum : Condition::air);
+    // Near a jam rounding grows without bound.
+    double least = 1.0;
+    for (double theta = 0.0; theta < two_pi; theta += 0.05) {
+      const auto k = crank_kinematics(v.crank, std::sin(theta), std::cos(theta));
+      for (const double s : {1.0, -1.0}) least = std::min(least, effective_inertia(v, k, s) / v.motor.inertia);
+      if (k.wing_lever < 0.3 * v.crank.hinge_offset) least = 0.0;
+    }
+    if (least > 0.5) return v;
+  }
+}
+
+std::vector<Case> mixed_cases(Formulation formulation, Inductance inductance, int count) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  std::vector<Case> cases;
+  for (int n = 0; n < count; ++n) {
+    Case c{mixed_vehicle(random, formulation, inductance), two_pi * unit(random), 300.0 * (unit(random) - 0.3),
+           unit(random) - 0.4, 5.0 * unit(random), unit(random) < 0.5 ? 1.0 : -1.0};
+    // Every kind of threshold, so that neighbouring lanes lie on different sides of it.
+    switch (n % 8) {
+      case 1: c.omega = 0.0; break;
+      case 2: c.omega = unit(random) < 0.5 ? 1e-200 : -1e-200; break;
+      case 3: c.theta = 0.5 * pi; break;
+      case 4: c.theta = 1.5 * pi; break;
+      case 5: {
+        // Rod force zero: the force switch is linear in the current.
+        Case at = c;
+        at.current = 0.0;
+        const double s0 = scalar_outputs(at)[9];
+        at.current = 1.0;
+        const double s1 = scalar_outputs(at)[9];
+        if (std::abs(s1 - s0) > 0.1 * std::abs(s0)) c.current = -s0 / (s1 - s0);
+        break;
+      }
+      case 6:
+        c.omega = 0.0;
+        c.current = 0.0;
+        c.theta = 0.5 * pi;
+        break;
+      default: break;
+    }
+    cases.push_back(c);
+  }
+  return cases;
+}
+
+TEST_P(Batches, SelectTakesTheRightLanes) { EXPECT_EQ(GetParam().check_select(), 0); }
+
+TEST_P(Batches, MixedVehiclesAgreeWithScalars) {
+  for (const Formulation formulation : {Formulation::rod_force, Formulation::virtual_work}) {
+    for (const Inductance inductance : {Inductance::some, Inductance::none}) {
+      expect_lanes_as_scalars(mixed_cases(formulation, inductance, 403));
+    }
+  }
+}
+
+TEST_P(Batches, TabulatedCoefficientsAgreeWithScalars) {
+  std::vector<double> alpha, lift, drag;
+  for (int n = 0; n <= 20; ++n) {
+    alpha.push_back(pi / 40.0 * n - 0.3);
+    lift.push_back(std::sin(2.0 * alpha.back()));
+    drag.push_back(2.0 - 1.5 * std::cos(2.0 * alpha.back()));
+  }
+  const auto table = std::make_shared<CoefficientTable>(alpha, lift, drag);
+  std::vector<Case> cases = mixed_cases(Formulation::rod_force, Inductance::some, 403);
+  for (Case& c : cases) c.vehicle.wings.coefficients.table = table;
+  expect_lanes_as_scalars(cases);
+}
+
+TEST_P(Batches, SpringsInSomeLanesOnly) {
+  std::vector<Case> cases = mixed_cases(Formulation::virtual_work, Inductance::some, 64);
+  for (std::size_t n = 0; n < cases.size(); ++n) cases[n].vehicle.spring.stiffness = n % 3 == 0 ? 1.4e-3 : 0.0;
+  expect_lanes_as_scalars(cases);
+  for (Case& c : cases) c.vehicle.spring.stiffness = 0.0;
+  expect_lanes_as_scalars(cases);
+}
+
+TEST_P(Batches, IncompleteLastBatchLeavesNothingBehind) {
+  std::vector<Case> cases = mixed_cases(Formulation::rod_force, Inductance::some, 9);
+  for (int count = 1; count <= 9; ++count) {
+    expect_lanes_as_scalars(std::vector<Case>(cases.begin(), cases.begin() + count));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, Batches, testing::ValuesIn(instruction_sets()),
+                         [](const auto& tested) { return std::string(tested.param.name); });
+
+}  // namespace
+}  // namespace wingbeat
