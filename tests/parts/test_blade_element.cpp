@@ -18,7 +18,10 @@ TEST(BladeElement, CoefficientsHaveThePublishedNumbers) {
     double degrees, lift, drag;
   };
   // Eqs (12, 13) evaluated apart.
-  const Row rows[] = {{90.0, 0.101034628750005, 3.46087546700445}, {45.0, 1.80456143974444, 1.70374592007851}, {20.0, 1.14026425230143, 0.591112102445303}, {0.0, 0.0269734909683993, 0.392709942603704}};
+  const Row rows[] = {{90.0, 0.101034628750005, 3.46087546700445},
+                      {45.0, 1.80456143974444, 1.70374592007851},
+                      {20.0, 1.14026425230143, 0.591112102445303},
+                      {0.0, 0.0269734909683993, 0.392709942603704}};
   for (const Row& row : rows) {
     EXPECT_NEAR(lift_coefficient(c, radians(row.degrees)), row.lift, 1e-14);
     EXPECT_NEAR(drag_coefficient(c, radians(row.degrees)), row.drag, 1e-14);
@@ -143,10 +146,10 @@ TEST(CoefficientTable, RefusesTablesThatAreNoFunction) {
   EXPECT_EQ(refused({0.0, 1.0, 2.0}, {0.0, 1.0, 2.0}, {0.0, 1.0, 2.0}), "no error");
   EXPECT_EQ(refused({0.0, 1.0}, {0.0, 1.0}, {0.0, 1.0}),
             "aerodynamics.coefficients: the coefficient table needs at least three rows");
-  EXPECT_EQ(refused({0.0, 1.0, 2.0}, {0.0, 1.0}, {0.0, 1.0, 2.0}),
-            "aerodynamics.coefficients: every row of the coefficient table needs an angle, a lift and a drag coefficient");
-  EXPECT_EQ(refused({0.0, 1.0, 2.0}, {0.0, 1.0, 2.0}, {0.0, 1.0, 2.0, 3.0}),
-            "aerodynamics.coefficients: every row of the coefficient table needs an angle, a lift and a drag coefficient");
+  const std::string incomplete =
+      "aerodynamics.coefficients: every row of the coefficient table needs an angle, a lift and a drag coefficient";
+  EXPECT_EQ(refused({0.0, 1.0, 2.0}, {0.0, 1.0}, {0.0, 1.0, 2.0}), incomplete);
+  EXPECT_EQ(refused({0.0, 1.0, 2.0}, {0.0, 1.0, 2.0}, {0.0, 1.0, 2.0, 3.0}), incomplete);
   EXPECT_EQ(refused({0.0, 1.0, 1.0}, {0.0, 1.0, 2.0}, {0.0, 1.0, 2.0}),
             "aerodynamics.coefficients: row 3 of the coefficient table must have a larger angle of attack than the row "
             "before it");

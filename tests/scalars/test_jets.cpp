@@ -48,8 +48,8 @@ struct Inputs {
   }
 };
 
-/// Checks the dual numbers of f, a function of Inputs of any scalar, against differences in every variable. `residual` and
-/// `motor_work` say where those stand among its outputs.
+/// Checks the dual numbers of f, a function of Inputs of any scalar, against differences in every variable.
+/// `residual` and `motor_work` say where those stand among its outputs.
 template <class F>
 void expect_derivatives(const F& f, const Inputs<double>& at, double tolerance, std::size_t residual,
                         std::size_t motor_work) {

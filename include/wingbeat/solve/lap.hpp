@@ -91,6 +91,11 @@ typename System::State hermite(const typename System::State& y0, const typename 
   return y;
 }
 
+template <class State>
+bool is_finite(const State& y) {
+  return std::all_of(y.begin(), y.end(), [](double value) { return std::isfinite(value); });
+}
+
 /// Error of a step relative to the tolerance; `integral_scale` holds the size of each integral over the whole lap.
 template <bool quadratures, class System>
 double scaled_error(const System& system, const StepResult<System>& step, double tolerance,
@@ -118,7 +123,7 @@ double scaled_error(const System& system, const StepResult<System>& step, double
 }
 
 /// Position tolerance of a switch: its square must vanish beside the tolerance.
-inline double switch_tolerance(double tolerance) { return 0.05 * std::sqrt(tolerance); }
+inline double switch_tolerance(double tolerance) { return 0.4 * std::sqrt(tolerance); }
 
 /// Drives one lap; see run_lap.
 template <bool quadratures, class System>
@@ -159,7 +164,7 @@ class LapDriver {
       const bool reaches = pieces <= 1.0;
       double step = reaches ? left : left / pieces;
       StepResult<System> result = take_step<quadratures>(options_.method, system_, x_, y_, step, signs_, first_);
-      if (!result.admissible) {
+      if (!result.admissible || !is_finite(result.y)) {
         h = 0.25 * step;
         continue;
       }
@@ -219,6 +224,7 @@ class LapDriver {
     }
     lap_.switches.clear();
     lap_.steps.clear();
+    lap_.steps.reserve(64);
     x_ = 0.0;
     y_ = start;
     signs_ = system_.start_signs();
@@ -337,7 +343,9 @@ class LapDriver {
     const double close_enough = 0.1 * position_tolerance_;
     double at = hi, slope = (f_hi - f_lo) / whole;
     for (int iteration = 0, side = 0; iteration < 60 && hi - lo > close_enough; ++iteration) {
-      const double next = (lo * f_hi - hi * f_lo) / (f_hi - f_lo);
+      // A start next to a zero of the same switch would draw the secant there.
+      const bool from_zero = f_lo < 0.1 * std::abs(f_hi) && iteration < 20 && hi - lo > 0.1 * whole;
+      const double next = from_zero ? 0.5 * (lo + hi) : (lo * f_hi - hi * f_lo) / (f_hi - f_lo);
       const double f = value(next);
       if (next != at && iteration > 0) slope = (f - (at == hi ? f_hi : f_lo)) / (next - at);
       const double moved = std::abs(next - at);
@@ -353,7 +361,7 @@ class LapDriver {
         if (side == 1) f_hi *= 0.5;
         side = 1;
       }
-      if (f == 0.0 || (iteration > 0 && moved < close_enough)) break;
+      if (f == 0.0 || (iteration > 0 && !from_zero && moved < close_enough)) break;
     }
     if (at < 1e-3 * position_tolerance_) return false;
     // The Hermite state is of lower order than the step: correct with steps that end at the switch.

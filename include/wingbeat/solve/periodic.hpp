@@ -119,8 +119,8 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   constexpr std::size_t n = std::tuple_size_v<State>;
   constexpr double slow_contraction = 0.1;
   // Local errors add up over a lap: this leaves the metrics of all but the oddest vehicles within the tolerance.
-  const double fine = std::clamp(0.5 * options.tolerance, 1e-13, 1e-3);
-  const double closed = 0.15 * options.tolerance;
+  const double fine = std::clamp(0.35 * options.tolerance, 1e-13, 1e-3);
+  const double closed = 0.1 * options.tolerance;
 
   PeriodicSummary summary;
   const auto failed = [&](LapStatus status) {
@@ -134,7 +134,7 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   lap.switches.clear();
   lap.largest_step = 0.0;
 
-  const std::array<double, 3> tolerances = {std::max(fine, 1e-2), std::max(fine, 3e-5), fine};
+  const std::array<double, 3> tolerances = {std::max(fine, 1e-2), std::max(10.0 * fine, 1e-7), fine};
   State y = guess;
   double residual = 1.0, before_tolerance = tolerances[0];
   for (std::size_t level = 0; summary.laps < options.max_laps;) {

@@ -13,8 +13,8 @@ struct Case {
   double force;  ///< assumed sign of the rod force
 };
 
-/// Evaluates instant() and crank_step() for `count` cases that share formulation, coefficient table and whether there is
-/// an inductance. `out` receives instant_size + step_size numbers for each.
+/// Evaluates instant() and crank_step() for `count` cases that share formulation, coefficient table and whether there
+/// is an inductance. `out` receives instant_size + step_size numbers for each.
 void evaluate_sse2(const Case* cases, int count, double* out);
 void evaluate_avx2(const Case* cases, int count, double* out);
 void evaluate_avx512(const Case* cases, int count, double* out);
