@@ -310,19 +310,5 @@ TEST_F(Run, HelpShowsAnExampleThatWorksAndVersionTheBuild) {
   }
 }
 
-TEST_F(Run, IsQuick) {
-  double best = 1e9;
-  for (int k = 0; k < 5; ++k) {
-    const auto start = std::chrono::steady_clock::now();
-    EXPECT_EQ(run({"run", plain, "--json"}).status, 0);
-    best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  }
-  RecordProperty("milliseconds", int(1e3 * best));
-  std::printf("wingbeat run --json: %.1f ms\n", 1e3 * best);
-#if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__)
-  EXPECT_LT(best, 0.030);
-#endif
-}
-
 }  // namespace
 }  // namespace cli
