@@ -3,28 +3,9 @@
 
 #include <random>
 
-#include "wingbeat/vehicle/vehicle.hpp"
+#include "vehicle/reference_vehicle.hpp"
 
 namespace wingbeat {
-
-/// The reference design (rod-force formulation, 3 V, no springs); numbers as in data/designs/friction2022.toml.
-inline Design<double> reference_design() {
-  Design<double> d;
-  d.name = "reference";
-  d.mass = 3.34e-3;
-  d.bench_torque_constant = 7.664e-3;
-  d.supply.voltage = 3.0;
-  d.motor.constants = {9.0, 29e-3, 0.01, 1.5e-7, 3.6e-6, 0.0};
-  d.transmission = {5e-3, 20e-3, 6e-3, {}, {}, Formulation::rod_force};
-  d.friction = {FrictionLaw::load_proportional, 2.5e-3};
-  d.wing.inertia = 7.205e-8;
-  d.wing.planform.s2 = 2.457e-6;
-  d.wing.planform.s3 = 1.048e-7;
-  d.aerodynamics.air_density = 1.225;
-  d.aerodynamics.pitch_coefficient = 5e-3;
-  d.aerodynamics.coefficients = translational_2022();
-  return d;
-}
 
 /// A design whose every parameter is drawn around the reference: some lock, stall or jam. `spread` is the largest factor
 /// up or down of most parameters.

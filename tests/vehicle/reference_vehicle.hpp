@@ -5,17 +5,29 @@
 
 namespace wingbeat {
 
+/// The reference design: rod-force formulation, 3 V, no springs.
+inline Design<double> reference_design() {
+  Design<double> d;
+  d.name = "reference";
+  d.mass = 3.34e-3;
+  d.bench_torque_constant = 7.664e-3;
+  d.supply.voltage = 3.0;
+  d.motor.constants = {9.0, 29e-3, 0.01, 1.5e-7, 3.6e-6, 0.0};
+  d.transmission = {5e-3, 20e-3, 6e-3, {}, {}, Formulation::rod_force};
+  d.friction = {FrictionLaw::load_proportional, 2.5e-3};
+  d.wing.inertia = 7.205e-8;
+  d.wing.planform.s2 = 2.457e-6;
+  d.wing.planform.s3 = 1.048e-7;
+  d.aerodynamics.air_density = 1.225;
+  d.aerodynamics.pitch_coefficient = 5e-3;
+  d.aerodynamics.coefficients = translational_2022();
+  return d;
+}
+
 inline Vehicle<double> reference_vehicle(bool springs = false) {
-  Vehicle<double> v;
-  v.voltage = 3.0;
-  v.motor = {9.0, 29e-3, 0.01, 1.5e-7, 3.6e-6};
-  v.crank = {5e-3, 20e-3, 6e-3, 20e-3, Formulation::rod_force};
-  v.friction.radius = 2.5e-3;
-  v.spring.stiffness = springs ? 1.377e-3 : 0.0;
-  v.wing_count = 2.0;
-  v.wing_inertia = 7.205e-8;
-  v.wings = {1.225, 5e-3, 2.457e-6, 1.048e-7, translational_2022()};
-  return v;
+  Design<double> design = reference_design();
+  if (springs) design.spring.stiffness = 1.377e-3;
+  return resolve(design);
 }
 
 /// The same without wings and springs: the rod force is zero.

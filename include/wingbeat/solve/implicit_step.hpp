@@ -90,7 +90,9 @@ StepResult<System> implicit_step(const System& system, const typename System::Re
       }
       Real& at = stage[row / states][row % states];
       at = at - update;
-      change = std::max(change, std::abs(value_of(update)) / value_of(system.error_scale(y)[row % states]));
+      // Written so that a NaN stays.
+      const double moved = std::abs(value_of(update)) / value_of(system.error_scale(y)[row % states]);
+      if (!(moved <= change)) change = moved;
     }
     if (!std::isfinite(change)) return result;
     // Derivatives inside a dual number converge as fast as the values, a few iterations behind.

@@ -164,7 +164,7 @@ class LapDriver {
       const bool reaches = pieces <= 1.0;
       double step = reaches ? left : left / pieces;
       StepResult<System> result = take_step<quadratures>(options_.method, system_, x_, y_, step, signs_, first_);
-      if (!result.admissible || !is_finite(result.y)) {
+      if (!result.admissible || !is_finite(result.y) || (quadratures && !is_finite(result.dq))) {
         h = 0.25 * step;
         continue;
       }
