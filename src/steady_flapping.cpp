@@ -123,6 +123,7 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
     if (!found) found = orbit.from(no_load_speed(vehicle.motor, vehicle.voltage));
   }
 
+  bool rotates_in_time = false;
   const bool doubtful = statics.can_jam() || statics.can_lock() || several || !found;
   if (doubtful && start_up) {
     const StartUpOutcome outcome = start_up(vehicle);
@@ -135,6 +136,7 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
       result.summary = orbit.summary();
       return result;
     }
+    rotates_in_time = outcome.settled;
     if (outcome.settled && !(found && std::abs(orbit.crank_speed() - outcome.crank_speed) <
                                           1e-3 * outcome.crank_speed)) {
       found = orbit.from(outcome.crank_speed, outcome.current);
@@ -160,6 +162,9 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
     result.detail = format("no rotating orbit: laps end at crank angle %.1f deg (%s)", in_degrees(result.summary.stop),
                            result.summary.message.c_str());
     if (statics.can_lock()) result.detail += "; the crank locks at crank angles " + lock_list(vehicle);
+    if (rotates_in_time) {
+      result.detail += "; simulated in time it does flap steadily: the orbit search failed, use the transient's result";
+    }
   }
   return result;
 }

@@ -10,6 +10,7 @@
 #include <tuple>
 #include <vector>
 
+#include "wingbeat/core/math.hpp"
 #include "wingbeat/solve/explicit_step.hpp"
 #include "wingbeat/solve/implicit_step.hpp"
 
@@ -122,7 +123,7 @@ double scaled_error(const System& system, const StepResult<System>& step, double
   return error;
 }
 
-/// Position tolerance of a switch: its square must vanish beside the tolerance.
+/// Position tolerance of a switch: an error e in its position costs about e^2 times the change of slope there.
 inline double switch_tolerance(double tolerance) { return 0.4 * std::sqrt(tolerance); }
 
 /// Drives one lap; see run_lap.
@@ -145,7 +146,7 @@ class LapDriver {
   void run(const State& start) {
     begin(start);
     const double period = system_.period();
-    double h = lap_.largest_step > 0.0 ? lap_.largest_step : options_.first_step * period / 6.283185307179586;
+    double h = lap_.largest_step > 0.0 ? lap_.largest_step : options_.first_step * period / two_pi;
     lap_.largest_step = 0.0;
     // A step must not jump over the shape of what is integrated along.
     const double longest = quadratures ? period / 12.0 : period;
