@@ -1,0 +1,13 @@
+// Parameters of a vehicle file for studies that vary and differentiate them.
+#pragma once
+
+#include <string_view>
+
+#include "wingbeat/cycle/orbit_gradient.hpp"
+
+namespace wingbeat {
+
+/// The numeric key of that path. Throws ParameterError for an unknown key and for one that is not a number.
+DesignParameter design_parameter(std::string_view path);
+
+}  // namespace wingbeat
