@@ -23,5 +23,6 @@ void complain(std::string_view sentence);
 using Action = std::function<int()>;
 void add_run(CLI::App& program, Action& action);
 void add_compare(CLI::App& program, Action& action);
+void add_sweep(CLI::App& program, Action& action);
 
 }  // namespace wingbeat::app

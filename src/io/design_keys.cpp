@@ -60,6 +60,13 @@ bool is_section(std::string_view path) {
   return false;
 }
 
+std::string_view nearest_name(std::string_view given, std::span<const std::string_view> known) {
+  if (given.size() > 80) return {};
+  Nearest nearest;
+  for (const std::string_view name : known) nearest.offer(name, edit_distance(given, name));
+  return nearest.distance <= std::max<std::size_t>(2, given.size() / 3) ? nearest.path : std::string_view{};
+}
+
 std::string unknown_key_message(std::string_view path) {
   constexpr std::size_t longest = 80;
   const std::string_view parent = parent_of(path);

@@ -223,6 +223,44 @@ Value value_of_node(const toml::node& node, const Origin& origin) {
   return value;
 }
 
+TomlNode tree_of(const toml::node& node) {
+  TomlNode tree;
+  tree.line = line_of(node.source().begin);
+  tree.column = column_of(node.source().begin);
+  if (const auto* text = node.as_string()) {
+    tree.kind = TomlNode::Kind::text;
+    tree.text = text->get();
+  } else if (const auto* whole = node.as_integer()) {
+    tree.kind = TomlNode::Kind::number;
+    tree.number = double(whole->get());
+    tree.whole = true;
+  } else if (const auto* real = node.as_floating_point()) {
+    tree.kind = TomlNode::Kind::number;
+    tree.number = real->get();
+  } else if (const auto* boolean = node.as_boolean()) {
+    tree.kind = TomlNode::Kind::boolean;
+    tree.number = boolean->get() ? 1.0 : 0.0;
+  } else if (const auto* array = node.as_array()) {
+    tree.kind = TomlNode::Kind::array;
+    for (const toml::node& item : *array) tree.items.push_back(tree_of(item));
+  } else if (const auto* table = node.as_table()) {
+    tree.kind = TomlNode::Kind::table;
+    for (const auto& [key, value] : *table) {
+      TomlNode member = tree_of(value);
+      // What is wrong with a key is shown where its name stands.
+      member.line = line_of(key.source().begin);
+      member.column = column_of(key.source().begin);
+      tree.members.emplace_back(std::string(key.str()), std::move(member));
+    }
+    std::stable_sort(tree.members.begin(), tree.members.end(), [](const auto& a, const auto& b) {
+      return std::pair(a.second.line, a.second.column) < std::pair(b.second.line, b.second.column);
+    });
+  } else {
+    tree.text = node.is_time() ? "a time" : "a date";
+  }
+  return tree;
+}
+
 /// A key as it would stand in a file, so that "motor.inertia" in quotes is not taken for inertia in [motor].
 std::string segment(std::string_view key) {
   const bool bare = !key.empty() && std::all_of(key.begin(), key.end(), is_bare_key_character);
@@ -384,6 +422,29 @@ std::string kind_of(const Value& value) {
     case Value::Kind::other: break;
   }
   return value.text;
+}
+
+const TomlNode* TomlNode::find(std::string_view key) const {
+  for (const auto& [name, node] : members) {
+    if (name == key) return &node;
+  }
+  return nullptr;
+}
+
+TomlNode parse_toml_tree(std::string_view text, std::string_view file_name) {
+  return tree_of(parse_toml(text, Origin{std::string(file_name), 0, 0, false}));
+}
+
+std::string kind_of(const TomlNode& node) {
+  switch (node.kind) {
+    case TomlNode::Kind::text: return in_quotes(node.text);
+    case TomlNode::Kind::number: return fmt::format("the number {}", node.number);
+    case TomlNode::Kind::boolean: return node.number != 0.0 ? "true" : "false";
+    case TomlNode::Kind::array: return "an array";
+    case TomlNode::Kind::table: return "a table";
+    case TomlNode::Kind::other: break;
+  }
+  return node.text;
 }
 
 const Value* Document::find(std::string_view path) const {

@@ -1,10 +1,11 @@
-// A vehicle file as a flat list of known keys, each with its place in the file; the only user of toml++.
+// A vehicle file as a flat list of known keys, each with its place in the file; other TOML files as a tree.
 #pragma once
 
 #include <map>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "wingbeat/io/design_file.hpp"
@@ -46,6 +47,26 @@ struct Document {
   /// The place of a key, of the closest section around it, or the end of the file.
   Origin locate(std::string_view path) const;
 };
+
+/// A value of any TOML file, tables included.
+struct TomlNode {
+  enum class Kind { text, number, boolean, array, table, other };
+  Kind kind = Kind::other;
+  std::string text;     ///< the text; of `other` what it is: "a date"
+  double number = 0.0;  ///< 1 or 0 for a boolean
+  bool whole = false;   ///< a number written without fraction and exponent
+  int line = 0, column = 0;
+  std::vector<TomlNode> items;                            ///< of an array
+  std::vector<std::pair<std::string, TomlNode>> members;  ///< of a table, in the order of the file; keys unquoted
+
+  const TomlNode* find(std::string_view key) const;
+};
+
+/// A whole file as a table. Throws InputError for text that is not TOML.
+TomlNode parse_toml_tree(std::string_view text, std::string_view file_name);
+
+/// "a number", "an array": what a node is, for messages.
+std::string kind_of(const TomlNode& node);
 
 /// Throws InputError for text that is not TOML and for unknown keys.
 Document parse_document(std::string_view text, std::string_view file_name);

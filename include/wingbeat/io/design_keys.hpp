@@ -328,6 +328,9 @@ const Key<S>* find_key(std::string_view path) {
 /// "unknown key; did you mean motor.inertia?", or with the keys of its section where none is near.
 std::string unknown_key_message(std::string_view path);
 
+/// The name nearest to the given one, or empty where none is near.
+std::string_view nearest_name(std::string_view given, std::span<const std::string_view> known);
+
 /// The numeric key of that path. Throws ParameterError for an unknown key and for one that is not a number.
 template <Scalar S>
 const Key<S>& numeric_key(std::string_view path) {

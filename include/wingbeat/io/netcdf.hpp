@@ -1,7 +1,9 @@
-// NetCDF-4 files, written through the C API: dimensions, variables of doubles with units, text attributes.
+// NetCDF-4 files, written and read through the C API: dimensions, variables with units, text attributes.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -41,19 +43,60 @@ class NetcdfFile {
   /// Absent values are written as NaN, which is also what unwritten ones read as.
   Variable define_variable(const std::string& name, const std::vector<Dimension>& dimensions, const std::string& unit,
                            const std::string& long_name);
+  /// Doubles, whole numbers or small whole numbers (flags) of which every value will be written: nothing is filled in
+  /// beforehand, and what is not written is undefined.
+  enum class Storage { real, whole, flag };
+  Variable define_dense(const std::string& name, const std::vector<Dimension>& dimensions, const std::string& unit,
+                        const std::string& long_name, Storage storage = Storage::real);
+  /// One text for each place along a dimension, as characters that xarray reads as strings.
+  Variable define_texts(const std::string& name, Dimension dimension, std::span<const std::string> texts,
+                        const std::string& long_name);
   void set_attribute(const std::string& name, std::string_view text);
   void set_attribute(const Variable& variable, const std::string& name, std::string_view text);
+
+  /// What the values of a flag mean, in the manner of the CF conventions: 0, 1, 2, ...
+  void set_flags(const Variable& variable, std::span<const std::string> meanings);
 
   /// The whole variable, last dimension fastest.
   void write(const Variable& variable, std::span<const double> values);
   /// The block at `start` of extent `count`, both one entry per dimension.
   void write(const Variable& variable, std::span<const std::size_t> start, std::span<const std::size_t> count,
              std::span<const double> values);
+  /// Values that follow each other in the order of the file, from the value `first` on: any part of a variable.
+  void write_run(const Variable& variable, std::size_t first, std::span<const double> values);
+  void write_run(const Variable& variable, std::size_t first, std::span<const std::int8_t> values);
 
   void close();
 
  private:
   void check(int status, const std::string& action) const;
+
+  std::string file_;
+  int id_ = -1;
+};
+
+/// A NetCDF file open for reading. Every member throws NetcdfError.
+class NetcdfReader {
+ public:
+  explicit NetcdfReader(const std::filesystem::path& file);
+  NetcdfReader(const NetcdfReader&) = delete;
+  NetcdfReader& operator=(const NetcdfReader&) = delete;
+  ~NetcdfReader();
+
+  bool has(const std::string& variable) const;
+  /// A global text attribute, or nothing.
+  std::optional<std::string> attribute(const std::string& name) const;
+  /// The whole variable, last dimension fastest.
+  std::vector<double> read(const std::string& variable) const;
+  /// All characters of a variable of characters.
+  std::string text(const std::string& variable) const;
+  /// Values that follow each other in the order of the file, from the value `first` on.
+  void read_run(const std::string& variable, std::size_t first, std::span<double> values) const;
+  void read_run(const std::string& variable, std::size_t first, std::span<std::int8_t> values) const;
+
+ private:
+  void check(int status, const std::string& action) const;
+  NetcdfFile::Variable find(const std::string& variable) const;
 
   std::string file_;
   int id_ = -1;

@@ -1,0 +1,237 @@
+// wingbeat sweep STUDY: the steady flapping of many vehicles, into one data set.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "command.hpp"
+#include "wingbeat/io/design_file.hpp"
+#include "wingbeat/io/report.hpp"
+#include "wingbeat/io/sweep_run.hpp"
+#include "wingbeat/io/units.hpp"
+
+namespace wingbeat::app {
+namespace {
+
+struct Arguments {
+  std::string study, output;
+  std::string tolerance, isa;
+  int threads = 0;
+};
+
+volatile std::sig_atomic_t interrupted = 0;
+
+void on_signal(int) { interrupted = 1; }
+
+/// The first signal ends the sweep after the chunks under way, the second at once.
+void catch_signals() {
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  action.sa_flags = int(SA_RESETHAND) | SA_RESTART;
+  for (const int signal : {SIGINT, SIGTERM}) ::sigaction(signal, &action, nullptr);
+  // A file above the limit of the shell is an error of writing like a full disk.
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+std::string duration(double seconds) {
+  if (seconds < 0.0995) return fmt::format("{:.0f} ms", 1e3 * seconds);
+  if (seconds < 100.0) return fmt::format("{:.1f} s", seconds);
+  const long s = std::lround(seconds);
+  if (s < 6000) return fmt::format("{} min {} s", s / 60, s % 60);
+  return fmt::format("{} h {} min", s / 3600, s / 60 % 60);
+}
+
+std::string grouped(std::uint64_t n) {
+  std::string text = fmt::format("{}", n);
+  for (std::size_t at = text.size(); at > 3;) text.insert(at -= 3, 1, ',');
+  return text;
+}
+
+/// Designs per second with three digits.
+std::string rate(double designs, double seconds) {
+  const double r = designs / std::max(seconds, 1e-9);
+  const double unit = std::pow(10.0, std::max(0.0, std::floor(std::log10(std::max(r, 1.0))) - 2.0));
+  return grouped(std::uint64_t(std::llround(r / unit) * std::llround(unit)));
+}
+
+void show_progress(const SweepProgress& p) {
+  constexpr int width = 24;
+  const double share = double(p.done) / double(p.designs);
+  const int filled = int(share * width);
+  std::string bar(std::size_t(filled), '#');
+  bar.resize(width, '.');
+  const double left = double(p.designs - p.done) * p.seconds / double(std::max<std::uint64_t>(p.computed, 1));
+  const std::string line = fmt::format("\r[{}] {:5.1f} %  {} designs/s  {} left ", bar, 100.0 * share,
+                                       rate(double(p.computed), p.seconds), duration(left));
+  fmt::print(stderr, "{:<78}", line);
+}
+
+void clear_progress() { fmt::print(stderr, "\r{:<78}\r", ""); }
+
+/// The swept values of one design: "transmission_crank_radius 5.000 mm, springs on".
+std::string description(const Sweep& sweep, std::uint64_t index) {
+  const auto place = places(sweep, index);
+  std::string text;
+  for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
+    const SweepAxis& axis = sweep.axes[a];
+    for (std::size_t q = 0; q < axis.quantities.size(); ++q) {
+      const SweptQuantity& quantity = axis.quantities[q];
+      text += fmt::format("{}{} ", text.empty() ? "" : ", ", quantity.key);
+      if (quantity.kind == SweptQuantity::Kind::choice) {
+        text += quantity.labels[place[a]];
+      } else {
+        const double x = axis.value(q, place[a]);
+        const bool prefixed = quantity.unit == "m" || quantity.unit == "V" || quantity.unit == "Hz";
+        text += prefixed             ? readable(x, quantity.unit)
+                : quantity.unit == "1" ? fmt::format("{:.4g}", x)
+                                       : fmt::format("{:.4g} {}", x, quantity.unit);
+      }
+    }
+  }
+  return text;
+}
+
+std::string summary(const Study& study, const SweepResult& result) {
+  const SweepDigest& digest = result.digest;
+  const Sweep& sweep = study.sweep;
+  std::string text;
+  auto out = std::back_inserter(text);
+  if (!study.title.empty()) fmt::format_to(out, "{}\n", wrapped(study.title, 88, 0));
+  fmt::format_to(out, "{} designs", grouped(sweep.size()));
+  if (sweep.axes.size() > 1) {
+    std::string shape;
+    for (const SweepAxis& axis : sweep.axes) shape += fmt::format("{}{}", shape.empty() ? "" : " x ", axis.count);
+    fmt::format_to(out, " ({})", shape);
+  }
+  const SweepProgress& p = result.progress;
+  if (result.resumed > 0) fmt::format_to(out, ", {} of them from before", grouped(result.resumed));
+  if (p.computed > 0) {
+    fmt::format_to(out, "; {} computed in {}, {} designs/s", grouped(p.computed), duration(p.seconds),
+                   rate(double(p.computed), p.seconds));
+  }
+  text += '\n';
+  constexpr const char* meanings[sweep_status_count] = {
+      "", "the motor never starts", "the crank comes to rest at an angle",
+      "the equations of motion lose their unique solution on the way", "flapping, but not at the frequency asked for",
+      "a parameter out of its range beside the others"};
+  for (int s = 0; s < sweep_status_count; ++s) {
+    const std::uint64_t n = digest.designs[std::size_t(s)];
+    if (n == 0 && s > 0) continue;
+    fmt::format_to(out, "  {:<12}{:>14}{:>9.2f} %   {}\n", name_of(SweepStatus(s)), grouped(n),
+                   100.0 * double(n) / double(sweep.size()), meanings[s]);
+    while (text[text.size() - 2] == ' ') text.erase(text.size() - 2, 1);
+  }
+  fmt::format_to(out, "  {:<12}{:>14}{:>9.2f} %   by the scalar solver\n", "recomputed", grouped(digest.recomputed),
+                 100.0 * double(digest.recomputed) / double(sweep.size()));
+  const auto best = [&](const char* what, const std::optional<SweepDigest::Best>& b, const std::string& value) {
+    if (b) fmt::format_to(out, "{}\n", wrapped(fmt::format("{}: {}, {}", what, value, description(sweep, b->index)), 88, 2));
+  };
+  if (digest.lift) best("most mean lift", digest.lift, readable(digest.lift->value, "N"));
+  if (digest.efficiency) {
+    best("best efficiency", digest.efficiency, fmt::format("{:.2f} %", 100.0 * digest.efficiency->value));
+  }
+  return text;
+}
+
+Study study_of(const Arguments& arguments) {
+  Study study = std::filesystem::path(arguments.study).extension() == ".nc" ? read_study_in_data_set(arguments.study)
+                                                                            : read_study(arguments.study);
+  EnsembleOptions& options = study.sweep.options;
+  if (!arguments.tolerance.empty()) {
+    try {
+      options.tolerance = parse_quantity(arguments.tolerance, "1");
+    } catch (const UnitError&) {
+      options.tolerance = absent;
+    }
+    if (!(options.tolerance >= 1e-12 && options.tolerance <= 1e-2)) {
+      throw InputError("--tolerance " + arguments.tolerance, 0, 0, "", "must be a number between 1e-12 and 1e-2");
+    }
+  }
+  if (!arguments.isa.empty()) {
+    const auto known = std::find_if(std::begin(instruction_sets), std::end(instruction_sets),
+                                    [&](const auto& entry) { return entry.first == arguments.isa; });
+    const std::string option = "--isa " + arguments.isa;
+    if (known == std::end(instruction_sets)) throw InputError(option, 0, 0, "", "must be sse2, avx2 or avx512");
+    if (!is_available(known->second)) throw InputError(option, 0, 0, "", "this processor cannot run it");
+    options.isa = known->second;
+  }
+  if (arguments.threads < 0) throw InputError("--threads", 0, 0, "", "must be >= 1");
+  return study;
+}
+
+int sweep_on_rank_0(const Arguments& arguments, Ranks* ranks) {
+  SweepRunOptions options;
+  options.output = arguments.output;
+  options.version = version;
+  options.threads = arguments.threads;
+  options.ranks = ranks;
+  options.stop = [] { return interrupted != 0; };
+  const bool on_terminal = ::isatty(STDERR_FILENO) == 1;
+  if (on_terminal) options.progress = show_progress;
+
+  const Study study = study_of(arguments);
+  if (options.output.extension() != ".nc") {
+    throw InputError("-o " + arguments.output, 0, 0, "", "the name must end in .nc");
+  }
+  const SweepResult result = run_sweep(study, options);
+  if (on_terminal) clear_progress();
+  if (result.outcome == SweepResult::Outcome::stopped) {
+    complain(fmt::format("stopped after {} of {} designs; they are kept in {}, and the same command resumes",
+                         grouped(result.progress.done), grouped(result.progress.designs),
+                         journal_file(options.output).string()));
+    return failed;
+  }
+  std::string text = summary(study, result);
+  const bool was_there = result.outcome == SweepResult::Outcome::was_finished;
+  text += fmt::format("{} {}\n", arguments.output, was_there ? "holds this sweep already: nothing to compute" : "written");
+  print(text);
+  return done;
+}
+
+int sweep(const Arguments& arguments) {
+  catch_signals();
+  const std::unique_ptr<Ranks> ranks = Ranks::join();
+  if (!ranks || ranks->rank() == 0) {
+    const SweepRelease release(ranks.get());
+    return sweep_on_rank_0(arguments, ranks.get());
+  }
+  try {
+    serve_sweep(*ranks, arguments.threads);
+    return done;
+  } catch (const std::exception& error) {
+    complain(fmt::format("rank {}: {}", ranks->rank(), error.what()));
+    ranks->abort();
+  }
+}
+
+}  // namespace
+
+void add_sweep(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("sweep", "Compute very many vehicles into one data set");
+  const auto a = std::make_shared<Arguments>();
+  command->add_option("study", a->study, "Study file (TOML), or a data set of an earlier sweep (.nc)")
+      ->required()
+      ->type_name("STUDY");
+  command->add_option("-o,--output", a->output, "Data set to be written (NetCDF-4)")->required()->type_name("FILE.nc");
+  command->add_option("--tolerance", a->tolerance, "Relative accuracy of every metric, instead of the study's")
+      ->type_name("NUMBER");
+  command->add_option("--threads", a->threads, "Use at most so many threads (default: one for each core)")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--isa", a->isa, "Instructions: sse2, avx2 or avx512 (default: the widest there is)")
+      ->type_name("NAME");
+  command->footer(
+      "Example:\n"
+      "  wingbeat sweep data/studies/crank-radius.toml -o crank-radius.nc\n\n"
+      "Study files: docs/sweep.md. Stopped by Ctrl-C, or killed, the same command resumes. On several machines:\n"
+      "  mpirun -n 8 wingbeat sweep STUDY.toml -o FILE.nc\n\n"
+      "Exit status: 0 done, 2 bad input or usage, 1 anything else, a sweep that was stopped included.");
+  command->callback([a, &action] { action = [a] { return sweep(*a); }; });
+}
+
+}  // namespace wingbeat::app

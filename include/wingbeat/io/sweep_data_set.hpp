@@ -1,0 +1,48 @@
+// The data set of a sweep: NetCDF-4 with a dimension for each axis and a variable for each metric; docs/sweep.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "wingbeat/io/study_file.hpp"
+#include "wingbeat/io/sweep_journal.hpp"
+
+namespace wingbeat {
+
+/// What a finished sweep holds, in short.
+struct SweepDigest {
+  std::array<std::uint64_t, sweep_status_count> designs{};  ///< by SweepStatus
+  std::uint64_t recomputed = 0;                             ///< by the scalar solver
+  struct Best {
+    std::uint64_t index;
+    double value;
+  };
+  std::optional<Best> lift;        ///< most lift_mean [N], if kept
+  std::optional<Best> efficiency;  ///< most efficiency_system [1], if kept
+};
+
+/// Stands for everything that a data set depends on: study, vehicle, options, instruction set, version.
+std::uint64_t fingerprint(const Study& study, std::string_view version);
+
+/// Writes the whole data set from the chunks of a journal, one after the other. Throws NetcdfError.
+SweepDigest write_sweep(const std::filesystem::path& file, const Study& study, std::string_view version,
+                        const SweepJournal& journal);
+
+/// What a data set holds. Throws NetcdfError.
+SweepDigest digest_of(const std::filesystem::path& file, const Study& study);
+
+/// The study that a data set was made from. Throws InputError.
+Study read_study_in_data_set(const std::filesystem::path& file);
+
+/// What stands under the name of an output: nothing, this very sweep, or something that must not be overwritten.
+enum class Standing { nothing, same_sweep };
+/// Throws InputError for anything else, with the reason; `option` is what the path was given for.
+Standing standing_of(const std::filesystem::path& file, std::uint64_t fingerprint, const std::string& option);
+
+/// Bytes of the data set, nearly.
+std::uint64_t data_set_size(const Study& study);
+
+}  // namespace wingbeat

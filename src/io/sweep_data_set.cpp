@@ -1,0 +1,262 @@
+#include "wingbeat/io/sweep_data_set.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <utility>
+
+#include "wingbeat/io/netcdf.hpp"
+#include "wingbeat/io/units.hpp"
+
+namespace wingbeat {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr const char* fingerprint_attribute = "wingbeat_fingerprint";
+
+std::vector<Metric> kept_metrics(const Sweep& sweep) {
+  std::vector<Metric> kept;
+  for (int m = 0; m < metric_count; ++m) {
+    if (sweep.options.metrics[std::size_t(m)]) kept.push_back(Metric(m));
+  }
+  return kept;
+}
+
+const MetricInfo& info(Metric metric) { return metric_table()[std::size_t(metric)]; }
+
+/// Counts designs and keeps the best, in the order of their indices.
+class Digester {
+ public:
+  explicit Digester(const Sweep& sweep) {
+    const auto kept = kept_metrics(sweep);
+    for (std::size_t m = 0; m < kept.size(); ++m) {
+      if (kept[m] == Metric::lift_mean) lift_ = int(m);
+      if (kept[m] == Metric::efficiency_system) efficiency_ = int(m);
+    }
+  }
+
+  void add(const SweepColumns& columns) {
+    for (std::size_t row = 0; row < columns.status.size(); ++row) {
+      ++digest_.designs[std::size_t(columns.status[row])];
+      digest_.recomputed += columns.recomputed[row] != 0;
+    }
+    if (lift_ >= 0) best(digest_.lift, columns, lift_);
+    if (efficiency_ >= 0) best(digest_.efficiency, columns, efficiency_);
+  }
+
+  const SweepDigest& digest() const { return digest_; }
+
+ private:
+  static void best(std::optional<SweepDigest::Best>& best, const SweepColumns& columns, int metric) {
+    const auto& values = columns.metrics[std::size_t(metric)];
+    for (std::size_t row = 0; row < values.size(); ++row) {
+      if (std::isfinite(values[row]) && (!best || values[row] > best->value)) best = {columns.first + row, values[row]};
+    }
+  }
+
+  SweepDigest digest_;
+  int lift_ = -1, efficiency_ = -1;
+};
+
+std::string title_of(const Study& study) { return study.title.empty() ? "Sweep of a flapping vehicle" : study.title; }
+
+/// Texts longer than an attribute should be go into a variable of characters.
+void write_input(NetcdfFile& file, const Study& study, std::string_view version) {
+  const Sweep& sweep = study.sweep;
+  file.set_attribute("Conventions", "CF-1.8");
+  file.set_attribute("title", title_of(study));
+  file.set_attribute("source", fmt::format("wingbeat {} sweep", version));
+  file.set_attribute("wingbeat_version", version);
+  file.set_attribute("study", study.input.study);
+  file.set_attribute("study_name", study.input.study_name);
+  file.set_attribute("vehicle", study.input.vehicle);
+  if (!study.input.table.empty()) file.set_attribute("samples_name", study.input.table_name);
+  file.set_attribute("tolerance", fmt::format("{}", sweep.options.tolerance));
+  for (const auto& [name, isa] : instruction_sets) {
+    if (isa == sweep.options.isa) file.set_attribute("instruction_set", name);
+  }
+  file.set_attribute("comment",
+                     "wingbeat sweep FILE.nc -o NEW.nc computes this data set again: `study` is the study file, "
+                     "`vehicle` the vehicle with [set] applied. Metrics are NaN where status is not flapping, or where "
+                     "the vehicle lacks what they need.");
+}
+
+}  // namespace
+
+std::uint64_t fingerprint(const Study& study, std::string_view version) {
+  std::uint64_t sum = 1;
+  const auto add = [&](std::string_view text) { sum = checksum(std::as_bytes(std::span(text)), sum); };
+  add("1");
+  add(version);
+  add(study.input.study);
+  add(study.input.vehicle);
+  add(study.input.table);
+  add(fmt::format("{} {} {} {}", study.sweep.options.tolerance, int(study.sweep.options.isa),
+                  study.sweep.options.scalar_only, study.sweep.options.metrics.to_string()));
+  return sum;
+}
+
+SweepDigest write_sweep(const fs::path& path, const Study& study, std::string_view version,
+                        const SweepJournal& journal) {
+  const Sweep& sweep = study.sweep;
+  using Storage = NetcdfFile::Storage;
+  NetcdfFile file(path);
+  write_input(file, study, version);
+  file.set_attribute(fingerprint_attribute, fmt::format("{:016x}", fingerprint(study, version)));
+
+  std::vector<NetcdfFile::Dimension> dimensions;
+  for (const SweepAxis& axis : sweep.axes) {
+    dimensions.push_back(file.define_dimension(axis.name, std::size_t(axis.count)));
+  }
+  // All definitions first: a change of what is defined rewrites the beginning of the file.
+  std::string auxiliary;
+  std::vector<std::vector<NetcdfFile::Variable>> coordinates(sweep.axes.size());
+  for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
+    const SweepAxis& axis = sweep.axes[a];
+    for (const SweptQuantity& q : axis.quantities) {
+      const std::string meaning = fmt::format("{} ({})", q.meaning, q.key);
+      NetcdfFile::Variable variable{};
+      if (q.kind == SweptQuantity::Kind::choice) {
+        variable = file.define_texts(q.name, dimensions[a], q.labels, meaning);
+      } else {
+        variable = file.define_dense(q.name, {dimensions[a]}, q.unit, meaning);
+      }
+      file.set_attribute(variable, "wingbeat_key", q.key);
+      if (q.name != axis.name) auxiliary += (auxiliary.empty() ? "" : " ") + q.name;
+      coordinates[a].push_back(variable);
+    }
+  }
+  const auto define = [&](const char* name, const char* unit, const char* meaning, Storage storage) {
+    const auto variable = file.define_dense(name, dimensions, unit, meaning, storage);
+    if (!auxiliary.empty()) file.set_attribute(variable, "coordinates", auxiliary);
+    return variable;
+  };
+  const auto status = define("status", "1", "what the vehicle does from rest", Storage::flag);
+  std::vector<std::string> meanings;
+  for (int s = 0; s < sweep_status_count; ++s) meanings.push_back(name_of(SweepStatus(s)));
+  file.set_flags(status, meanings);
+  const auto recomputed = define("recomputed", "1", "solver that gave the result", Storage::flag);
+  file.set_flags(recomputed, std::vector<std::string>{"batch", "scalar"});
+  const auto error = define("error_estimate", "1", "estimated relative error of the metrics", Storage::real);
+  std::vector<NetcdfFile::Variable> metrics;
+  for (const Metric m : kept_metrics(sweep)) {
+    metrics.push_back(define(info(m).key, info(m).unit, info(m).long_name, Storage::real));
+  }
+  std::optional<NetcdfFile::Variable> table;
+  if (!study.input.table.empty()) {
+    const std::string texts[] = {study.input.table};
+    table = file.define_texts("samples_file", file.define_dimension("samples_file_count", 1), texts,
+                              "the CSV file of the designs");
+  }
+
+  std::vector<double> block;
+  for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
+    const SweepAxis& axis = sweep.axes[a];
+    for (std::size_t q = 0; q < axis.quantities.size(); ++q) {
+      if (axis.quantities[q].kind == SweptQuantity::Kind::choice) continue;
+      for (std::uint64_t first = 0; first < axis.count; first += 8192) {
+        block.clear();
+        const std::uint64_t end = std::min<std::uint64_t>(axis.count, first + 8192);
+        for (std::uint64_t n = first; n < end; ++n) block.push_back(axis.value(q, n));
+        file.write_run(coordinates[a][q], std::size_t(first), block);
+      }
+    }
+  }
+
+  const ChunkLayout layout = layout_of(sweep);
+  Digester digester(sweep);
+  std::vector<std::byte> bytes;
+  SweepColumns columns;
+  for (std::uint64_t c = 0; c < layout.chunks(); ++c) {
+    journal.read(c, bytes);
+    unpack(layout, c, bytes, columns);
+    digester.add(columns);
+    const std::size_t first = std::size_t(columns.first);
+    file.write_run(status, first, columns.status);
+    file.write_run(recomputed, first, columns.recomputed);
+    file.write_run(error, first, columns.error_estimate);
+    for (std::size_t m = 0; m < metrics.size(); ++m) file.write_run(metrics[m], first, columns.metrics[m]);
+  }
+  file.close();
+  return digester.digest();
+}
+
+SweepDigest digest_of(const fs::path& path, const Study& study) {
+  const NetcdfReader file(path);
+  const ChunkLayout layout = layout_of(study.sweep);
+  const std::vector<Metric> kept = kept_metrics(study.sweep);
+  Digester digester(study.sweep);
+  SweepColumns columns;
+  std::vector<double> values;
+  for (std::uint64_t c = 0; c < layout.chunks(); ++c) {
+    columns.first = layout.first(c);
+    columns.resize(std::size_t(layout.size(c)), kept.size());
+    file.read_run("status", columns.first, columns.status);
+    file.read_run("recomputed", columns.first, columns.recomputed);
+    for (std::size_t m = 0; m < kept.size(); ++m) {
+      const bool wanted = kept[m] == Metric::lift_mean || kept[m] == Metric::efficiency_system;
+      if (wanted) file.read_run(info(kept[m]).key, columns.first, columns.metrics[m]);
+    }
+    digester.add(columns);
+  }
+  return digester.digest();
+}
+
+Study read_study_in_data_set(const fs::path& path) {
+  const auto refuse = [&](const std::string& reason) { throw InputError(path.string(), 0, 0, "", reason); };
+  std::error_code error;
+  if (!fs::exists(path, error)) refuse("no such file");
+  try {
+    const NetcdfReader file(path);
+    StudyInput input;
+    const auto study = file.attribute("study"), vehicle = file.attribute("vehicle"),
+               tolerance = file.attribute("tolerance");
+    if (!study || !vehicle || !tolerance) refuse("holds no study: it was not written by wingbeat sweep");
+    input.study_name = path.string() + " (study)";
+    if (const auto name = file.attribute("study_name")) input.study_name = *name;
+    input.study = *study;
+    input.vehicle = *vehicle;
+    if (file.has("samples_file")) input.table = file.text("samples_file");
+    if (const auto name = file.attribute("samples_name")) input.table_name = *name;
+    Study result = parse_study(input);
+    result.sweep.options.tolerance = std::strtod(tolerance->c_str(), nullptr);
+    return result;
+  } catch (const NetcdfError& e) {
+    refuse("cannot be read as a data set");
+    throw;
+  }
+}
+
+Standing standing_of(const fs::path& path, std::uint64_t fingerprint, const std::string& option) {
+  const auto refuse = [&](const std::string& reason) {
+    throw InputError(fmt::format("{} {}", option, path.string()), 0, 0, "",
+                     reason + "; it is left as it is: move it away, or give another name");
+  };
+  std::error_code error;
+  const auto status = fs::status(path, error);
+  if (!fs::exists(status)) return Standing::nothing;
+  if (fs::is_directory(status)) throw InputError(fmt::format("{} {}", option, path.string()), 0, 0, "", "is a folder");
+  if (!fs::is_regular_file(status)) refuse("is not a regular file");
+  std::optional<std::string> found;
+  try {
+    found = NetcdfReader(path).attribute(fingerprint_attribute);
+  } catch (const NetcdfError&) {
+    refuse("exists and cannot be read as a data set (foreign, damaged or cut off)");
+  }
+  if (!found) refuse("exists and is no data set of wingbeat sweep");
+  if (*found != fmt::format("{:016x}", fingerprint)) {
+    refuse("holds another sweep (another study, vehicle, option or version of the program)");
+  }
+  return Standing::same_sweep;
+}
+
+std::uint64_t data_set_size(const Study& study) {
+  const Sweep& sweep = study.sweep;
+  std::uint64_t bytes = 100000 + study.input.study.size() + study.input.vehicle.size() + study.input.table.size();
+  for (const SweepAxis& axis : sweep.axes) bytes += 8 * axis.count * axis.quantities.size();
+  return bytes + sweep.size() * (2 + 8 * (1 + sweep.options.metrics.count()));
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,155 @@
+#include "wingbeat/study/sweep.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "wingbeat/core/status.hpp"
+#include "wingbeat/study/ensemble_frequency.hpp"
+
+namespace wingbeat {
+namespace {
+
+/// Sets the numbers of one place along each axis; gives the held frequency.
+double set_numbers(const Sweep& sweep, std::span<const std::uint64_t> place, SweepVariant& variant) {
+  double frequency = sweep.frequency.value_or(absent);
+  for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
+    const SweepAxis& axis = sweep.axes[a];
+    for (std::size_t q = 0; q < axis.quantities.size(); ++q) {
+      const SweptQuantity& quantity = axis.quantities[q];
+      if (quantity.kind == SweptQuantity::Kind::number) quantity.set(variant.design, axis.value(q, place[a]));
+      if (quantity.kind == SweptQuantity::Kind::frequency) frequency = axis.value(q, place[a]);
+    }
+  }
+  if (!variant.springs) variant.design.spring = {};
+  return frequency;
+}
+
+std::size_t variant_at(const Sweep& sweep, std::span<const std::uint64_t> place) {
+  std::uint64_t variant = 0;
+  for (std::size_t a = 0; a < place.size(); ++a) variant += sweep.variant_stride[a] * place[a];
+  return std::size_t(variant);
+}
+
+void next(const Sweep& sweep, std::span<std::uint64_t> place) {
+  for (std::size_t a = place.size(); a-- > 0;) {
+    if (++place[a] < sweep.axes[a].count) return;
+    place[a] = 0;
+  }
+}
+
+SweepStatus status_of(FlappingStatus status) { return SweepStatus(int(status)); }
+static_assert(int(SweepStatus::jammed) == int(FlappingStatus::jammed));
+
+}  // namespace
+
+double SweepAxis::value(std::size_t quantity, std::uint64_t place) const {
+  const SweptQuantity& q = quantities[quantity];
+  if (!q.values.empty()) return q.values[place];
+  const double u = sobol ? (*sobol)(place, quantity) : (*latin_hypercube)(place, quantity);
+  if (q.logarithmic) return std::clamp(q.low * std::exp(u * std::log(q.high / q.low)), q.low, q.high);
+  return std::clamp(q.low + u * (q.high - q.low), q.low, q.high);
+}
+
+std::uint64_t Sweep::size() const {
+  std::uint64_t product = 1;
+  for (const SweepAxis& axis : axes) product *= axis.count;
+  return product;
+}
+
+std::vector<std::uint64_t> places(const Sweep& sweep, std::uint64_t index) {
+  std::vector<std::uint64_t> place(sweep.axes.size());
+  for (std::size_t a = place.size(); a-- > 0;) {
+    place[a] = index % sweep.axes[a].count;
+    index /= sweep.axes[a].count;
+  }
+  return place;
+}
+
+const char* name_of(SweepStatus status) {
+  switch (status) {
+    case SweepStatus::unreached: return "unreached";
+    case SweepStatus::invalid: return "invalid";
+    default: return name_of(FlappingStatus(int(status)));
+  }
+}
+
+SweepDesign design_at(const Sweep& sweep, std::uint64_t index) {
+  const auto place = places(sweep, index);
+  SweepVariant variant = sweep.variants[variant_at(sweep, place)];
+  const double frequency = set_numbers(sweep, place, variant);
+  return {variant.design, variant.condition, std::isnan(frequency) ? std::nullopt : std::optional(frequency)};
+}
+
+void SweepColumns::resize(std::size_t designs, std::size_t metrics_kept) {
+  status.resize(designs);
+  recomputed.resize(designs);
+  error_estimate.resize(designs);
+  metrics.resize(metrics_kept);
+  for (auto& column : metrics) column.resize(designs);
+}
+
+SweepSolver::SweepSolver(const Sweep& sweep, StartUp start_up)
+    : sweep_(sweep), start_up_(std::move(start_up)), holds_frequency_(sweep.frequency), variants_(sweep.variants) {
+  for (int m = 0; m < metric_count; ++m) {
+    if (sweep.options.metrics[std::size_t(m)]) kept_.push_back(m);
+  }
+  for (const SweepAxis& axis : sweep.axes) {
+    for (const SweptQuantity& q : axis.quantities) {
+      holds_frequency_ = holds_frequency_ || q.kind == SweptQuantity::Kind::frequency;
+    }
+  }
+  members_.reserve(sweep_block);
+  rows_.reserve(sweep_block);
+  frequencies_.reserve(sweep_block);
+}
+
+void SweepSolver::gather(SweepColumns& columns, std::size_t begin, std::size_t end) {
+  members_.clear();
+  rows_.clear();
+  frequencies_.clear();
+  auto place = places(sweep_, columns.first + begin);
+  for (std::size_t row = begin; row < end; ++row, next(sweep_, place)) {
+    SweepVariant& variant = variants_[variant_at(sweep_, place)];
+    const double frequency = set_numbers(sweep_, place, variant);
+    try {
+      validate(variant.design);
+    } catch (const ParameterError&) {
+      columns.status[row] = std::int8_t(SweepStatus::invalid);
+      continue;
+    }
+    members_.push_back({resolve(variant.design, variant.condition), reporting_of(variant.design)});
+    rows_.push_back(row);
+    frequencies_.push_back(frequency);
+  }
+}
+
+void SweepSolver::solve(SweepColumns& columns, std::size_t begin, std::size_t end) {
+  gather(columns, begin, end);
+  for (std::size_t row = begin; row < end; ++row) {
+    columns.recomputed[row] = 0;
+    columns.error_estimate[row] = absent;
+    for (auto& column : columns.metrics) column[row] = absent;
+  }
+  outcomes_.resize(members_.size());
+  reached_.assign(members_.size(), FrequencyOutcome::reached);
+  if (holds_frequency_) {
+    solve_ensemble_at_frequency(members_, frequencies_, sweep_.options, start_up_, outcomes_, reached_);
+  } else {
+    solve_ensemble(members_, sweep_.options, start_up_, outcomes_);
+  }
+  for (std::size_t n = 0; n < members_.size(); ++n) {
+    const std::size_t row = rows_[n];
+    const EnsembleOutcome& out = outcomes_[n];
+    const bool flaps = out.status == FlappingStatus::flapping;
+    const bool unreached = flaps && reached_[n] != FrequencyOutcome::reached;
+    columns.status[row] = std::int8_t(unreached ? SweepStatus::unreached : status_of(out.status));
+    columns.recomputed[row] = out.scalar ? 1 : 0;
+    if (!flaps || unreached) continue;
+    columns.error_estimate[row] = out.error_estimate;
+    for (std::size_t m = 0; m < kept_.size(); ++m) {
+      columns.metrics[m][row] = out.metrics.values[std::size_t(kept_[m])];
+    }
+  }
+}
+
+}  // namespace wingbeat
