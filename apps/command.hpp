@@ -24,5 +24,6 @@ using Action = std::function<int()>;
 void add_run(CLI::App& program, Action& action);
 void add_compare(CLI::App& program, Action& action);
 void add_sweep(CLI::App& program, Action& action);
+void add_identify_motor(CLI::App& program, Action& action);
 
 }  // namespace wingbeat::app

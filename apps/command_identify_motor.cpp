@@ -1,0 +1,88 @@
+// wingbeat identify-motor DATASHEET: a motor's constants from what its maker publishes.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "command.hpp"
+#include "wingbeat/io/datasheet_file.hpp"
+#include "wingbeat/io/design_file.hpp"
+#include "wingbeat/io/output_file.hpp"
+#include "wingbeat/io/units.hpp"
+
+namespace wingbeat::app {
+namespace {
+
+struct Arguments {
+  std::string file, output, frequency;
+  std::vector<std::string> fallbacks;
+  bool json = false;
+};
+
+int run(const Arguments& arguments) {
+  std::optional<double> frequency;
+  if (!arguments.frequency.empty()) {
+    try {
+      frequency = parse_quantity(arguments.frequency, "Hz");
+    } catch (const UnitError& error) {
+      throw InputError("--frequency", 0, 0, "", error.what());
+    }
+    if (!(*frequency > 0.0)) throw InputError("--frequency", 0, 0, "", "must be > 0 Hz");
+  }
+  MotorDatasheet sheet = read_datasheet(arguments.file);
+  for (const std::string& fallback : arguments.fallbacks) {
+    if (fallback == "inertia=solid-steel-cylinder") {
+      sheet.assume_steel_cylinder = true;
+    } else if (fallback == "viscous_damping=typical") {
+      sheet.assume_typical_damping = true;
+    } else {
+      throw InputError("--fallback " + one_line(fallback), 0, 0, "",
+                       "must be inertia=solid-steel-cylinder or viscous_damping=typical");
+    }
+  }
+  std::optional<OutputFile> output;
+  if (!arguments.output.empty()) {
+    std::error_code error;
+    if (std::filesystem::equivalent(arguments.output, arguments.file, error)) {
+      throw InputError("--output " + arguments.output, 0, 0, "", "is the data sheet itself");
+    }
+    output.emplace("--output", arguments.output);
+  }
+  const MotorIdentification motor = identify_motor(sheet, frequency);
+  print(arguments.json ? json_identification(motor, sheet) : text_identification(motor, sheet));
+  if (!motor.complete()) {
+    complain(fmt::format("{}: the data sheet does not determine the motor{}", arguments.file,
+                         output ? ": no file was written" : ""));
+    return bad_input;
+  }
+  if (output) {
+    output->write(motor_section(motor, sheet,
+                                fmt::format("Identified by wingbeat {} identify-motor from {}", version,
+                                            std::filesystem::path(arguments.file).filename().string())));
+    output->commit();
+  }
+  return done;
+}
+
+}  // namespace
+
+void add_identify_motor(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("identify-motor", "Find a motor's constants from its data sheet");
+  const auto a = std::make_shared<Arguments>();
+  command->add_option("datasheet", a->file, "Data sheet (TOML)")->required()->type_name("DATASHEET");
+  command->add_option("-o,--output", a->output, "Write the [motor] section of a vehicle file")->type_name("FILE");
+  command->add_option("--frequency", a->frequency, "Flapping frequency in mind, for the inductance's effect")
+      ->type_name("QUANTITY");
+  command
+      ->add_option("--fallback", a->fallbacks,
+                   "Assume what the sheet lacks: inertia=solid-steel-cylinder or viscous_damping=typical; repeatable")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  command->add_flag("--json", a->json, "Print one JSON object instead of a table");
+  command->footer("Example:\n  wingbeat identify-motor data/motors/0816K003SR.toml -o motor.toml\n\n"
+                  "Exit status: 0 identified, 2 bad input, or the sheet does not determine the motor.");
+  command->callback([a, &action] { action = [a] { return run(*a); }; });
+}
+
+}  // namespace wingbeat::app

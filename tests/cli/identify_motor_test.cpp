@@ -1,0 +1,56 @@
+#include <gmock/gmock.h>
+
+#include "program.hpp"
+
+namespace cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class IdentifyMotor : public Program {};
+
+const std::string faulhaber = data + "/motors/0816K003SR.toml";
+
+TEST_F(IdentifyMotor, WritesAMotorThatAVehicleFileTakes) {
+  const std::string out = path("motor.toml");
+  const Outcome o = run({"identify-motor", faulhaber, "-o", out});
+  EXPECT_EQ(o.status, 0);
+  EXPECT_THAT(o.err, IsEmpty());
+  EXPECT_THAT(o.out, HasSubstr("resistance and stall torque disagree about the armature resistance by 1.9 %"));
+  std::string vehicle = read(plain);
+  const auto from = vehicle.find("[motor]"), to = vehicle.find("[transmission]");
+  vehicle.replace(from, to - from, read(out) + "\n");
+  std::ofstream(path("vehicle.toml")) << vehicle;
+  EXPECT_EQ(run({"run", path("vehicle.toml"), "--condition", "wingless"}).status, 0);
+}
+
+TEST_F(IdentifyMotor, JsonHoldsConstantsAndContradictions) {
+  const Json json = run({"identify-motor", faulhaber, "--json"}).json();
+  EXPECT_EQ(json["complete"], true);
+  EXPECT_NEAR(json["motor"]["armature_resistance"]["value"].get<double>(), 5.4, 0.1);
+  EXPECT_NEAR(json["motor"]["inertia"]["value"].get<double>(), 400.0 * 5.1e-9, 1e-15);
+  EXPECT_GT(json["contradictions"].size(), 0U);
+}
+
+TEST_F(IdentifyMotor, AnIncompleteSheetIsRefusedByName) {
+  std::ofstream(path("sheet.toml")) << "[datasheet]\nvoltage = \"6 V\"\nno_load_speed = \"270 rpm\"\n"
+                                       "no_load_current = \"20 mA\"\nstall_torque = \"43 mN m\"\n"
+                                       "stall_current = \"0.36 A\"\nrotor_diameter = \"7 mm\"\nrotor_length = \"8 mm\"\n";
+  const Outcome o = run({"identify-motor", path("sheet.toml"), "-o", path("motor.toml"), "--frequency", "22 Hz"});
+  EXPECT_EQ(o.status, 2);
+  EXPECT_THAT(o.out, HasSubstr("rotor inertia: give rotor_inertia or mechanical_time_constant"));
+  EXPECT_THAT(o.out, HasSubstr("no inductance given: assumed 0; at 22 Hz"));
+  EXPECT_THAT(o.err, HasSubstr("does not determine the motor: no file was written"));
+  EXPECT_THAT(files(), testing::ElementsAre("sheet.toml"));
+  EXPECT_EQ(run({"identify-motor", path("sheet.toml"), "--fallback", "inertia=solid-steel-cylinder"}).status, 0);
+  EXPECT_THAT(run({"identify-motor", path("sheet.toml"), "--fallback", "inertia=wood"}).err,
+              HasSubstr("must be inertia=solid-steel-cylinder or viscous_damping=typical"));
+}
+
+TEST_F(IdentifyMotor, HelpShowsAnExampleThatRuns) {
+  EXPECT_THAT(run({"identify-motor", "--help"}).out, HasSubstr("wingbeat identify-motor data/motors/0816K003SR.toml"));
+}
+
+}  // namespace
+}  // namespace cli
