@@ -183,7 +183,7 @@ int sweep_on_rank_0(const Arguments& arguments, Ranks* ranks) {
   if (result.outcome == SweepResult::Outcome::stopped) {
     complain(fmt::format("stopped after {} of {} designs; they are kept in {}, and the same command resumes",
                          grouped(result.progress.done), grouped(result.progress.designs),
-                         journal_file(options.output).string()));
+                         unfinished_file(options.output).string()));
     return failed;
   }
   std::string text = summary(study, result);

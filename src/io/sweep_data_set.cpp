@@ -1,6 +1,7 @@
 #include "wingbeat/io/sweep_data_set.hpp"
 
 #include <fmt/format.h>
+#include <hdf5.h>
 
 #include <charconv>
 #include <cmath>
@@ -60,6 +61,30 @@ class Digester {
   int lift_ = -1, efficiency_ = -1;
 };
 
+struct CloseHdf5 {
+  herr_t (*close)(hid_t);
+  hid_t id;
+  ~CloseHdf5() {
+    if (id >= 0) close(id);
+  }
+};
+
+/// Where the values of contiguous variables begin in a NetCDF-4 file [bytes].
+std::vector<std::uint64_t> places_in_file(const fs::path& path, const std::vector<std::string>& names) {
+  const auto failed = [&](const std::string& name) {
+    throw NetcdfError(fmt::format("{}: cannot find the place of {}", path.string(), name));
+  };
+  const CloseHdf5 file{H5Fclose, H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT)};
+  std::vector<std::uint64_t> places;
+  for (const std::string& name : names) {
+    const CloseHdf5 variable{H5Dclose, H5Dopen2(file.id, name.c_str(), H5P_DEFAULT)};
+    const haddr_t place = variable.id >= 0 ? H5Dget_offset(variable.id) : HADDR_UNDEF;
+    if (place == HADDR_UNDEF) failed(name);
+    places.push_back(place);
+  }
+  return places;
+}
+
 std::string title_of(const Study& study) { return study.title.empty() ? "Sweep of a flapping vehicle" : study.title; }
 
 /// Texts longer than an attribute should be go into a variable of characters.
@@ -88,7 +113,7 @@ void write_input(NetcdfFile& file, const Study& study, std::string_view version)
 std::uint64_t fingerprint(const Study& study, std::string_view version) {
   std::uint64_t sum = 1;
   const auto add = [&](std::string_view text) { sum = checksum(std::as_bytes(std::span(text)), sum); };
-  add("1");
+  add("2");
   add(version);
   add(study.input.study);
   add(study.input.vehicle);
@@ -98,8 +123,7 @@ std::uint64_t fingerprint(const Study& study, std::string_view version) {
   return sum;
 }
 
-SweepDigest write_sweep(const fs::path& path, const Study& study, std::string_view version,
-                        const SweepJournal& journal) {
+std::vector<std::uint64_t> prepare_data_set(const fs::path& path, const Study& study, std::string_view version) {
   const Sweep& sweep = study.sweep;
   using Storage = NetcdfFile::Storage;
   NetcdfFile file(path);
@@ -133,21 +157,20 @@ SweepDigest write_sweep(const fs::path& path, const Study& study, std::string_vi
     if (!auxiliary.empty()) file.set_attribute(variable, "coordinates", auxiliary);
     return variable;
   };
-  const auto status = define("status", "1", "what the vehicle does from rest", Storage::flag);
+  std::vector<NetcdfFile::Variable> columns;
+  columns.push_back(define("status", "1", "what the vehicle does from rest", Storage::flag));
   std::vector<std::string> meanings;
   for (int s = 0; s < sweep_status_count; ++s) meanings.push_back(name_of(SweepStatus(s)));
-  file.set_flags(status, meanings);
-  const auto recomputed = define("recomputed", "1", "solver that gave the result", Storage::flag);
-  file.set_flags(recomputed, std::vector<std::string>{"batch", "scalar"});
-  const auto error = define("error_estimate", "1", "estimated relative error of the metrics", Storage::real);
-  std::vector<NetcdfFile::Variable> metrics;
+  file.set_flags(columns.back(), meanings);
+  columns.push_back(define("recomputed", "1", "solver that gave the result", Storage::flag));
+  file.set_flags(columns.back(), std::vector<std::string>{"batch", "scalar"});
+  columns.push_back(define("error_estimate", "1", "estimated relative error of the metrics", Storage::real));
   for (const Metric m : kept_metrics(sweep)) {
-    metrics.push_back(define(info(m).key, info(m).unit, info(m).long_name, Storage::real));
+    columns.push_back(define(info(m).key, info(m).unit, info(m).long_name, Storage::real));
   }
-  std::optional<NetcdfFile::Variable> table;
   if (!study.input.table.empty()) {
     const std::string texts[] = {study.input.table};
-    table = file.define_texts("samples_file", file.define_dimension("samples_file_count", 1), texts,
+    file.define_texts("samples_file", file.define_dimension("samples_file_count", 1), texts,
                               "the CSV file of the designs");
   }
 
@@ -165,22 +188,19 @@ SweepDigest write_sweep(const fs::path& path, const Study& study, std::string_vi
     }
   }
 
+  // A value at the end makes room for all before it.
+  const std::size_t last = std::size_t(sweep.size() - 1);
+  const double nothing = 0.0;
+  const std::int8_t no_flag = 0;
   const ChunkLayout layout = layout_of(sweep);
-  Digester digester(sweep);
-  std::vector<std::byte> bytes;
-  SweepColumns columns;
-  for (std::uint64_t c = 0; c < layout.chunks(); ++c) {
-    journal.read(c, bytes);
-    unpack(layout, c, bytes, columns);
-    digester.add(columns);
-    const std::size_t first = std::size_t(columns.first);
-    file.write_run(status, first, columns.status);
-    file.write_run(recomputed, first, columns.recomputed);
-    file.write_run(error, first, columns.error_estimate);
-    for (std::size_t m = 0; m < metrics.size(); ++m) file.write_run(metrics[m], first, columns.metrics[m]);
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    if (layout.bytes_of_value(c) == 1) file.write_run(columns[c], last, std::span(&no_flag, 1));
+    else file.write_run(columns[c], last, std::span(&nothing, 1));
   }
   file.close();
-  return digester.digest();
+  std::vector<std::string> names = {"status", "recomputed", "error_estimate"};
+  for (const Metric m : kept_metrics(sweep)) names.push_back(info(m).key);
+  return places_in_file(path, names);
 }
 
 SweepDigest digest_of(const fs::path& path, const Study& study) {

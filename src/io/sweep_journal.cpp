@@ -26,7 +26,7 @@ struct Header {
 };
 static_assert(sizeof(Header) == 48);
 
-struct RecordHead {
+struct Record {
   std::uint64_t chunk;
   std::uint64_t checksum;
 };
@@ -56,7 +56,10 @@ bool write_at(int file, const void* from, std::size_t length, std::uint64_t offs
 
 }  // namespace
 
-std::uint64_t ChunkLayout::bytes() const { return ((2 * chunk + 7) & ~std::uint64_t(7)) + 8 * chunk * (1 + metrics); }
+std::uint64_t ChunkLayout::begin(std::size_t column) const {
+  const std::uint64_t flags = (2 * chunk + 7) & ~std::uint64_t(7);
+  return column < 2 ? column * chunk : flags + 8 * chunk * (column - 2);
+}
 
 ChunkLayout layout_of(const Sweep& sweep) {
   const std::uint64_t designs = sweep.size();
@@ -64,26 +67,17 @@ ChunkLayout layout_of(const Sweep& sweep) {
 }
 
 void pack(const ChunkLayout& layout, const SweepColumns& columns, std::vector<std::byte>& bytes) {
-  bytes.assign(layout.bytes(), std::byte(0));
-  std::byte* at = bytes.data();
   const std::size_t n = columns.status.size();
-  std::memcpy(at, columns.status.data(), n);
-  std::memcpy(at + layout.chunk, columns.recomputed.data(), n);
-  at += (2 * layout.chunk + 7) & ~std::uint64_t(7);
-  std::memcpy(at, columns.error_estimate.data(), 8 * n);
-  for (const auto& column : columns.metrics) std::memcpy(at += 8 * layout.chunk, column.data(), 8 * n);
-}
-
-void unpack(const ChunkLayout& layout, std::uint64_t chunk, std::span<const std::byte> bytes, SweepColumns& columns) {
-  const std::size_t n = std::size_t(layout.size(chunk));
-  columns.first = layout.first(chunk);
-  columns.resize(n, std::size_t(layout.metrics));
-  const std::byte* at = bytes.data();
-  std::memcpy(columns.status.data(), at, n);
-  std::memcpy(columns.recomputed.data(), at + layout.chunk, n);
-  at += (2 * layout.chunk + 7) & ~std::uint64_t(7);
-  std::memcpy(columns.error_estimate.data(), at, 8 * n);
-  for (auto& column : columns.metrics) std::memcpy(column.data(), at += 8 * layout.chunk, 8 * n);
+  bytes.resize(layout.bytes());
+  if (n < layout.chunk) std::fill(bytes.begin(), bytes.end(), std::byte(0));
+  std::fill(bytes.begin() + std::ptrdiff_t(2 * layout.chunk), bytes.begin() + std::ptrdiff_t(layout.begin(2)),
+            std::byte(0));
+  std::memcpy(bytes.data(), columns.status.data(), n);
+  std::memcpy(bytes.data() + layout.begin(1), columns.recomputed.data(), n);
+  std::memcpy(bytes.data() + layout.begin(2), columns.error_estimate.data(), 8 * n);
+  for (std::size_t m = 0; m < columns.metrics.size(); ++m) {
+    std::memcpy(bytes.data() + layout.begin(3 + m), columns.metrics[m].data(), 8 * n);
+  }
 }
 
 std::uint64_t checksum(std::span<const std::byte> bytes, std::uint64_t seed) {
@@ -105,100 +99,162 @@ std::uint64_t checksum(std::span<const std::byte> bytes, std::uint64_t seed) {
   return sum ^ (sum >> 32);
 }
 
-SweepJournal::SweepJournal(const std::filesystem::path& file, std::uint64_t fingerprint, const ChunkLayout& layout)
-    : file_(file), layout_(layout), record_of_chunk_(layout.chunks(), none) {
-  const std::string name = file.string();
-  const auto refuse = [&](const std::string& reason) {
-    if (descriptor_ >= 0) ::close(descriptor_);
-    throw InputError(name, 0, 0, "", reason);
-  };
-  descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) refuse(fmt::format("cannot be written: {}", std::strerror(errno)));
+SweepJournal::SweepJournal(const std::filesystem::path& journal, const std::filesystem::path& data_set,
+                           std::uint64_t fingerprint, const ChunkLayout& layout, const Prepare& prepare)
+    : journal_(journal), data_set_(data_set), layout_(layout), held_(layout.chunks(), false) {
+  try {
+    lock(fingerprint, prepare);
+    take_over();
+  } catch (...) {
+    close();
+    throw;
+  }
+}
+
+SweepJournal::~SweepJournal() {
+  if (journal_file_ < 0) return;
+  if (records_ == 0) {  // nothing to resume
+    ::unlink(data_set_.c_str());
+    ::unlink(journal_.c_str());
+  }
+  close();
+}
+
+void SweepJournal::close() {
+  if (data_file_ >= 0) ::close(data_file_);
+  if (journal_file_ >= 0) ::close(journal_file_);
+  data_file_ = journal_file_ = -1;
+}
+
+void SweepJournal::refuse(const std::filesystem::path& file, const std::string& reason) {
+  throw InputError(file.string(), 0, 0, "", reason);
+}
+
+void SweepJournal::failed(const std::filesystem::path& file, int reason) const {
+  throw std::runtime_error(fmt::format("{}: cannot be written: {}; what is finished is kept: once that is mended, the "
+                                       "same command resumes",
+                                       file.string(), std::strerror(reason)));
+}
+
+/// Opens the journal and makes sure that it is of this sweep and that the data set is prepared.
+void SweepJournal::lock(std::uint64_t fingerprint, const Prepare& prepare) {
+  const bool data_there = std::filesystem::exists(data_set_);
+  const bool journal_there = std::filesystem::exists(journal_);
+  if (data_there && !journal_there) {
+    refuse(data_set_, fmt::format("is there without {}, so it is not of a sweep under way; it is left as it is: move it "
+                                  "away, or give another name",
+                                  journal_.filename().string()));
+  }
+  journal_file_ = ::open(journal_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (journal_file_ < 0) refuse(journal_, fmt::format("cannot be written: {}", std::strerror(errno)));
   struct stat found {};
-  if (::fstat(descriptor_, &found) != 0 || !S_ISREG(found.st_mode)) refuse("cannot be written: not a regular file");
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
-    refuse(errno == EWOULDBLOCK ? "another process is at work on this sweep"
-                                : fmt::format("cannot be locked: {}", std::strerror(errno)));
+  if (::fstat(journal_file_, &found) != 0 || !S_ISREG(found.st_mode)) {
+    refuse(journal_, "cannot be written: it is not a regular file");
+  }
+  if (::flock(journal_file_, LOCK_EX | LOCK_NB) != 0) {
+    refuse(journal_, errno == EWOULDBLOCK ? "another process is at work on this sweep"
+                                          : fmt::format("cannot be locked: {}", std::strerror(errno)));
   }
 
   Header header{};
   std::memcpy(header.magic, magic, sizeof magic);
   header.fingerprint = fingerprint;
-  header.designs = layout.designs;
-  header.chunk = layout.chunk;
-  header.metrics = layout.metrics;
+  header.designs = layout_.designs;
+  header.chunk = layout_.chunk;
+  header.metrics = layout_.metrics;
   Header there{};
-  const ssize_t got = read_at(descriptor_, &there, sizeof there, 0);
-  if (got < 0) refuse(fmt::format("cannot be read: {}", std::strerror(errno)));
-  const std::size_t common = std::min(std::size_t(got), sizeof header.magic);
-  if (std::memcmp(&there, &header, common) != 0) {
-    refuse("is not the beginning of a sweep; it is left as it is: move it away, or give another name");
+  const ssize_t got = read_at(journal_file_, &there, sizeof there, 0);
+  if (got < 0) refuse(journal_, fmt::format("cannot be read: {}", std::strerror(errno)));
+  if (std::memcmp(&there, &header, std::min(std::size_t(got), sizeof header.magic)) != 0) {
+    refuse(journal_, "is no journal of a sweep; it is left as it is: move it away, or give another name");
   }
   if (std::memcmp(&there, &header, std::size_t(got)) != 0) {
-    refuse("is the beginning of another sweep (another study, vehicle, option or version of the program); it is left "
-           "as it is: remove it to begin anew, or give another name");
-  }
-  if (std::size_t(got) < sizeof header && !write_at(descriptor_, &header, sizeof header, 0)) {
-    const int reason = errno;
-    if (got == 0) ::unlink(file.c_str());
-    refuse(fmt::format("cannot be written: {}", std::strerror(reason)));
+    refuse(journal_, fmt::format("belongs to another sweep (another study, vehicle, option or version of the program); "
+                                 "it is left as it is: remove it and {} to begin anew, or give another name",
+                                 data_set_.filename().string()));
   }
 
+  // The places of the columns, written when the data set is prepared.
+  std::vector<std::uint64_t> places(layout_.columns() + 1);
+  const std::size_t length = places.size() * sizeof places[0];
+  const auto sum_of = [](std::span<const std::uint64_t> p) { return checksum(std::as_bytes(p.first(p.size() - 1)), 7); };
+  const bool prepared = data_there && read_at(journal_file_, places.data(), length, sizeof header) == ssize_t(length) &&
+                        places.back() == sum_of(places);
+  if (!prepared) {
+    const bool usable = ::ftruncate(journal_file_, 0) == 0;
+    if (!usable || !write_at(journal_file_, &header, sizeof header, 0)) {
+      const int reason = errno;
+      if (!journal_there) ::unlink(journal_.c_str());
+      refuse(journal_, fmt::format("cannot be written: {}", std::strerror(reason)));
+    }
+    try {
+      places = prepare(data_set_);
+      places.push_back(0);
+      places.back() = sum_of(places);
+      if (!write_at(journal_file_, places.data(), length, sizeof header)) failed(journal_, errno);
+    } catch (...) {
+      ::unlink(data_set_.c_str());
+      ::unlink(journal_.c_str());
+      throw;
+    }
+  }
+  places.pop_back();
+  places_ = std::move(places);
+}
+
+/// Opens the data set and finds the chunks that it holds.
+void SweepJournal::take_over() {
+  data_file_ = ::open(data_set_.c_str(), O_RDWR | O_CLOEXEC);
+  if (data_file_ < 0) refuse(data_set_, fmt::format("cannot be written: {}", std::strerror(errno)));
   std::vector<std::byte> bytes(layout_.bytes());
   while (true) {
-    RecordHead head{};
-    const std::uint64_t at = offset(records_);
-    if (read_at(descriptor_, &head, sizeof head, at) != ssize_t(sizeof head)) break;
-    if (read_at(descriptor_, bytes.data(), bytes.size(), at + sizeof head) != ssize_t(bytes.size())) break;
-    if (head.chunk >= layout_.chunks() || head.checksum != checksum(bytes, head.chunk)) break;
-    if (holds(head.chunk)) break;
-    record_of_chunk_[head.chunk] = records_++;
+    Record record{};
+    if (read_at(journal_file_, &record, sizeof record, record_at(records_)) != ssize_t(sizeof record)) break;
+    if (record.chunk >= layout_.chunks() || held_[record.chunk]) break;
+    std::fill(bytes.begin(), bytes.end(), std::byte(0));
+    if (!transfer(record.chunk, bytes.data(), false) || record.checksum != checksum(bytes, record.chunk)) break;
+    held_[record.chunk] = true;
+    ++records_;
   }
 }
 
-SweepJournal::~SweepJournal() {
-  if (records_ == 0) ::unlink(file_.c_str());  // nothing to resume
-  ::close(descriptor_);
-}
-
-std::uint64_t SweepJournal::offset(std::uint32_t record) const {
-  return sizeof(Header) + std::uint64_t(record) * (sizeof(RecordHead) + layout_.bytes());
+std::uint64_t SweepJournal::record_at(std::uint64_t record) const {
+  return sizeof(Header) + 8 * (layout_.columns() + 1) + record * sizeof(Record);
 }
 
 std::uint64_t SweepJournal::designs_held() const {
   std::uint64_t sum = 0;
-  for (std::uint64_t c = 0; c < layout_.chunks(); ++c) sum += holds(c) ? layout_.size(c) : 0;
+  for (std::uint64_t c = 0; c < layout_.chunks(); ++c) sum += held_[c] ? layout_.size(c) : 0;
   return sum;
 }
 
+bool SweepJournal::transfer(std::uint64_t chunk, std::byte* bytes, bool write) const {
+  for (std::size_t column = 0; column < layout_.columns(); ++column) {
+    const std::uint64_t size = layout_.bytes_of_value(column);
+    const std::uint64_t at = places_[column] + layout_.first(chunk) * size;
+    const std::size_t length = std::size_t(layout_.size(chunk) * size);
+    std::byte* const values = bytes + layout_.begin(column);
+    const bool done = write ? write_at(data_file_, values, length, at)
+                            : read_at(data_file_, values, length, at) == ssize_t(length);
+    if (!done) return false;
+  }
+  return true;
+}
+
 void SweepJournal::append(std::uint64_t chunk, std::span<const std::byte> bytes) {
-  const RecordHead head{chunk, checksum(bytes, chunk)};
-  buffer_.resize(sizeof head + bytes.size());
-  std::memcpy(buffer_.data(), &head, sizeof head);
-  std::memcpy(buffer_.data() + sizeof head, bytes.data(), bytes.size());
-  if (!write_at(descriptor_, buffer_.data(), buffer_.size(), offset(records_))) {
-    throw std::runtime_error(fmt::format("{}: cannot be written: {}; what is finished is kept: once that is mended, "
-                                         "the same command resumes",
-                                         file_.string(), std::strerror(errno)));
-  }
-  record_of_chunk_[chunk] = records_++;
+  // Nothing is changed through this pointer.
+  if (!transfer(chunk, const_cast<std::byte*>(bytes.data()), true)) failed(data_set_, errno);
+  const Record record{chunk, checksum(bytes, chunk)};
+  if (!write_at(journal_file_, &record, sizeof record, record_at(records_))) failed(journal_, errno);
+  held_[chunk] = true;
+  ++records_;
 }
 
-void SweepJournal::read(std::uint64_t chunk, std::vector<std::byte>& bytes) const {
-  bytes.resize(layout_.bytes());
-  RecordHead head{};
-  const std::uint64_t at = offset(record_of_chunk_[chunk]);
-  const bool whole = read_at(descriptor_, &head, sizeof head, at) == ssize_t(sizeof head) &&
-                     read_at(descriptor_, bytes.data(), bytes.size(), at + sizeof head) == ssize_t(bytes.size());
-  if (!whole || head.checksum != checksum(bytes, chunk)) {
-    throw std::runtime_error(fmt::format("{}: does not read back as it was written; run the same command again",
-                                         file_.string()));
-  }
-}
-
-void SweepJournal::remove() {
-  ::unlink(file_.c_str());
-  records_ = 0;
+void SweepJournal::finish(const std::filesystem::path& name) {
+  if (::fsync(data_file_) != 0) failed(data_set_, errno);
+  if (::rename(data_set_.c_str(), name.c_str()) != 0) failed(name, errno);
+  ::unlink(journal_.c_str());
+  close();
 }
 
 }  // namespace wingbeat

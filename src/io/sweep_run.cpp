@@ -231,20 +231,12 @@ void check_room(const Study& study, const SweepJournal& journal, const fs::path&
   struct statvfs disk {};
   if (::statvfs(folder.c_str(), &disk) != 0) return;
   const double free = double(disk.f_bavail) * double(disk.f_frsize);
-  const double needed = double(layout.chunks() - journal.chunks_held()) * double(layout.bytes() + 16) +
-                        double(data_set_size(study));
+  const double held = double(journal.chunks_held()) / double(layout.chunks());
+  const double needed = (1.0 - held) * double(data_set_size(study));
   if (needed <= free) return;
-  throw std::runtime_error(fmt::format("{}: not enough room: the sweep needs {:.3g} MB there on its way, {:.3g} MB are "
-                                       "free; keep fewer metrics (study.metrics) or make room",
+  throw std::runtime_error(fmt::format("{}: not enough room: the sweep needs {:.3g} MB there, {:.3g} MB are free; "
+                                       " keep fewer metrics (study.metrics) or make room",
                                        folder.string(), needed / 1e6, free / 1e6));
-}
-
-void store(const fs::path& file) {
-  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool stored = descriptor >= 0 && ::fsync(descriptor) == 0;
-  const int reason = errno;
-  if (descriptor >= 0) ::close(descriptor);
-  if (!stored) throw std::runtime_error(fmt::format("{}: {}", file.string(), std::strerror(reason)));
 }
 
 }  // namespace
@@ -259,7 +251,8 @@ SweepRelease::~SweepRelease() {
   }
 }
 
-fs::path journal_file(const fs::path& output) { return output.string() + ".part"; }
+fs::path journal_file(const fs::path& output) { return output.string() + ".journal"; }
+fs::path unfinished_file(const fs::path& output) { return output.string() + ".part"; }
 
 SweepResult run_sweep(const Study& study, const SweepRunOptions& options) {
   const std::uint64_t print = fingerprint(study, options.version);
@@ -282,7 +275,8 @@ SweepResult run_sweep(const Study& study, const SweepRunOptions& options) {
   if (options.threads > 0) {
     limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(options.threads));
   }
-  SweepJournal journal(journal_file(output), print, layout_of(study.sweep));
+  SweepJournal journal(journal_file(output), unfinished_file(output), print, layout_of(study.sweep),
+                       [&](const fs::path& file) { return prepare_data_set(file, study, options.version); });
   check_room(study, journal, output.parent_path());
   result.resumed = journal.designs_held();
   Run run(study, options, journal);
@@ -293,19 +287,8 @@ SweepResult run_sweep(const Study& study, const SweepRunOptions& options) {
     return result;
   }
 
-  // Begun anew by whoever comes after a kill.
-  const fs::path unfinished = output.string() + ".tmp";
-  try {
-    result.digest = write_sweep(unfinished, study, options.version, journal);
-    store(unfinished);
-    if (::rename(unfinished.c_str(), output.c_str()) != 0) {
-      throw std::runtime_error(fmt::format("{}: {}", output.string(), std::strerror(errno)));
-    }
-  } catch (...) {
-    ::unlink(unfinished.c_str());
-    throw;
-  }
-  journal.remove();
+  journal.finish(output);
+  result.digest = digest_of(output, study);
   result.progress = run.progress();
   return result;
 }

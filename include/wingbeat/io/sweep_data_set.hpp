@@ -27,9 +27,10 @@ struct SweepDigest {
 /// Stands for everything that a data set depends on: study, vehicle, options, instruction set, version.
 std::uint64_t fingerprint(const Study& study, std::string_view version);
 
-/// Writes the whole data set from the chunks of a journal, one after the other. Throws NetcdfError.
-SweepDigest write_sweep(const std::filesystem::path& file, const Study& study, std::string_view version,
-                        const SweepJournal& journal);
+/// Makes the data set but for the results, for which it has room; the place of each column of results in the file
+/// [bytes], in the order of ChunkLayout. Throws NetcdfError.
+std::vector<std::uint64_t> prepare_data_set(const std::filesystem::path& file, const Study& study,
+                                            std::string_view version);
 
 /// What a data set holds. Throws NetcdfError.
 SweepDigest digest_of(const std::filesystem::path& file, const Study& study);

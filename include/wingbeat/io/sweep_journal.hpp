@@ -1,9 +1,12 @@
-// The finished chunks of a sweep under way, in a file that survives a kill at any instant.
+// The results of a sweep under way, which survive a kill at any instant: the data set itself, filled chunk by chunk, and
+// beside it a journal of the chunks that are there.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,7 +15,7 @@
 
 namespace wingbeat {
 
-/// How a sweep is divided into chunks, each a run of designs, and how one is stored.
+/// How a sweep is divided into chunks, each a run of designs.
 struct ChunkLayout {
   std::uint64_t designs = 0;
   std::uint64_t chunk = 1;  ///< designs of a chunk; the last may hold fewer
@@ -21,50 +24,63 @@ struct ChunkLayout {
   std::uint64_t chunks() const { return (designs + chunk - 1) / chunk; }
   std::uint64_t first(std::uint64_t c) const { return c * chunk; }
   std::uint64_t size(std::uint64_t c) const { return std::min(chunk, designs - c * chunk); }
-  std::uint64_t bytes() const;  ///< of a packed chunk
+  /// Columns of results: status, recomputed, error estimate, metrics.
+  std::size_t columns() const { return 3 + std::size_t(metrics); }
+  std::size_t bytes_of_value(std::size_t column) const { return column < 2 ? 1 : 8; }
+  /// Place of a column in a packed chunk [bytes].
+  std::uint64_t begin(std::size_t column) const;
+  std::uint64_t bytes() const { return begin(columns()); }
 };
 
 /// The layout of a sweep: chunks small enough to be lost, large enough to be handed out.
 ChunkLayout layout_of(const Sweep& sweep);
 
-/// A chunk as bytes and back; `columns` keeps its memory.
+/// A chunk as bytes, column after column; what the last chunk lacks is zero.
 void pack(const ChunkLayout& layout, const SweepColumns& columns, std::vector<std::byte>& bytes);
-void unpack(const ChunkLayout& layout, std::uint64_t chunk, std::span<const std::byte> bytes, SweepColumns& columns);
 
 /// A 64-bit check sum.
 std::uint64_t checksum(std::span<const std::byte> bytes, std::uint64_t seed = 0);
 
-/// The file: a header that says which study, then chunks in the order in which they were finished, each with a check
-/// sum. A chunk that was being written when the process died is overwritten by the next. One process at a time.
+/// The data set under way and its journal: a header that says which sweep, then the chunks in the order in which they
+/// were stored, each with a check sum. A chunk that was being stored when the process died does not count. One process
+/// at a time.
 class SweepJournal {
  public:
-  /// Opens the file, or creates it. Throws InputError, which leaves the file as it was, if it cannot be written, if it
-  /// belongs to another study or to a running process.
-  SweepJournal(const std::filesystem::path& file, std::uint64_t fingerprint, const ChunkLayout& layout);
+  /// Makes a file with room for all results and gives the place of each column in it [bytes].
+  using Prepare = std::function<std::vector<std::uint64_t>(const std::filesystem::path& file)>;
+
+  /// Opens journal and data set, or creates them. Throws InputError, which leaves what is there as it was, if they
+  /// cannot be written, if they belong to another sweep or to a running process.
+  SweepJournal(const std::filesystem::path& journal, const std::filesystem::path& data_set, std::uint64_t fingerprint,
+               const ChunkLayout& layout, const Prepare& prepare);
   SweepJournal(const SweepJournal&) = delete;
   SweepJournal& operator=(const SweepJournal&) = delete;
   ~SweepJournal();
 
-  bool holds(std::uint64_t chunk) const { return record_of_chunk_[chunk] != none; }
+  bool holds(std::uint64_t chunk) const { return held_[chunk]; }
   std::uint64_t chunks_held() const { return records_; }
   std::uint64_t designs_held() const;
 
-  /// Appends a packed chunk. Throws std::runtime_error where there is no room for it.
+  /// Stores a packed chunk. Throws std::runtime_error where there is no room for it.
   void append(std::uint64_t chunk, std::span<const std::byte> bytes);
-  /// Throws std::runtime_error where it cannot be read back as it was written.
-  void read(std::uint64_t chunk, std::vector<std::byte>& bytes) const;
-  void remove();
+  /// The complete data set gets its name, and the journal goes. Throws std::runtime_error.
+  void finish(const std::filesystem::path& name);
 
  private:
-  static constexpr std::uint32_t none = 0xffffffff;
-  std::uint64_t offset(std::uint32_t record) const;
+  void lock(std::uint64_t fingerprint, const Prepare& prepare);
+  void take_over();
+  void close();
+  bool transfer(std::uint64_t chunk, std::byte* bytes, bool write) const;
+  std::uint64_t record_at(std::uint64_t record) const;
+  [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& reason);
+  [[noreturn]] void failed(const std::filesystem::path& file, int reason) const;
 
-  std::filesystem::path file_;
+  std::filesystem::path journal_, data_set_;
   ChunkLayout layout_;
-  int descriptor_ = -1;
-  std::uint32_t records_ = 0;
-  std::vector<std::uint32_t> record_of_chunk_;
-  std::vector<std::byte> buffer_;
+  int journal_file_ = -1, data_file_ = -1;
+  std::vector<std::uint64_t> places_;
+  std::uint64_t records_ = 0;
+  std::vector<bool> held_;
 };
 
 }  // namespace wingbeat

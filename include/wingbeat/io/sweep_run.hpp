@@ -40,7 +40,8 @@ struct SweepResult {
   SweepDigest digest;         ///< empty where stopped
 };
 
-/// Where the chunks of a sweep are kept until the data set is written: beside it, with .part added.
+/// The data set until it is complete, and the journal of what it holds: beside it, with .part and .journal added.
+std::filesystem::path unfinished_file(const std::filesystem::path& output);
 std::filesystem::path journal_file(const std::filesystem::path& output);
 
 /// Computes what is missing and writes the data set, which then appears under its name at once. The file is the same,
