@@ -8,10 +8,15 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "command.hpp"
 #include "wingbeat/io/design_file.hpp"
+#include "wingbeat/io/output_file.hpp"
+#include "wingbeat/io/plot.hpp"
 #include "wingbeat/io/report.hpp"
+#include "wingbeat/io/sweep_plot.hpp"
 #include "wingbeat/io/sweep_run.hpp"
 #include "wingbeat/io/units.hpp"
 
@@ -22,6 +27,8 @@ struct Arguments {
   std::string study, output;
   std::string tolerance, isa;
   int threads = 0;
+  std::string plot;
+  std::vector<std::string> plot_metrics;
 };
 
 volatile std::sig_atomic_t interrupted = 0;
@@ -178,6 +185,15 @@ int sweep_on_rank_0(const Arguments& arguments, Ranks* ranks) {
   if (options.output.extension() != ".nc") {
     throw InputError("-o " + arguments.output, 0, 0, "", "the name must end in .nc");
   }
+  std::vector<Metric> drawn;
+  std::optional<OutputFile> plot;
+  const auto format = plot_format(arguments.plot);
+  if (!arguments.plot.empty()) {
+    const std::string option = "--plot " + arguments.plot;
+    if (!format) throw InputError(option, 0, 0, "", "the name must end in .svg, .pdf or .png");
+    drawn = metrics_to_plot(study, arguments.plot_metrics, option);
+    plot.emplace("--plot", arguments.plot);
+  }
   const SweepResult result = run_sweep(study, options);
   if (on_terminal) clear_progress();
   if (result.outcome == SweepResult::Outcome::stopped) {
@@ -189,6 +205,11 @@ int sweep_on_rank_0(const Arguments& arguments, Ranks* ranks) {
   std::string text = summary(study, result);
   const bool was_there = result.outcome == SweepResult::Outcome::was_finished;
   text += fmt::format("{} {}\n", arguments.output, was_there ? "holds this sweep already: nothing to compute" : "written");
+  if (plot) {
+    plot_sweep(study, options.output, drawn, *format, plot->temporary());
+    plot->commit();
+    text += fmt::format("{} written\n", arguments.plot);
+  }
   print(text);
   return done;
 }
@@ -225,9 +246,18 @@ void add_sweep(CLI::App& program, Action& action) {
       ->check(CLI::PositiveNumber);
   command->add_option("--isa", a->isa, "Instructions: sse2, avx2 or avx512 (default: the widest there is)")
       ->type_name("NAME");
+  CLI::Option* plot =
+      command->add_option("--plot", a->plot, "Draw lines over one axis, contours over two, to FILE.svg, .pdf or .png")
+          ->type_name("FILE");
+  command
+      ->add_option("--plot-metrics", a->plot_metrics,
+                   "What to draw, as lift_mean_n,frequency_hz (default: mean lift and system efficiency)")
+      ->delimiter(',')
+      ->needs(plot)
+      ->type_name("METRICS");
   command->footer(
       "Example:\n"
-      "  wingbeat sweep data/studies/crank-radius.toml -o crank-radius.nc\n\n"
+      "  wingbeat sweep data/studies/crank-radius.toml -o crank-radius.nc --plot crank-radius.svg\n\n"
       "Study files: docs/sweep.md. Stopped by Ctrl-C, or killed, the same command resumes. On several machines:\n"
       "  mpirun -n 8 wingbeat sweep STUDY.toml -o FILE.nc\n\n"
       "Exit status: 0 done, 2 bad input or usage, 1 anything else, a sweep that was stopped included.");

@@ -1,160 +1,16 @@
 #include "wingbeat/io/plot.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
-#include <iterator>
-#include <memory>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
-extern char** environ;
+#include "figure.hpp"
 
 namespace wingbeat {
-namespace {
-
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-using File = std::unique_ptr<std::FILE, CloseFile>;
-
-File temporary_file() {
-  File file(std::tmpfile());
-  if (!file) throw std::runtime_error(fmt::format("cannot make a temporary file: {}", std::strerror(errno)));
-  return file;
-}
-
-std::string content(std::FILE* file) {
-  std::rewind(file);
-  std::string text(4000, '\0');
-  text.resize(std::fread(text.data(), 1, text.size(), file));
-  return text;
-}
-
-/// Runs gnuplot on a script; what it draws goes to `output`. The script comes in, and the drawing goes out, through
-/// open files: no name and no label ever passes a shell or gnuplot's own parser of file names.
-void run_gnuplot(const std::string& script, const std::filesystem::path& output) {
-  const File input = temporary_file();
-  const File errors = temporary_file();
-  if (std::fwrite(script.data(), 1, script.size(), input.get()) != script.size() || std::fflush(input.get()) != 0) {
-    throw std::runtime_error(fmt::format("cannot write a temporary file: {}", std::strerror(errno)));
-  }
-  std::rewind(input.get());
-  const File drawing(std::fopen(output.c_str(), "we"));
-  if (!drawing) throw std::runtime_error(fmt::format("{}: {}", output.string(), std::strerror(errno)));
-
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, fileno(input.get()), 0);
-  posix_spawn_file_actions_adddup2(&actions, fileno(drawing.get()), 1);
-  posix_spawn_file_actions_adddup2(&actions, fileno(errors.get()), 2);
-  char program[] = "gnuplot", default_settings[] = "-d";
-  char* const arguments[] = {program, default_settings, nullptr};
-  pid_t child = 0;
-  const int failure = ::posix_spawnp(&child, program, &actions, nullptr, arguments, environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failure == ENOENT) {
-    throw std::runtime_error("plots need gnuplot, which is not installed; on Debian: apt-get install gnuplot-nox");
-  }
-  if (failure != 0) throw std::runtime_error(fmt::format("cannot start gnuplot: {}", std::strerror(failure)));
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) throw std::runtime_error(fmt::format("lost gnuplot: {}", std::strerror(errno)));
-  }
-  std::string said = content(errors.get());
-  std::replace_if(said.begin(), said.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  const auto drawn = std::filesystem::file_size(output);
-  // gnuplot answers many errors of a terminal with a message and exit status 0.
-  if (status != 0 || drawn < 200) {
-    throw std::runtime_error(fmt::format("gnuplot failed: {}", said.empty() ? "it drew nothing" : said));
-  }
-}
-
-/// A string for gnuplot: nothing in it is special but the quote.
-std::string quoted(const std::string& text) {
-  std::string out = "'";
-  for (const char c : text) {
-    if (c == '\'') out += "''";
-    else out += static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? ' ' : c;
-  }
-  return out + "'";
-}
-
-/// How a curve or its key is drawn: colours of Okabe and Ito, told apart with any colour vision; dash types tell them
-/// apart in grey.
-constexpr const char* blue_solid = "dt 1 lw 1.3 lc rgb '#0072b2'";
-constexpr const char* vermillion_dashed = "dt (12,6) lw 1.3 lc rgb '#d55e00'";
-constexpr const char* black_dotted = "dt (3,3) lw 1.3 lc rgb '#000000'";
-
-/// A gnuplot script under way. Sizes are those of the printed figure, text in points; everything is placed by its
-/// anchor on the page, because terminals disagree about the width of text.
-class Figure {
- public:
-  Figure(PlotFormat format, double width, double height) {
-    switch (format) {
-      case PlotFormat::svg:
-        // A browser shows it twice as large as it prints, and may scale it freely.
-        points_ = 192.0 / 72.0;
-        add("set terminal svg noenhanced size {:.0f},{:.0f} dynamic butt font 'sans-serif,{}' lw 2.4 dl 0.6 "
-            "background '#ffffff'\n",
-            192.0 * width, 192.0 * height, 7.5 * points_);
-        break;
-      case PlotFormat::pdf:
-        points_ = 0.75;
-        add("set terminal pdfcairo noenhanced size {:.3f}in,{:.3f}in butt font 'Sans,{}' fontscale 1 lw 1.8 dl 1.1\n",
-            width, height, 7.5 * points_);
-        break;
-      case PlotFormat::png:
-        points_ = 300.0 / 96.0;
-        add("set terminal pngcairo noenhanced size {:.0f},{:.0f} butt font 'Sans,{}' lw 3.75 dl 1.2\n", 300.0 * width,
-            300.0 * height, 7.5 * points_);
-        break;
-    }
-    add("set encoding utf8\n"
-        "set border 3 lw 0.6 lc rgb '#404040'\n"
-        "set tics nomirror out scale 0.5\n"
-        "set grid x y back lt 1 dt 1 lw 0.35 lc rgb '#d8d8d8'\n"
-        "unset key\n");
-  }
-
-  template <class... Args>
-  void add(fmt::format_string<Args...> pattern, Args&&... args) {
-    fmt::format_to(std::back_inserter(script_), pattern, std::forward<Args>(args)...);
-  }
-  /// `placement`: position, anchor and further options of a gnuplot label.
-  void text(const std::string& content, double size, const std::string& placement) {
-    add("set label {} {} at {} front font ',{}'\n", ++labels_, quoted(content), placement, size * points_);
-  }
-  /// A sample of a line with its name, starting at (x, y) of the page.
-  void key_entry(double x, double y, const char* line, const std::string& name) {
-    add("set arrow {} from screen {},{} to screen {},{} nohead front {}\n", ++arrows_, x, y, x + 0.057, y, line);
-    text(name, 7.0, fmt::format("screen {},{} left", x + 0.065, y));
-  }
-  void box(const std::string& from_to, const char* fill) {
-    add("set object {} rectangle {} front fillcolor rgb '{}' fillstyle solid border lc rgb '#202020' lw 0.4\n",
-        ++objects_, from_to, fill);
-  }
-  /// Forgets labels and arrows, which belong to one panel only.
-  void next_panel() { add("unset label\nunset arrow\n"); }
-
-  const std::string& script() const { return script_; }
-
- private:
-  std::string script_;
-  double points_ = 1.0;  ///< a point in the terminal's unit of font size
-  int labels_ = 0, arrows_ = 0, objects_ = 0;
-};
-
-}  // namespace
 
 std::optional<PlotFormat> plot_format(const std::filesystem::path& file) {
   const std::string extension = file.extension().string();

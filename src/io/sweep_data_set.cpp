@@ -152,6 +152,12 @@ std::vector<std::uint64_t> prepare_data_set(const fs::path& path, const Study& s
       coordinates[a].push_back(variable);
     }
   }
+  std::optional<NetcdfFile::Variable> sample;
+  for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
+    if (!sweep.axes[a].samples) continue;
+    sample = file.define_dense(sweep.axes[a].name, {dimensions[a]}, "1", "number of the sample, from 0",
+                               Storage::whole);
+  }
   const auto define = [&](const char* name, const char* unit, const char* meaning, Storage storage) {
     const auto variable = file.define_dense(name, dimensions, unit, meaning, storage);
     if (!auxiliary.empty()) file.set_attribute(variable, "coordinates", auxiliary);
@@ -186,6 +192,13 @@ std::vector<std::uint64_t> prepare_data_set(const fs::path& path, const Study& s
         file.write_run(coordinates[a][q], std::size_t(first), block);
       }
     }
+  }
+
+  for (std::uint64_t first = 0; sample && first < sample->dimensions.front().length; first += 8192) {
+    block.clear();
+    const std::uint64_t end = std::min<std::uint64_t>(sample->dimensions.front().length, first + 8192);
+    for (std::uint64_t n = first; n < end; ++n) block.push_back(double(n));
+    file.write_run(*sample, std::size_t(first), block);
   }
 
   // A value at the end makes room for all before it.
