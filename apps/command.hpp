@@ -25,5 +25,6 @@ void add_run(CLI::App& program, Action& action);
 void add_compare(CLI::App& program, Action& action);
 void add_sweep(CLI::App& program, Action& action);
 void add_identify_motor(CLI::App& program, Action& action);
+void add_fit(CLI::App& program, Action& action);
 
 }  // namespace wingbeat::app

@@ -1,0 +1,105 @@
+// wingbeat fit BENCH: a vehicle's parameters from bench measurements, and how sure they are.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "command.hpp"
+#include "wingbeat/io/bench_file.hpp"
+#include "wingbeat/io/design_file.hpp"
+#include "wingbeat/io/design_parameter.hpp"
+#include "wingbeat/io/output_file.hpp"
+
+namespace wingbeat::app {
+namespace {
+
+struct Arguments {
+  std::string file, output, plot;
+  bool json = false, compare_friction = false, no_profiles = false;
+};
+
+void show(const std::string& what) { fmt::print(stderr, "\r{:<78}", "fit: " + what); }
+void clear() { fmt::print(stderr, "\r{:<78}\r", ""); }
+
+int run(const Arguments& arguments) {
+  std::optional<PlotFormat> format;
+  if (!arguments.plot.empty()) {
+    format = plot_format(arguments.plot);
+    if (!format) throw InputError("--plot " + arguments.plot, 0, 0, "", "the name must end in .svg, .pdf or .png");
+  }
+  BenchFit fit = read_bench(arguments.file);
+  fit.profiles = !arguments.no_profiles;
+  std::optional<OutputFile> output, covariance, plot;
+  const std::filesystem::path vehicle = arguments.output;
+  if (!arguments.output.empty()) {
+    std::error_code error;
+    if (std::filesystem::equivalent(arguments.output, arguments.file, error)) {
+      throw InputError("--output " + arguments.output, 0, 0, "", "is the bench file itself");
+    }
+    output.emplace("--output", vehicle);
+    covariance.emplace("--output", vehicle.parent_path() / (vehicle.stem().string() + ".covariance.toml"));
+  }
+  if (format) plot.emplace("--plot", arguments.plot);
+
+  const bool terminal = ::isatty(STDERR_FILENO) != 0;
+  std::function<void(const std::string&)> progress;
+  if (terminal) progress = show;
+  FitResult result;
+  std::vector<FrictionCandidate> candidates;
+  try {
+    result = fit_bench(fit, progress);
+    if (arguments.compare_friction) candidates = compare_friction(fit, design_parameter, progress);
+  } catch (const ParameterError& error) {
+    if (terminal) clear();
+    throw InputError(arguments.file, 0, 0, error.key(), error.reason());
+  }
+  if (terminal) clear();
+
+  const std::string made_by = fmt::format("Fitted by wingbeat {} to {}", version,
+                                          std::filesystem::path(arguments.file).filename().string());
+  if (output) {
+    output->write(fitted_vehicle(fit, result, made_by));
+    covariance->write(covariance_file(result, vehicle.filename().string(), made_by));
+    output->commit();
+    covariance->commit();
+  }
+  if (plot) {
+    plot_residuals(fit, result, *format, plot->temporary());
+    plot->commit();
+  }
+  if (arguments.json) {
+    print(json_fit(fit, result, candidates));
+  } else {
+    print(text_fit(fit, result) + (candidates.empty() ? "" : text_friction(candidates)));
+  }
+  if (!result.converged) {
+    complain("the fit did not converge: " + result.message);
+    return failed;
+  }
+  if (!result.unreached.empty()) {
+    complain(fmt::format("{} of the rows cannot be reached by the fitted model", result.unreached.size()));
+    return does_not_flap;
+  }
+  return done;
+}
+
+}  // namespace
+
+void add_fit(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("fit", "Fit a vehicle's parameters to bench measurements");
+  const auto a = std::make_shared<Arguments>();
+  command->add_option("bench", a->file, "Bench file (TOML): vehicle, logs, free parameters")->required()->type_name("BENCH");
+  command->add_option("-o,--output", a->output, "Write the fitted vehicle file, and FILE's .covariance.toml beside it")
+      ->type_name("FILE");
+  command->add_flag("--compare-friction", a->compare_friction, "Fit every friction law to the same data and rank them");
+  command->add_flag("--no-profiles", a->no_profiles, "Skip the likelihood profiles: intervals from standard errors only");
+  command->add_flag("--json", a->json, "Print one JSON object instead of tables");
+  command->add_option("--plot", a->plot, "Plot the residuals by condition to FILE.svg, .pdf or .png")->type_name("FILE");
+  command->footer("Example:\n  wingbeat fit data/bench/flapper.toml -o fitted.toml\n\n"
+                  "Exit status: 0 fitted, 1 not converged, 2 bad input or usage, 3 rows that the model cannot reach.");
+  command->callback([a, &action] { action = [a] { return run(*a); }; });
+}
+
+}  // namespace wingbeat::app

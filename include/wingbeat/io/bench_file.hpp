@@ -1,0 +1,44 @@
+// Bench files: what was measured, how well, and which parameters are free; fits as text, JSON and files.
+// For the keys see docs/fit.md.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "wingbeat/io/plot.hpp"
+#include "wingbeat/study/bench_fit.hpp"
+
+namespace wingbeat {
+
+/// A fit as its bench file describes it, logs read. Vehicle file and logs are sought beside it. Throws InputError with
+/// file, line and reason.
+BenchFit read_bench(const std::filesystem::path& file);
+
+/// One log: a header that names each column with its unit, rows growing strictly in what was set on the bench.
+/// `log` brings the condition and, of a waveform log, the operating point in `given_value`. `measured` restricts the
+/// columns used; empty: all.
+struct LogRequest {
+  BenchLog log;
+  std::optional<Given> given;         ///< empty: the file holds one of voltage and frequency
+  std::optional<double> given_value;  ///< of a waveform log
+  std::vector<std::string> measured;
+};
+BenchLog parse_log(std::string_view text, const std::string& file_name, const LogRequest& request);
+
+std::string text_fit(const BenchFit& fit, const FitResult& result);
+std::string text_friction(std::span<const FrictionCandidate> candidates);
+/// One JSON object; `candidates` may be empty.
+std::string json_fit(const BenchFit& fit, const FitResult& result, std::span<const FrictionCandidate> candidates);
+
+/// The fitted vehicle file, complete and ready to run, with what it rests on as comments.
+std::string fitted_vehicle(const BenchFit& fit, const FitResult& result, const std::string& made_by);
+
+/// The determined parameters with their covariance, as TOML: what a tolerance study starts from.
+std::string covariance_file(const FitResult& result, const std::string& vehicle_name, const std::string& made_by);
+
+/// Residuals in standard deviations against what was set, one panel per condition. Throws like plot_cycle.
+void plot_residuals(const BenchFit& fit, const FitResult& result, PlotFormat format, const std::filesystem::path& file);
+
+}  // namespace wingbeat

@@ -1,0 +1,173 @@
+// Fitting a vehicle's parameters to bench measurements: weighted, bounded, robust least squares with exact derivatives
+// through the orbit, and what the data can and cannot tell.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "wingbeat/cycle/orbit_gradient.hpp"
+
+namespace wingbeat {
+
+/// Quantities of a phase-averaged waveform, in the order of GradientInstant.
+enum class WaveformQuantity { crank_speed, current, flapping_velocity, lift, rod_force, motor_torque };
+inline constexpr int waveform_quantity_count = 6;
+/// The name outside the program ("crank_speed") and the SI unit.
+const char* name_of(WaveformQuantity quantity);
+const char* unit_of(WaveformQuantity quantity);
+
+/// What a column of a log holds: a metric of the cycle, or a quantity at a crank angle.
+struct MeasuredQuantity {
+  bool waveform = false;
+  Metric metric = Metric::frequency;
+  WaveformQuantity quantity = WaveformQuantity::current;
+  auto operator<=>(const MeasuredQuantity&) const = default;
+};
+std::string name_of(const MeasuredQuantity& quantity);
+const char* unit_of(const MeasuredQuantity& quantity);
+
+/// What was set on the bench; the other one follows.
+enum class Given { voltage, frequency };
+
+/// One row of a log; of a waveform log, one crank angle.
+struct BenchRow {
+  int line = 0;               ///< in its file
+  double given = 0.0;         ///< voltage [V] or frequency [Hz]
+  double crank_angle = 0.0;   ///< of a waveform log [rad]
+  std::vector<double> values; ///< SI, one per column
+};
+
+struct BenchLog {
+  std::string file;
+  Condition condition = Condition::air;
+  bool springs = false;  ///< false: the vehicle's springs are taken off
+  Given given = Given::voltage;
+  bool waveform = false;  ///< rows are instants of one cycle, all of the same `given`
+  std::vector<MeasuredQuantity> columns;
+  std::vector<BenchRow> rows;
+};
+
+/// Standard deviation of a column's values.
+struct Deviation {
+  enum class Kind { absolute, relative, estimated } kind = Kind::estimated;
+  double value = 0.0;  ///< SI, or a fraction
+};
+
+struct FreeParameter {
+  DesignParameter parameter;
+  double lower, upper, start;  ///< SI
+};
+
+enum class Loss { none, huber, soft_l1, cauchy };
+
+struct BenchFit {
+  Design<double> design;  ///< with the springs of the logs that have them
+  std::vector<BenchLog> logs;
+  std::map<MeasuredQuantity, Deviation> deviations;
+  std::vector<FreeParameter> parameters;
+  Loss loss = Loss::none;
+  double loss_scale = 1.5;  ///< where the loss bends, in standard deviations
+  int starts = 1;           ///< the given start, and starts - 1 points of a Latin hypercube within the bounds
+  std::uint64_t seed = 1;
+  bool profiles = true;
+  double tolerance = 1e-7;  ///< of the orbits
+};
+
+/// A parameter as the data see it.
+struct FittedParameter {
+  std::string key, unit;
+  std::optional<double> value;  ///< empty: the data do not determine it
+  double kept = 0.0;            ///< what the fitted vehicle has
+  double standard_error = absent;
+  double lower_95 = absent, upper_95 = absent;  ///< from the standard error
+  double profile_lower_95 = absent, profile_upper_95 = absent;  ///< from the likelihood; absent where not computed
+  bool at_bound = false;
+  std::string reason;  ///< where it is not determined: why
+  struct ProfilePoint {
+    double value, excess;  ///< rise of -2 ln L over its least, the other parameters free
+  };
+  std::vector<ProfilePoint> profile;
+};
+
+/// A direction in parameter space (relative changes) and how well the data fix it.
+struct FitDirection {
+  std::vector<double> components;  ///< of unit length, one per parameter
+  double relative_error;           ///< standard error along it [1]; infinity where nothing is known
+};
+
+struct FitPoint {
+  std::size_t log, row, column;
+  double measured, fitted, deviation;  ///< SI; fitted is absent where the model does not reach the row
+  double residual() const { return (measured - fitted) / deviation; }
+};
+
+/// A row that the fitted model does not reach.
+struct UnreachedRow {
+  std::size_t log, row;
+  FlappingStatus status;
+  std::string detail;
+};
+
+/// What one condition contributes.
+struct ConditionShare {
+  std::string name;               ///< "air", "air with springs"
+  int points = 0;
+  double rms = 0.0;               ///< of its residuals, in standard deviations
+  std::vector<double> share;      ///< of the information on each parameter, the others known [1]
+  std::vector<double> error_without;  ///< standard error of each parameter without this condition; infinity: lost
+};
+
+struct FitResult {
+  bool converged = false;
+  std::string message;
+  Design<double> design;  ///< fitted; parameters not determined keep their start
+  std::vector<FittedParameter> parameters;
+  std::vector<std::vector<double>> covariance;   ///< SI; rows of parameters not determined are absent (NaN)
+  std::vector<std::vector<double>> correlation;
+  std::vector<FitDirection> directions;          ///< best known first
+  std::vector<std::string> verdict;              ///< sentences
+  std::vector<ConditionShare> conditions;
+  std::vector<FitPoint> points;
+  std::vector<UnreachedRow> unreached;
+  std::map<MeasuredQuantity, double> estimated_deviations;  ///< SI
+  double deviance = 0.0;       ///< -2 ln L up to a constant that only depends on the data
+  double chi_square = 0.0;     ///< of the points reached
+  int degrees_of_freedom = 0;
+  double aicc = 0.0;           ///< corrected Akaike information criterion
+  int starts_converged = 0;    ///< starts that ended in the same least
+  int starts_elsewhere = 0;    ///< starts that ended in a higher one
+  int evaluations = 0;         ///< orbits computed
+};
+
+/// Throws ParameterError for parameters without a place in the design, bounds out of order, quantities that the design
+/// does not have. `progress` is called now and then with what is under way.
+FitResult fit_bench(const BenchFit& fit, const std::function<void(const std::string&)>& progress = {});
+
+/// One friction law fitted to the same data.
+struct FrictionCandidate {
+  FrictionLaw law;
+  FitResult result;
+  double aicc_excess = 0.0;  ///< over the best law's
+  /// Condition left out -> rms of its prediction errors in standard deviations; infinity: a row is not reached.
+  std::vector<std::pair<std::string, double>> left_out;
+  double prediction_error = 0.0;  ///< rms over all of them
+  // With and without the design's springs at `spring_frequency`, air; absent without springs or where not reached.
+  double spring_frequency = absent, power_springs_off = absent, power_springs_on = absent;
+};
+
+/// Fits every law in place of the free friction parameter; best AICc first. Throws ParameterError unless a friction
+/// parameter is free.
+std::vector<FrictionCandidate> compare_friction(const BenchFit& fit,
+                                                const std::function<DesignParameter(const std::string&)>& parameter_of,
+                                                const std::function<void(const std::string&)>& progress = {});
+
+/// "air", "vacuum with springs".
+std::string condition_name(Condition condition, bool springs);
+const char* law_name(FrictionLaw law);
+
+}  // namespace wingbeat
