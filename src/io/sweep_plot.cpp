@@ -222,6 +222,7 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
   }
   for (std::size_t p = 0; p < metrics.size(); ++p) {
     if (p > 0) figure.next_panel();
+    figure.add("unset object\n");
     const Field field(file, metrics[p]);
     const double top = 1.0 - (head + double(p) * (panel + gap)) / inches;
     figure.add("set tmargin at screen {}\nset bmargin at screen {}\nset format x {}\n", top, top - panel / inches,
@@ -231,15 +232,13 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
     for (std::uint64_t n = 0; n < sweep.size(); ++n) {
       if (std::isfinite(field.values[n]) && (best == sweep.size() || field.values[n] > field.values[best])) best = n;
     }
-    std::string marks;
     if (best < sweep.size()) {
       const std::size_t at = std::size_t(places(sweep, best)[along]);
       const std::uint64_t first = best - at * stride;
       const std::size_t curve = std::size_t(std::find(curves.begin(), curves.end(), first) - curves.begin());
       figure.text(fmt::format("circle: {} {} at {}", field.superlative(), field.shown(field.values[best]), x.value(at)),
                   6.5, fmt::format("screen {},{} right", right, top + 0.09 / inches));
-      figure.add("$best_{} << END\n{} {}\nEND\n", p, x.at[at], field.values[best]);
-      marks = fmt::format(", $best_{} using 1:2 with points pt 6 ps 0.9 lw 0.9 lc rgb '{}'", p, curve_colours[curve]);
+      figure.circle(x.at[at], field.values[best], 0.01, "fillstyle empty", curve_colours[curve]);
     }
     if (p + 1 == metrics.size()) {
       figure.text(x.label(), 7.5, fmt::format("screen {},{} center", 0.5 * (left + right), 0.23 / inches));
@@ -253,7 +252,7 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
                                   "ps 0.2 lc rgb '{}'",
                                   c == 0 ? "" : ", ", p, c, curve_styles[c], p, c, curve_colours[c]);
     }
-    figure.add("set yrange [*:*]\nset offsets 0,0,graph 0.06,0\nplot {}{}\n", curves_drawn, marks);
+    figure.add("set yrange [*:*]\nset offsets 0,0,graph 0.06,0\nplot {}\n", curves_drawn);
   }
   figure.add("unset multiplot\nunset output\n");
   run_gnuplot(figure.script(), output);
@@ -542,11 +541,8 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
                "$feasible using 1:2 with lines dt (9,4) lw 1.5 lc rgb '#000000'";
     }
     if (best < status.size()) {
-      figure.add("$best_{} << END\n{} {}\nEND\n", p, x.at[best / ny], y.at[best % ny]);
-      drawn += fmt::format(", $best_{0} using 1:2 with points pt 7 ps 0.75 lc rgb '#ffffff', "
-                           "$best_{0} using 1:2 with points pt 6 ps 0.75 lw 1.2 lc rgb '#000000', "
-                           "$best_{0} using 1:2 with points pt 7 ps 0.25 lc rgb '#000000'",
-                           p);
+      figure.circle(x.at[best / ny], y.at[best % ny], 0.012, "fillcolor rgb '#ffffff' fillstyle solid", "#000000");
+      figure.circle(x.at[best / ny], y.at[best % ny], 0.003, "fillcolor rgb '#000000' fillstyle solid", "#000000");
       figure.text(fmt::format("circle: {} {} at {}, {}", field.superlative(), field.shown(field.values[best]),
                               x.value(best / ny), y.value(best % ny)),
                   6.5, fmt::format("screen {},{} right", right, top + 0.09 / inches));
