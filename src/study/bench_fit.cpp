@@ -108,6 +108,8 @@ class Bench {
       }
     }
     voltages_.assign(points_.size(), absent);
+    frequency_slopes_.assign(points_.size(), absent);
+    voltage_slopes_.assign(points_.size(), {});
     predictions_.resize(points_.size());
     orbits_.resize(points_.size());
     fitted_.assign(observations_.size(), absent);
@@ -206,35 +208,37 @@ class Bench {
 
   SteadyFlapping orbit_at_frequency(std::size_t n, Vehicle<double>& vehicle, const Reporting& reporting) {
     const double wanted = points_[n].value;
+    const double close = std::max(3.0 * fit_.tolerance, 1e-6);
     double& start = voltages_[n];
+    double& slope = frequency_slopes_[n];
+    const VoltageSlopes& known = voltage_slopes_[n];
     const Motor<double>& m = vehicle.motor;
-    double v0 = start;
-    if (!std::isfinite(v0)) {
-      // Twice the unloaded motor's loss: a guess for the secant.
-      v0 = two_pi * wanted * (m.torque_constant + 3.0 * m.armature_resistance * m.viscous_damping / m.torque_constant) * 1.5;
+    double v = start;
+    if (std::isfinite(v) && std::isfinite(known.voltage)) {
+      double moved = known.voltage;
+      for (std::size_t k = 0; k < x_.size(); ++k) moved += known.by_parameter[k] * (x_[k] - known.x[k]);
+      if (moved > 0.5 * v && moved < 2.0 * v) v = moved;
     }
-    SteadyFlapping found = orbit(vehicle, v0, reporting);
-    if (found.status == FlappingStatus::flapping) {
-      double f0 = found.metrics[Metric::frequency];
-      double v1 = v0 * wanted / f0;
-      for (int iteration = 0; iteration < 8; ++iteration) {
-        if (std::abs(f0 / wanted - 1.0) < 3.0 * fit_.tolerance) {
-          start = v0;
-          return found;
-        }
-        SteadyFlapping next = orbit(vehicle, v1, reporting);
-        if (next.status != FlappingStatus::flapping) break;
-        const double f1 = next.metrics[Metric::frequency];
-        const double slope = (f1 - f0) / (v1 - v0);
-        v0 = v1, f0 = f1, found = std::move(next);
-        if (!(slope > 0.0)) break;
-        v1 = v0 + (wanted - f0) / slope;
-        if (!(v1 > 0.0)) break;
-      }
-      if (std::abs(f0 / wanted - 1.0) < 3.0 * fit_.tolerance) {
-        start = v0;
+    // At first half as much again as the motor needs without load.
+    if (!std::isfinite(v)) {
+      v = 1.5 * two_pi * wanted *
+          (m.torque_constant + m.armature_resistance * m.viscous_damping / m.torque_constant);
+    }
+    double v_before = absent, f_before = absent;
+    for (int iteration = 0; iteration < 10; ++iteration) {
+      SteadyFlapping found = orbit(vehicle, v, reporting);
+      if (found.status != FlappingStatus::flapping) break;
+      const double f = found.metrics[Metric::frequency];
+      if (std::isfinite(v_before) && f != f_before) slope = (f - f_before) / (v - v_before);
+      if (std::abs(f / wanted - 1.0) < close) {
+        start = v;
         return found;
       }
+      if (!(slope > 0.0)) slope = f / v;
+      v_before = v;
+      f_before = f;
+      v += (wanted - f) / slope;
+      if (!(v > 0.3 * v_before && v < 3.0 * v_before)) break;
     }
     const FrequencySearch search = find_voltage_for_frequency(
         vehicle, wanted, {.tolerance = fit_.tolerance, .stability = false, .reporting = reporting});
@@ -260,6 +264,15 @@ class Bench {
                        {.held = point.given == Given::voltage ? Held::voltage : Held::frequency,
                         .peaks = point.peaks,
                         .crank_angles = point.crank_angles});
+    if (point.given == Given::frequency) {
+      VoltageSlopes& slopes = voltage_slopes_[n];
+      slopes.voltage = orbits_[n].metrics[Metric::voltage];
+      slopes.x = x_;
+      slopes.by_parameter.resize(x_.size(), 0.0);
+      for (std::size_t k = 0; k < count; ++k) {
+        slopes.by_parameter[first + k] = g.metrics[Metric::voltage].v[gradient_first_slot + Eigen::Index(k)];
+      }
+    }
     for (const std::size_t o : point.observations) {
       const Observation& observation = observations_[o];
       const GradientJet& value = observation.quantity.waveform
@@ -277,7 +290,15 @@ class Bench {
   std::vector<Observation> observations_;
   std::vector<Prediction> predictions_;
   std::vector<SteadyFlapping> orbits_;
-  std::vector<double> voltages_, fitted_, x_;
+  // Of points whose frequency is set: the voltage last found, df/dv there, and the voltage's gradient with the voltage
+  // and the parameters it belongs to.
+  struct VoltageSlopes {
+    double voltage = absent;
+    std::vector<double> x, by_parameter;
+  };
+  std::vector<double> voltages_, frequency_slopes_;
+  std::vector<VoltageSlopes> voltage_slopes_;
+  std::vector<double> fitted_, x_;
   Eigen::MatrixXd jacobian_;
   bool derivatives_known_ = false;
   int evaluations_ = 0;

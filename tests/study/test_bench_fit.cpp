@@ -1,0 +1,313 @@
+#include "wingbeat/study/bench_fit.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "study/synthetic_bench.hpp"
+#include "vehicle/reference_vehicle.hpp"
+
+namespace wingbeat {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+const std::vector<Metric> in_air = {Metric::frequency, Metric::current_mean, Metric::lift_mean, Metric::current_peak};
+const std::vector<Metric> in_vacuum = {Metric::frequency, Metric::current_mean, Metric::current_peak};
+const std::vector<Metric> without_wings = {Metric::frequency, Metric::current_mean};
+
+/// Exact logs of the reference vehicle, computed once.
+const std::vector<BenchLog>& exact_logs() {
+  static const std::vector<BenchLog> logs = [] {
+    const Design<double> d = reference_design();
+    const std::vector<double> v = spaced_voltages(1.5, 4.0, 6);
+    return std::vector<BenchLog>{bench_log(d, Condition::air, false, v, in_air),
+                                 bench_log(d, Condition::vacuum, false, v, in_vacuum),
+                                 bench_log(d, Condition::wingless, false, v, without_wings)};
+  }();
+  return logs;
+}
+
+BenchFit bench(double noise, std::uint64_t seed, bool six = false) {
+  BenchFit fit;
+  fit.design = reference_design();
+  fit.profiles = false;
+  fit.tolerance = noise > 0.0 ? 1e-6 : 1e-7;
+  std::mt19937_64 random(seed);
+  for (const BenchLog& log : exact_logs()) fit.logs.push_back(with_noise(log, noise, random));
+  set_deviations(fit, std::max(noise, 1e-3));
+  fit.parameters = {free_parameter("friction.radius", 0.0, 8e-3, 1e-3),
+                    free_parameter("aerodynamics.pitch_coefficient", 1e-3, 1e-2, 3e-3),
+                    free_parameter("motor.viscous_damping", 0.0, 2e-5, 8e-6)};
+  if (six) {
+    fit.parameters.push_back(free_parameter("motor.inertia", 1e-8, 1e-6, 3e-7));
+    fit.parameters.push_back(free_parameter("wing.planform.s2", 5e-7, 1e-5, 1.5e-6));
+    fit.parameters.push_back(free_parameter("wing.planform.s3", 2e-8, 5e-7, 2e-7));
+  }
+  return fit;
+}
+
+double truth(const std::string& key) {
+  return *design_parameter(key).value(reference_design());
+}
+
+TEST(BenchFit, ExactDataGiveTheVehicleBack) {
+  const FitResult r = fit_bench(bench(0.0, 1, true));
+  EXPECT_TRUE(r.converged) << r.message;
+  for (const FittedParameter& p : r.parameters) EXPECT_NEAR(*p.value / truth(p.key), 1.0, 2e-4) << p.key;
+  EXPECT_LT(r.chi_square, 1e-2);
+  EXPECT_TRUE(r.unreached.empty());
+}
+
+TEST(BenchFit, FrequencySetOnTheBench) {
+  BenchFit fit = bench(0.0, 1);
+  const std::vector<double> v = spaced_voltages(2.0, 4.0, 6);
+  const std::vector<Metric> seen = {Metric::voltage, Metric::current_mean, Metric::power_electrical};
+  fit.logs = {bench_log(reference_design(), Condition::air, false, v, seen, Given::frequency),
+              bench_log(reference_design(), Condition::wingless, false, v, seen, Given::frequency)};
+  set_deviations(fit, 0.01);
+  const FitResult r = fit_bench(fit);
+  for (const FittedParameter& p : r.parameters) EXPECT_NEAR(*p.value / truth(p.key), 1.0, 1e-3) << p.key;
+}
+
+TEST(BenchFit, WaveformOfTheCurrentDeterminesTheInertia) {
+  BenchFit fit = bench(0.0, 1);
+  const SteadyFlapping orbit = find_steady_flapping(reference_vehicle(), {.tolerance = 1e-10});
+  BenchLog wave;
+  wave.file = "waveform";
+  wave.waveform = true;
+  wave.columns = {{true, {}, WaveformQuantity::current}, {true, {}, WaveformQuantity::crank_speed}};
+  for (int n = 0; n < 24; ++n) {
+    const double theta = two_pi * n / 24.0;
+    const WaveformRow row = orbit.record.at(theta);
+    wave.rows.push_back({n + 2, 3.0, theta, {row.current, row.crank_speed}});
+  }
+  fit.logs = {wave};
+  fit.deviations.clear();
+  set_deviations(fit, 0.01);
+  fit.parameters = {free_parameter("friction.radius", 0.0, 8e-3, 1e-3),
+                    free_parameter("motor.inertia", 1e-8, 1e-6, 3e-7)};
+  const FitResult r = fit_bench(fit);
+  for (const FittedParameter& p : r.parameters) {
+    EXPECT_NEAR(*p.value / truth(p.key), 1.0, 1e-5) << p.key;
+    EXPECT_LT(p.standard_error / *p.value, 0.02) << p.key;
+  }
+}
+
+TEST(BenchFit, TruthLiesInsideTheIntervals) {
+  // The study of 200 experiments is benchmarks/coverage; here enough to notice wrong intervals.
+  int inside = 0, all = 0;
+  for (std::uint64_t seed = 100; seed < 105; ++seed) {
+    const FitResult r = fit_bench(bench(0.015, seed, true));
+    for (const FittedParameter& p : r.parameters) {
+      ASSERT_TRUE(p.value) << p.key;
+      ++all;
+      inside += truth(p.key) >= p.lower_95 && truth(p.key) <= p.upper_95;
+    }
+  }
+  EXPECT_EQ(all, 30);
+  // 28.5 of 30 expected; intervals too narrow by a half would hold 20.
+  EXPECT_GE(inside, 26);
+}
+
+TEST(BenchFit, EstimatedDeviationsFindTheNoise) {
+  BenchFit fit = bench(0.02, 7);
+  for (auto& [quantity, deviation] : fit.deviations) deviation = {Deviation::Kind::estimated, 0.0};
+  // One condition at a narrow range of voltages, so that relative and absolute noise are alike.
+  fit.logs.clear();
+  std::mt19937_64 random(7);
+  const std::vector<double> v = spaced_voltages(2.9, 3.1, 40);
+  BenchLog log = bench_log(reference_design(), Condition::air, false, v, {Metric::frequency, Metric::current_mean});
+  fit.logs.push_back(with_noise(log, 0.02, random));
+  fit.parameters.resize(1);
+  const FitResult r = fit_bench(fit);
+  ASSERT_EQ(r.estimated_deviations.size(), 2U);
+  EXPECT_NEAR(r.estimated_deviations.at(measured(Metric::frequency)) / (0.02 * 22.0), 1.0, 0.3);
+  EXPECT_NEAR(r.estimated_deviations.at(measured(Metric::current_mean)) / (0.02 * 0.18), 1.0, 0.3);
+  EXPECT_NEAR(r.chi_square / r.degrees_of_freedom, 1.0, 1e-3);
+}
+
+TEST(BenchFit, WingsAndAirAreNotGuessedFromVacuumAndWinglessData) {
+  BenchFit fit = bench(0.01, 3, true);
+  std::erase_if(fit.logs, [](const BenchLog& log) { return log.condition == Condition::air; });
+  const FitResult r = fit_bench(fit);
+  for (const FittedParameter& p : r.parameters) {
+    const bool aerodynamic = p.key.starts_with("aerodynamics") || p.key.starts_with("wing.planform");
+    EXPECT_EQ(p.value.has_value(), !aerodynamic) << p.key;
+    EXPECT_EQ(std::isnan(p.standard_error), aerodynamic) << p.key;
+    if (aerodynamic) {
+      EXPECT_EQ(p.reason, "no measured quantity depends on it");
+    }
+  }
+  EXPECT_THAT(r.verdict, Contains(HasSubstr("not identifiable, no measured quantity depends on it: "
+                                            "aerodynamics.pitch_coefficient, wing.planform.s2, wing.planform.s3")));
+  // The vehicle that comes out keeps the starts.
+  EXPECT_EQ(r.design.wing.planform.s2, 1.5e-6);
+  EXPECT_NEAR(r.design.friction.coefficient / 2.5e-3, 1.0, 0.05);
+}
+
+TEST(BenchFit, ProductsAreNamedAsSuch) {
+  BenchFit fit = bench(0.01, 3);
+  // Density and both chord moments enter as rho S_2 and rho S_3 alone.
+  fit.parameters = {free_parameter("aerodynamics.air_density", 0.5, 3.0, 1.0),
+                    free_parameter("wing.planform.s3", 2e-8, 5e-7, 1.2e-7),
+                    free_parameter("friction.radius", 0.0, 8e-3, 1e-3)};
+  for (BenchLog& log : fit.logs) {
+    // No lift: it would fix the density.
+    for (std::size_t c = log.columns.size(); c-- > 0;) {
+      if (log.columns[c].metric != Metric::lift_mean) continue;
+      log.columns.erase(log.columns.begin() + std::ptrdiff_t(c));
+      for (BenchRow& row : log.rows) row.values.erase(row.values.begin() + std::ptrdiff_t(c));
+    }
+  }
+  const FitResult r = fit_bench(fit);
+  EXPECT_FALSE(r.parameters[0].value || r.parameters[1].value);
+  ASSERT_TRUE(r.parameters[2].value.has_value());
+  EXPECT_LT(std::abs(*r.parameters[2].value - 2.5e-3), 4.0 * r.parameters[2].standard_error);
+  EXPECT_THAT(r.verdict, Contains(HasSubstr("of which the data know only the product")));
+}
+
+TEST(BenchFit, ConditionsNameWhatTheyContribute) {
+  const FitResult r = fit_bench(bench(0.01, 5));
+  EXPECT_THAT(r.verdict, Contains("only air determines aerodynamics.pitch_coefficient"));
+  EXPECT_THAT(r.verdict, Contains(HasSubstr("without wingless the intervals would be wider")));
+  EXPECT_THAT(r.verdict, Contains(HasSubstr("friction.radius is the product mu r_e")));
+  for (std::size_t k = 0; k < 3; ++k) {
+    double sum = 0.0;
+    for (const ConditionShare& c : r.conditions) sum += c.share[k];
+    EXPECT_NEAR(sum, 1.0, 1e-12);
+  }
+}
+
+TEST(BenchFit, ProfileAgreesWithTheStandardErrorWhereTheModelIsNearlyLinear) {
+  BenchFit fit = bench(0.01, 5);
+  fit.profiles = true;
+  const FitResult r = fit_bench(fit);
+  for (const FittedParameter& p : r.parameters) {
+    EXPECT_NEAR((p.profile_upper_95 - *p.value) / (p.upper_95 - *p.value), 1.0, 0.1) << p.key;
+    EXPECT_NEAR((*p.value - p.profile_lower_95) / (*p.value - p.lower_95), 1.0, 0.1) << p.key;
+    for (const auto& point : p.profile) EXPECT_GE(point.excess, 0.0);
+  }
+}
+
+TEST(BenchFit, RobustLossShrugsOffOutliers) {
+  BenchFit fit = bench(0.01, 9);
+  fit.logs[0].rows[2].values[1] *= 1.6;
+  fit.logs[1].rows[4].values[0] *= 0.5;
+  const auto deviation_of_radius = [&](Loss loss) {
+    fit.loss = loss;
+    return std::abs(*fit_bench(fit).parameters[0].value - 2.5e-3);
+  };
+  const double plain = deviation_of_radius(Loss::none);
+  EXPECT_GT(plain, 2e-4);
+  for (const Loss loss : {Loss::huber, Loss::soft_l1, Loss::cauchy}) EXPECT_LT(deviation_of_radius(loss), 0.4 * plain);
+}
+
+TEST(BenchFit, RowsThatTheModelCannotReachAreNamed) {
+  BenchFit fit = bench(0.01, 11);
+  // A reading of a frequency at a voltage at which this motor cannot overcome its own friction.
+  fit.design.motor.constants.friction_torque = 4e-4;
+  fit.logs.resize(1);
+  fit.logs[0].rows.insert(fit.logs[0].rows.begin(), BenchRow{2, 0.3, 0.0, {2.0, 0.03, 1e-4, 0.03}});
+  const FitResult r = fit_bench(fit);
+  ASSERT_EQ(r.unreached.size(), 1U);
+  EXPECT_EQ(r.unreached[0].row, 0U);
+  EXPECT_EQ(r.unreached[0].status, FlappingStatus::stalled);
+  EXPECT_THAT(r.unreached[0].detail, HasSubstr("stall torque"));
+  EXPECT_TRUE(std::isnan(r.points[0].fitted));
+  EXPECT_EQ(r.degrees_of_freedom, 6 * 4 - 3);
+}
+
+TEST(BenchFit, StartsOfAHypercubeFindTheSameLeast) {
+  BenchFit fit = bench(0.01, 13);
+  fit.starts = 4;
+  const FitResult r = fit_bench(fit);
+  EXPECT_GE(r.starts_converged, 3);
+  EXPECT_EQ(r.starts_converged + r.starts_elsewhere, 4);
+  EXPECT_NEAR(*r.parameters[0].value / 2.5e-3, 1.0, 0.05);
+}
+
+/// The radius at which half of the motor's output at 3 V in air is friction.
+double half_friction_radius(Design<double> d) {
+  double low = 0.0, high = 8e-3;
+  for (int n = 0; n < 50; ++n) {
+    const double middle = 0.5 * (low + high);
+    d.friction.coefficient = middle;
+    const SteadyFlapping s = find_steady_flapping(resolve(d));
+    const bool less = s.metrics[Metric::power_friction] < 0.5 * s.metrics[Metric::power_motor];
+    (less ? low : high) = middle;
+  }
+  return low;
+}
+
+/// The pitch coefficient at which alpha is 45 degrees where lift peaks.
+double pitch_for_45_degrees(Design<double> d) {
+  for (int n = 0; n < 100; ++n) {
+    const SteadyFlapping s = find_steady_flapping(resolve(d));
+    const auto rows = s.record.waveform(721);
+    const auto peak = std::max_element(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.lift < b.lift; });
+    d.aerodynamics.pitch_coefficient =
+        0.5 * (d.aerodynamics.pitch_coefficient + 0.25 * pi / std::abs(peak->flapping_velocity));
+  }
+  return d.aerodynamics.pitch_coefficient;
+}
+
+TEST(BenchFit, ThePapersOwnPathArrivesAtItsTable) {
+  BenchFit fit = bench(0.0, 1);
+  Design<double> guess = reference_design();
+  guess.aerodynamics.pitch_coefficient = pitch_for_45_degrees(guess);
+  guess.friction.coefficient = half_friction_radius(guess);
+  // Far from where it should end.
+  EXPECT_GT(std::abs(guess.friction.coefficient / 2.5e-3 - 1.0), 0.1);
+  EXPECT_GT(std::abs(guess.aerodynamics.pitch_coefficient / 5e-3 - 1.0), 0.3);
+  fit.parameters = {free_parameter("friction.radius", 0.0, 8e-3, guess.friction.coefficient),
+                    free_parameter("aerodynamics.pitch_coefficient", 1e-3, 1.5e-2, guess.aerodynamics.pitch_coefficient)};
+  const FitResult r = fit_bench(fit);
+  EXPECT_NEAR(*r.parameters[0].value, 2.5e-3, 1e-6);
+  EXPECT_NEAR(*r.parameters[1].value, 5e-3, 1e-6);
+}
+
+TEST(CompareFriction, DataOfALoadProportionalVehicleRankItFirst) {
+  BenchFit fit = bench(0.01, 17);
+  fit.design.spring.stiffness = 1.377e-3;
+  const auto ranked = compare_friction(fit, [](const std::string& key) { return design_parameter(key); });
+  ASSERT_EQ(ranked.size(), 5U);
+  EXPECT_EQ(ranked[0].law, FrictionLaw::load_proportional);
+  EXPECT_EQ(ranked[0].aicc_excess, 0.0);
+  for (std::size_t n = 1; n < 5; ++n) {
+    EXPECT_GT(ranked[n].aicc_excess, 100.0) << law_name(ranked[n].law);
+    EXPECT_GT(ranked[n].prediction_error, 2.0 * ranked[0].prediction_error) << law_name(ranked[n].law);
+    EXPECT_EQ(ranked[n].left_out.size(), 3U);
+    // The paper's argument: without load-proportional friction, springs would not save power.
+    EXPECT_GT(ranked[n].power_springs_on / ranked[n].power_springs_off, 0.95) << law_name(ranked[n].law);
+  }
+  EXPECT_LT(ranked[0].power_springs_on / ranked[0].power_springs_off, 0.9);
+}
+
+TEST(BenchFit, RefusesWhatCannotBeFitted) {
+  const auto refusal = [](const BenchFit& fit) {
+    try {
+      fit_bench(fit);
+    } catch (const ParameterError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  BenchFit fit = bench(0.01, 1);
+  fit.parameters[0].start = 1.0;
+  EXPECT_THAT(refusal(fit), HasSubstr("friction.radius: the start 1 does not lie within the bounds 0 to 0.008 [m]"));
+  fit = bench(0.01, 1);
+  fit.parameters.push_back(fit.parameters[0]);
+  EXPECT_THAT(refusal(fit), HasSubstr("friction.radius: is given twice"));
+  fit = bench(0.01, 1);
+  fit.logs[0].springs = true;
+  EXPECT_THAT(refusal(fit), HasSubstr("a log was taken with springs, but the vehicle file has none"));
+  fit = bench(0.01, 1);
+  fit.parameters = {free_parameter("supply.voltage", 1.0, 4.0, 3.0)};
+  EXPECT_THAT(refusal(fit), HasSubstr("the logs state the supply"));
+}
+
+}  // namespace
+}  // namespace wingbeat
