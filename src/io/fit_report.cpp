@@ -47,14 +47,14 @@ std::string text_fit(const BenchFit& fit, const FitResult& r) {
     text += fmt::format("chi square {:.1f} with {} degrees of freedom, AICc {:.1f}\n", r.chi_square,
                         r.degrees_of_freedom, r.aicc);
   }
-  text += fmt::format("\n{:<33}{:>11}{:>10}  {:^22}  unit\n", "Parameter", "value", "+-", "95 % interval");
+  text += fmt::format("\n{:<32}{:>11}{:>9}  {:^22}  unit\n", "Parameter", "value", "+-", "95 % interval");
   for (const FittedParameter& p : r.parameters) {
     if (!p.value) {
-      text += fmt::format("{:<33}{:>11}  {}\n", p.key, "unknown", p.reason);
+      text += fmt::format("{:<32}{:>11}  {}\n", p.key, "unknown", p.reason);
       continue;
     }
     const bool profiled = std::isfinite(p.profile_lower_95) && std::isfinite(p.profile_upper_95);
-    text += fmt::format("{:<33}{:>11.4e}{:>10.1e}  {:>10.3e} .. {:<10.3e}{} {}{}\n", p.key, *p.value, p.standard_error,
+    text += fmt::format("{:<32}{:>11.4e}{:>9.1e}  {:>10.3e} .. {:<9.3e}{} {}{}\n", p.key, *p.value, p.standard_error,
                         profiled ? p.profile_lower_95 : p.lower_95, profiled ? p.profile_upper_95 : p.upper_95,
                         profiled ? "" : "*", p.unit, p.at_bound ? "  AT ITS BOUND" : "");
   }

@@ -1,0 +1,67 @@
+#include <gmock/gmock.h>
+
+#include "program.hpp"
+
+namespace cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::UnorderedElementsAre;
+
+class Fit : public Program {};
+
+const std::string bench = data + "/bench/flapper.toml";
+
+TEST_F(Fit, WritesAVehicleThatRunsAndItsCovariance) {
+  const Outcome o = run({"fit", bench, "-o", path("fitted.toml"), "--no-profiles", "--plot", path("residuals.svg")});
+  EXPECT_EQ(o.status, 0);
+  EXPECT_THAT(o.err, IsEmpty());
+  for (const char* part : {"3 parameters, 36 rows", "converged", "friction.radius", "What the data can tell",
+                           "only air determines aerodynamics.pitch_coefficient", "Share of the information"}) {
+    EXPECT_THAT(o.out, HasSubstr(part));
+  }
+  std::istringstream lines(o.out);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 90U) << line;
+  EXPECT_THAT(files(), UnorderedElementsAre("fitted.toml", "fitted.covariance.toml", "residuals.svg"));
+  EXPECT_EQ(run({"run", path("fitted.toml")}).status, 0);
+  EXPECT_THAT(read(path("fitted.covariance.toml")), HasSubstr("vehicle = \"fitted.toml\""));
+  EXPECT_THAT(read(path("residuals.svg")), HasSubstr("wingless"));
+}
+
+TEST_F(Fit, JsonHoldsTheTruthInItsIntervals) {
+  const Outcome o = run({"fit", bench, "--json"});
+  EXPECT_EQ(o.status, 0);
+  const Json json = o.json();
+  const std::map<std::string, double> truth = {{"friction.radius", 2.5e-3},
+                                               {"aerodynamics.pitch_coefficient", 5e-3},
+                                               {"motor.viscous_damping", 3.6e-6}};
+  ASSERT_EQ(json["parameters"].size(), 3U);
+  for (const Json& p : json["parameters"]) {
+    const double value = truth.at(p["key"].get<std::string>());
+    EXPECT_LT(p["profile_lower_95"].get<double>(), value) << p["key"];
+    EXPECT_GT(p["profile_upper_95"].get<double>(), value) << p["key"];
+    EXPECT_GT(p["profile"].size(), 2U);
+  }
+  EXPECT_EQ(json["points"].size(), 108U);
+}
+
+TEST_F(Fit, BadInputIsOneSentence) {
+  const Outcome missing = run({"fit", path("none.toml")});
+  EXPECT_EQ(missing.status, 2);
+  EXPECT_THAT(missing.err, HasSubstr("none.toml: no such file"));
+  EXPECT_EQ(run({"fit", bench, "--plot", path("plot.gif")}).status, 2);
+  std::string text = read(bench);
+  text.replace(text.find("condition = \"air\""), 17, "");
+  std::ofstream(path("bench.toml")) << text;
+  const Outcome unnamed = run({"fit", path("bench.toml"), "-o", path("fitted.toml")});
+  EXPECT_EQ(unnamed.status, 2);
+  EXPECT_EQ(count_of(unnamed.err, "\n"), 1U);
+}
+
+TEST_F(Fit, HelpShowsAnExampleThatRuns) {
+  EXPECT_THAT(run({"fit", "--help"}).out, HasSubstr("wingbeat fit data/bench/flapper.toml -o fitted.toml"));
+}
+
+}  // namespace
+}  // namespace cli
