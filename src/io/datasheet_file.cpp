@@ -173,7 +173,7 @@ std::string text_identification(const MotorIdentification& motor, const MotorDat
       text += "  " + wrapped(fmt::format("{}: {:.4g} and {:.4g}", sentence(c), c.first_value, c.second_value), 88, 4) + "\n";
     }
   }
-  if (!motor.remarks.empty()) text += "\nAssumptions\n";
+  if (!motor.remarks.empty()) text += "\nRemarks\n";
   for (const std::string& remark : motor.remarks) text += "  " + wrapped(remark, 88, 4) + "\n";
   if (!motor.missing.empty()) text += "\nNot determined\n";
   for (const std::string& missing : motor.missing) text += "  " + wrapped(missing, 88, 4) + "\n";
