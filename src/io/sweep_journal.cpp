@@ -100,10 +100,11 @@ std::uint64_t checksum(std::span<const std::byte> bytes, std::uint64_t seed) {
 }
 
 SweepJournal::SweepJournal(const std::filesystem::path& journal, const std::filesystem::path& data_set,
-                           std::uint64_t fingerprint, const ChunkLayout& layout, const Prepare& prepare)
+                           std::uint64_t fingerprint, const ChunkLayout& layout, std::uint64_t size,
+                           const Prepare& prepare)
     : journal_(journal), data_set_(data_set), layout_(layout), held_(layout.chunks(), false) {
   try {
-    lock(fingerprint, prepare);
+    lock(fingerprint, size, prepare);
     take_over();
   } catch (...) {
     close();
@@ -137,7 +138,7 @@ void SweepJournal::failed(const std::filesystem::path& file, int reason) const {
 }
 
 /// Opens the journal and makes sure that it is of this sweep and that the data set is prepared.
-void SweepJournal::lock(std::uint64_t fingerprint, const Prepare& prepare) {
+void SweepJournal::lock(std::uint64_t fingerprint, std::uint64_t size, const Prepare& prepare) {
   const bool data_there = std::filesystem::exists(data_set_);
   const bool journal_there = std::filesystem::exists(journal_);
   if (data_there && !journal_there) {
@@ -188,7 +189,9 @@ void SweepJournal::lock(std::uint64_t fingerprint, const Prepare& prepare) {
       refuse(journal_, fmt::format("cannot be written: {}", std::strerror(reason)));
     }
     try {
+      reserve(size, true);
       places = prepare(data_set_);
+      reserve(size, false);
       places.push_back(0);
       places.back() = sum_of(places);
       if (!write_at(journal_file_, places.data(), length, sizeof header)) failed(journal_, errno);
@@ -200,6 +203,21 @@ void SweepJournal::lock(std::uint64_t fingerprint, const Prepare& prepare) {
   }
   places.pop_back();
   places_ = std::move(places);
+}
+
+/// Has the system keep room for the whole data set, so that none is lacking later, and so that HDF5, which does not
+/// survive a full disk, never meets one. `fresh`: in an empty file, which tells limits of size too.
+void SweepJournal::reserve(std::uint64_t size, bool fresh) const {
+  const int file = ::open(data_set_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  int reason = file < 0 ? errno : 0;
+  if (reason == 0 && fresh && (::ftruncate(file, off_t(size)) != 0 || ::ftruncate(file, 0) != 0)) reason = errno;
+  // File systems that cannot do it are taken as they are.
+  if (reason == 0 && ::fallocate(file, FALLOC_FL_KEEP_SIZE, 0, off_t(size)) != 0 && errno != EOPNOTSUPP) reason = errno;
+  if (file >= 0) ::close(file);
+  if (reason == 0) return;
+  throw std::runtime_error(fmt::format("{}: cannot be written: {}; the data set needs {:.3g} MB: make room, or keep fewer "
+                                       "metrics (study.metrics)",
+                                       data_set_.string(), std::strerror(reason), double(size) / 1e6));
 }
 
 /// Opens the data set and finds the chunks that it holds.

@@ -1,14 +1,11 @@
 #include "wingbeat/io/sweep_run.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/statvfs.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
@@ -226,19 +223,6 @@ class Run {
   SweepProgress progress_;
 };
 
-void check_room(const Study& study, const SweepJournal& journal, const fs::path& folder) {
-  const ChunkLayout layout = layout_of(study.sweep);
-  struct statvfs disk {};
-  if (::statvfs(folder.c_str(), &disk) != 0) return;
-  const double free = double(disk.f_bavail) * double(disk.f_frsize);
-  const double held = double(journal.chunks_held()) / double(layout.chunks());
-  const double needed = (1.0 - held) * double(data_set_size(study));
-  if (needed <= free) return;
-  throw std::runtime_error(fmt::format("{}: not enough room: the sweep needs {:.3g} MB there, {:.3g} MB are free; "
-                                       " keep fewer metrics (study.metrics) or make room",
-                                       folder.string(), needed / 1e6, free / 1e6));
-}
-
 }  // namespace
 
 SweepRelease::~SweepRelease() {
@@ -276,8 +260,8 @@ SweepResult run_sweep(const Study& study, const SweepRunOptions& options) {
     limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(options.threads));
   }
   SweepJournal journal(journal_file(output), unfinished_file(output), print, layout_of(study.sweep),
+                       data_set_size(study),
                        [&](const fs::path& file) { return prepare_data_set(file, study, options.version); });
-  check_room(study, journal, output.parent_path());
   result.resumed = journal.designs_held();
   Run run(study, options, journal);
   const bool complete = run.compute(study);

@@ -100,19 +100,25 @@ TEST(Sweep, FrequenciesThatCannotBeHeldSaySo) {
   SweptQuantity frequency;
   frequency.kind = SweptQuantity::Kind::frequency;
   frequency.key = frequency.name = "frequency";
-  frequency.values = {5.0, 22.0, 1e5};  // locked below 7 Hz; no voltage gives 100 kHz
-  sweep.axes.push_back({"frequency", 3, {frequency}, false, {}, {}});
-  sweep.variants = {{design, Condition::air, true}};
-  sweep.variant_stride = {0};
+  frequency.values = {5.0, 22.0};  // locked below 7 Hz
+  SweptQuantity law;
+  law.kind = SweptQuantity::Kind::choice;
+  law.labels = {"load-proportional", "quadratic"};
+  sweep.axes.push_back({"law", 2, {law}, false, {}, {}});
+  sweep.axes.push_back({"frequency", 2, {frequency}, false, {}, {}});
+  sweep.variants = {{design, Condition::air, true}, {reference_design(), Condition::air, true}};
+  sweep.variants[1].design.friction = {FrictionLaw::quadratic, 1e-4};  // slower up to the highest voltage
+  sweep.variant_stride = {1, 0};
   sweep.options.metrics = MetricSet().set(std::size_t(Metric::voltage)).set(std::size_t(Metric::frequency));
   SweepColumns columns;
-  columns.resize(3, 2);
-  SweepSolver(sweep, start_up_in_time()).solve(columns, 0, 3);
+  columns.resize(4, 2);
+  SweepSolver(sweep, start_up_in_time()).solve(columns, 0, 4);
   EXPECT_EQ(SweepStatus(columns.status[0]), SweepStatus::locked);
   EXPECT_EQ(SweepStatus(columns.status[1]), SweepStatus::flapping);
-  EXPECT_EQ(SweepStatus(columns.status[2]), SweepStatus::unreached);
+  EXPECT_EQ(SweepStatus(columns.status[3]), SweepStatus::unreached);
+  EXPECT_STREQ(name_of(SweepStatus(columns.status[3])), "unreached");
   EXPECT_TRUE(std::isnan(columns.metrics[0][0]));
-  EXPECT_TRUE(std::isnan(columns.metrics[0][2]));
+  EXPECT_TRUE(std::isnan(columns.metrics[0][3]));
   EXPECT_NEAR(columns.metrics[1][1], 22.0, 22e-6);
   RunOptions options;
   options.frequency = 22.0;

@@ -50,9 +50,10 @@ class SweepJournal {
   using Prepare = std::function<std::vector<std::uint64_t>(const std::filesystem::path& file)>;
 
   /// Opens journal and data set, or creates them. Throws InputError, which leaves what is there as it was, if they
-  /// cannot be written, if they belong to another sweep or to a running process.
+  /// cannot be written, if they belong to another sweep or to a running process; std::runtime_error where there is no
+  /// room for a data set of `size` bytes.
   SweepJournal(const std::filesystem::path& journal, const std::filesystem::path& data_set, std::uint64_t fingerprint,
-               const ChunkLayout& layout, const Prepare& prepare);
+               const ChunkLayout& layout, std::uint64_t size, const Prepare& prepare);
   SweepJournal(const SweepJournal&) = delete;
   SweepJournal& operator=(const SweepJournal&) = delete;
   ~SweepJournal();
@@ -67,7 +68,8 @@ class SweepJournal {
   void finish(const std::filesystem::path& name);
 
  private:
-  void lock(std::uint64_t fingerprint, const Prepare& prepare);
+  void lock(std::uint64_t fingerprint, std::uint64_t size, const Prepare& prepare);
+  void reserve(std::uint64_t size, bool fresh) const;
   void take_over();
   void close();
   bool transfer(std::uint64_t chunk, std::byte* bytes, bool write) const;
