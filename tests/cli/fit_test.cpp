@@ -59,6 +59,48 @@ TEST_F(Fit, BadInputIsOneSentence) {
   EXPECT_EQ(count_of(unnamed.err, "\n"), 1U);
 }
 
+TEST_F(Fit, RowsOutOfReachAreReportedByFileAndLine) {
+  std::string vehicle = read(plain);
+  vehicle.replace(vehicle.find("[transmission]"), 0, "friction_torque = \"0.4 mN m\"\n\n");
+  std::ofstream(path("vehicle.toml")) << vehicle;
+  std::ofstream log(path("log.csv"));
+  log << "voltage_V,frequency_Hz,current_mean_mA\n0.3,2,33\n";
+  for (const char* v : {"2", "2.5", "3"}) {
+    const Json json = run({"run", path("vehicle.toml"), "--json", "--voltage", v}).json();
+    log << v << "," << json["frequency_hz"].dump() << "," << 1e3 * json["current_mean_a"].get<double>() << "\n";
+  }
+  log.close();
+  std::ofstream(path("bench.toml")) << "[bench]\nvehicle = \"vehicle.toml\"\n[[parameter]]\nkey = \"friction.radius\"\n"
+                                       "lower = 0\nupper = 8e-3\nstart = 1e-3\n[deviation]\ndefault = { relative = 0.01 }\n"
+                                       "[[log]]\nfile = \"log.csv\"\ncondition = \"air\"\n";
+  const Outcome o = run({"fit", path("bench.toml"), "-o", path("fitted.toml")});
+  EXPECT_EQ(o.status, 3);
+  EXPECT_THAT(o.out, HasSubstr("log.csv:2 (0.3 V, air):"));
+  EXPECT_THAT(o.out, HasSubstr("stalled: the motor never starts"));
+  EXPECT_THAT(o.err, HasSubstr("1 of the rows cannot be reached by the fitted model"));
+  EXPECT_THAT(read(path("fitted.toml")), HasSubstr("# not reached: "));
+  const Json json = run({"fit", path("bench.toml"), "--json"}).json();
+  EXPECT_NEAR(json["parameters"][0]["value"].get<double>(), 2.5e-3, 1e-5);
+  EXPECT_EQ(json["unreached"].size(), 1U);
+  EXPECT_EQ(json["points"][0]["fitted"], nullptr);
+}
+
+TEST_F(Fit, UnknownParametersAreNoNumbers) {
+  std::string text = read(bench);
+  const auto air = text.find("[[log]]"), vacuum = text.find("[[log]]", air + 1);
+  text.erase(air, vacuum - air);
+  std::filesystem::copy(data + "/bench", path("bench"));
+  std::filesystem::copy(data + "/designs", path("designs"));
+  std::ofstream(path("bench/flapper.toml")) << text;
+  const Outcome o = run({"fit", path("bench/flapper.toml"), "--json"});
+  EXPECT_EQ(o.status, 0);
+  const Json json = o.json();
+  EXPECT_EQ(json["parameters"][1]["key"], "aerodynamics.pitch_coefficient");
+  EXPECT_EQ(json["parameters"][1]["value"], nullptr);
+  EXPECT_EQ(json["covariance"][1][1], nullptr);
+  EXPECT_TRUE(json["parameters"][0]["value"].is_number());
+}
+
 TEST_F(Fit, HelpShowsAnExampleThatRuns) {
   EXPECT_THAT(run({"fit", "--help"}).out, HasSubstr("wingbeat fit data/bench/flapper.toml -o fitted.toml"));
 }
