@@ -90,13 +90,17 @@ int run(const Arguments& arguments) {
 void add_fit(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("fit", "Fit a vehicle's parameters to bench measurements");
   const auto a = std::make_shared<Arguments>();
-  command->add_option("bench", a->file, "Bench file (TOML): vehicle, logs, free parameters")->required()->type_name("BENCH");
+  command->add_option("bench", a->file, "Bench file (TOML): vehicle, logs, free parameters")
+      ->required()
+      ->type_name("BENCH");
   command->add_option("-o,--output", a->output, "Write the fitted vehicle file, and FILE's .covariance.toml beside it")
       ->type_name("FILE");
   command->add_flag("--compare-friction", a->compare_friction, "Fit every friction law to the same data and rank them");
-  command->add_flag("--no-profiles", a->no_profiles, "Skip the likelihood profiles: intervals from standard errors only");
+  command->add_flag("--no-profiles", a->no_profiles,
+                    "Skip the likelihood profiles: intervals from standard errors only");
   command->add_flag("--json", a->json, "Print one JSON object instead of tables");
-  command->add_option("--plot", a->plot, "Plot the residuals by condition to FILE.svg, .pdf or .png")->type_name("FILE");
+  command->add_option("--plot", a->plot, "Plot the residuals by condition to FILE.svg, .pdf or .png")
+      ->type_name("FILE");
   command->footer("Example:\n  wingbeat fit data/bench/flapper.toml -o fitted.toml\n\n"
                   "Exit status: 0 fitted, 1 not converged, 2 bad input or usage, 3 rows that the model cannot reach.");
   command->callback([a, &action] { action = [a] { return run(*a); }; });

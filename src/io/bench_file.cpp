@@ -115,7 +115,8 @@ class LogReader {
         read_row(split(line));
       }
     }
-    if (header) throw InputError(file_, 0, 0, "", "is empty; expected a header such as voltage_V,frequency_Hz,current_mean_mA");
+    if (header)
+      throw InputError(file_, 0, 0, "", "is empty; expected a header such as voltage_V,frequency_Hz,current_mean_mA");
     if (log_.rows.empty()) throw InputError(file_, line_, 1, "", "holds no rows");
     return log_;
   }
@@ -138,7 +139,8 @@ class LogReader {
     const ColumnName* best = nullptr;
     const auto offer = [&](const ColumnName& c) {
       const bool prefix = cell.text.starts_with(c.name) &&
-                          (cell.text.size() == c.name.size() || std::string_view("_ [(").find(cell.text[c.name.size()]) != std::string_view::npos);
+                          (cell.text.size() == c.name.size() ||
+                           std::string_view("_ [(").find(cell.text[c.name.size()]) != std::string_view::npos);
       if (prefix && (!best || c.name.size() > best->name.size())) best = &c;
     };
     for (const ColumnName& c : known) offer(c);
@@ -161,8 +163,9 @@ class LogReader {
                                                   (unit.front() == '(' && unit.back() == ')'));
       if (bracketed) unit = trimmed(unit.substr(1, unit.size() - 2));
       if (unit.empty() && best->unit != "1") {
-        refuse(cell.column, best->name, fmt::format("names no unit; write {}_{} or {} [{}]", best->name,
-                                                    best->unit == "degree" ? "deg" : best->unit, best->name, best->unit));
+        refuse(cell.column, best->name,
+               fmt::format("names no unit; write {}_{} or {} [{}]", best->name,
+                           best->unit == "degree" ? "deg" : best->unit, best->name, best->unit));
       }
       try {
         column.factor = column_factor(unit, best->unit);
@@ -182,7 +185,8 @@ class LogReader {
       columns_.push_back(column);
     }
     const auto index_of = [&](std::string_view name) {
-      const auto found = std::find_if(columns_.begin(), columns_.end(), [&](const Column& c) { return c.header == name; });
+      const auto found =
+          std::find_if(columns_.begin(), columns_.end(), [&](const Column& c) { return c.header == name; });
       return found == columns_.end() ? -1 : int(found - columns_.begin());
     };
     if (log_.waveform) {
@@ -292,7 +296,10 @@ E chosen(const TomlFields& fields, std::string_view key, const std::pair<std::st
 class BenchReader {
  public:
   explicit BenchReader(const std::filesystem::path& file)
-      : path_(file), name_(file.string()), tree_(parse_toml_tree(read_text_file(file), name_)), root_(name_, "", tree_) {}
+      : path_(file),
+        name_(file.string()),
+        tree_(parse_toml_tree(read_text_file(file), name_)),
+        root_(name_, "", tree_) {}
 
   BenchFit read() {
     const std::string_view sections[] = {"bench", "fit", "parameter", "deviation", "log"};
@@ -349,7 +356,8 @@ class BenchReader {
       free.start = start ? *start : *own;
       if (!(free.lower < free.upper)) p.refuse(p.at("lower"), "lower", "must lie below upper");
       if (!(free.start >= free.lower && free.start <= free.upper)) {
-        p.refuse(p.at("start"), "start", fmt::format("must lie within the bounds, is {} {}", free.start, free.parameter.unit));
+        p.refuse(p.at("start"), "start",
+                 fmt::format("must lie within the bounds, is {} {}", free.start, free.parameter.unit));
       }
       for (const double x : {free.lower, free.upper}) {
         Design<double> design = fit.design;
@@ -365,7 +373,8 @@ class BenchReader {
       }
       fit.parameters.push_back(free);
     }
-    if (fit.parameters.empty()) root_.refuse("parameter", "missing: which parameters are free? Give [[parameter]] sections");
+    if (fit.parameters.empty())
+      root_.refuse("parameter", "missing: which parameters are free? Give [[parameter]] sections");
   }
 
   void read_logs(BenchFit& fit) const {
@@ -382,7 +391,8 @@ class BenchReader {
       }
       request.log.springs = springs.value_or(false) && request.log.condition != Condition::wingless;
       if (springs.value_or(false) && !has_springs) l.refuse(l.at("springs"), "springs", "the vehicle file has none");
-      constexpr std::pair<std::string_view, Given> givens[] = {{"voltage", Given::voltage}, {"frequency", Given::frequency}};
+      constexpr std::pair<std::string_view, Given> givens[] = {{"voltage", Given::voltage},
+                                                               {"frequency", Given::frequency}};
       if (l.has("given")) request.given = chosen(l, "given", givens);
       const auto voltage = l.quantity("voltage", "V"), frequency = l.quantity("frequency", "Hz");
       if (voltage && frequency) l.refuse(l.at("frequency"), "frequency", "give voltage or frequency, not both");
@@ -420,7 +430,8 @@ class BenchReader {
       if (q.metric == Metric::lift_to_weight && !fit.design.mass) {
         l.refuse(l.at("file"), "file", "lift_to_weight needs [vehicle] mass in the vehicle file");
       }
-      if (q.metric == Metric::floquet_multiplier_max) l.refuse(l.at("file"), "file", "a Floquet multiplier cannot be fitted");
+      if (q.metric == Metric::floquet_multiplier_max)
+        l.refuse(l.at("file"), "file", "a Floquet multiplier cannot be fitted");
     }
   }
 
@@ -460,7 +471,8 @@ class BenchReader {
       for (std::size_t c = 0; c < log.columns.size(); ++c) {
         const MeasuredQuantity& q = log.columns[c];
         const auto& known = q.waveform ? waveform_quantities() : metric_columns();
-        const ColumnName& column = *std::find_if(known.begin(), known.end(), [&](const auto& k) { return k.quantity == q; });
+        const ColumnName& column =
+            *std::find_if(known.begin(), known.end(), [&](const auto& k) { return k.quantity == q; });
         if (section->has(column.name)) {
           fit.deviations[q] = deviation_at(*section, column.name, column.unit);
         } else if (section->has("default")) {

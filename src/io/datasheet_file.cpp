@@ -114,7 +114,8 @@ MotorDatasheet parse_datasheet(std::string_view text, const std::string& file_na
     fallback->known_keys(names);
     const std::string_view cylinder[] = {"solid-steel-cylinder"}, typical[] = {"typical"};
     if (fallback->has("inertia")) s.assume_steel_cylinder = !fallback->choice("inertia", cylinder).empty();
-    if (fallback->has("viscous_damping")) s.assume_typical_damping = !fallback->choice("viscous_damping", typical).empty();
+    if (fallback->has("viscous_damping"))
+      s.assume_typical_damping = !fallback->choice("viscous_damping", typical).empty();
   }
   try {
     identify_motor(s);
@@ -170,7 +171,8 @@ std::string text_identification(const MotorIdentification& motor, const MotorDat
   if (!motor.contradictions.empty()) {
     text += "\nContradictions of the sheet\n";
     for (const Contradiction& c : motor.contradictions) {
-      text += "  " + wrapped(fmt::format("{}: {:.4g} and {:.4g}", sentence(c), c.first_value, c.second_value), 88, 4) + "\n";
+      text += "  " + wrapped(fmt::format("{}: {:.4g} and {:.4g}", sentence(c), c.first_value, c.second_value), 88, 4) +
+              "\n";
     }
   }
   if (!motor.remarks.empty()) text += "\nRemarks\n";

@@ -85,7 +85,8 @@ std::string text_fit(const BenchFit& fit, const FitResult& r) {
     text += "\n";
   }
   text += fmt::format("  {:<31}", "values; rms residual / deviation");
-  for (const ConditionShare& c : r.conditions) text += fmt::format("{:>17}", fmt::format("{}; {}", c.points, short_number(c.rms, 3)));
+  for (const ConditionShare& c : r.conditions)
+    text += fmt::format("{:>17}", fmt::format("{}; {}", c.points, short_number(c.rms, 3)));
   text += "\n";
   if (!r.estimated_deviations.empty()) {
     text += "\nStandard deviations estimated from the residuals\n";
@@ -145,7 +146,8 @@ std::string text_friction(std::span<const FrictionCandidate> candidates) {
   text += "  left-out prediction: rms error, in standard deviations, of each condition predicted from the others\n";
   for (const FrictionCandidate& c : candidates) {
     if (!std::isfinite(c.spring_frequency)) continue;
-    text += fmt::format("  power ratio: electrical input with over without springs at {:.4g} Hz in air\n", c.spring_frequency);
+    text += fmt::format("  power ratio: electrical input with over without springs at {:.4g} Hz in air\n",
+                        c.spring_frequency);
     break;
   }
   return text;
@@ -200,7 +202,8 @@ std::string json_fit(const BenchFit& fit, const FitResult& r, std::span<const Fr
   }
   json["unreached"] = Json::array();
   for (const UnreachedRow& u : r.unreached) {
-    json["unreached"].push_back({{"row", row_name(fit, u.log, u.row)}, {"status", name_of(u.status)}, {"detail", u.detail}});
+    json["unreached"].push_back(
+        {{"row", row_name(fit, u.log, u.row)}, {"status", name_of(u.status)}, {"detail", u.detail}});
   }
   json["points"] = Json::array();
   for (const FitPoint& p : r.points) {
@@ -214,8 +217,12 @@ std::string json_fit(const BenchFit& fit, const FitResult& r, std::span<const Fr
     for (const auto& [name, rms] : c.left_out) left[name] = number(rms);
     Json parameters = Json::object();
     for (const FittedParameter& p : c.result.parameters) parameters[p.key] = p.value ? Json(*p.value) : Json(nullptr);
-    json["friction"].push_back({{"law", law_name(c.law)}, {"aicc", number(c.result.aicc)}, {"aicc_excess", number(c.aicc_excess)},
-                                {"parameters", parameters}, {"left_out", left}, {"prediction_error", number(c.prediction_error)},
+    json["friction"].push_back({{"law", law_name(c.law)},
+                                {"aicc", number(c.result.aicc)},
+                                {"aicc_excess", number(c.aicc_excess)},
+                                {"parameters", parameters},
+                                {"left_out", left},
+                                {"prediction_error", number(c.prediction_error)},
                                 {"spring_frequency_hz", number(c.spring_frequency)},
                                 {"power_springs_off_w", number(c.power_springs_off)},
                                 {"power_springs_on_w", number(c.power_springs_on)}});
@@ -233,7 +240,8 @@ std::string fitted_vehicle(const BenchFit& fit, const FitResult& r, const std::s
     }
   }
   for (const UnreachedRow& u : r.unreached) {
-    text += fmt::format("# not reached: {} ({})\n", one_line(row_name(fit, u.log, u.row), 120), given_text(fit, u.log, u.row));
+    text += fmt::format("# not reached: {} ({})\n", one_line(row_name(fit, u.log, u.row), 120),
+                        given_text(fit, u.log, u.row));
   }
   return text + "\n" + write_design(r.design);
 }
@@ -243,8 +251,9 @@ std::string covariance_file(const FitResult& r, const std::string& vehicle_name,
   for (std::size_t k = 0; k < r.parameters.size(); ++k) {
     if (r.parameters[k].value) known.push_back(k);
   }
-  std::string text = fmt::format("# {}\n# Covariance of the fitted parameters, SI units, normal approximation.\n\nvehicle = {}\n",
-                                 one_line(made_by, 200), in_quotes(vehicle_name));
+  std::string text =
+      fmt::format("# {}\n# Covariance of the fitted parameters, SI units, normal approximation.\n\nvehicle = {}\n",
+                  one_line(made_by, 200), in_quotes(vehicle_name));
   for (const std::size_t k : known) {
     const FittedParameter& p = r.parameters[k];
     text += fmt::format("\n[[parameter]]\nkey = \"{}\"\nunit = \"{}\"\nvalue = {:#}\nstandard_error = {:#}\n", p.key,
@@ -266,19 +275,23 @@ void plot_residuals(const BenchFit& fit, const FitResult& r, PlotFormat format, 
     if (!std::isfinite(p.fitted)) continue;
     const BenchLog& log = fit.logs[p.log];
     const std::string title = condition_name(log.condition, log.springs) + (log.waveform ? ", waveform" : "");
-    auto panel = std::find_if(panels.begin(), panels.end(), [&](const PointPanel& known) { return known.title == title; });
+    auto panel =
+        std::find_if(panels.begin(), panels.end(), [&](const PointPanel& known) { return known.title == title; });
     if (panel == panels.end()) panel = panels.insert(panels.end(), PointPanel{title, {}});
     const MeasuredQuantity& q = log.columns[p.column];
     std::string name = q.waveform ? name_of(q.quantity) : metric_table()[std::size_t(q.metric)].long_name;
     std::replace(name.begin(), name.end(), '_', ' ');
-    auto series = std::find_if(panel->series.begin(), panel->series.end(), [&](const auto& s) { return s.name == name; });
+    auto series =
+        std::find_if(panel->series.begin(), panel->series.end(), [&](const auto& s) { return s.name == name; });
     if (series == panel->series.end()) series = panel->series.insert(panel->series.end(), PointSeries{name, {}});
     const BenchRow& row = log.rows[p.row];
     (log.given == Given::voltage ? voltages : frequencies) = true;
     series->points.emplace_back(log.waveform ? degrees_per_radian * row.crank_angle : row.given, p.residual());
   }
   const bool waveforms = std::any_of(fit.logs.begin(), fit.logs.end(), [](const auto& l) { return l.waveform; });
-  std::string x = voltages && frequencies ? "voltage (V) or frequency (Hz)" : voltages ? "voltage (V)" : "frequency (Hz)";
+  std::string x = voltages && frequencies ? "voltage (V) or frequency (Hz)"
+                  : voltages              ? "voltage (V)"
+                                          : "frequency (Hz)";
   if (waveforms) x += "; waveform: crank angle (deg)";
   plot_panels(panels, {"Residuals of the fit", x, "measured - fitted, in standard deviations", 3.0}, format, file);
 }

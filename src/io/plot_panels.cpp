@@ -39,8 +39,9 @@ void plot_panels(std::span<const PointPanel> panels, const PointAxes& axes, Plot
     }
   }
   constexpr double left = 0.14, right = 0.96;
-  figure.add("set multiplot\nset lmargin at screen {}\nset rmargin at screen {}\nset offsets graph 0.04, graph 0.04, 0, 0\n",
-             left, right);
+  figure.add(
+      "set multiplot\nset lmargin at screen {}\nset rmargin at screen {}\nset offsets graph 0.04, graph 0.04, 0, 0\n",
+      left, right);
   figure.add("set yrange [-{0}:{0}]\nset ytics autofreq\n", 1.08 * most);
   for (std::size_t p = 0; p < panels.size(); ++p) {
     if (p > 0) figure.next_panel();
@@ -49,7 +50,8 @@ void plot_panels(std::span<const PointPanel> panels, const PointAxes& axes, Plot
     figure.text(panels[p].title, 7.5, fmt::format("screen {},{} left", left, top + 0.09 / inches));
     if (p == 0) {
       figure.text(axes.title, 8.0, fmt::format("screen 0.5,{} center", 1.0 - 0.12 / inches));
-      figure.text(axes.y, 7.5, fmt::format("screen 0.026,{} center rotate by 90", 0.5 * (1.0 - (head + gap - foot) / inches)));
+      figure.text(axes.y, 7.5,
+                  fmt::format("screen 0.026,{} center rotate by 90", 0.5 * (1.0 - (head + gap - foot) / inches)));
       figure.text(axes.x, 7.5, fmt::format("screen {},{} center", 0.5 * (left + right), 0.09 / inches));
       for (std::size_t n = 0; n < names.size(); ++n) {
         const double y = 1.0 - (0.32 + 0.14 * double(n / per_row)) / inches, x = left + 0.42 * double(n % per_row);

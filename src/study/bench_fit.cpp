@@ -586,7 +586,8 @@ std::string direction_text(const std::vector<FreeParameter>& parameters, const E
   for (Eigen::Index k = 0; k < v.size(); ++k) {
     if (std::abs(v[k]) > 0.1) parts.emplace_back(v[k], parameters[std::size_t(k)].parameter.key);
   }
-  std::sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return std::abs(a.first) > std::abs(b.first); });
+  std::sort(parts.begin(), parts.end(),
+            [](const auto& a, const auto& b) { return std::abs(a.first) > std::abs(b.first); });
   if (parts.size() == 2 && std::abs(std::abs(parts[0].first / parts[1].first) - 1.0) < 0.05) {
     const bool product = parts[0].first * parts[1].first < 0.0;
     return format("%s and %s, of which the data know only the %s", parts[0].second.c_str(), parts[1].second.c_str(),
@@ -795,7 +796,8 @@ void judge(const BenchFit& fit, Fitter& fitter, const std::vector<double>& x, Fi
   }
   if (std::any_of(fit.parameters.begin(), fit.parameters.end(),
                   [](const auto& p) { return p.parameter.key == "friction.radius"; })) {
-    result.verdict.push_back("friction.radius is the product mu r_e: no measurement of this kind separates mu from r_e");
+    result.verdict.push_back(
+        "friction.radius is the product mu r_e: no measurement of this kind separates mu from r_e");
   }
 }
 
@@ -1013,7 +1015,8 @@ std::vector<FrictionCandidate> compare_friction(const BenchFit& fit,
   const auto is_friction = [](const FreeParameter& p) { return p.parameter.key.starts_with("friction."); };
   const auto own = std::find_if(fit.parameters.begin(), fit.parameters.end(), is_friction);
   if (own == fit.parameters.end()) {
-    throw ParameterError("parameter", "a comparison of friction laws needs a free friction parameter, as friction.radius");
+    throw ParameterError("parameter",
+                         "a comparison of friction laws needs a free friction parameter, as friction.radius");
   }
   double speed = 0.0;
   const double torque = mean_friction_torque(fit, speed);
@@ -1041,7 +1044,8 @@ std::vector<FrictionCandidate> compare_friction(const BenchFit& fit,
                                                                    : torque;
       if (!(start > 0.0)) continue;
       trial.design.friction.coefficient = start;
-      const double most = law == FrictionLaw::load_proportional ? 2.0 * fit.design.transmission.crank_radius : 20.0 * start;
+      const double most =
+          law == FrictionLaw::load_proportional ? 2.0 * fit.design.transmission.crank_radius : 20.0 * start;
       trial.parameters.push_back({parameter_of(key), 0.0, most, start});
     }
     FrictionCandidate candidate;
@@ -1059,8 +1063,10 @@ std::vector<FrictionCandidate> compare_friction(const BenchFit& fit,
     for (const auto& [condition, springs] : conditions) {
       if (conditions.size() < 2) break;
       BenchFit rest = trial, left = trial;
-      std::erase_if(rest.logs, [&, c = condition, s = springs](const auto& l) { return l.condition == c && l.springs == s; });
-      std::erase_if(left.logs, [&, c = condition, s = springs](const auto& l) { return l.condition != c || l.springs != s; });
+      std::erase_if(rest.logs,
+                    [&, c = condition, s = springs](const auto& l) { return l.condition == c && l.springs == s; });
+      std::erase_if(left.logs,
+                    [&, c = condition, s = springs](const auto& l) { return l.condition != c || l.springs != s; });
       const FitResult without = run_fit(rest, false, {});
       // What the rest cannot determine at all comes from the whole: it is the friction law that is on trial.
       std::vector<double> x;

@@ -344,7 +344,8 @@ MotorIdentification identify_motor(const MotorDatasheet& s, std::optional<double
       result.missing.push_back("torque constant: give torque_constant, speed_constant, stall_torque with "
                                "stall_current, or no_load_speed with resistance");
     }
-    if (has_R && K_known) result.missing.push_back("torque constant and resistance: the sheet's values cannot be fitted");
+    if (has_R && K_known)
+      result.missing.push_back("torque constant and resistance: the sheet's values cannot be fitted");
   }
 
   // Losses.
@@ -360,11 +361,13 @@ MotorIdentification identify_motor(const MotorDatasheet& s, std::optional<double
       result.remarks.push_back("the losses are all constant friction: the sheet's values leave no viscous part");
     }
     if (!both && one && !s.friction_torque) {
-      result.remarks.push_back("the sheet cannot tell constant from viscous friction: all of the loss is taken as viscous "
-                               "damping");
+      result.remarks.push_back(
+          "the sheet cannot tell constant from viscous friction: all of the loss is taken as viscous "
+          "damping");
     }
     if (only_constant || (!both && s.friction_torque)) {
-      result.remarks.push_back("nothing on the sheet shows a viscous loss: all of the loss is taken as constant friction");
+      result.remarks.push_back(
+          "nothing on the sheet shows a viscous loss: all of the loss is taken as constant friction");
     }
   } else if (s.assume_typical_damping) {
     result.friction_torque = {0.0, 0.0, "assumed"};
@@ -453,9 +456,10 @@ MotorIdentification identify_motor(const MotorDatasheet& s, std::optional<double
   find_contradictions("armature resistance", resistances, result.contradictions);
   find_contradictions("torque constant", constants, result.contradictions);
   if (s.no_load_current && s.friction_torque && !constants.empty()) {
-    find_contradictions("friction torque",
-                        {{"friction torque", *s.friction_torque}, {"no-load current", constants[0].value * *s.no_load_current}},
-                        result.contradictions);
+    find_contradictions(
+        "friction torque",
+        {{"friction torque", *s.friction_torque}, {"no-load current", constants[0].value * *s.no_load_current}},
+        result.contradictions);
   }
   std::stable_sort(result.contradictions.begin(), result.contradictions.end(),
                    [](const auto& a, const auto& b) { return a.size > b.size; });

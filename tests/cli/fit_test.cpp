@@ -70,9 +70,10 @@ TEST_F(Fit, RowsOutOfReachAreReportedByFileAndLine) {
     log << v << "," << json["frequency_hz"].dump() << "," << 1e3 * json["current_mean_a"].get<double>() << "\n";
   }
   log.close();
-  std::ofstream(path("bench.toml")) << "[bench]\nvehicle = \"vehicle.toml\"\n[[parameter]]\nkey = \"friction.radius\"\n"
-                                       "lower = 0\nupper = 8e-3\nstart = 1e-3\n[deviation]\ndefault = { relative = 0.01 }\n"
-                                       "[[log]]\nfile = \"log.csv\"\ncondition = \"air\"\n";
+  std::ofstream(path("bench.toml"))
+      << "[bench]\nvehicle = \"vehicle.toml\"\n[[parameter]]\nkey = \"friction.radius\"\n"
+         "lower = 0\nupper = 8e-3\nstart = 1e-3\n[deviation]\ndefault = { relative = 0.01 }\n"
+         "[[log]]\nfile = \"log.csv\"\ncondition = \"air\"\n";
   const Outcome o = run({"fit", path("bench.toml"), "-o", path("fitted.toml")});
   EXPECT_EQ(o.status, 3);
   EXPECT_THAT(o.out, HasSubstr("log.csv:2 (0.3 V, air):"));

@@ -34,9 +34,10 @@ TEST_F(IdentifyMotor, JsonHoldsConstantsAndContradictions) {
 }
 
 TEST_F(IdentifyMotor, AnIncompleteSheetIsRefusedByName) {
-  std::ofstream(path("sheet.toml")) << "[datasheet]\nvoltage = \"6 V\"\nno_load_speed = \"270 rpm\"\n"
-                                       "no_load_current = \"20 mA\"\nstall_torque = \"43 mN m\"\n"
-                                       "stall_current = \"0.36 A\"\nrotor_diameter = \"7 mm\"\nrotor_length = \"8 mm\"\n";
+  std::ofstream(path("sheet.toml"))
+      << "[datasheet]\nvoltage = \"6 V\"\nno_load_speed = \"270 rpm\"\n"
+         "no_load_current = \"20 mA\"\nstall_torque = \"43 mN m\"\n"
+         "stall_current = \"0.36 A\"\nrotor_diameter = \"7 mm\"\nrotor_length = \"8 mm\"\n";
   const Outcome o = run({"identify-motor", path("sheet.toml"), "-o", path("motor.toml"), "--frequency", "22 Hz"});
   EXPECT_EQ(o.status, 2);
   EXPECT_THAT(o.out, HasSubstr("rotor inertia: give rotor_inertia or mechanical_time_constant"));

@@ -37,8 +37,10 @@ TEST(BenchLog, ReadsColumnsInAnyUnitAndForm) {
 }
 
 TEST(BenchLog, TakesTheKeysOfJsonAsSi) {
-  const BenchLog log = parse_log("frequency_hz,voltage_v,flapping_velocity_peak_rad_per_s,angle_of_attack_min_deg\n"
-                                 "20,3,90,60\n", "air.csv", {.log = {}, .given = Given::frequency, .given_value = {}, .measured = {}});
+  const BenchLog log = parse_log(
+      "frequency_hz,voltage_v,flapping_velocity_peak_rad_per_s,angle_of_attack_min_deg\n"
+      "20,3,90,60\n",
+      "air.csv", {.log = {}, .given = Given::frequency, .given_value = {}, .measured = {}});
   EXPECT_EQ(log.given, Given::frequency);
   EXPECT_EQ(log.rows[0].given, 20.0);
   EXPECT_EQ(log.columns[0].metric, Metric::voltage);
@@ -50,7 +52,8 @@ TEST(BenchLog, WaveformsHaveACrankAngle) {
   LogRequest request;
   request.given = Given::voltage;
   request.given_value = 3.0;
-  const BenchLog log = parse_log("crank_angle_deg,current_mA,crank_speed [rpm]\n0,180,1300\n90,190,1200\n", "w.csv", request);
+  const BenchLog log =
+      parse_log("crank_angle_deg,current_mA,crank_speed [rpm]\n0,180,1300\n90,190,1200\n", "w.csv", request);
   EXPECT_TRUE(log.waveform);
   EXPECT_NEAR(log.rows[1].crank_angle, pi / 2.0, 1e-15);
   EXPECT_NEAR(log.rows[1].values[1], 1200.0 * pi / 30.0, 1e-9);
@@ -74,7 +77,8 @@ TEST(BenchLog, RefusalsNameFileLineAndReason) {
               HasSubstr("air.csv:1:11: current_mean: the unit \"mV\" is wrong: expected "));
   EXPECT_EQ(log_error("voltage_V,current_mean\n3,180\n"),
             "air.csv:1:11: current_mean: names no unit; write current_mean_A or current_mean [A]");
-  EXPECT_THAT(log_error("voltage_V,curent_mean_mA\n3,180\n"), HasSubstr("unknown column \"curent_mean_mA\"; did you mean"));
+  EXPECT_THAT(log_error("voltage_V,curent_mean_mA\n3,180\n"),
+              HasSubstr("unknown column \"curent_mean_mA\"; did you mean"));
   EXPECT_EQ(log_error("current_mean_mA\n180\n"),
             "air.csv:1:1: frequency: missing column: a log needs the voltage or the frequency that was set");
   EXPECT_EQ(log_error("voltage_V,frequency_Hz,frequency_Hz\n3,22,22\n"), "air.csv:1:24: frequency: is given twice");
@@ -154,7 +158,8 @@ TEST_F(BenchFile, RefusalsNamePlaceAndReason) {
   EXPECT_THAT(error_of(head + parameter + parameter + deviation + log), HasSubstr("friction.radius is given twice"));
   EXPECT_THAT(error_of(head + "[[parameter]]\nkey = \"friction.radus\"\n" + deviation + log),
               HasSubstr("did you mean friction.radius?"));
-  EXPECT_THAT(error_of(head + "[[parameter]]\nkey = \"friction.radius\"\nlower = \"3 mm\"\nupper = \"8 mm\"\n" + deviation + log),
+  EXPECT_THAT(error_of(head + "[[parameter]]\nkey = \"friction.radius\"\nlower = \"3 mm\"\nupper = \"8 mm\"\n" +
+                       deviation + log),
               HasSubstr("must lie within the bounds"));
   EXPECT_THAT(error_of(head + "[[parameter]]\nkey = \"motor.inertia\"\nlower = 0\nupper = 1e-6\n" + deviation + log),
               HasSubstr("parameter[1].lower: motor.inertia: must be > 0"));
@@ -162,7 +167,8 @@ TEST_F(BenchFile, RefusalsNamePlaceAndReason) {
               HasSubstr("none.csv: no such file"));
   EXPECT_THAT(error_of("[bench]\nvehicle = \"friction2022-springs.toml\"\n" + parameter + deviation + log),
               HasSubstr("log[1].springs: missing; the vehicle file has springs"));
-  EXPECT_THAT(error_of(head + parameter + "[deviation]\ndefault = { relative = -1 }\n" + log), HasSubstr("must be > 0"));
+  EXPECT_THAT(error_of(head + parameter + "[deviation]\ndefault = { relative = -1 }\n" + log),
+              HasSubstr("must be > 0"));
   write("air.csv", "voltage_V,frequency_Hz,lift_mean_mN\n2,14,0\n3,22,8.7\n");
   EXPECT_THAT(error_of(head + parameter + deviation + log),
               HasSubstr("air.csv:2:1: lift_mean: is 0, of which no relative standard deviation can be taken"));

@@ -247,7 +247,8 @@ double pitch_for_45_degrees(Design<double> d) {
   for (int n = 0; n < 100; ++n) {
     const SteadyFlapping s = find_steady_flapping(resolve(d));
     const auto rows = s.record.waveform(721);
-    const auto peak = std::max_element(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.lift < b.lift; });
+    const auto peak =
+        std::max_element(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.lift < b.lift; });
     d.aerodynamics.pitch_coefficient =
         0.5 * (d.aerodynamics.pitch_coefficient + 0.25 * pi / std::abs(peak->flapping_velocity));
   }
@@ -262,8 +263,9 @@ TEST(BenchFit, ThePapersOwnPathArrivesAtItsTable) {
   // Far from where it should end.
   EXPECT_GT(std::abs(guess.friction.coefficient / 2.5e-3 - 1.0), 0.1);
   EXPECT_GT(std::abs(guess.aerodynamics.pitch_coefficient / 5e-3 - 1.0), 0.3);
-  fit.parameters = {free_parameter("friction.radius", 0.0, 8e-3, guess.friction.coefficient),
-                    free_parameter("aerodynamics.pitch_coefficient", 1e-3, 1.5e-2, guess.aerodynamics.pitch_coefficient)};
+  fit.parameters = {
+      free_parameter("friction.radius", 0.0, 8e-3, guess.friction.coefficient),
+      free_parameter("aerodynamics.pitch_coefficient", 1e-3, 1.5e-2, guess.aerodynamics.pitch_coefficient)};
   const FitResult r = fit_bench(fit);
   EXPECT_NEAR(*r.parameters[0].value, 2.5e-3, 1e-6);
   EXPECT_NEAR(*r.parameters[1].value, 5e-3, 1e-6);

@@ -288,7 +288,8 @@ TEST(Datasheet, RefusalsNamePlaceAndReason) {
               HasSubstr("datasheet.resistance: must be > 0 [ohm], got -5"));
   EXPECT_THAT(error_of("[datasheet]\nno_load_current = \"16 mA\"\n"),
               HasSubstr("datasheet.voltage: missing: no-load, stall and performance values hold at one voltage"));
-  EXPECT_THAT(error_of("[datasheet]\nshaft = \"output\"\nresistance = 5\n"), HasSubstr("datasheet.gear_ratio: missing"));
+  EXPECT_THAT(error_of("[datasheet]\nshaft = \"output\"\nresistance = 5\n"),
+              HasSubstr("datasheet.gear_ratio: missing"));
   EXPECT_THAT(error_of("[datasheet]\n[fallback]\ninertia = \"guess\"\n"),
               HasSubstr("fallback.inertia: expected one of solid-steel-cylinder, got \"guess\""));
   EXPECT_THAT(error_of("[datasheet]\n[fallback]\ninertia = \"solid-steel-cylinder\"\n"),

@@ -199,7 +199,8 @@ TEST_P(OrbitGradients, SpringlessVehicleByItsStiffness) {
 TEST_P(OrbitGradients, RandomVehicles) {
   std::mt19937_64 random(4);
   Worst worst;
-  for (int n = 0; n < (GetParam() == Held::voltage ? 12 : 6); ++n) compare_gradients(random_design(random, 1.6), Condition::air, GetParam(), worst);
+  for (int n = 0; n < (GetParam() == Held::voltage ? 12 : 6); ++n)
+    compare_gradients(random_design(random, 1.6), Condition::air, GetParam(), worst);
   EXPECT_GT(worst.compared, 3000);
   EXPECT_LT(worst.error, 1e-6) << worst.where;
 }

@@ -36,7 +36,8 @@ enum class Held {
   frequency  ///< the supply's voltage follows, whatever it was given as
 };
 
-/// What was differentiated: the orbit's vehicle, its numbers built from gradient_seed(), and what metrics need beside it.
+/// What was differentiated: the orbit's vehicle, its numbers built from gradient_seed(), and what metrics need beside
+/// it.
 struct GradientVehicle {
   Vehicle<GradientJet> vehicle;
   GradientJet mass = GradientJet(absent);                   ///< [kg]
@@ -60,8 +61,8 @@ struct GradientInstant {
   GradientJet motor_torque;       ///< T_m [N m]
 };
 
-/// The derivative by parameter k is `metrics[m].v[gradient_first_slot + k]`; slot gradient_voltage_slot holds the one by
-/// the voltage at the motor, 0 with the frequency held.
+/// The derivative by parameter k is `metrics[m].v[gradient_first_slot + k]`; slot gradient_voltage_slot holds the one
+/// by the voltage at the motor, 0 with the frequency held.
 struct OrbitGradient {
   Metrics<GradientJet> metrics;
   std::vector<GradientInstant> instants;
@@ -86,12 +87,12 @@ struct DesignParameter {
 /// Derivatives of all metrics by any number of parameters.
 struct MetricGradients {
   std::vector<std::array<double, metric_count>> by_parameter;
-  std::array<double, metric_count> by_voltage{};  ///< by the voltage at the motor, parameters fixed; 0 if held frequency
-  bool regular = true;
+  std::array<double, metric_count> by_voltage{};  ///< by the voltage at the motor; 0 with the frequency held
+  bool regular = true;  ///< as in OrbitGradient
 };
 
-/// orbit_gradient() of a design for any number of parameters, gradient_parameters at a time. A parameter that the design
-/// has no place or no value for throws ParameterError. The record's voltage replaces the design's.
+/// orbit_gradient() of a design for any number of parameters, gradient_parameters at a time. A parameter that the
+/// design has no place or no value for throws ParameterError. The record's voltage replaces the design's.
 MetricGradients metric_gradients(const Design<double>& design, Condition condition, const SteadyFlapping& orbit,
                                  std::span<const DesignParameter> parameters, const GradientOptions& options = {});
 
