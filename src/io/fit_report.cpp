@@ -37,8 +37,12 @@ std::string text_fit(const BenchFit& fit, const FitResult& r) {
   std::string text;
   int rows = 0;
   for (const BenchLog& log : fit.logs) rows += int(log.rows.size());
-  text += fmt::format("{} parameters, {} rows with {} measured values in {} logs; {}\n", fit.parameters.size(), rows,
-                      r.points.size(), fit.logs.size(), r.converged ? "converged" : "NOT converged: " + r.message);
+  const auto counted = [](std::size_t n, const char* what) {
+    return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+  };
+  text += fmt::format("{}, {} with {} in {}; {}\n", counted(fit.parameters.size(), "parameter"),
+                      counted(std::size_t(rows), "row"), counted(r.points.size(), "measured value"),
+                      counted(fit.logs.size(), "log"), r.converged ? "converged" : "NOT converged: " + r.message);
   if (fit.starts > 1) {
     text += fmt::format("{} of {} starts end in this least, {} in a higher one\n", r.starts_converged, fit.starts,
                         r.starts_elsewhere);

@@ -537,6 +537,14 @@ void check(const BenchFit& fit) {
       throw ParameterError(p.parameter.key, "the lower bound must be > 0: without inductance the equations change");
     }
   }
+  // Alternatives replace each other: two of them cannot both be free.
+  Design<double> all = fit.design;
+  for (const FreeParameter& p : fit.parameters) p.parameter.set(all, p.start);
+  for (const FreeParameter& p : fit.parameters) {
+    if (p.parameter.value(all) != p.start) {
+      throw ParameterError(p.parameter.key, "another free parameter takes its place in the vehicle");
+    }
+  }
   if (fit.design.supply.type != SupplyType::constant) {
     throw ParameterError("supply.type", "bench data are fitted with a constant supply");
   }

@@ -304,6 +304,9 @@ TEST(BenchFit, RefusesWhatCannotBeFitted) {
   fit.parameters.push_back(fit.parameters[0]);
   EXPECT_THAT(refusal(fit), HasSubstr("friction.radius: is given twice"));
   fit = bench(0.01, 1);
+  fit.parameters.push_back(free_parameter("friction.damping", 0.0, 1e-5, 1e-6));
+  EXPECT_THAT(refusal(fit), HasSubstr("friction.radius: another free parameter takes its place in the vehicle"));
+  fit = bench(0.01, 1);
   fit.logs[0].springs = true;
   EXPECT_THAT(refusal(fit), HasSubstr("a log was taken with springs, but the vehicle file has none"));
   fit = bench(0.01, 1);
