@@ -34,8 +34,6 @@ double least_inertia(const Vehicle<double>& v, const CrankKinematics<double>& k)
   return std::min(effective_inertia(v, k, 1.0), effective_inertia(v, k, -1.0));
 }
 
-double constant_friction(const Vehicle<double>& v) { return v.friction.torque + v.motor.friction_torque; }
-
 double static_rod_force(const Vehicle<double>& v, const CrankKinematics<double>& k) {
   return spring_moment(v, k) / k.wing_lever;
 }
@@ -83,21 +81,21 @@ double bisect(const F& f, double a, double b) {
 double advance_torque(const Vehicle<double>& v, double crank_angle) {
   const CrankKinematics<double> k = kinematics_at(v, crank_angle);
   const double F_s = static_rod_force(v, k);
-  return v.motor.torque_constant * v.voltage / v.motor.armature_resistance - F_s * k.crank_lever -
-         v.friction.radius * std::abs(F_s) - constant_friction(v);
+  return stall_torque(v) - F_s * k.crank_lever -
+         v.friction.radius * std::abs(F_s) - breakaway_torque(v);
 }
 
 double lock_margin(const Vehicle<double>& v, double crank_angle) {
   const CrankKinematics<double> k = kinematics_at(v, crank_angle);
   const double F_s = static_rod_force(v, k);
-  const double drive = v.motor.torque_constant * v.voltage / v.motor.armature_resistance - F_s * k.crank_lever;
-  return v.friction.radius * std::abs(F_s) + constant_friction(v) - std::abs(drive);
+  const double drive = stall_torque(v) - F_s * k.crank_lever;
+  return v.friction.radius * std::abs(F_s) + breakaway_torque(v) - std::abs(drive);
 }
 
 StaticBalance static_balance(const Vehicle<double>& v) {
   StaticBalance s{};
-  s.stall_torque = v.motor.torque_constant * v.voltage / v.motor.armature_resistance;
-  s.breakaway_torque = constant_friction(v);
+  s.stall_torque = stall_torque(v);
+  s.breakaway_torque = breakaway_torque(v);
   s.has_wings = v.wing_inertia > 0.0;
   s.inertia_least = v.motor.inertia;
   s.lever_least = v.crank.hinge_offset;
@@ -146,7 +144,7 @@ std::vector<LockInterval> lock_intervals(const Vehicle<double>& v) {
       const auto net = [&](double x) { return advance_torque(v, x); };
       if ((net(before) > 0.0) != (net(angle) > 0.0)) {
         const double edge = bisect(net, before, angle);
-        if (margin(edge) > -1e-9 * v.motor.torque_constant * v.voltage / v.motor.armature_resistance) {
+        if (margin(edge) > -1e-9 * stall_torque(v)) {
           found.push_back({edge, edge, wrap_angle(edge), std::max(0.0, margin(edge))});
         }
       }

@@ -1,8 +1,185 @@
 #include "wingbeat/study/ensemble.hpp"
 
-#include "wingbeat/core/status.hpp"
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "wingbeat/cycle/lane_blocks.hpp"
 
 namespace wingbeat {
+namespace {
+
+struct LaneSolver {
+  decltype(&solve_block_sse2) solve;
+  int lanes;
+};
+
+LaneSolver solver_for(InstructionSet isa) {
+  switch (isa) {
+    case InstructionSet::sse2: break;
+    case InstructionSet::avx2: return {solve_block_avx2, lanes_avx2};
+    case InstructionSet::avx512: return {solve_block_avx512, lanes_avx512};
+  }
+  return {solve_block_sse2, lanes_sse2};
+}
+
+/// How a tolerance is met: what the estimate of the means' error is multiplied by, and the meshes.
+struct Plan {
+  double amplification;
+  LaneSettings first, from_rest;
+  std::array<LaneSettings, 3> again;
+};
+
+/// Steps of half a lap that bring the error of the means below `target`: 9 give 1e-6 (benchmarks/benchmark_ensemble),
+/// and the method is of order 8.
+int steps_for(double target) { return std::clamp(int(std::ceil(9.0 * std::pow(1e-6 / target, 0.125))), 6, most_half_steps); }
+
+Plan plan_for(const EnsembleOptions& options) {
+  const auto wanted = [&](Metric m) { return options.metrics[std::size_t(m)]; };
+  Plan plan{};
+  LaneSettings& s = plan.first;
+  const auto want = [&](Quantity q, bool on) { s.wanted[std::size_t(q)] = on; };
+  want(Quantity::velocity,
+       wanted(Metric::lift_peak) || wanted(Metric::flapping_velocity_peak) || wanted(Metric::angle_of_attack_min));
+  want(Quantity::current, wanted(Metric::current_peak));
+  want(Quantity::force, wanted(Metric::rod_force_peak));
+  want(Quantity::slowness, wanted(Metric::crank_speed_min));
+  want(Quantity::speed, wanted(Metric::crank_speed_max));
+  want(Quantity::energy, wanted(Metric::power_reactive));
+  s.multipliers = wanted(Metric::floquet_multiplier_max);
+
+  // Peaks feel the error of the state where they stand.
+  const bool peaks = std::any_of(s.wanted.begin(), s.wanted.end(), [](bool on) { return on; });
+  plan.amplification = peaks ? 2.5 : 1.0;
+  const double target = options.tolerance / plan.amplification;
+  s.fine_steps = steps_for(target);
+  s.medium_steps = std::clamp(2 * s.fine_steps / 3, 4, most_half_steps);
+  s.coarse_laps = 2;
+  s.medium_laps = target >= 2e-7 ? 1 : target >= 1e-9 ? 2 : 3;
+  s.peak_tolerance = 0.03 * options.tolerance;
+
+  LaneSettings finer = s;
+  finer.approach = LaneApproach::resume;
+  finer.medium_laps = 0;
+  for (LaneSettings& again : plan.again) {
+    finer.medium_steps = finer.fine_steps;
+    finer.fine_steps = std::min(4 * finer.fine_steps / 3, most_half_steps);
+    again = finer;
+    finer.medium_laps = 1;
+  }
+  plan.from_rest = s;
+  plan.from_rest.approach = LaneApproach::from_rest;
+  plan.from_rest.medium_laps = s.medium_laps + 1;
+  return plan;
+}
+
+void keep_wanted(const MetricSet& wanted, Metrics<double>& metrics) {
+  for (std::size_t m = 0; m < std::size_t(metric_count); ++m) {
+    if (!wanted[m]) metrics.values[m] = absent;
+  }
+}
+
+/// One run of members through the solvers.
+class EnsembleRun {
+ public:
+  EnsembleRun(std::span<const EnsembleMember> members, const EnsembleOptions& options, const StartUp& start_up,
+              std::span<EnsembleOutcome> outcomes)
+      : members_(members), options_(options), start_up_(start_up), outcomes_(outcomes), plan_(plan_for(options)),
+        solver_(solver_for(options.isa)), results_(members.size()) {}
+
+  void solve() {
+    std::array<std::vector<std::size_t>, kinds> by_kind;
+    for (std::size_t n = 0; n < members_.size(); ++n) {
+      const Vehicle<double>& v = members_[n].vehicle;
+      if (options_.scalar_only || v.wings.coefficients.table) {
+        solve_by_scalar(n);
+      } else if (stall_torque(v) <= breakaway_torque(v)) {
+        settle(n, FlappingStatus::stalled);
+      } else {
+        by_kind[kind_of(v)].push_back(n);
+      }
+    }
+    for (const std::vector<std::size_t>& alike : by_kind) solve_alike(alike);
+  }
+
+ private:
+  static constexpr std::size_t kinds = 8;
+  static std::size_t kind_of(const Vehicle<double>& v) {
+    return (v.crank.formulation == Formulation::virtual_work ? 4 : 0) + (v.spring.stiffness > 0.0 ? 2 : 0) +
+           (v.motor.armature_inductance > 0.0 ? 1 : 0);
+  }
+
+  void solve_alike(const std::vector<std::size_t>& all) {
+    std::vector<std::size_t> doubtful, inexact, left;
+    run(all, plan_.first, doubtful, inexact);
+    run(doubtful, plan_.from_rest, left, inexact);
+    for (const LaneSettings& finer : plan_.again) {
+      std::vector<std::size_t> still_inexact;
+      run(inexact, finer, left, still_inexact);
+      inexact.swap(still_inexact);
+    }
+    left.insert(left.end(), inexact.begin(), inexact.end());
+    for (const std::size_t n : left) solve_by_scalar(n);
+  }
+
+  /// Solves those members; settles the outcomes of the exact ones, and lists the others.
+  void run(const std::vector<std::size_t>& which, LaneSettings settings, std::vector<std::size_t>& doubtful,
+           std::vector<std::size_t>& inexact) {
+    if (which.empty()) return;
+    settings.inductance = members_[which.front()].vehicle.motor.armature_inductance > 0.0;
+    std::array<const EnsembleMember*, lanes_avx512> members;
+    std::array<LaneResult*, lanes_avx512> results;
+    for (std::size_t start = 0; start < which.size(); start += std::size_t(solver_.lanes)) {
+      const std::size_t count = std::min(which.size() - start, std::size_t(solver_.lanes));
+      for (std::size_t lane = 0; lane < count; ++lane) {
+        members[lane] = &members_[which[start + lane]];
+        results[lane] = &results_[which[start + lane]];
+      }
+      solver_.solve(members.data(), int(count), settings, results.data());
+    }
+    for (const std::size_t n : which) {
+      const LaneResult& r = results_[n];
+      const double error = plan_.amplification * r.error_estimate;
+      if (r.verdict == LaneVerdict::locked) {
+        settle(n, FlappingStatus::locked);
+      } else if (r.verdict == LaneVerdict::doubtful) {
+        doubtful.push_back(n);
+      } else if (!(error <= options_.tolerance)) {
+        inexact.push_back(n);
+      } else {
+        outcomes_[n] = {FlappingStatus::flapping, false, error, r.metrics};
+        keep_wanted(options_.metrics, outcomes_[n].metrics);
+      }
+    }
+  }
+
+  void settle(std::size_t n, FlappingStatus without_flapping) {
+    outcomes_[n] = {without_flapping, false, absent, {}};
+    outcomes_[n].metrics.values.fill(absent);
+  }
+
+  void solve_by_scalar(std::size_t n) {
+    SteadyOptions steady;
+    steady.tolerance = options_.tolerance;
+    steady.stability = options_.metrics[std::size_t(Metric::floquet_multiplier_max)];
+    steady.reporting = members_[n].reporting;
+    const SteadyFlapping found = find_steady_flapping(members_[n].vehicle, steady, start_up_);
+    const bool flaps = found.status == FlappingStatus::flapping;
+    outcomes_[n] = {found.status, true, flaps ? options_.tolerance : absent, found.metrics};
+    keep_wanted(options_.metrics, outcomes_[n].metrics);
+  }
+
+  std::span<const EnsembleMember> members_;
+  const EnsembleOptions& options_;
+  const StartUp& start_up_;
+  std::span<EnsembleOutcome> outcomes_;
+  Plan plan_;
+  LaneSolver solver_;
+  std::vector<LaneResult> results_;
+};
+
+}  // namespace
 
 bool is_available(InstructionSet isa) {
   switch (isa) {
@@ -10,7 +187,8 @@ bool is_available(InstructionSet isa) {
     case InstructionSet::avx2: return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
     case InstructionSet::avx512:
       return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-             __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512bw");
+             __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512bw") &&
+             __builtin_cpu_supports("avx512vl");
   }
   return false;
 }
@@ -28,20 +206,11 @@ void solve_ensemble(std::span<const EnsembleMember> members, const EnsembleOptio
   require(options.tolerance >= 1e-12 && options.tolerance <= 1e-2, "tolerance", "must lie between 1e-12 and 1e-2", "1",
           options.tolerance);
   if (!is_available(options.isa)) throw ParameterError("isa", "this processor lacks the instruction set");
-  for (std::size_t n = 0; n < members.size(); ++n) {
-    SteadyOptions steady;
-    steady.tolerance = options.tolerance;
-    steady.stability = options.metrics[std::size_t(Metric::floquet_multiplier_max)];
-    steady.reporting = members[n].reporting;
-    const SteadyFlapping found = find_steady_flapping(members[n].vehicle, steady, start_up);
-    EnsembleOutcome& out = outcomes[n];
-    out.status = found.status;
-    out.scalar = true;
-    out.metrics = found.metrics;
-    out.error_estimate = found.status == FlappingStatus::flapping ? options.tolerance : absent;
-    for (int m = 0; m < metric_count; ++m) {
-      if (!options.metrics[std::size_t(m)]) out.metrics.values[std::size_t(m)] = absent;
-    }
+  // Pieces whose results stay in the processor's cache.
+  constexpr std::size_t piece = 1024;
+  for (std::size_t start = 0; start < members.size(); start += piece) {
+    const std::size_t count = std::min(piece, members.size() - start);
+    EnsembleRun(members.subspan(start, count), options, start_up, outcomes.subspan(start, count)).solve();
   }
 }
 

@@ -18,16 +18,17 @@ struct InstructionSet {
   bool supported;
   void (*evaluate)(const Case*, int, double*);
   int (*check_select)();
+  void (*functions)(const double*, int, double*);
 };
 
 void PrintTo(const InstructionSet& set, std::ostream* out) { *out << set.name; }
 
 std::vector<InstructionSet> instruction_sets() {
-  return {{"sse2", true, lanes::evaluate_sse2, lanes::check_select_sse2},
+  return {{"sse2", true, lanes::evaluate_sse2, lanes::check_select_sse2, lanes::functions_sse2},
           {"avx2", bool(__builtin_cpu_supports("avx2")) && bool(__builtin_cpu_supports("fma")), lanes::evaluate_avx2,
-           lanes::check_select_avx2},
+           lanes::check_select_avx2, lanes::functions_avx2},
           {"avx512", bool(__builtin_cpu_supports("avx512f")) && bool(__builtin_cpu_supports("avx512dq")),
-           lanes::evaluate_avx512, lanes::check_select_avx512}};
+           lanes::evaluate_avx512, lanes::check_select_avx512, lanes::functions_avx512}};
 }
 
 class Batches : public testing::TestWithParam<InstructionSet> {
@@ -143,17 +144,30 @@ TEST_P(Batches, MixedVehiclesAgreeWithScalars) {
   }
 }
 
-TEST_P(Batches, TabulatedCoefficientsAgreeWithScalars) {
-  std::vector<double> alpha, lift, drag;
-  for (int n = 0; n <= 20; ++n) {
-    alpha.push_back(pi / 40.0 * n - 0.3);
-    lift.push_back(std::sin(2.0 * alpha.back()));
-    drag.push_back(2.0 - 1.5 * std::cos(2.0 * alpha.back()));
+TEST_P(Batches, ElementaryFunctionsKeepTheirErrors) {
+  std::mt19937_64 random(5);
+  for (const double reach : {1e-8, 0.5, 1.5707963267948966, 8.0, 30.0}) {
+    std::vector<double> x(4096), out;
+    for (double& value : x) value = std::uniform_real_distribution<double>(-reach, reach)(random);
+    out.resize(x.size() * lanes::function_count);
+    GetParam().functions(x.data(), int(x.size()), out.data());
+    for (std::size_t n = 0; n < x.size(); ++n) {
+      const double* got = out.data() + n * lanes::function_count;
+      const double a = std::abs(x[n]) + 1e-3;
+      // Of the argument's multiple of pi, the low part is left out.
+      const double reduced = 1e-15 + 4e-17 * std::abs(x[n]);
+      EXPECT_NEAR(got[0], std::sin(x[n]), reduced) << x[n];
+      EXPECT_NEAR(got[1], std::cos(x[n]), reduced) << x[n];
+      EXPECT_NEAR(got[2], std::atan(x[n]), 6e-16 * std::abs(std::atan(x[n]))) << x[n];
+      EXPECT_NEAR(got[3] * a, 1.0, 5e-16) << x[n];
+      EXPECT_NEAR(got[4] / std::sqrt(a), 1.0, 5e-16) << x[n];
+      EXPECT_NEAR(got[5] * std::sqrt(a), 1.0, 5e-16) << x[n];
+      EXPECT_EQ(got[6], std::nearbyint(x[n]));
+      if (std::abs(x[n]) > 1.5707963267948966) continue;
+      EXPECT_NEAR(got[7], std::sin(x[n]), 9e-16 * std::abs(x[n])) << x[n];
+      EXPECT_NEAR(got[8], std::cos(x[n]), 3e-16) << x[n];
+    }
   }
-  const auto table = std::make_shared<CoefficientTable>(alpha, lift, drag);
-  std::vector<Case> cases = mixed_cases(Formulation::rod_force, Inductance::some, 403);
-  for (Case& c : cases) c.vehicle.wings.coefficients.table = table;
-  expect_lanes_as_scalars(cases);
 }
 
 TEST_P(Batches, SpringsInSomeLanesOnly) {

@@ -158,7 +158,8 @@ struct MetricsOf {
     CycleExtremes<S> extremes;
     for (std::size_t n = 0; n < integrals.size(); ++n) integrals[n] = S(0.05) * numbers[21 + n];
     for (std::size_t n = 0; n < extremes.size(); ++n) extremes[n] = numbers[21 + integrals.size() + n];
-    return cycle_metrics(in.vehicle, integrals, extremes, S(0.01), {3.34e-3, 7.664e-3}).values;
+    return cycle_metrics(in.vehicle, integrals, extremes, S(0.01),
+                         ReportingOf<S>{S(3.34e-3), S(7.664e-3)}).values;
   }
 };
 

@@ -43,4 +43,25 @@ inline Design<double> random_design(std::mt19937_64& random, double spread = 2.0
   return d;
 }
 
+/// The reference box of the ensemble benchmark and tests: every parameter within 30 % of the reference vehicle's, 2 to
+/// 5 V, half of the designs with springs, half in either formulation.
+inline Design<double> box_design(std::mt19937_64& random) {
+  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  const auto vary = [&](double& value) { value *= uniform(0.7, 1.3); };
+  Design<double> d = reference_design();
+  d.supply.voltage = uniform(2.0, 5.0);
+  Motor<double>& m = d.motor.constants;
+  for (double* value : {&m.armature_resistance, &m.armature_inductance, &m.torque_constant, &m.inertia,
+                        &m.viscous_damping, &d.transmission.crank_radius, &d.transmission.rod_length,
+                        &*d.transmission.hinge_offset, &d.friction.coefficient, &d.wing.inertia, &d.wing.planform.s2,
+                        &d.wing.planform.s3, &d.aerodynamics.pitch_coefficient}) {
+    vary(*value);
+  }
+  double stiffness = 1.377e-3;
+  vary(stiffness);
+  if (uniform(0.0, 1.0) < 0.5) d.spring.stiffness = stiffness;
+  d.transmission.formulation = uniform(0.0, 1.0) < 0.5 ? Formulation::rod_force : Formulation::virtual_work;
+  return d;
+}
+
 }  // namespace wingbeat

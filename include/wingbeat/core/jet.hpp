@@ -15,6 +15,7 @@ struct ScalarTraits<ceres::Jet<double, N>> {
   using Mask = bool;
   static constexpr int lanes = 1;
   static constexpr bool differentiates = true;
+  static constexpr bool reads_tables = true;
   static Jet<N> select(bool mask, const Jet<N>& a, const Jet<N>& b) { return mask ? a : b; }
   static bool any(bool mask) { return mask; }
   static bool all(bool mask) { return mask; }

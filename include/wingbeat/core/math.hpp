@@ -23,6 +23,26 @@ S square(const S& x) {
   return x * x;
 }
 
+/// 1 / x; batches have a faster one of their own.
+template <Scalar S>
+S inverse_of(const S& x) {
+  return S(1.0) / x;
+}
+
+template <Scalar S>
+struct Root {
+  S value;    ///< sqrt(x)
+  S inverse;  ///< 1 / sqrt(x)
+};
+
+/// Square root of x > 0 together with its inverse.
+template <Scalar S>
+Root<S> root_of(const S& x) {
+  using std::sqrt;
+  const S value = sqrt(x);
+  return {value, S(1.0) / value};
+}
+
 /// The crank angle (or any angle) brought to [0, 2 pi).
 inline double wrap_angle(double angle) {
   const double wrapped = std::fmod(angle, two_pi);

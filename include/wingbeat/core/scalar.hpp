@@ -1,4 +1,4 @@
-// The three scalars the physics runs on: double, ceres::Jet (core/jet.hpp) and a SIMD batch (core/batch.hpp).
+// The three scalars the physics runs on: double, ceres::Jet (core/jet.hpp) and SIMD lanes (core/lanes.hpp).
 //
 // Code templated on a scalar S never branches on a comparison of S: it writes select(mask, a, b), which blends lanes
 // where a double would branch.
@@ -10,7 +10,7 @@ namespace wingbeat {
 
 /// What the library needs to know of a scalar type; specialised for each, a type without a specialisation is not a
 /// Scalar. `Mask` is the result of comparing two scalars, `lanes` the number of designs side by side,
-/// `differentiates` whether derivatives come along.
+/// `differentiates` whether derivatives come along, `reads_tables` whether force coefficients may come from a table.
 template <class S>
 struct ScalarTraits {};
 
@@ -19,6 +19,7 @@ struct ScalarTraits<double> {
   using Mask = bool;
   static constexpr int lanes = 1;
   static constexpr bool differentiates = false;
+  static constexpr bool reads_tables = true;
   static double select(bool mask, double a, double b) { return mask ? a : b; }
   static bool any(bool mask) { return mask; }
   static bool all(bool mask) { return mask; }

@@ -123,10 +123,12 @@ CycleExtremes<S> extreme_candidates(const Vehicle<S>& v, const Motion<S>& m, con
 }
 
 /// What metrics need beside the motion itself.
-struct Reporting {
-  double mass = absent;                   ///< [kg]
-  double bench_torque_constant = absent;  ///< K_ref of eq (17) [N m/A]
+template <Scalar S>
+struct ReportingOf {
+  S mass = S(absent);                   ///< [kg]
+  S bench_torque_constant = S(absent);  ///< K_ref of eq (17) [N m/A]
 };
+using Reporting = ReportingOf<double>;
 
 inline Reporting reporting_of(const Design<double>& d) {
   return {d.mass.value_or(absent), d.bench_torque_constant.value_or(absent)};
@@ -136,7 +138,7 @@ inline Reporting reporting_of(const Design<double>& d) {
 /// Floquet multiplier: of the orbit, or `absent`.
 template <Scalar S>
 Metrics<S> cycle_metrics(const Vehicle<S>& v, const CycleIntegrals<S>& integrals, const CycleExtremes<S>& extremes,
-                         const S& floquet_multiplier_max, const Reporting& reporting) {
+                         const S& floquet_multiplier_max, const ReportingOf<S>& reporting) {
   const auto total = [&](Integral which) -> const S& { return integrals[std::size_t(which)]; };
   const auto peak = [&](Extreme which) -> const S& { return extremes[std::size_t(which)]; };
   const S f = S(1.0) / total(Integral::time);
@@ -152,7 +154,7 @@ Metrics<S> cycle_metrics(const Vehicle<S>& v, const CycleIntegrals<S>& integrals
   m[Metric::current_peak] = peak(Extreme::current);
   m[Metric::power_electrical] = f * total(Integral::electrical_work);
   m[Metric::power_motor] = f * total(Integral::motor_work);
-  m[Metric::power_motor_reference] = S(two_pi * reporting.bench_torque_constant) * f * m[Metric::current_mean];
+  m[Metric::power_motor_reference] = S(two_pi) * reporting.bench_torque_constant * f * m[Metric::current_mean];
   m[Metric::power_friction] = f * total(Integral::friction_work);
   m[Metric::power_aerodynamic] = f * total(Integral::aero_work);
   m[Metric::power_reactive] = f * total(Integral::reactive_work);
@@ -174,7 +176,7 @@ Metrics<S> cycle_metrics(const Vehicle<S>& v, const CycleIntegrals<S>& integrals
   m[Metric::efficiency_motor] = ratio(m[Metric::power_motor], m[Metric::power_electrical]);
   m[Metric::efficiency_mechanism] = ratio(m[Metric::power_aerodynamic], m[Metric::power_motor]);
   m[Metric::floquet_multiplier_max] = floquet_multiplier_max;
-  m[Metric::lift_to_weight] = m[Metric::lift_mean] / S(reporting.mass * standard_gravity);
+  m[Metric::lift_to_weight] = m[Metric::lift_mean] / (reporting.mass * S(standard_gravity));
   return m;
 }
 

@@ -32,6 +32,14 @@ struct StaticBalance {
   bool can_lock() const { return has_wings && advance_least <= 0.0; }
 };
 
+/// K v / R_a [N m].
+inline double stall_torque(const Vehicle<double>& v) {
+  return v.motor.torque_constant * v.voltage / v.motor.armature_resistance;
+}
+
+/// T_c, the constant friction that holds the motor at rest, its own included [N m].
+inline double breakaway_torque(const Vehicle<double>& v) { return v.friction.torque + v.motor.friction_torque; }
+
 /// Torque that would start the crank forward from rest at an angle: K v/R_a - F_s h - mu r_e |F_s| - T_c [N m], with the
 /// static rod force F_s = N_w k beta / g.
 double advance_torque(const Vehicle<double>& vehicle, double crank_angle);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <memory>
+#include <type_traits>
 #include <vector>
 
 #include "wingbeat/core/math.hpp"
@@ -49,16 +50,20 @@ class CoefficientTable {
   std::vector<Cubic> lift_, drag_;
 };
 
-/// Translational force coefficients: two waves, or a table where one is given.
+/// Translational force coefficients: two waves, or a table where one is given and the scalar can read it.
 template <Scalar S>
 struct ForceCoefficients {
+  using Table = std::conditional_t<ScalarTraits<S>::reads_tables, std::shared_ptr<const CoefficientTable>, std::nullptr_t>;
+
   CoefficientWave<S> lift;
   CoefficientWave<S> drag;
-  std::shared_ptr<const CoefficientTable> table = nullptr;
+  Table table = nullptr;
 
   template <Scalar T>
   ForceCoefficients<T> cast() const {
-    return {lift.template cast<T>(), drag.template cast<T>(), table};
+    ForceCoefficients<T> to{lift.template cast<T>(), drag.template cast<T>()};
+    if constexpr (ScalarTraits<T>::reads_tables) to.table = table;
+    return to;
   }
 };
 
@@ -87,25 +92,12 @@ void validate(const BladeElement<double>& wings);
 
 namespace detail {
 
-inline double evaluate(const CoefficientTable::Cubic& p, double x) {
-  const double t = x - p.x0;
-  return p.a + t * (p.b + t * (p.c + t * p.d));
-}
-
-/// A table piece at alpha for any scalar: the piece is chosen by value, the polynomial carries the derivatives.
+/// A table piece at alpha: the piece is chosen by value, the polynomial carries the derivatives.
 template <Scalar S, class Choose>
 S evaluate_table(const Choose& choose, const S& alpha) {
-  if constexpr (ScalarTraits<S>::lanes == 1) {
-    const CoefficientTable::Cubic p = choose(value_of(alpha));
-    const S t = alpha - S(p.x0);
-    return S(p.a) + t * (S(p.b) + t * (S(p.c) + t * S(p.d)));
-  } else {
-    constexpr int lanes = ScalarTraits<S>::lanes;
-    alignas(64) double values[lanes];
-    alpha.store_aligned(values);
-    for (double& x : values) x = evaluate(choose(x), x);
-    return S::load_aligned(values);
-  }
+  const CoefficientTable::Cubic p = choose(value_of(alpha));
+  const S t = alpha - S(p.x0);
+  return S(p.a) + t * (S(p.b) + t * (S(p.c) + t * S(p.d)));
 }
 
 }  // namespace detail
@@ -114,7 +106,9 @@ S evaluate_table(const Choose& choose, const S& alpha) {
 template <Scalar S>
 S lift_coefficient(const ForceCoefficients<S>& c, const S& alpha) {
   using std::sin;
-  if (c.table) return detail::evaluate_table([&](double x) { return c.table->lift_piece(x); }, alpha);
+  if constexpr (ScalarTraits<S>::reads_tables) {
+    if (c.table) return detail::evaluate_table([&](double x) { return c.table->lift_piece(x); }, alpha);
+  }
   return c.lift.offset + c.lift.amplitude * sin(c.lift.rate * alpha + c.lift.phase);
 }
 
@@ -122,7 +116,9 @@ S lift_coefficient(const ForceCoefficients<S>& c, const S& alpha) {
 template <Scalar S>
 S drag_coefficient(const ForceCoefficients<S>& c, const S& alpha) {
   using std::cos;
-  if (c.table) return detail::evaluate_table([&](double x) { return c.table->drag_piece(x); }, alpha);
+  if constexpr (ScalarTraits<S>::reads_tables) {
+    if (c.table) return detail::evaluate_table([&](double x) { return c.table->drag_piece(x); }, alpha);
+  }
   return c.drag.offset + c.drag.amplitude * cos(c.drag.rate * alpha + c.drag.phase);
 }
 

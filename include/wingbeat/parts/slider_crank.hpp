@@ -50,26 +50,41 @@ struct CrankKinematics {
   S crank_lever;    ///< h = cos gamma dy/dtheta: torque on the crank per unit rod force [m]
 };
 
+/// A slider-crank with the quotients that its kinematics needs at every crank angle.
+template <Scalar S>
+struct CrankGeometry {
+  SliderCrank<S> crank;
+  S rod_ratio;         ///< r_c / l [1]
+  S per_hinge_offset;  ///< 1 / H [1/m]
+};
+
+template <Scalar S>
+CrankGeometry<S> geometry_of(const SliderCrank<S>& c) {
+  return {c, c.crank_radius / c.rod_length, S(1.0) / c.hinge_offset};
+}
+
 /// Kinematics at a crank angle given by its sine and cosine. Beta' = B1 omega, beta'' = B1 omega' + B2 omega^2.
 template <Scalar S>
-CrankKinematics<S> crank_kinematics(const SliderCrank<S>& c, const S& sin_theta, const S& cos_theta) {
-  using std::sqrt;
+CrankKinematics<S> crank_kinematics(const CrankGeometry<S>& geometry, const S& sin_theta, const S& cos_theta) {
+  const SliderCrank<S>& c = geometry.crank;
   const S r_c = c.crank_radius;
   const S H = c.hinge_offset;
-  const S ratio = r_c / c.rod_length;
+  const S ratio = geometry.rod_ratio;
+  const S per_H = geometry.per_hinge_offset;
   const S sin_gamma = ratio * cos_theta;
-  const S cos_gamma = sqrt(S(1.0) - sin_gamma * sin_gamma);
-  const S sec_gamma = S(1.0) / cos_gamma;
+  const S cos2_gamma = S(1.0) - sin_gamma * sin_gamma;
+  const Root<S> root = root_of(cos2_gamma);
+  const S cos_gamma = root.value;
+  const S sec_gamma = root.inverse;
   const S tan_gamma = sin_gamma * sec_gamma;
 
   const S y = r_c * sin_theta + c.rod_length * cos_gamma;
   const S dy = r_c * (cos_theta + sin_theta * tan_gamma);
   const S ddy = r_c * (cos_theta * tan_gamma - sin_theta - ratio * square(sin_theta) * sec_gamma * square(sec_gamma));
 
-  const S per_H = S(1.0) / H;
   const S tan_beta = (y - c.mid_stroke_height) * per_H;
   const S sec2_beta = S(1.0) + square(tan_beta);
-  const S cos2_beta = S(1.0) / sec2_beta;
+  const S cos2_beta = inverse_of(sec2_beta);
 
   CrankKinematics<S> k;
   k.slider_height = y;
@@ -80,6 +95,11 @@ CrankKinematics<S> crank_kinematics(const SliderCrank<S>& c, const S& sin_theta,
                                                          : H * cos_gamma * sec2_beta;
   k.crank_lever = cos_gamma * dy;
   return k;
+}
+
+template <Scalar S>
+CrankKinematics<S> crank_kinematics(const SliderCrank<S>& c, const S& sin_theta, const S& cos_theta) {
+  return crank_kinematics(geometry_of(c), sin_theta, cos_theta);
 }
 
 /// Stroke angle beta [rad]. Apart from the kinematics because only springs and reports need it.

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "wingbeat/core/status.hpp"
+#include "wingbeat/cycle/lane_blocks.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
 
@@ -33,12 +34,6 @@ struct EnsembleOptions {
   MetricSet metrics = all_metrics();     ///< those wanted; the others are absent. Peaks and multipliers cost extra
   InstructionSet isa = best_instruction_set();
   bool scalar_only = false;              ///< every design by the scalar solver
-};
-
-/// One vehicle of an ensemble, validated and resolved.
-struct EnsembleMember {
-  Vehicle<double> vehicle;
-  Reporting reporting;
 };
 
 struct EnsembleOutcome {

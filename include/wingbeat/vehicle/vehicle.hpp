@@ -83,6 +83,44 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
   return v;
 }
 
+/// Calls visit(number, place) for every number of a vehicle, place(other) being where the same number stands in another
+/// one. Not for the formulation and the coefficient table, which are no numbers.
+template <Scalar S, class Visit>
+void for_each_number(Vehicle<S>& v, const Visit& visit) {
+#define WINGBEAT_NUMBER(name) visit(v.name, [](auto& of) -> auto& { return of.name; })
+  WINGBEAT_NUMBER(voltage);
+  WINGBEAT_NUMBER(motor.armature_resistance);
+  WINGBEAT_NUMBER(motor.armature_inductance);
+  WINGBEAT_NUMBER(motor.torque_constant);
+  WINGBEAT_NUMBER(motor.inertia);
+  WINGBEAT_NUMBER(motor.viscous_damping);
+  WINGBEAT_NUMBER(motor.friction_torque);
+  WINGBEAT_NUMBER(crank.crank_radius);
+  WINGBEAT_NUMBER(crank.rod_length);
+  WINGBEAT_NUMBER(crank.hinge_offset);
+  WINGBEAT_NUMBER(crank.mid_stroke_height);
+  WINGBEAT_NUMBER(friction.radius);
+  WINGBEAT_NUMBER(friction.damping);
+  WINGBEAT_NUMBER(friction.quadratic);
+  WINGBEAT_NUMBER(friction.torque);
+  WINGBEAT_NUMBER(spring.stiffness);
+  WINGBEAT_NUMBER(wing_count);
+  WINGBEAT_NUMBER(wing_inertia);
+  WINGBEAT_NUMBER(wings.air_density);
+  WINGBEAT_NUMBER(wings.pitch_coefficient);
+  WINGBEAT_NUMBER(wings.s2);
+  WINGBEAT_NUMBER(wings.s3);
+  WINGBEAT_NUMBER(wings.coefficients.lift.offset);
+  WINGBEAT_NUMBER(wings.coefficients.lift.amplitude);
+  WINGBEAT_NUMBER(wings.coefficients.lift.rate);
+  WINGBEAT_NUMBER(wings.coefficients.lift.phase);
+  WINGBEAT_NUMBER(wings.coefficients.drag.offset);
+  WINGBEAT_NUMBER(wings.coefficients.drag.amplitude);
+  WINGBEAT_NUMBER(wings.coefficients.drag.rate);
+  WINGBEAT_NUMBER(wings.coefficients.drag.phase);
+#undef WINGBEAT_NUMBER
+}
+
 /// Which smooth branch of the kinked equations holds, each +-1.
 template <Scalar S>
 struct Branch {
@@ -126,47 +164,83 @@ S spring_moment(const Vehicle<S>& v, const CrankKinematics<S>& k) {
   return v.wing_count * spring_loads(v.spring, stroke_angle(k)).moment;
 }
 
-/// Rod force and accelerations at crank angle theta (given by sine and cosine), crank speed omega [rad/s] and current
-/// i [A] under the terminal voltage v_t [V], on a given branch (model.md section 2, eqs 1, 5-11, 21).
+/// What is known of an instant before the sign of the rod force.
 template <Scalar S>
-Motion<S> motion_at(const Vehicle<S>& v, const S& sin_theta, const S& cos_theta, const S& omega, const S& i,
-                    const S& v_t, const Branch<S>& branch) {
-  Motion<S> m;
-  m.kinematics = crank_kinematics(v.crank, sin_theta, cos_theta);
-  const CrankKinematics<S>& k = m.kinematics;
-  const S B1 = k.stroke_slope;
-  const S B2 = k.stroke_curve;
-  const S N_J = v.wing_count * v.wing_inertia;
-  const S N_k_beta = spring_moment(v, k);
-  const S g = k.wing_lever;
-  m.stroke_velocity = B1 * omega;
-  const S stroke_speed = branch.stroke * m.stroke_velocity;
-  m.aero_moment = branch.stroke * drag_moment(v.wings, stroke_speed);
+struct Instant {
+  CrankKinematics<S> kinematics;
+  S omega;            ///< crank speed [rad/s]
+  MotorLoads<S> motor;
+  S stroke_velocity;  ///< beta' [rad/s]
+  S aero_moment;      ///< M_aero of all wings [N m], along beta'
+  S spring_moment;    ///< N_w k beta [N m]
+  S load_free;        ///< friction on the crank that does not depend on F [N m]
+  S drive;            ///< K i - b omega - load_free [N m]
+  S A_g;              ///< A g of F = A omega' + C [kg m2]
+  S C_g;              ///< C g [N m]
+  S force_switch;     ///< J C_g + A_g drive: has the sign of F on either branch while there is one solution [N m kg m2]
+};
+
+/// The instant at crank speed omega [rad/s] and current i [A] under the terminal voltage v_t [V]; `stroke` and
+/// `direction` are the signs of beta' and omega (model.md section 2).
+template <Scalar S>
+Instant<S> instant_at(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& omega, const S& i, const S& v_t,
+                      const S& stroke, const S& direction) {
+  Instant<S> at;
+  at.kinematics = k;
+  at.omega = omega;
+  at.motor = motor_loads(v.motor, v_t, i, omega);
+  at.stroke_velocity = k.stroke_slope * omega;
+  const S stroke_speed = stroke * at.stroke_velocity;
+  at.aero_moment = stroke * drag_moment(v.wings, stroke_speed);
+  at.spring_moment = spring_moment(v, k);
+  at.load_free = load_free_friction(v.friction, omega, direction) + direction * v.motor.friction_torque;
+  at.drive = at.motor.torque - at.motor.drag_torque - at.load_free;
 
   // F = A omega' + C of model.md, both sides times g, which saves dividing by it twice.
+  const S N_J = v.wing_count * v.wing_inertia;
+  at.A_g = N_J * k.stroke_slope;
+  at.C_g = N_J * k.stroke_curve * square(omega) + at.aero_moment + at.spring_moment;
+  at.force_switch = v.motor.inertia * at.C_g + at.A_g * at.drive;
+  return at;
+}
+
+/// Rod force and accelerations of an instant, on a given branch (model.md section 2, eqs 1, 5-11, 21).
+template <Scalar S>
+Motion<S> motion_on(const Vehicle<S>& v, const Instant<S>& at, const S& i, const S& v_t, const Branch<S>& branch) {
+  Motion<S> m;
+  m.kinematics = at.kinematics;
+  const CrankKinematics<S>& k = m.kinematics;
   const S J = v.motor.inertia;
-  const S A_g = N_J * B1;
-  const S C_g = N_J * B2 * square(omega) + m.aero_moment + N_k_beta;
-  const S load_free = load_free_friction(v.friction, omega, branch.direction) +
-                      branch.direction * v.motor.friction_torque;
-  const MotorLoads<S> motor = motor_loads(v.motor, v_t, i, omega);
-  const S drive = motor.torque - motor.drag_torque - load_free;
+  const S g = k.wing_lever;
+  const S omega2 = square(at.omega);
   // mu r_e |F| sign(omega) = s mu r_e F with s = sign(F) sign(omega), on this branch.
   const S lever = k.crank_lever + branch.force * branch.direction * v.friction.radius;
-  const S divisor = S(1.0) / (J * g + A_g * lever);
+  const S inertia_g = J * g + at.A_g * lever;
+  const S divisor = inverse_of(inertia_g);
 
   m.current = i;
   m.voltage = v_t;
-  m.force_switch = J * C_g + A_g * drive;
-  m.rod_force = m.force_switch * divisor;
-  m.crank_acceleration = (drive * g - C_g * lever) * divisor;
-  m.stroke_acceleration = B1 * m.crank_acceleration + B2 * square(omega);
-  m.friction_torque = load_friction(v.friction, branch.force * m.rod_force, branch.direction) + load_free;
+  m.stroke_velocity = at.stroke_velocity;
+  m.aero_moment = at.aero_moment;
+  m.force_switch = at.force_switch;
+  m.rod_force = at.force_switch * divisor;
+  m.crank_acceleration = (at.drive * g - at.C_g * lever) * divisor;
+  m.stroke_acceleration = k.stroke_slope * m.crank_acceleration + k.stroke_curve * omega2;
+  m.friction_torque = load_friction(v.friction, branch.force * m.rod_force, branch.direction) + at.load_free;
   m.motor_torque = m.rod_force * k.crank_lever + m.friction_torque;
-  m.stored_moment = N_J * m.stroke_acceleration + N_k_beta;
-  m.current_rate = motor.voltage_reserve;  // L_a di/dt; divided by L_a below where there is an inductance
+  m.stored_moment = v.wing_count * v.wing_inertia * m.stroke_acceleration + at.spring_moment;
+  m.current_rate = at.motor.voltage_reserve;  // L_a di/dt; divided by L_a below where there is an inductance
   if (value_of(v.motor.armature_inductance) > 0.0) m.current_rate = m.current_rate / v.motor.armature_inductance;
   return m;
+}
+
+/// Rod force and accelerations at crank angle theta (given by sine and cosine), crank speed omega [rad/s] and current
+/// i [A] under the terminal voltage v_t [V], on a given branch.
+template <Scalar S>
+Motion<S> motion_at(const Vehicle<S>& v, const S& sin_theta, const S& cos_theta, const S& omega, const S& i,
+                    const S& v_t, const Branch<S>& branch) {
+  const CrankKinematics<S> k = crank_kinematics(v.crank, sin_theta, cos_theta);
+  return motion_on(v, instant_at(v, k, omega, i, v_t, branch.stroke, branch.direction), i, v_t, branch);
 }
 
 /// The current [A] where L_a = 0: i = (v - K omega) / R_a.

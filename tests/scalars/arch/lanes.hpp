@@ -13,8 +13,8 @@ struct Case {
   double force;  ///< assumed sign of the rod force
 };
 
-/// Evaluates instant() and crank_step() for `count` cases that share formulation, coefficient table and whether there
-/// is an inductance. `out` receives instant_size + step_size numbers for each.
+/// Evaluates instant() and crank_step() for `count` cases that share formulation and whether there is an
+/// inductance. `out` receives instant_size + step_size numbers for each.
 void evaluate_sse2(const Case* cases, int count, double* out);
 void evaluate_avx2(const Case* cases, int count, double* out);
 void evaluate_avx512(const Case* cases, int count, double* out);
@@ -23,5 +23,12 @@ void evaluate_avx512(const Case* cases, int count, double* out);
 int check_select_sse2();
 int check_select_avx2();
 int check_select_avx512();
+
+/// sin, cos, atan of x; inverse, root and inverse root of |x| + 1e-3; the nearest whole number; sine and cosine without
+/// reduction. `count` is a multiple of the lanes; `out` receives function_count numbers for each x.
+inline constexpr int function_count = 9;
+void functions_sse2(const double* x, int count, double* out);
+void functions_avx2(const double* x, int count, double* out);
+void functions_avx512(const double* x, int count, double* out);
 
 }  // namespace wingbeat::lanes

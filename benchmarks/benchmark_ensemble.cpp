@@ -1,0 +1,134 @@
+// The batched solver on the reference box: designs a second on one core, the accuracy reached, and the distance to what
+// the core's multipliers would allow.
+//
+//   benchmark_ensemble            every instruction set, three sets of metrics
+//   benchmark_ensemble SECONDS    measure each for that long (default 2)
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+
+#include "vehicle/random_vehicle.hpp"
+#include "wingbeat/study/ensemble.hpp"
+#include "wingbeat/study/run.hpp"
+
+namespace {
+
+using namespace wingbeat;
+
+constexpr std::size_t design_count = 16384;
+constexpr std::size_t checked_every = 8;
+constexpr double tolerance = 1e-6;
+
+std::vector<EnsembleMember> reference_box() {
+  std::mt19937_64 random(20221);
+  std::vector<EnsembleMember> members;
+  for (std::size_t n = 0; n < design_count; ++n) {
+    const Design<double> design = box_design(random);
+    members.push_back({resolve(design), reporting_of(design)});
+  }
+  return members;
+}
+
+struct Wanted {
+  const char* name;
+  MetricSet metrics;
+};
+
+std::vector<Wanted> wanted_sets() {
+  MetricSet no_multipliers = all_metrics();
+  no_multipliers.reset(std::size_t(Metric::floquet_multiplier_max));
+  MetricSet power_and_lift = no_multipliers;
+  for (const Metric m : {Metric::current_peak, Metric::rod_force_peak, Metric::crank_speed_min, Metric::crank_speed_max}) {
+    power_and_lift.reset(std::size_t(m));
+  }
+  return {{"power and lift", power_and_lift}, {"all but multipliers", no_multipliers}, {"all", all_metrics()}};
+}
+
+double quantile(std::vector<double> values, double q) {
+  if (values.empty()) return NAN;
+  std::sort(values.begin(), values.end());
+  return values[std::size_t(q * double(values.size() - 1))];
+}
+
+template <class F>
+double best_time(const F& f, double seconds) {
+  using clock = std::chrono::steady_clock;
+  const auto end = clock::now() + std::chrono::duration<double>(seconds);
+  double best = INFINITY;
+  do {
+    const auto start = clock::now();
+    f();
+    best = std::min(best, std::chrono::duration<double>(clock::now() - start).count());
+  } while (clock::now() < end);
+  return best;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const double seconds = argc > 1 ? std::atof(argv[1]) : 2.0;
+  const std::vector<EnsembleMember> members = reference_box();
+  const StartUp start_up = start_up_in_time();
+
+  std::vector<EnsembleMember> checked;
+  for (std::size_t n = 0; n < members.size(); n += checked_every) checked.push_back(members[n]);
+  EnsembleOptions exact;
+  exact.scalar_only = true;
+  exact.tolerance = 1e-10;
+  exact.metrics.reset(std::size_t(Metric::floquet_multiplier_max));
+  std::vector<EnsembleOutcome> expected(checked.size());
+  solve_ensemble(checked, exact, start_up, expected);
+
+  // The rival: the same designs one by one.
+  EnsembleOptions one_by_one;
+  one_by_one.scalar_only = true;
+  one_by_one.metrics.reset(std::size_t(Metric::floquet_multiplier_max));
+  std::vector<EnsembleOutcome> outcomes(members.size());
+  const double scalar_time =
+      best_time([&] { solve_ensemble(checked, one_by_one, start_up, std::span(outcomes).first(checked.size())); }, seconds) /
+      double(checked.size());
+
+  std::printf("reference box, %zu designs, tolerance %g, one core; scalar solver %.0f designs/s\n\n", design_count, tolerance,
+              1.0 / scalar_time);
+  std::printf("%-8s %-20s %10s %8s %10s %9s   %s\n", "isa", "metrics", "designs/s", "ratio", "recomputed", "no flap",
+              "lift error 50 %, 99 %, 99.9 %; worst metric 99.9 %");
+  for (const auto& [name, isa] : instruction_sets) {
+    if (!is_available(isa)) continue;
+    for (const Wanted& wanted : wanted_sets()) {
+      EnsembleOptions options;
+      options.tolerance = tolerance;
+      options.isa = isa;
+      options.metrics = wanted.metrics;
+      const double time = best_time([&] { solve_ensemble(members, options, start_up, outcomes); }, seconds);
+      std::vector<double> lift, worst;
+      for (std::size_t n = 0; n < checked.size(); ++n) {
+        const EnsembleOutcome& got = outcomes[n * checked_every];
+        if (got.status != FlappingStatus::flapping || expected[n].status != FlappingStatus::flapping) continue;
+        lift.push_back(std::abs(got.metrics[Metric::lift_mean] / expected[n].metrics[Metric::lift_mean] - 1.0));
+        double largest = 0.0;
+        for (std::size_t m = 0; m < std::size_t(metric_count); ++m) {
+          // A residual power of zero, and an angle near zero, have no relative error.
+          if (!wanted.metrics[m] || m == std::size_t(Metric::floquet_multiplier_max) ||
+              m == std::size_t(Metric::power_residual) || m == std::size_t(Metric::angle_of_attack_min)) {
+            continue;
+          }
+          const double e = std::abs(got.metrics.values[m] / expected[n].metrics.values[m] - 1.0);
+          if (e > largest) largest = e;
+        }
+        worst.push_back(largest);
+      }
+      int recomputed = 0, still = 0;
+      for (const EnsembleOutcome& out : outcomes) {
+        recomputed += out.scalar;
+        still += out.status != FlappingStatus::flapping;
+      }
+      std::printf("%-8s %-20s %10.0f %8.1f %10d %9d   %.1e %.1e %.1e; %.1e\n", std::string(name).c_str(), wanted.name,
+                  double(design_count) / time, scalar_time * double(design_count) / time, recomputed, still,
+                  quantile(lift, 0.5), quantile(lift, 0.99), quantile(lift, 0.999), quantile(worst, 0.999));
+    }
+  }
+  return 0;
+}

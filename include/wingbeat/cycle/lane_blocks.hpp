@@ -1,0 +1,74 @@
+// The batched orbit solver behind plain numbers: one function for each instruction set, none of whose types show.
+#pragma once
+
+#include <array>
+
+#include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
+
+namespace wingbeat {
+
+inline constexpr int most_half_steps = 48;     ///< of half a lap
+inline constexpr int most_force_switches = 3;  ///< sign changes of the rod force within half a lap
+
+/// A quantity of which extremes are sought.
+enum class Quantity { velocity, current, slowness, speed, force, energy };
+inline constexpr int quantity_count = 6;
+
+/// One vehicle of an ensemble, validated and resolved.
+struct EnsembleMember {
+  Vehicle<double> vehicle;
+  Reporting reporting;
+};
+
+/// Where a lap begins: near the orbit, at the lower dead centre.
+struct LapStart {
+  std::array<double, 2> state;                                         ///< omega [rad/s], i [A]
+  std::array<std::array<double, most_force_switches>, 2> switch_at;    ///< of either half lap [rad]
+  std::array<double, 2> switch_count, first_sign;
+  std::array<double, 4> monodromy;                                     ///< of a lap, to a few per cent
+};
+
+enum class LaneApproach {
+  guess,      ///< from the speed at which the motor balances the mean load
+  from_rest,  ///< from rest, in time: what happens there is no longer in doubt
+  resume      ///< from the LapStart that an earlier attempt left
+};
+
+struct LaneSettings {
+  LaneApproach approach = LaneApproach::guess;
+  bool inductance = true;  ///< whether the block's motors have one
+  int coarse_laps = 2;
+  int medium_laps = 1;
+  int medium_steps = 6;    ///< of half a lap
+  int fine_steps = 9;      ///< of half a lap
+  double peak_tolerance = 3e-8;  ///< relative, of the peaks on the solution found
+  std::array<bool, quantity_count> wanted{};
+  bool multipliers = false;
+};
+
+enum class LaneVerdict {
+  rotates,
+  doubtful,  ///< may lock, stall, jam or have several orbits, or is beyond this solver's means
+  locked     ///< from rest it has come to a stop, in time, where it stays
+};
+
+struct LaneResult {
+  Metrics<double> metrics;
+  double error_estimate;  ///< of the cycle's means, relative
+  LaneVerdict verdict;
+  LapStart start;
+};
+
+/// Solves `count` members, at most lanes_*() of them, alike in formulation and in whether they have springs and
+/// inductance. A member's result does not depend on the others.
+void solve_block_sse2(const EnsembleMember* const* members, int count, const LaneSettings& settings,
+                      LaneResult* const* results);
+void solve_block_avx2(const EnsembleMember* const* members, int count, const LaneSettings& settings,
+                      LaneResult* const* results);
+void solve_block_avx512(const EnsembleMember* const* members, int count, const LaneSettings& settings,
+                        LaneResult* const* results);
+
+inline constexpr int lanes_sse2 = 4, lanes_avx2 = 8, lanes_avx512 = 16;
+
+}  // namespace wingbeat

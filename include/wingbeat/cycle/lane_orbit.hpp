@@ -1,0 +1,1204 @@
+// The orbits of many vehicles at once, one per lane, on meshes of fixed size.
+//
+// A lap runs from the lower dead centre through two half laps, on each of which the stroke velocity keeps its sign. The
+// half laps' steps end where the rod force changes sign, which differs from lane to lane while the number of steps does
+// not. A coarse lap finds where, a medium lap corrects it, the fine lap integrates the metrics. Everything is computed
+// lane by lane without looking at the neighbours, so that a vehicle gets the same bits in any company.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "wingbeat/core/lanes.hpp"
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/cycle/lane_blocks.hpp"
+#include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/solve/explicit_step.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
+
+namespace wingbeat {
+
+inline constexpr int coarse_half_steps = 8;
+inline constexpr int most_energy_extremes = 5;  ///< of the energy stored in wings and springs, within half a lap
+
+/// Integrals of the fine lap. The others follow: the supply's work from the current, the motor's from what it drives,
+/// the reactive work from the extremes of the stored energy.
+inline constexpr std::array lane_integrals = {Integral::time,          Integral::current,   Integral::current_square,
+                                              Integral::speed_square,  Integral::friction_work, Integral::aero_work,
+                                              Integral::residual_work, Integral::lift,      Integral::rod_force};
+
+/// The crank over half a lap as a system for solve/: the independent variable u runs from -pi/2 to pi/2.
+template <Scalar S, int N>
+struct HalfLap {
+  using Real = S;
+  using State = std::array<S, N>;
+  using Quadrature = std::array<S, lane_integrals.size()>;
+  using Switches = std::array<S, 2>;  ///< force_switch, stored moment along the stroke
+  using Signs = std::array<S, 2>;     ///< of the rod force; of the stored moment where the step begins
+  static constexpr std::array<std::size_t, 4> controlled_integrals = {0, 4, 5, 7};
+
+  const Vehicle<S>& vehicle;
+  CrankGeometry<S> geometry;
+  S per_inductance;  ///< 1 / L_a [1/H]
+  S half;            ///< +1: crank angle u, stroke upward; -1: crank angle pi + u, stroke downward
+
+  static bool admissible(const State&) { return true; }
+
+  S current(const State& y) const {
+    if constexpr (N == 2) {
+      return y[1];
+    } else {
+      return algebraic_current(vehicle, vehicle.voltage, y[0]);
+    }
+  }
+
+  CrankKinematics<S> kinematics(const S& u) const {
+    const SineCosine<S> of = sine_cosine_of_reduced(u);
+    return crank_kinematics(geometry, S(half * of.sine), S(half * of.cosine));
+  }
+
+  Branch<S> branch(const S& force) const { return {half, force, S(1.0), S(1.0)}; }
+
+  Motion<S> motion(const CrankKinematics<S>& k, const State& y, const S& force) const {
+    const S i = current(y);
+    const Instant<S> at = instant_at(vehicle, k, y[0], i, vehicle.voltage, half, S(1.0));
+    return motion_on(vehicle, at, i, vehicle.voltage, branch(force));
+  }
+
+  /// The branch that holds is chosen on the spot.
+  Motion<S> motion_on_its_branch(const CrankKinematics<S>& k, const State& y) const {
+    const S i = current(y);
+    const Instant<S> at = instant_at(vehicle, k, y[0], i, vehicle.voltage, half, S(1.0));
+    return motion_on(vehicle, at, i, vehicle.voltage, branch(sign_of(at.force_switch)));
+  }
+
+  template <bool quadratures>
+  solve::Rates<HalfLap> rates_of(const Motion<S>& m, const State& y, const S& force) const {
+    const S per_omega = inverse_of(y[0]);
+    solve::Rates<HalfLap> r;
+    r.dy[0] = m.crank_acceleration * per_omega;
+    if constexpr (N == 2) {
+      // Not m.current_rate, which divides by the inductance every time.
+      const S reserve = motor_loads(vehicle.motor, vehicle.voltage, y[1], y[0]).voltage_reserve;
+      r.dy[1] = reserve * per_inductance * per_omega;
+    }
+    r.switches = {m.force_switch, half * m.stored_moment};
+    if constexpr (quadratures) {
+      const CycleIntegrals<S> in_time = integrands(vehicle, m, y[0], branch(force));
+      for (std::size_t q = 0; q < lane_integrals.size(); ++q) {
+        r.dq[q] = in_time[std::size_t(lane_integrals[q])] * per_omega;
+      }
+    }
+    return r;
+  }
+
+  template <bool quadratures>
+  solve::Rates<HalfLap> rates(const S& u, const State& y, const Signs& signs) const {
+    return rates_of<quadratures>(motion(kinematics(u), y, signs[0]), y, signs[0]);
+  }
+};
+
+inline constexpr std::size_t late_stage = 10;  ///< its force is seen before the end of a step
+
+// A lap's code must stay within the processor's instruction cache: the right-hand side is one function, called in a loop
+// over the stages, where the scalar solver unrolls them.
+template <bool quadratures, class System>
+[[gnu::noinline, gnu::flatten]] void evaluate(const System& system, const typename System::Real& u,
+                                              const typename System::State& y, const typename System::Real& force,
+                                              solve::Rates<System>& out) {
+  out = system.template rates<quadratures>(u, y, {force, typename System::Real(1.0)});
+}
+
+/// What is seen inside a step beside its result.
+template <class S>
+struct StepSights {
+  S late_force_switch;  ///< at 6/7 of the step
+  S dip_at;             ///< fraction of the step at which the stored moment is least by its sign at the start
+};
+
+/// One step of Dormand and Prince's pair as solve::explicit_step takes it.
+template <bool quadratures, class System>
+[[gnu::noinline]] void lane_step(const System& system, const typename System::Real& u, const typename System::State& y,
+                                 const typename System::Real& h, const typename System::Real& force,
+                                 const solve::Rates<System>& first, solve::StepResult<System>& result,
+                                 StepSights<typename System::Real>& sights) {
+  using S = typename System::Real;
+  constexpr std::size_t states = std::tuple_size_v<typename System::State>;
+  namespace pair = solve::dop853;
+  std::array<typename System::State, pair::stages> k;
+  k[0] = first.dy;
+  const auto add_integrands = [&](std::size_t stage, const typename System::Quadrature& dq) {
+    if constexpr (quadratures) {
+      const S weight(pair::b[stage]), third(pair::e3[stage]), fifth(pair::e5[stage]);
+      for (std::size_t q = 0; q < dq.size(); ++q) result.dq[q] = result.dq[q] + weight * dq[q];
+      for (const std::size_t q : System::controlled_integrals) {
+        result.integral_error3[q] = result.integral_error3[q] + third * dq[q];
+        result.integral_error5[q] = result.integral_error5[q] + fifth * dq[q];
+      }
+    }
+  };
+  if constexpr (quadratures) {
+    result.dq.fill(S(0.0));
+    for (const std::size_t q : System::controlled_integrals) result.integral_error3[q] = result.integral_error5[q] = S(0.0);
+    add_integrands(0, first.dq);
+  }
+  result.lowest.fill(S(1e300));
+  const S trend = sign_of(first.switches[1]);
+  solve::Rates<System> rates;
+#pragma GCC unroll 1
+  for (std::size_t stage = 1; stage < std::size_t(pair::stages); ++stage) {
+    typename System::State sum;
+    for (std::size_t n = 0; n < states; ++n) sum[n] = S(pair::a[stage][0]) * k[0][n];
+#pragma GCC unroll 1
+    for (std::size_t j = stage < 4 ? 1 : stage < 6 ? 2 : 3; j < stage; ++j) {
+      const S a(pair::a[stage][j]);
+      for (std::size_t n = 0; n < states; ++n) sum[n] = sum[n] + a * k[j][n];
+    }
+    typename System::State at;
+    for (std::size_t n = 0; n < states; ++n) at[n] = y[n] + h * sum[n];
+    const S here = u + S(pair::c[stage]) * h;
+    if (quadratures && pair::b[stage] != 0.0) {
+      evaluate<true>(system, here, at, force, rates);
+      add_integrands(stage, rates.dq);
+    } else {
+      evaluate<false>(system, here, at, force, rates);
+    }
+    k[stage] = rates.dy;
+    if (stage == late_stage) sights.late_force_switch = rates.switches[0];
+    if (quadratures && stage >= 5) {
+      result.lowest[0] = min(result.lowest[0], rates.switches[0] * force);
+      const S along = rates.switches[1] * trend;
+      sights.dip_at = select<S>(along < result.lowest[1], S(pair::c[stage]), sights.dip_at);
+      result.lowest[1] = min(result.lowest[1], along);
+    }
+  }
+  for (std::size_t n = 0; n < states; ++n) {
+    S sum(0.0), third(0.0), fifth(0.0);
+    for (std::size_t j = 0; j < std::size_t(pair::stages); ++j) {
+      sum = sum + S(pair::b[j]) * k[j][n];
+      if constexpr (quadratures) {
+        third = third + S(pair::e3[j]) * k[j][n];
+        fifth = fifth + S(pair::e5[j]) * k[j][n];
+      }
+    }
+    result.y[n] = y[n] + h * sum;
+    result.error3[n] = h * third;
+    result.error5[n] = h * fifth;
+  }
+  if constexpr (quadratures) {
+    for (std::size_t q = 0; q < result.dq.size(); ++q) result.dq[q] = h * result.dq[q];
+    for (const std::size_t q : System::controlled_integrals) {
+      result.integral_error3[q] = h * result.integral_error3[q];
+      result.integral_error5[q] = h * result.integral_error5[q];
+    }
+  }
+}
+
+/// Where the rod force changes sign within half a lap.
+template <class L>
+struct ForceSwitches {
+  std::array<L, most_force_switches> at;  ///< [rad], growing; pi/2 beyond the count
+  L count;
+  L first_sign;  ///< sign of the rod force at the start
+};
+
+/// The steps of half a lap.
+template <class L>
+struct HalfMesh {
+  std::array<L, most_half_steps + 1> u;
+  std::array<L, most_half_steps> force;           ///< sign of the rod force on each step
+  std::array<L, most_force_switches> switch_node; ///< node at each switch; the last one beyond the count
+};
+
+/// Value and derivative by crank angle: |beta'| [rad/s], i [A], -omega and omega [rad/s], |F| [N], energy stored in wings
+/// and springs [J].
+template <class L>
+struct Reading {
+  L value, slope;
+};
+
+/// What the fine lap leaves at a node.
+template <class L, int N>
+struct LaneNode {
+  std::array<L, N> y;
+  L dip, dip_at;  ///< in the step from here: least stored moment by its sign at the start, and where
+  std::array<Reading<L>, quantity_count> readings;
+};
+
+/// A stretch of a step in which a quantity rises from its start and falls towards its end.
+template <class L, int N>
+struct PeakBracket {
+  L half, u, force;     ///< where the step begins, and its branch
+  std::array<L, N> y;
+  L x0, v0, d0;         ///< start: distance from u [rad], value, slope
+  L x1, v1, d1;         ///< end
+  L rises_and_falls;    ///< 1, or 0 where the larger end is all there is
+  L estimate;
+};
+
+template <class L, int N>
+class LaneOrbit {
+  using State = std::array<L, N>;
+  using Mask = wingbeat::Mask<L>;
+  using System = HalfLap<L, N>;
+  using Matrix = std::array<std::array<L, N>, N>;
+  static constexpr double quarter = 0.5 * pi;
+  static constexpr int coarse_samples = 2 * coarse_half_steps + 1;
+
+ public:
+  LaneOrbit(const Vehicle<L>& vehicle, const LaneSettings& settings) : vehicle_(vehicle), settings_(settings) {
+    no_load_ = no_load_speed(vehicle.motor, vehicle.voltage);
+    floor_ = L(1e-4) * no_load_;
+    current_scale_ = vehicle.voltage / vehicle.motor.armature_resistance;
+    wanted_ = settings.wanted;
+    geometry_ = geometry_of(vehicle.crank);
+    if constexpr (N == 2) per_inductance_ = L(1.0) / vehicle.motor.armature_inductance;
+  }
+
+  /// Metrics by one fine lap, after as many others as the settings ask for. `mass` [kg] and `bench_torque_constant`
+  /// [N m/A] may be absent.
+  Metrics<L> solve(const L& mass, const L& bench_torque_constant);
+
+  // After solve():
+  const L& error_estimate() const { return error_estimate_; }
+  const Mask& doubtful() const { return doubtful_; }
+  const Mask& locked() const { return locked_; }
+  /// Calls visit(lanes, place), place(LapStart&) being where the number stands there, for all of where the next lap
+  /// starts: to set it before solve(), or to keep it afterwards.
+  template <class Visit>
+  void visit_start(const Visit& visit) {
+    for (std::size_t n = 0; n < N; ++n) visit(y_[n], [n](auto& start) -> double& { return start.state[n]; });
+    for (std::size_t half = 0; half < 2; ++half) {
+      ForceSwitches<L>& s = switches_[half];
+      for (std::size_t n = 0; n < most_force_switches; ++n) {
+        visit(s.at[n], [half, n](auto& start) -> double& { return start.switch_at[half][n]; });
+      }
+      visit(s.count, [half](auto& start) -> double& { return start.switch_count[half]; });
+      visit(s.first_sign, [half](auto& start) -> double& { return start.first_sign[half]; });
+    }
+    for (std::size_t n = 0; n < N * N; ++n) {
+      visit(monodromy_[n / N][n % N], [n](auto& start) -> double& { return start.monodromy[n]; });
+    }
+  }
+
+ private:
+  System half_lap(int half) const { return {vehicle_, geometry_, per_inductance_, L(half == 0 ? 1.0 : -1.0)}; }
+
+  [[gnu::noinline, gnu::flatten]] void tabulate();
+  [[gnu::noinline, gnu::flatten]] void judge_statics();
+  [[gnu::noinline, gnu::flatten]] void guess_speed();
+  [[gnu::noinline, gnu::flatten]] void start_from_rest();
+  [[gnu::noinline, gnu::flatten]] void coarse_lap();
+  [[gnu::noinline, gnu::flatten]] void find_switches(int half, const L* u, const L* force, int count, L& offset);
+  [[gnu::noinline, gnu::flatten]] void build_mesh(int half, int steps);
+  [[gnu::noinline, gnu::flatten]] void advance(int half, int steps, L* force);
+  [[gnu::noinline, gnu::flatten]] void medium_lap(int steps);
+  [[gnu::noinline, gnu::flatten]] void fine_lap();
+  [[gnu::noinline, gnu::flatten]] void visit_node(const System& system, const L& u, const L& force,
+                                                  LaneNode<L, N>& node, solve::Rates<System>& first);
+  [[gnu::noinline, gnu::flatten]] void read(const System& system, const L& u, const State& y, const L& force,
+                                            const Motion<L>& m, const State& dy,
+                                            const std::array<bool, quantity_count>& wanted,
+                                            std::array<Reading<L>, quantity_count>& out) const;
+  [[gnu::noinline, gnu::flatten]] PeakBracket<L, N> bracket(int half, Quantity quantity) const;
+  [[gnu::noinline, gnu::flatten]] Reading<L> reading_inside(Quantity quantity, const PeakBracket<L, N>& b,
+                                                            const L& x) const;
+  template <class Visit>
+  void for_each_stretch(int half, Quantity quantity, const L& floor, const Visit& visit) const;
+  static void keep(const PeakBracket<L, N>& from, const Mask& where, PeakBracket<L, N>& to);
+  static L estimate_peak(PeakBracket<L, N>& b);
+  [[gnu::noinline, gnu::flatten]] L refine(Quantity quantity, const L& sign, PeakBracket<L, N> b) const;
+  [[gnu::noinline, gnu::flatten]] L peak(Quantity quantity) const;
+  [[gnu::noinline, gnu::flatten]] L exchanged_energy();
+  [[gnu::noinline, gnu::flatten]] L lift_peak(const L& highest_velocity) const;
+  [[gnu::noinline, gnu::flatten]] L floquet_multiplier(const State& start);
+  template <bool quadratures>
+  [[gnu::noinline, gnu::flatten]] void correct_for_offset(const System& system, const HalfMesh<L>& mesh,
+                                                          std::size_t node, const L& late_force_switch);
+  Matrix jacobian_at(const System& system, const CrankKinematics<L>& k, const State& y, const State& rates,
+                     const L& force);
+  void append_to_monodromy(const Matrix& a, const Matrix& b, double h);
+  [[gnu::noinline, gnu::flatten]] void accelerate(const State& start);
+
+  const Vehicle<L>& vehicle_;
+  const LaneSettings& settings_;
+  CrankGeometry<L> geometry_;
+  L per_inductance_, current_scale_, no_load_, floor_;
+  Matrix monodromy_;  ///< of a lap, to a few per cent
+  std::array<std::array<CrankKinematics<L>, coarse_samples>, 2> table_;
+  State y_;
+  Mask doubtful_, locked_;
+  std::array<ForceSwitches<L>, 2> switches_;
+  std::array<HalfMesh<L>, 2> mesh_;
+  std::array<std::array<LaneNode<L, N>, most_half_steps + 1>, 2> nodes_;
+  std::array<L, lane_integrals.size()> integrals_;
+  std::array<bool, quantity_count> wanted_;
+  L slowest_, residual_, step_error_, switch_offset_, error_estimate_;
+};
+
+template <class L, int N>
+void LaneOrbit<L, N>::tabulate() {
+  for (int half = 0; half < 2; ++half) {
+    const System system = half_lap(half);
+    for (int k = 0; k < coarse_samples; ++k) {
+      table_[std::size_t(half)][std::size_t(k)] = system.kinematics(L(quarter * (2.0 * k / (coarse_samples - 1) - 1.0)));
+    }
+  }
+}
+
+/// Marks the lanes that could jam or lock: within a margin, for the table is coarse; static_balance() has the last word.
+template <class L, int N>
+void LaneOrbit<L, N>::judge_statics() {
+  const Vehicle<L>& v = vehicle_;
+  const L N_J = v.wing_count * v.wing_inertia;
+  const L stall = v.motor.torque_constant * v.voltage / v.motor.armature_resistance;
+  const L held = v.friction.torque + v.motor.friction_torque;
+  const L mu_r = v.friction.radius;
+  doubtful_ = !(stall > held);
+  locked_ = !doubtful_ && doubtful_;
+  // From rest, locking shows by itself, and only jams on the way are left to be told from near ones.
+  const bool from_rest = settings_.approach == LaneApproach::from_rest;
+  const L inertia_margin(from_rest ? 0.05 : 0.3), lever_margin(from_rest ? 0.02 : 0.1);
+  const bool springs = !from_rest && any<L>(v.spring.stiffness > L(0.0));
+  for (const auto& half : table_) {
+    for (const CrankKinematics<L>& k : half) {
+      const L g = k.wing_lever;
+      const L A_g = N_J * k.stroke_slope;
+      const L least_g = v.motor.inertia * g + A_g * k.crank_lever - abs(A_g) * mu_r;
+      doubtful_ = doubtful_ || !(least_g > inertia_margin * v.motor.inertia * g) ||
+                  !(g > lever_margin * v.crank.hinge_offset);
+      if (springs) {
+        const L moment = spring_moment(v, k);
+        const L needed_g = moment * k.crank_lever + mu_r * abs(moment);
+        doubtful_ = doubtful_ || !((L(0.8) * stall - held) * g > needed_g);
+      }
+    }
+  }
+}
+
+/// The slowest crank speed at which the motor's torque balances the mean load of a lap at constant speed, as
+/// balanced_speeds() finds it; more than one, or none, is doubtful.
+template <class L, int N>
+void LaneOrbit<L, N>::guess_speed() {
+  const Vehicle<L>& v = vehicle_;
+  constexpr int stride = 4, count = coarse_samples / stride, speeds = 8;
+  const L N_J = v.wing_count * v.wing_inertia;
+  std::array<L, 2 * count> inertia, slope, sign, spring, lever, per_g;
+  for (int n = 0; n < 2 * count; ++n) {
+    const std::size_t at = std::size_t(n);
+    const CrankKinematics<L>& k = table_[at / count][std::size_t(stride / 2 + stride * (n % count))];
+    inertia[at] = N_J * k.stroke_curve;
+    slope[at] = abs(k.stroke_slope);
+    sign[at] = L(n < count ? 1.0 : -1.0);
+    spring[at] = spring_moment(v, k);
+    lever[at] = k.crank_lever;
+    per_g[at] = inverse_of(k.wing_lever);
+  }
+  const auto surplus = [&](const L& omega) {
+    L load(0.0);
+    for (std::size_t n = 0; n < 2 * count; ++n) {
+      const L moment = inertia[n] * square(omega) + sign[n] * drag_moment(v.wings, L(slope[n] * omega)) + spring[n];
+      const L F = moment * per_g[n];
+      load = load + F * lever[n] + v.friction.radius * abs(F);
+    }
+    return v.motor.torque_constant * algebraic_current(v, v.voltage, omega) - v.motor.viscous_damping * omega -
+           v.motor.friction_torque - load_free_friction(v.friction, omega, L(1.0)) - L(1.0 / (2 * count)) * load;
+  };
+  L roots(0.0), root = no_load_;
+  L before = L(0.02) * no_load_, surplus_before = surplus(before);
+  for (int n = 1; n <= speeds; ++n) {
+    const L omega = no_load_ * L(double(n) / speeds), at = surplus(omega);
+    const Mask crossed = surplus_before > L(0.0) && at <= L(0.0);
+    const L found = before + (omega - before) * surplus_before / (surplus_before - at);
+    root = select<L>(crossed && roots == L(0.0), found, root);
+    roots = select<L>(crossed, roots + L(1.0), roots);
+    before = omega;
+    surplus_before = at;
+  }
+  doubtful_ = doubtful_ || !(roots == L(1.0));
+  y_[0] = root;
+  if constexpr (N == 2) y_[1] = algebraic_current(v, v.voltage, root);
+}
+
+/// From rest at crank angle zero, in time, by the classical fourth-order method: over the lower dead centre twice, where
+/// the lap may begin. Lanes that come near
+/// standing still are doubtful, but for those that come to rest and stay.
+template <class L, int N>
+void LaneOrbit<L, N>::start_from_rest() {
+  using Moving = std::array<L, N + 1>;  // crank angle, state
+  constexpr int steps_per_lap = 48, most_laps = 24;
+  constexpr double end = 3.5 * pi;
+  const L dt = L(two_pi / steps_per_lap) * inverse_of(no_load_);
+  const auto rates = [&](const Moving& x) {
+    const L sine = sin(x[0]), cosine = cos(x[0]);
+    System system = half_lap(0);
+    State y;
+    for (std::size_t n = 0; n < N; ++n) y[n] = x[n + 1];
+    const CrankKinematics<L> k = crank_kinematics(geometry_, sine, cosine);
+    system.half = sign_of(k.stroke_slope);
+    const Motion<L> m = system.motion_on_its_branch(k, y);
+    Moving r;
+    r[0] = y[0];
+    r[1] = m.crank_acceleration;
+    if constexpr (N == 2) {
+      r[2] = motor_loads(vehicle_.motor, vehicle_.voltage, y[1], y[0]).voltage_reserve * per_inductance_;
+    }
+    return r;
+  };
+  const auto moved = [](const Moving& x, const Moving& rate, const L& by) {
+    Moving to;
+    for (std::size_t n = 0; n <= N; ++n) to[n] = x[n] + by * rate[n];
+    return to;
+  };
+  Moving x;
+  x.fill(L(0.0));
+  Mask done = L(1.0) < L(0.0), started = done, slow = done, stopped = done;
+  for (int n = 0; n < steps_per_lap * most_laps && !all<L>(done || stopped); ++n) {
+    const Moving k1 = rates(x);
+    const Moving k2 = rates(moved(x, k1, L(0.5) * dt));
+    const Moving k3 = rates(moved(x, k2, L(0.5) * dt));
+    const Moving k4 = rates(moved(x, k3, dt));
+    Moving next;
+    for (std::size_t j = 0; j <= N; ++j) {
+      next[j] = x[j] + dt * L(1.0 / 6.0) * (k1[j] + L(2.0) * (k2[j] + k3[j]) + k4[j]);
+    }
+    // Friction holds a crank that has not started; it does not turn it backwards.
+    const Mask held = !started && !(next[1] > L(0.0));
+    next[0] = select<L>(held, x[0], next[0]);
+    next[1] = select<L>(held, L(0.0), next[1]);
+    started = started || next[1] > L(0.05) * no_load_;
+    slow = slow || (started && !done && !(next[1] > L(0.04) * no_load_));
+    const Mask stops = started && !done && !stopped && !(next[1] > L(0.0));
+    const Mask arrives = !done && !stopped && next[0] >= L(end);
+    const L part = (L(end) - x[0]) * inverse_of(max(L(next[0] - x[0]), L(1e-300)));
+    for (std::size_t j = 0; j < N; ++j) y_[j] = select<L>(arrives, x[j + 1] + part * (next[j + 1] - x[j + 1]), y_[j]);
+    done = done || arrives;
+    stopped = stopped || stops;
+    for (std::size_t j = 0; j <= N; ++j) x[j] = select<L>(stopped && !stops, x[j], next[j]);
+  }
+  // A crank that has come to rest where friction outweighs the drive, at the present current and at the one that it
+  // settles to, stays.
+  const L stall = vehicle_.motor.torque_constant * vehicle_.voltage / vehicle_.motor.armature_resistance;
+  const L sine = sin(x[0]), cosine = cos(x[0]);
+  const CrankKinematics<L> k = crank_kinematics(geometry_, sine, cosine);
+  const L F_s = spring_moment(vehicle_, k) * inverse_of(k.wing_lever);
+  const L resistance = vehicle_.friction.radius * abs(F_s) + vehicle_.friction.torque + vehicle_.motor.friction_torque;
+  L present = stall;
+  if constexpr (N == 2) present = vehicle_.motor.torque_constant * x[2];
+  const L drive = max(abs(L(stall - F_s * k.crank_lever)), abs(L(present - F_s * k.crank_lever)));
+  locked_ = stopped && !doubtful_ && resistance - drive > L(0.05) * stall;
+  doubtful_ = doubtful_ || slow || !done;
+}
+
+/// Derivatives of the rates by the state, to four digits.
+template <class L, int N>
+auto LaneOrbit<L, N>::jacobian_at(const System& system, const CrankKinematics<L>& k, const State& y, const State& rates,
+                                  const L& force) -> Matrix {
+  Matrix jacobian;
+  for (std::size_t n = 0; n < N; ++n) {
+    State moved = y;
+    const L by = n == 0 ? L(1e-4) * y[0] : L(1e-4) * current_scale_;
+    moved[n] = moved[n] + by;
+    const State at = system.template rates_of<false>(system.motion(k, moved, force), moved, force).dy;
+    const L per_move = inverse_of(by);
+    for (std::size_t row = 0; row < N; ++row) jacobian[row][n] = (at[row] - rates[row]) * per_move;
+  }
+  return jacobian;
+}
+
+/// monodromy := exp(h (a + b) / 2) monodromy, the exponential by its (1, 1) Pade approximation.
+template <class L, int N>
+void LaneOrbit<L, N>::append_to_monodromy(const Matrix& a, const Matrix& b, double h) {
+  const L quarter_h(0.25 * h);
+  if constexpr (N == 1) {
+    const L z = quarter_h * (a[0][0] + b[0][0]);
+    monodromy_[0][0] = monodromy_[0][0] * (L(1.0) + z) * inverse_of(L(L(1.0) - z));
+  } else {
+    Matrix z;
+    for (std::size_t row = 0; row < 2; ++row) {
+      for (std::size_t column = 0; column < 2; ++column) z[row][column] = quarter_h * (a[row][column] + b[row][column]);
+    }
+    // (1 - z)^-1 (1 + z) m = 2 (1 - z)^-1 m - m
+    const L p = L(1.0) - z[0][0], q = L(1.0) - z[1][1];
+    const L twice_per_det = L(2.0) * inverse_of(L(p * q - z[0][1] * z[1][0]));
+    for (std::size_t column = 0; column < 2; ++column) {
+      const L m0 = monodromy_[0][column], m1 = monodromy_[1][column];
+      monodromy_[0][column] = (q * m0 + z[0][1] * m1) * twice_per_det - m0;
+      monodromy_[1][column] = (z[1][0] * m0 + p * m1) * twice_per_det - m1;
+    }
+  }
+}
+
+/// Moves the end of a lap from `start` to where the linearised lap map would settle: y += (1 - M)^-1 M (y - start).
+template <class L, int N>
+void LaneOrbit<L, N>::accelerate(const State& start) {
+  const auto& M = monodromy_;
+  if constexpr (N == 1) {
+    y_[0] = y_[0] + M[0][0] * (y_[0] - start[0]) * inverse_of(L(L(1.0) - M[0][0]));
+  } else {
+    const L d0 = y_[0] - start[0], d1 = y_[1] - start[1];
+    const L e0 = M[0][0] * d0 + M[0][1] * d1, e1 = M[1][0] * d0 + M[1][1] * d1;
+    const L p = L(1.0) - M[0][0], q = L(1.0) - M[1][1];
+    const L per_det = inverse_of(L(p * q - M[0][1] * M[1][0]));
+    y_[0] = y_[0] + (q * e0 + M[0][1] * e1) * per_det;
+    y_[1] = y_[1] + (M[1][0] * e0 + p * e1) * per_det;
+  }
+}
+
+/// One lap by the classical fourth-order method, each stage on the branch that holds there.
+template <class L, int N>
+void LaneOrbit<L, N>::coarse_lap() {
+  constexpr double h = pi / coarse_half_steps;
+  const State start = y_;
+  Matrix jacobian_before, first_jacobian;
+  for (std::size_t row = 0; row < N; ++row) {
+    for (std::size_t column = 0; column < N; ++column) monodromy_[row][column] = L(row == column ? 1.0 : 0.0);
+  }
+  slowest_ = y_[0];
+  switch_offset_ = L(0.0);
+  std::array<L, coarse_samples> angles;
+  for (std::size_t k = 0; k < coarse_samples; ++k) angles[k] = L(quarter * (2.0 * double(k) / (coarse_samples - 1) - 1.0));
+  for (int half = 0; half < 2; ++half) {
+    const System system = half_lap(half);
+    const auto& table = table_[std::size_t(half)];
+    std::array<L, coarse_samples> force;
+    const auto advance = [&](const State& from, const State& slope, double by) {
+      State to;
+      for (std::size_t n = 0; n < N; ++n) to[n] = from[n] + L(by) * slope[n];
+      return to;
+    };
+    for (std::size_t k = 0; k + 2 < coarse_samples; k += 2) {
+      const auto at = [&](std::size_t sample, const State& y) {
+        const Motion<L> m = system.motion_on_its_branch(table[sample], y);
+        force[sample] = m.force_switch;
+        return system.template rates_of<false>(m, y, L(1.0)).dy;
+      };
+      const State k1 = at(k, y_);
+      const Matrix jacobian = jacobian_at(system, table[k], y_, k1, sign_of(force[k]));
+      if (half > 0 || k > 0) append_to_monodromy(jacobian_before, jacobian, h);
+      else first_jacobian = jacobian;
+      jacobian_before = jacobian;
+      const State k2 = at(k + 1, advance(y_, k1, 0.5 * h));
+      const State k3 = at(k + 1, advance(y_, k2, 0.5 * h));
+      const State k4 = at(k + 2, advance(y_, k3, h));
+      for (std::size_t n = 0; n < N; ++n) {
+        y_[n] = y_[n] + L(h / 6.0) * (k1[n] + L(2.0) * (k2[n] + k3[n]) + k4[n]);
+      }
+      slowest_ = min(slowest_, y_[0]);
+    }
+    find_switches(half, angles.data(), force.data(), coarse_samples - 1, switch_offset_);
+  }
+  append_to_monodromy(jacobian_before, first_jacobian, h);
+  accelerate(start);
+  doubtful_ = doubtful_ || !(slowest_ > floor_);
+}
+
+/// Sign changes of the rod force between the samples force[0..count] at u[0..count] of half a lap, by parabolas.
+/// `offset` is raised to the largest distance [rad] from the switches known before.
+template <class L, int N>
+void LaneOrbit<L, N>::find_switches(int half, const L* u, const L* force, int count, L& offset) {
+  ForceSwitches<L> found;
+  found.at.fill(L(quarter));
+  found.count = L(0.0);
+  found.first_sign = sign_of(force[0]);
+  for (int k = 0; k < count; ++k) {
+    const L f0 = force[k], f1 = force[k + 1];
+    const Mask changes = (f0 >= L(0.0) && f1 < L(0.0)) || (f0 < L(0.0) && f1 >= L(0.0));
+    if (!any<L>(changes)) continue;
+    // Of the two neighbours the nearer to the switch.
+    const L h = u[k + 1] - u[k];
+    const L rise = f1 - f0, per_rise = inverse_of(rise);
+    const L straight = -(f0 * per_rise);
+    L curve;
+    const auto left = [&] {
+      const L h0 = u[k] - u[k - 1];
+      return (rise - (f0 - force[k - 1]) * h * inverse_of(h0)) * h * inverse_of(L(h + h0));
+    };
+    const auto right = [&] {
+      const L h2 = u[k + 2] - u[k + 1];
+      return ((force[k + 2] - f1) * h * inverse_of(h2) - rise) * h * inverse_of(L(h + h2));
+    };
+    if (k == 0) {
+      curve = right();
+    } else if (k + 1 == count) {
+      curve = left();
+    } else {
+      curve = select<L>(straight < L(0.5), left(), right());
+    }
+    // f0 + rise t - curve t (1 - t) = 0, by two Newton steps.
+    L t = straight + straight * (L(1.0) - straight) * curve * per_rise;
+    for (int n = 0; n < 2; ++n) {
+      const L value = f0 + rise * t - curve * t * (L(1.0) - t);
+      const L slope = rise - curve * (L(1.0) - L(2.0) * t);
+      t = t - value * inverse_of(slope);
+    }
+    t = select<L>(t >= L(0.0) && t <= L(1.0), t, min(max(straight, L(0.0)), L(1.0)));
+    const L at = u[k] + h * t;
+    for (int n = 0; n < most_force_switches; ++n) {
+      found.at[std::size_t(n)] = select<L>(changes && found.count == L(double(n)), at, found.at[std::size_t(n)]);
+    }
+    found.count = select<L>(changes, found.count + L(1.0), found.count);
+  }
+  doubtful_ = doubtful_ || found.count > L(double(most_force_switches));
+  ForceSwitches<L>& known = switches_[std::size_t(half)];
+  for (std::size_t n = 0; n < most_force_switches; ++n) offset = max(offset, abs(found.at[n] - known.at[n]));
+  known = found;
+}
+
+/// Steps of equal length between the switches, their number in proportion to the distance.
+template <class L, int N>
+void LaneOrbit<L, N>::build_mesh(int half, int steps) {
+  const ForceSwitches<L>& s = switches_[std::size_t(half)];
+  HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+  const L all(steps);
+  std::array<L, most_force_switches + 2> node, at, per_step;
+  node[0] = L(0.0);
+  at[0] = L(-quarter);
+  for (std::size_t n = 0; n < most_force_switches; ++n) {
+    const Mask used = s.count > L(double(n));
+    const L wanted = nearest_whole(L((s.at[n] + L(quarter)) * L(steps / pi)));
+    const L within = min(max(wanted, node[n] + L(1.0)), all - (s.count - L(double(n))));
+    node[n + 1] = select<L>(used, within, all);
+    at[n + 1] = select<L>(used, s.at[n], L(quarter));
+    mesh.switch_node[n] = node[n + 1];
+  }
+  node[most_force_switches + 1] = all;
+  at[most_force_switches + 1] = L(quarter);
+  for (std::size_t n = 0; n <= most_force_switches; ++n) {
+    per_step[n] = (at[n + 1] - at[n]) * inverse_of(max(L(node[n + 1] - node[n]), L(0.5)));
+  }
+  for (int m = 0; m <= steps; ++m) {
+    const L here(m);
+    L u = at[0] + per_step[0] * here;
+    L force = s.first_sign;
+    for (std::size_t n = 1; n <= most_force_switches; ++n) {
+      const Mask beyond = here >= node[n] && node[n] < all;
+      u = select<L>(beyond, at[n] + per_step[n] * (here - node[n]), u);
+      force = select<L>(beyond, -force, force);
+    }
+    mesh.u[std::size_t(m)] = m == steps ? L(quarter) : u;
+    if (m < steps) mesh.force[std::size_t(m)] = force;
+  }
+}
+
+/// Where a node stands off the sign change it was meant for by d, the wrong branch has held, or will hold, over d. The
+/// difference of the branches grows linearly from zero there, so that half of d times the difference at the node is the
+/// error left behind, up to O(d^3).
+template <class L, int N>
+template <bool quadratures>
+void LaneOrbit<L, N>::correct_for_offset(const System& system, const HalfMesh<L>& mesh, std::size_t node,
+                                         const L& late_force_switch) {
+  const L before = mesh.force[node - 1], after = mesh.force[node];
+  const Mask switches = before * after < L(0.0);
+  if (!any<L>(switches)) return;
+  const CrankKinematics<L> k = system.kinematics(mesh.u[node]);
+  const Motion<L> motion_before = system.motion(k, y_, before), motion_after = system.motion(k, y_, -before);
+  const auto on_before = system.template rates_of<quadratures>(motion_before, y_, before);
+  const auto on_after = system.template rates_of<quadratures>(motion_after, y_, -before);
+  const L h = mesh.u[node] - mesh.u[node - 1];
+  const L rest = L(1.0 - solve::dop853::c[late_stage]) * h;
+  const L f = on_before.switches[0];
+  const L offset = min(max(f * rest * inverse_of(L(f - late_force_switch)), -h), h);
+  const L half_offset = select<L>(switches, L(0.5) * offset, L(0.0));
+  if constexpr (quadratures) {
+    for (std::size_t q = 0; q < integrals_.size(); ++q) {
+      integrals_[q] = integrals_[q] - half_offset * (on_before.dq[q] - on_after.dq[q]);
+    }
+    switch_offset_ = max(switch_offset_, L(2.0) * abs(half_offset));
+  }
+  y_[0] = y_[0] - half_offset * (on_before.dy[0] - on_after.dy[0]);
+}
+
+/// Half a lap on its mesh without integrals; force[0..steps] receives the switch values at the nodes.
+template <class L, int N>
+void LaneOrbit<L, N>::advance(int half, int steps, L* force) {
+  solve::Rates<System> first;
+  solve::StepResult<System> step;
+  StepSights<L> sights;
+  const System system = half_lap(half);
+  const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+  for (std::size_t m = 0; m < std::size_t(steps); ++m) {
+    evaluate<false>(system, mesh.u[m], y_, mesh.force[m], first);
+    force[m] = first.switches[0];
+    lane_step<false>(system, mesh.u[m], y_, L(mesh.u[m + 1] - mesh.u[m]), mesh.force[m], first, step, sights);
+    y_ = step.y;
+    if (m + 1 < std::size_t(steps)) correct_for_offset<false>(system, mesh, m + 1, sights.late_force_switch);
+    slowest_ = min(slowest_, y_[0]);
+  }
+  evaluate<false>(system, mesh.u[std::size_t(steps)], y_, mesh.force[std::size_t(steps - 1)], first);
+  force[std::size_t(steps)] = first.switches[0];
+}
+
+/// A lap without integrals, which corrects the switches and closes in on the orbit.
+template <class L, int N>
+void LaneOrbit<L, N>::medium_lap(int steps) {
+  const State start = y_;
+  for (int half = 0; half < 2; ++half) {
+    build_mesh(half, steps);
+    std::array<L, most_half_steps + 1> force;
+    advance(half, steps, force.data());
+    find_switches(half, mesh_[std::size_t(half)].u.data(), force.data(), steps, switch_offset_);
+  }
+  accelerate(start);
+}
+
+/// The readings wanted at a state, with the motion there.
+template <class L, int N>
+void LaneOrbit<L, N>::read(const System& system, const L& u, const State& y, const L& force, const Motion<L>& m,
+                           const State& dy, const std::array<bool, quantity_count>& wanted,
+                           std::array<Reading<L>, quantity_count>& out) const {
+  const auto is_wanted = [&](Quantity q) { return wanted[std::size_t(q)]; };
+  const auto at = [&](Quantity q) -> Reading<L>& { return out[std::size_t(q)]; };
+  at(Quantity::velocity) = {system.half * m.stroke_velocity, system.half * m.stroke_acceleration * inverse_of(y[0])};
+  at(Quantity::speed) = {y[0], dy[0]};
+  at(Quantity::slowness) = {-y[0], -dy[0]};
+  if constexpr (N == 2) {
+    at(Quantity::current) = {y[1], dy[1]};
+  } else {
+    const L per_resistance = inverse_of(vehicle_.motor.armature_resistance);
+    at(Quantity::current) = {m.current, -(vehicle_.motor.torque_constant * dy[0] * per_resistance)};
+  }
+  if (is_wanted(Quantity::energy)) {
+    L energy = L(0.5) * vehicle_.wing_count * vehicle_.wing_inertia * square(m.stroke_velocity);
+    if (any<L>(vehicle_.spring.stiffness > L(0.0))) {
+      energy = energy + vehicle_.wing_count * spring_loads(vehicle_.spring, stroke_angle(m.kinematics)).energy;
+    }
+    // At the dead centres the slope is zero but for rounding; its sign is that of the moment there.
+    const L rising = sign_of(L(system.half * m.stored_moment));
+    const L steepness = max(abs(L(m.stored_moment * m.kinematics.stroke_slope)), L(1e-30));
+    at(Quantity::energy) = {energy, rising * steepness};
+  }
+  if (is_wanted(Quantity::force)) {
+    // The slope along the solution by central differences.
+    constexpr double by = 1e-4;
+    L ahead[2];
+    for (int side = 0; side < 2; ++side) {
+      const L move(side == 0 ? -by : by);
+      State moved;
+      for (std::size_t n = 0; n < N; ++n) moved[n] = y[n] + move * dy[n];
+      ahead[side] = system.motion(system.kinematics(u + move), moved, force).rod_force;
+    }
+    at(Quantity::force) = {force * m.rod_force, force * (ahead[1] - ahead[0]) * L(0.5 / by)};
+  }
+}
+
+/// Rates and readings at a node of the fine lap.
+template <class L, int N>
+void LaneOrbit<L, N>::visit_node(const System& system, const L& u, const L& force, LaneNode<L, N>& node,
+                                 solve::Rates<System>& first) {
+  const Motion<L> motion = system.motion(system.kinematics(u), y_, force);
+  first = system.template rates_of<true>(motion, y_, force);
+  node.y = y_;
+  read(system, u, y_, force, motion, first.dy, wanted_, node.readings);
+}
+
+/// A quantity, with the motion, at distance x from the start of a step.
+template <class L, int N>
+Reading<L> LaneOrbit<L, N>::reading_inside(Quantity quantity, const PeakBracket<L, N>& b, const L& x) const {
+  std::array<bool, quantity_count> wanted{};
+  wanted[std::size_t(quantity)] = true;
+  const System system = {vehicle_, geometry_, per_inductance_, b.half};
+  solve::Rates<System> first;
+  solve::StepResult<System> step;
+  StepSights<L> sights;
+  evaluate<false>(system, b.u, b.y, b.force, first);
+  lane_step<false>(system, b.u, b.y, x, b.force, first, step, sights);
+  const L u = b.u + x;
+  const Motion<L> motion = system.motion(system.kinematics(u), step.y, b.force);
+  const State dy = system.template rates_of<false>(motion, step.y, b.force).dy;
+  std::array<Reading<L>, quantity_count> readings;
+  read(system, u, step.y, b.force, motion, dy, wanted, readings);
+  return readings[std::size_t(quantity)];
+}
+
+/// Calls visit(bracket, mask) for each stretch of half a lap, in order: the steps, and where the cubic through a step's
+/// ends turns twice inside, its two parts; the latter only where the step may rise above `floor`.
+template <class L, int N>
+template <class Visit>
+void LaneOrbit<L, N>::for_each_stretch(int half, Quantity quantity, const L& floor, const Visit& visit) const {
+  const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+  const auto& nodes = nodes_[std::size_t(half)];
+  for (std::size_t m = 0; m < std::size_t(settings_.fine_steps); ++m) {
+    const Reading<L>& from = nodes[m].readings[std::size_t(quantity)];
+    const Reading<L>& to = nodes[m + 1].readings[std::size_t(quantity)];
+    PeakBracket<L, N> b = {L(half == 0 ? 1.0 : -1.0), mesh.u[m], mesh.force[m], nodes[m].y, L(0.0), from.value,
+                           from.slope, mesh.u[m + 1] - mesh.u[m], to.value, to.slope, L(0.0), L(0.0)};
+    const L slope = (b.v1 - b.v0) * inverse_of(b.x1);
+    const L c2 = L(3.0) * slope - L(2.0) * b.d0 - b.d1, c3 = b.d0 + b.d1 - L(2.0) * slope;
+    const L discriminant = square(c2) - L(3.0) * c3 * b.d0;
+    const L per_3c3 = inverse_of(select<L>(c3 == L(0.0), L(1e-300), L(3.0) * c3));
+    const L middle = -(c2 * per_3c3), reach = sqrt(max(discriminant, L(0.0))) * abs(per_3c3);
+    Mask twice = b.d0 * b.d1 > L(0.0) && discriminant > L(0.0) && middle - reach > L(0.0) &&
+                       middle + reach < L(1.0) &&
+                       max(b.v0, b.v1) + abs(b.v1 - b.v0) + L(0.1) * b.x1 * (abs(b.d0) + abs(b.d1)) > floor;
+    L split = middle;
+    if (quantity == Quantity::energy) {
+      // The stages have seen what a cubic may miss.
+      const Mask dips = sign_of(b.d0) == sign_of(b.d1) && nodes[m].dip < L(0.0);
+      split = select<L>(dips, nodes[m].dip_at, split);
+      twice = twice || dips;
+    }
+    visit(b, !twice);
+    if (!any<L>(twice)) continue;
+    const L x = select<L>(twice, split, L(0.5)) * b.x1;
+    const Reading<L> at = reading_inside(quantity, b, x);
+    PeakBracket<L, N> first = b, second = b;
+    first.x1 = second.x0 = x;
+    first.v1 = second.v0 = at.value;
+    first.d1 = second.d0 = at.slope;
+    visit(first, twice);
+    visit(second, twice);
+  }
+}
+
+/// The highest stretch of half a lap, by the cubics through values and slopes.
+template <class L, int N>
+PeakBracket<L, N> LaneOrbit<L, N>::bracket(int half, Quantity quantity) const {
+  PeakBracket<L, N> best{};
+  best.estimate = L(-1e300);
+  L highest_node(-1e300);
+  for (int m = 0; m <= settings_.fine_steps; ++m) {
+    highest_node = max(highest_node, nodes_[std::size_t(half)][std::size_t(m)].readings[std::size_t(quantity)].value);
+  }
+  for_each_stretch(half, quantity, highest_node, [&](PeakBracket<L, N> b, const Mask& where) {
+    estimate_peak(b);
+    keep(b, where && b.estimate > best.estimate, best);
+  });
+  return best;
+}
+
+template <class L, int N>
+void LaneOrbit<L, N>::keep(const PeakBracket<L, N>& from, const Mask& where, PeakBracket<L, N>& to) {
+  const auto choose = [&](L PeakBracket<L, N>::*member) { to.*member = select<L>(where, from.*member, to.*member); };
+  using P = PeakBracket<L, N>;
+  for (L P::*member : {&P::half, &P::u, &P::force, &P::x0, &P::v0, &P::d0, &P::x1, &P::v1, &P::d1, &P::rises_and_falls,
+                       &P::estimate}) {
+    choose(member);
+  }
+  for (std::size_t n = 0; n < N; ++n) to.y[n] = select<L>(where, from.y[n], to.y[n]);
+}
+
+/// Distance from x0, as a fraction of the bracket, of the maximum of the cubic through its ends; sets the estimate.
+template <class L, int N>
+L LaneOrbit<L, N>::estimate_peak(PeakBracket<L, N>& b) {
+  const L h = b.x1 - b.x0;
+  const L slope = (b.v1 - b.v0) * inverse_of(max(h, L(1e-300)));
+  const L z = b.d0 + b.d1 - L(3.0) * slope;
+  const L root = sqrt(max(L(z * z - b.d0 * b.d1), L(0.0)));
+  const Mask turns = b.d0 > L(0.0) && b.d1 < L(0.0);
+  const L below = select<L>(turns, L(b.d0 - b.d1 + L(2.0) * root), L(1.0));
+  const L t = min(max(L((b.d0 + root - z) * inverse_of(below)), L(0.0)), L(1.0));
+  const L c2 = L(3.0) * slope - L(2.0) * b.d0 - b.d1, c3 = b.d0 + b.d1 - L(2.0) * slope;
+  b.rises_and_falls = select<L>(turns, L(1.0), L(0.0));
+  b.estimate = select<L>(turns, b.v0 + h * t * (b.d0 + t * (c2 + t * c3)), max(b.v0, b.v1));
+  return t;
+}
+
+/// The maximum within a bracket: a step of the integrator to the cubic's maximum, and again within the bracket that this leaves.
+template <class L, int N>
+L LaneOrbit<L, N>::refine(Quantity quantity, const L& sign, PeakBracket<L, N> b) const {
+  L highest = max(b.v0, b.v1);
+  const Mask inside = b.rises_and_falls > L(0.0);
+  Mask active = inside;
+  for (int n = 0; n < 8 && any<L>(active); ++n) {
+    const L t = estimate_peak(b);
+    const L x = b.x0 + t * (b.x1 - b.x0);
+    const Reading<L> at = reading_inside(quantity, b, x);
+    const L v = sign * at.value, d = sign * at.slope;
+    const Mask rising = active && d > L(0.0), falling = active && !rising;
+    b.x0 = select<L>(rising, x, b.x0);
+    b.v0 = select<L>(rising, v, b.v0);
+    b.d0 = select<L>(rising, d, b.d0);
+    b.x1 = select<L>(falling, x, b.x1);
+    b.v1 = select<L>(falling, v, b.v1);
+    b.d1 = select<L>(falling, d, b.d1);
+    highest = select<L>(active, max(highest, v), highest);
+    // What is left to gain, by the cubic through the shrunken bracket.
+    estimate_peak(b);
+    active = active && b.estimate - highest > L(settings_.peak_tolerance) * abs(highest);
+  }
+  return select<L>(inside, max(highest, b.estimate), highest);
+}
+
+/// The maximum of a quantity over the lap. Of two half laps with almost the same peak both are refined.
+template <class L, int N>
+L LaneOrbit<L, N>::peak(Quantity quantity) const {
+  PeakBracket<L, N> best = bracket(0, quantity), other = bracket(1, quantity);
+  const PeakBracket<L, N> first = best;
+  const Mask second_is_higher = other.estimate > best.estimate;
+  keep(other, second_is_higher, best);
+  keep(first, second_is_higher, other);
+  const L highest = refine(quantity, L(1.0), best);
+  // The cubics err by a small part of what they rise above their ends.
+  const L rise = other.estimate - min(other.v0, other.v1) + best.estimate - min(best.v0, best.v1);
+  const Mask close = other.estimate + L(0.2) * rise > best.estimate;
+  if (!any<L>(close)) return highest;
+  return select<L>(close, max(highest, refine(quantity, L(1.0), other)), highest);
+}
+
+/// The work that wings and springs exchange with the rest, |power| integrated over the lap [J]: the energy that they store
+/// rises and falls by it between its extremes.
+template <class L, int N>
+L LaneOrbit<L, N>::exchanged_energy() {
+  L total(0.0);
+  for (int half = 0; half < 2; ++half) {
+    const auto& nodes = nodes_[std::size_t(half)];
+    std::array<PeakBracket<L, N>, most_energy_extremes> extremes;
+    std::array<L, most_energy_extremes> signs;
+    L count(0.0);
+    for_each_stretch(half, Quantity::energy, L(-1e300), [&](PeakBracket<L, N> b, const Mask& where) {
+      const L sign = sign_of(b.d0);
+      const Mask turns = where && !(sign_of(b.d1) == sign);
+      if (!any<L>(turns)) return;
+      for (L* part : {&b.v0, &b.d0, &b.v1, &b.d1}) *part = sign * *part;
+      estimate_peak(b);
+      for (std::size_t n = 0; n < most_energy_extremes; ++n) {
+        const Mask here = turns && count == L(double(n));
+        keep(b, here, extremes[n]);
+        signs[n] = select<L>(here, sign, signs[n]);
+      }
+      count = select<L>(turns, count + L(1.0), count);
+    });
+    doubtful_ = doubtful_ || count > L(double(most_energy_extremes));
+    L before = nodes[0].readings[std::size_t(Quantity::energy)].value;
+    for (std::size_t n = 0; n < most_energy_extremes; ++n) {
+      const Mask exists = count > L(double(n));
+      if (!any<L>(exists)) break;
+      const L here = signs[n] * refine(Quantity::energy, signs[n], extremes[n]);
+      total = select<L>(exists, total + abs(here - before), total);
+      before = select<L>(exists, here, before);
+    }
+    const L end = nodes[std::size_t(settings_.fine_steps)].readings[std::size_t(Quantity::energy)].value;
+    total = total + abs(end - before);
+  }
+  return total;
+}
+
+/// The largest lift while |beta'| runs from zero to its peak: at the peak, or where lift falls with speed before it.
+template <class L, int N>
+L LaneOrbit<L, N>::lift_peak(const L& highest_velocity) const {
+  const BladeElement<L>& w = vehicle_.wings;
+  // Samples of lift over speed find the highest stretch; a parabola's vertex, twice, the maximum in it.
+  constexpr int samples = 12;
+  L at = highest_velocity, best = lift_force(w, highest_velocity);
+  for (int n = 1; n < samples; ++n) {
+    const L u = L(double(n) / samples) * highest_velocity;
+    const L lift = lift_force(w, u);
+    const Mask higher = lift > best;
+    best = select<L>(higher, lift, best);
+    at = select<L>(higher, u, at);
+  }
+  const Mask within = at < highest_velocity || lift_force(w, L(L(0.999) * highest_velocity)) > best;
+  if (!any<L>(within)) return best;
+  L width = L(1.0 / samples) * highest_velocity;
+  for (int n = 0; n < 6; ++n) {
+    const L below = lift_force(w, L(at - width)), here = lift_force(w, at), above = lift_force(w, L(at + width));
+    const L curve = below - L(2.0) * here + above;
+    const L move = L(0.5) * width * (below - above) * inverse_of(select<L>(curve < L(0.0), curve, L(-1e300)));
+    at = min(max(at + min(max(move, -width), width), L(0.0)), highest_velocity);
+    best = select<L>(within, max(best, lift_force(w, at)), best);
+    width = L(0.25) * width;
+  }
+  return best;
+}
+
+/// The largest modulus of the eigenvalues of the lap map's derivative, by central differences on the fine lap's mesh.
+template <class L, int N>
+L LaneOrbit<L, N>::floquet_multiplier(const State& start) {
+  const State kept = y_;
+  const L kept_slowest = slowest_;
+  Matrix M;
+  std::array<L, most_half_steps + 1> ignored;
+  for (std::size_t column = 0; column < N; ++column) {
+    const L by = column == 0 ? L(2e-4) * start[0] : L(2e-4) * current_scale_;
+    std::array<State, 2> ends;
+    for (std::size_t side = 0; side < 2; ++side) {
+      y_ = start;
+      y_[column] = y_[column] + (side == 0 ? -by : by);
+      for (int half = 0; half < 2; ++half) advance(half, settings_.fine_steps, ignored.data());
+      ends[side] = y_;
+    }
+    const L per_both = L(0.5) * inverse_of(by);
+    for (std::size_t row = 0; row < N; ++row) M[row][column] = (ends[1][row] - ends[0][row]) * per_both;
+  }
+  y_ = kept;
+  slowest_ = kept_slowest;
+  if constexpr (N == 1) {
+    return abs(M[0][0]);
+  } else {
+    const L mean = L(0.5) * (M[0][0] + M[1][1]), half_difference = L(0.5) * (M[0][0] - M[1][1]);
+    const L determinant = M[0][0] * M[1][1] - M[0][1] * M[1][0];
+    const L discriminant = square(half_difference) + M[0][1] * M[1][0];
+    const L real = abs(mean) + sqrt(max(discriminant, L(0.0)));
+    return select<L>(discriminant >= L(0.0), real, sqrt(max(determinant, L(0.0))));
+  }
+}
+
+template <class L, int N>
+void LaneOrbit<L, N>::fine_lap() {
+  const int steps = settings_.fine_steps;
+  const State start = y_;
+  integrals_.fill(L(0.0));
+  std::array<L, 5> error3, error5;
+  error3.fill(L(0.0));
+  error5.fill(L(0.0));
+  switch_offset_ = L(0.0);
+  solve::Rates<System> first;
+  solve::StepResult<System> step;
+  StepSights<L> sights;
+  for (int half = 0; half < 2; ++half) {
+    const System system = half_lap(half);
+    build_mesh(half, steps);
+    const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+    auto& nodes = nodes_[std::size_t(half)];
+    std::array<L, most_half_steps + 1> force;
+    const auto visit = [&](std::size_t m, const L& sign) {
+      visit_node(system, mesh.u[m], sign, nodes[m], first);
+      force[m] = first.switches[0];
+    };
+    for (std::size_t m = 0; m < std::size_t(steps); ++m) {
+      visit(m, mesh.force[m]);
+      const L h = mesh.u[m + 1] - mesh.u[m];
+      lane_step<true>(system, mesh.u[m], y_, h, mesh.force[m], first, step, sights);
+      for (std::size_t q = 0; q < integrals_.size(); ++q) integrals_[q] = integrals_[q] + step.dq[q];
+      const L per_omega = inverse_of(y_[0]);
+      error3[0] = error3[0] + abs(step.error3[0]) * per_omega;
+      error5[0] = error5[0] + abs(step.error5[0]) * per_omega;
+      for (std::size_t c = 0; c < System::controlled_integrals.size(); ++c) {
+        const std::size_t q = System::controlled_integrals[c];
+        error3[c + 1] = error3[c + 1] + abs(step.integral_error3[q]);
+        error5[c + 1] = error5[c + 1] + abs(step.integral_error5[q]);
+      }
+      nodes[m].dip = step.lowest[1];
+      nodes[m].dip_at = sights.dip_at;
+      y_ = step.y;
+      if (m + 1 < std::size_t(steps)) correct_for_offset<true>(system, mesh, m + 1, sights.late_force_switch);
+      slowest_ = min(slowest_, y_[0]);
+    }
+    visit(std::size_t(steps), mesh.force[std::size_t(steps - 1)]);
+    find_switches(half, mesh.u.data(), force.data(), steps, switch_offset_);
+  }
+  residual_ = abs(y_[0] - start[0]) * inverse_of(start[0]);
+  if constexpr (N == 2) {
+    residual_ = max(residual_, abs(y_[1] - start[1]) * inverse_of(L(abs(start[1]) + L(0.1) * current_scale_)));
+  }
+  // The embedded errors combined as DOP853 does, over the lap as a whole.
+  step_error_ = L(0.0);
+  for (std::size_t c = 0; c < error3.size(); ++c) {
+    L scale(1.0);
+    if (c > 0) scale = inverse_of(max(abs(integrals_[System::controlled_integrals[c - 1]]), L(1e-300)));
+    const L e3 = error3[c] * scale, e5 = error5[c] * scale;
+    const L combined = square(e5) * root_of(L(square(e5) + L(0.01) * square(e3) + L(1e-60))).inverse;
+    step_error_ = max(step_error_, combined);
+  }
+}
+
+template <class L, int N>
+Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant) {
+  if (settings_.approach == LaneApproach::resume) {
+    doubtful_ = locked_ = L(1.0) < L(0.0);
+    slowest_ = y_[0];
+  } else {
+    tabulate();
+    judge_statics();
+    if (settings_.approach == LaneApproach::guess) {
+      guess_speed();
+    } else {
+      start_from_rest();
+    }
+    for (int n = 0; n < settings_.coarse_laps; ++n) coarse_lap();
+  }
+  for (int n = 0; n < settings_.medium_laps; ++n) {
+    const bool last = n + 1 == settings_.medium_laps;
+    medium_lap(last || settings_.medium_steps < 6 ? settings_.medium_steps : 6);
+  }
+  const State start = y_;
+  fine_lap();
+
+  CycleIntegrals<L> integrals;
+  integrals.fill(L(0.0));
+  const auto total = [&](Integral which) -> L& { return integrals[std::size_t(which)]; };
+  for (std::size_t q = 0; q < lane_integrals.size(); ++q) total(lane_integrals[q]) = integrals_[q];
+  total(Integral::electrical_work) = vehicle_.voltage * total(Integral::current);
+  total(Integral::motor_work) =
+      total(Integral::friction_work) + total(Integral::aero_work) + total(Integral::residual_work);
+  const auto is_wanted = [&](Quantity q) { return wanted_[std::size_t(q)]; };
+  if (is_wanted(Quantity::energy)) total(Integral::reactive_work) = exchanged_energy();
+
+  CycleExtremes<L> extremes;
+  extremes.fill(L(0.0));
+  const auto seek = [&](Quantity quantity, Extreme extreme) {
+    if (is_wanted(quantity)) extremes[std::size_t(extreme)] = peak(quantity);
+  };
+  seek(Quantity::velocity, Extreme::flapping_velocity);
+  if (is_wanted(Quantity::velocity)) {
+    extremes[std::size_t(Extreme::lift)] = lift_peak(extremes[std::size_t(Extreme::flapping_velocity)]);
+  }
+  seek(Quantity::current, Extreme::current);
+  seek(Quantity::force, Extreme::rod_force);
+  seek(Quantity::slowness, Extreme::crank_speed_min);
+  seek(Quantity::speed, Extreme::crank_speed_max);
+  const L multiplier = settings_.multipliers ? floquet_multiplier(start) : L(0.0);
+
+  error_estimate_ = L(2.0) * step_error_ + residual_ + L(0.03) * square(switch_offset_);
+  doubtful_ = doubtful_ || !(slowest_ > floor_);
+  accelerate(start);
+  return cycle_metrics(vehicle_, integrals, extremes, multiplier, ReportingOf<L>{mass, bench_torque_constant});
+}
+
+/// The body of solve_block_*() for one instruction set. No containers: what this leaves behind must belong to the
+/// instruction set alone.
+template <class L>
+void solve_block(const EnsembleMember* const* members, int count, const LaneSettings& settings,
+                 LaneResult* const* results) {
+  alignas(64) double numbers[std::size_t(L::lanes)];
+  // The block is filled up with its last member.
+  const auto member = [&](int lane) -> const EnsembleMember& { return *members[lane < count ? lane : count - 1]; };
+  const auto gather = [&](const auto& number_of) {
+    for (int lane = 0; lane < L::lanes; ++lane) numbers[lane] = number_of(member(lane));
+    return L::load(numbers);
+  };
+  const auto with_states = [&](auto states) {
+    constexpr int N = decltype(states)::value;
+    Vehicle<L> vehicle;
+    vehicle.crank.formulation = members[0]->vehicle.crank.formulation;
+    for_each_number(vehicle, [&](L& to, const auto& of) {
+      to = gather([&](const EnsembleMember& m) { return of(m.vehicle); });
+    });
+    LaneOrbit<L, N> orbit(vehicle, settings);
+    if (settings.approach == LaneApproach::resume) {
+      orbit.visit_start([&](L& to, const auto& of) {
+        for (int lane = 0; lane < L::lanes; ++lane) numbers[lane] = of(results[lane < count ? lane : count - 1]->start);
+        to = L::load(numbers);
+      });
+    }
+    const Metrics<L> found = orbit.solve(gather([](const EnsembleMember& m) { return m.reporting.mass; }),
+                                         gather([](const EnsembleMember& m) {
+                                           return m.reporting.bench_torque_constant;
+                                         }));
+    const auto scatter = [&](const L& from, const auto& to) {
+      from.store(numbers);
+      for (int lane = 0; lane < count; ++lane) to(*results[lane]) = numbers[lane];
+    };
+    for (std::size_t m = 0; m < std::size_t(metric_count); ++m) {
+      scatter(found.values[m], [m](LaneResult& r) -> double& { return r.metrics.values[m]; });
+    }
+    scatter(orbit.error_estimate(), [](LaneResult& r) -> double& { return r.error_estimate; });
+    select<L>(orbit.locked(), L(2.0), select<L>(orbit.doubtful(), L(1.0), L(0.0))).store(numbers);
+    for (int lane = 0; lane < count; ++lane) {
+      results[lane]->verdict = numbers[lane] == 0.0   ? LaneVerdict::rotates
+                               : numbers[lane] == 1.0 ? LaneVerdict::doubtful
+                                                      : LaneVerdict::locked;
+    }
+    orbit.visit_start([&](L& from, const auto& to) {
+      scatter(from, [&](LaneResult& r) -> double& { return to(r.start); });
+    });
+  };
+  if (settings.inductance) {
+    with_states(std::integral_constant<int, 2>{});
+  } else {
+    with_states(std::integral_constant<int, 1>{});
+  }
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,292 @@
+#include "wingbeat/study/ensemble.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <random>
+
+#include "vehicle/random_vehicle.hpp"
+#include "wingbeat/study/run.hpp"
+
+namespace wingbeat {
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr int many = 1000;
+#else
+constexpr int many = 20000;
+#endif
+
+EnsembleMember member_of(const Design<double>& design, Condition condition = Condition::air) {
+  return {resolve(design, condition), reporting_of(design)};
+}
+
+/// Start-up in time, asked once per vehicle: both solvers of a comparison share its answers.
+StartUp remembered_start_up() {
+  auto known = std::make_shared<std::map<std::array<double, 6>, StartUpOutcome>>();
+  return [known, judge = start_up_in_time()](const Vehicle<double>& v) {
+    const std::array<double, 6> key = {v.voltage,       v.motor.inertia,  v.motor.torque_constant,
+                                       v.crank.crank_radius, v.wing_inertia, v.spring.stiffness};
+    const auto [at, is_new] = known->try_emplace(key);
+    if (is_new) at->second = judge(v);
+    return at->second;
+  };
+}
+
+std::vector<EnsembleOutcome> solve(const std::vector<EnsembleMember>& members, const EnsembleOptions& options,
+                                   const StartUp& start_up = start_up_in_time()) {
+  std::vector<EnsembleOutcome> outcomes(members.size());
+  solve_ensemble(members, options, start_up, outcomes);
+  return outcomes;
+}
+
+std::vector<InstructionSet> available() {
+  std::vector<InstructionSet> sets;
+  for (const auto& [name, isa] : instruction_sets) {
+    if (is_available(isa)) sets.push_back(isa);
+  }
+  return sets;
+}
+
+/// What an error of a metric is measured by: the metric, but for those that may vanish.
+double scale_of(Metric metric, const Metrics<double>& m) {
+  if (metric == Metric::power_residual) return std::abs(m[Metric::power_motor]);
+  if (metric == Metric::angle_of_attack_min) return 90.0;
+  return std::abs(m[metric]);
+}
+
+/// Largest relative error of the metrics, the Floquet multiplier aside; infinite where only one of two is absent.
+double largest_error(const Metrics<double>& got, const Metrics<double>& expected, std::string* where = nullptr) {
+  double largest = 0.0;
+  for (int k = 0; k < metric_count; ++k) {
+    const Metric metric = Metric(k);
+    if (metric == Metric::floquet_multiplier_max) continue;
+    if (std::isnan(got[metric]) != std::isnan(expected[metric])) return INFINITY;
+    const double difference = std::abs(got[metric] - expected[metric]);
+    if (!(difference > largest * scale_of(metric, expected))) continue;
+    largest = difference / scale_of(metric, expected);
+    if (where) *where = metric_table()[std::size_t(k)].key;
+  }
+  return largest;
+}
+
+bool same_bits(const EnsembleOutcome& a, const EnsembleOutcome& b) {
+  return a.status == b.status && a.scalar == b.scalar &&
+         std::memcmp(&a.error_estimate, &b.error_estimate, sizeof(double)) == 0 &&
+         std::memcmp(&a.metrics, &b.metrics, sizeof a.metrics) == 0;
+}
+
+/// Members of every kind: conditions, springs, formulations, friction laws, no inductance, and some that do not flap.
+std::vector<EnsembleMember> mixed_members(int count, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::vector<EnsembleMember> members;
+  for (int n = 0; n < count; ++n) {
+    const Condition condition = n % 11 == 0 ? Condition::wingless : n % 7 == 0 ? Condition::vacuum : Condition::air;
+    members.push_back(member_of(n % 3 == 0 ? random_design(random, 1.6) : box_design(random), condition));
+  }
+  return members;
+}
+
+TEST(Ensemble, AgreesWithTheScalarSolver) {
+  std::mt19937_64 random(3);
+  std::vector<EnsembleMember> members;
+  for (int n = 0; n < many; ++n) {
+    members.push_back(member_of(n % 20 == 0 ? random_design(random, 1.5) : box_design(random)));
+  }
+  EnsembleOptions options;
+  options.metrics.reset(std::size_t(Metric::floquet_multiplier_max));
+  const StartUp start_up = remembered_start_up();
+  const auto got = solve(members, options, start_up);
+  EnsembleOptions exact = options;
+  exact.scalar_only = true;
+  exact.tolerance = 1e-8;
+  const auto expected = solve(members, exact, start_up);
+  std::map<std::string, int> by_metric;
+  int flapping = 0, outside = 0, far_outside = 0, scalar = 0;
+  for (std::size_t n = 0; n < members.size(); ++n) {
+    EXPECT_EQ(got[n].status, expected[n].status) << n;
+    scalar += got[n].scalar;
+    if (got[n].status != FlappingStatus::flapping || got[n].scalar) continue;
+    ++flapping;
+    EXPECT_LE(got[n].error_estimate, options.tolerance);
+    std::string where;
+    const double error = largest_error(got[n].metrics, expected[n].metrics, &where);
+    if (error > options.tolerance) {
+      ++outside;
+      ++by_metric[where];
+    }
+    far_outside += error > 100.0 * options.tolerance;
+  }
+  EXPECT_GT(flapping, 9 * many / 10);
+  EXPECT_LE(outside, flapping / 1000) << testing::PrintToString(by_metric);
+  EXPECT_EQ(far_outside, 0);
+  EXPECT_LT(scalar, many / 20);
+  RecordProperty("outside", outside);
+  RecordProperty("scalar", scalar);
+}
+
+TEST(Ensemble, FindsWhatDoesNotFlapAsTheScalarSolverDoes) {
+  std::mt19937_64 random(17);
+  std::vector<EnsembleMember> members;
+  while (members.size() < std::size_t(many / 40)) {
+    Design<double> d = random_design(random, 1.8);
+    d.supply.voltage *= 0.4;
+    members.push_back(member_of(d));
+  }
+  const StartUp start_up = remembered_start_up();
+  const auto got = solve(members, {}, start_up);
+  EnsembleOptions scalar;
+  scalar.scalar_only = true;
+  const auto expected = solve(members, scalar, start_up);
+  std::map<FlappingStatus, int> found;
+  for (std::size_t n = 0; n < members.size(); ++n) {
+    EXPECT_EQ(got[n].status, expected[n].status) << n << (got[n].scalar ? " scalar" : " batched");
+    ++found[got[n].status];
+    if (got[n].status == FlappingStatus::flapping) continue;
+    EXPECT_TRUE(std::isnan(got[n].error_estimate));
+    for (const double value : got[n].metrics.values) EXPECT_TRUE(std::isnan(value));
+  }
+  for (const FlappingStatus status : {FlappingStatus::flapping, FlappingStatus::stalled, FlappingStatus::locked}) {
+    EXPECT_GT(found[status], 5) << name_of(status);
+  }
+}
+
+TEST(Ensemble, OutcomeDependsNeitherOnPlaceNorOnCompany) {
+  const std::vector<EnsembleMember> members = mixed_members(700, 11);
+  for (const InstructionSet isa : available()) {
+    EnsembleOptions options;
+    options.isa = isa;
+    const auto together = solve(members, options);
+    std::vector<std::size_t> order(members.size());
+    for (std::size_t n = 0; n < order.size(); ++n) order[n] = n;
+    std::mt19937_64 random(5);
+    std::shuffle(order.begin(), order.end(), random);
+    // Shuffled, in runs of odd lengths.
+    for (std::size_t start = 0, length = 1; start < order.size(); start += length, length = (3 * length + 2) % 61 + 1) {
+      std::vector<EnsembleMember> some;
+      for (std::size_t n = start; n < std::min(start + length, order.size()); ++n) some.push_back(members[order[n]]);
+      const auto alone = solve(some, options);
+      for (std::size_t n = 0; n < some.size(); ++n) {
+        EXPECT_TRUE(same_bits(alone[n], together[order[start + n]])) << "member " << order[start + n];
+      }
+    }
+  }
+}
+
+TEST(Ensemble, InstructionSetsAgree) {
+  std::mt19937_64 random(23);
+  std::vector<EnsembleMember> members;
+  for (int n = 0; n < 400; ++n) members.push_back(member_of(box_design(random)));
+  for (const double tolerance : {1e-6, 1e-10}) {
+    EnsembleOptions options;
+    options.tolerance = tolerance;
+    options.metrics.reset(std::size_t(Metric::floquet_multiplier_max));
+    options.isa = InstructionSet::sse2;
+    const auto sse2 = solve(members, options);
+    for (const InstructionSet isa : available()) {
+      options.isa = isa;
+      const auto other = solve(members, options);
+      for (std::size_t n = 0; n < members.size(); ++n) {
+        ASSERT_EQ(sse2[n].status, other[n].status);
+        EXPECT_LE(largest_error(other[n].metrics, sse2[n].metrics), tolerance) << n;
+      }
+    }
+  }
+}
+
+TEST(Ensemble, ReproducesKnownOrbits) {
+  // data/published/orbits2022.json
+  struct Known {
+    bool springs;
+    double frequency, power_electrical, lift_mean, rod_force_mean, rod_force_peak;
+  };
+  const Known orbits[] = {{false, 21.952226143327449, 0.54023365078787118, 0.0087391846723811966, 0.26513989876954032,
+                           0.45536141663819993},
+                          {true, 23.430706596318597, 0.50926842859058386, 0.011644327876553516, 0.1851194883045969,
+                           0.38663637234591627}};
+  for (const Known& known : orbits) {
+    for (const InstructionSet isa : available()) {
+      for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
+        EnsembleOptions options;
+        options.isa = isa;
+        options.tolerance = tolerance;
+        const EnsembleOutcome found = solve({{reference_vehicle(known.springs), {}}}, options).front();
+        ASSERT_EQ(found.status, FlappingStatus::flapping);
+        EXPECT_FALSE(found.scalar) << "tolerance " << tolerance << " springs " << known.springs;
+        EXPECT_LE(found.error_estimate, tolerance);
+        EXPECT_NEAR(found.metrics[Metric::frequency] / known.frequency, 1.0, tolerance);
+        EXPECT_NEAR(found.metrics[Metric::power_electrical] / known.power_electrical, 1.0, tolerance);
+        EXPECT_NEAR(found.metrics[Metric::lift_mean] / known.lift_mean, 1.0, tolerance);
+        EXPECT_NEAR(found.metrics[Metric::rod_force_mean] / known.rod_force_mean, 1.0, tolerance);
+        EXPECT_NEAR(found.metrics[Metric::rod_force_peak] / known.rod_force_peak, 1.0, tolerance);
+      }
+    }
+  }
+}
+
+TEST(Ensemble, FloquetMultipliersAreGoodToThreeDigits) {
+  std::mt19937_64 random(29);
+  std::vector<EnsembleMember> members;
+  for (int n = 0; n < 400; ++n) members.push_back(member_of(box_design(random)));
+  const auto got = solve(members, {});
+  EnsembleOptions exact;
+  exact.scalar_only = true;
+  exact.tolerance = 1e-11;
+  const auto expected = solve(members, exact);
+  for (std::size_t n = 0; n < members.size(); ++n) {
+    if (expected[n].status != FlappingStatus::flapping) continue;
+    const double multiplier = expected[n].metrics[Metric::floquet_multiplier_max];
+    EXPECT_NEAR(got[n].metrics[Metric::floquet_multiplier_max], multiplier, 1e-3 * multiplier + 1e-6) << n;
+  }
+}
+
+TEST(Ensemble, WinglessHasItsClosedForm) {
+  std::mt19937_64 random(31);
+  std::vector<EnsembleMember> members;
+  for (int n = 0; n < 40; ++n) members.push_back(member_of(box_design(random), Condition::wingless));
+  const auto outcomes = solve(members, {});
+  for (std::size_t n = 0; n < members.size(); ++n) {
+    const Vehicle<double>& v = members[n].vehicle;
+    ASSERT_EQ(outcomes[n].status, FlappingStatus::flapping);
+    EXPECT_NEAR(outcomes[n].metrics[Metric::frequency] * two_pi / no_load_speed(v.motor, v.voltage), 1.0, 1e-9);
+    EXPECT_EQ(outcomes[n].metrics[Metric::lift_mean], 0.0);
+  }
+}
+
+TEST(Ensemble, ReportsTheMetricsAskedForAlone) {
+  EnsembleOptions options;
+  options.metrics.reset();
+  for (const Metric m : {Metric::lift_mean, Metric::rod_force_peak}) options.metrics.set(std::size_t(m));
+  Design<double> with_table = reference_design();
+  with_table.aerodynamics.coefficients.table =
+      std::make_shared<CoefficientTable>(std::vector{0.0, 0.8, 1.6}, std::vector{0.2, 1.8, 0.1}, std::vector{0.4, 1.5, 3.4});
+  const auto outcomes = solve({member_of(reference_design()), member_of(with_table)}, options);
+  EXPECT_FALSE(outcomes[0].scalar);
+  EXPECT_TRUE(outcomes[1].scalar) << "tables are read by the scalar solver";
+  for (const EnsembleOutcome& out : outcomes) {
+    for (int k = 0; k < metric_count; ++k) {
+      EXPECT_EQ(std::isnan(out.metrics.values[std::size_t(k)]), !options.metrics[std::size_t(k)]) << k;
+    }
+  }
+}
+
+TEST(Ensemble, RefusesOptionsOutOfRange) {
+  const auto message = [](const EnsembleOptions& options) -> std::string {
+    try {
+      solve({}, options);
+    } catch (const ParameterError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EnsembleOptions options;
+  options.tolerance = 0.5;
+  EXPECT_THAT(message(options), testing::HasSubstr("tolerance"));
+  EXPECT_EQ(message({}), "");
+}
+
+}  // namespace
+}  // namespace wingbeat
