@@ -18,6 +18,13 @@ const std::vector<Metric> in_air = {Metric::frequency, Metric::current_mean, Met
 const std::vector<Metric> in_vacuum = {Metric::frequency, Metric::current_mean, Metric::current_peak};
 const std::vector<Metric> without_wings = {Metric::frequency, Metric::current_mean};
 
+/// Every second row, where a test needs no more.
+void thin(BenchFit& fit) {
+  for (BenchLog& log : fit.logs) {
+    for (std::ptrdiff_t n = 4; n >= 0; n -= 2) log.rows.erase(log.rows.begin() + n);
+  }
+}
+
 /// Exact logs of the reference vehicle, computed once.
 const std::vector<BenchLog>& exact_logs() {
   static const std::vector<BenchLog> logs = [] {
@@ -99,7 +106,7 @@ TEST(BenchFit, WaveformOfTheCurrentDeterminesTheInertia) {
 TEST(BenchFit, TruthLiesInsideTheIntervals) {
   // The study of 200 experiments is benchmarks/coverage; here enough to notice wrong intervals.
   int inside = 0, all = 0;
-  for (std::uint64_t seed = 100; seed < 105; ++seed) {
+  for (std::uint64_t seed = 100; seed < 103; ++seed) {
     const FitResult r = fit_bench(bench(0.015, seed, true));
     for (const FittedParameter& p : r.parameters) {
       ASSERT_TRUE(p.value) << p.key;
@@ -107,9 +114,9 @@ TEST(BenchFit, TruthLiesInsideTheIntervals) {
       inside += truth(p.key) >= p.lower_95 && truth(p.key) <= p.upper_95;
     }
   }
-  EXPECT_EQ(all, 30);
-  // 28.5 of 30 expected; intervals too narrow by a half would hold 20.
-  EXPECT_GE(inside, 26);
+  EXPECT_EQ(all, 18);
+  // 17 of 18 expected; intervals too narrow by a half would hold 12.
+  EXPECT_GE(inside, 15);
 }
 
 TEST(BenchFit, EstimatedDeviationsFindTheNoise) {
@@ -210,6 +217,7 @@ TEST(BenchFit, RowsThatTheModelCannotReachAreNamed) {
   // A reading of a frequency at a voltage at which this motor cannot overcome its own friction.
   fit.design.motor.constants.friction_torque = 4e-4;
   fit.logs.resize(1);
+  thin(fit);
   fit.logs[0].rows.insert(fit.logs[0].rows.begin(), BenchRow{2, 0.3, 0.0, {2.0, 0.03, 1e-4, 0.03}});
   const FitResult r = fit_bench(fit);
   ASSERT_EQ(r.unreached.size(), 1U);
@@ -217,7 +225,7 @@ TEST(BenchFit, RowsThatTheModelCannotReachAreNamed) {
   EXPECT_EQ(r.unreached[0].status, FlappingStatus::stalled);
   EXPECT_THAT(r.unreached[0].detail, HasSubstr("stall torque"));
   EXPECT_TRUE(std::isnan(r.points[0].fitted));
-  EXPECT_EQ(r.degrees_of_freedom, 6 * 4 - 3);
+  EXPECT_EQ(r.degrees_of_freedom, 3 * 4 - 3);
 }
 
 TEST(BenchFit, StartsOfAHypercubeFindTheSameLeast) {
@@ -273,6 +281,7 @@ TEST(BenchFit, ThePapersOwnPathArrivesAtItsTable) {
 
 TEST(CompareFriction, DataOfALoadProportionalVehicleRankItFirst) {
   BenchFit fit = bench(0.01, 17);
+  thin(fit);
   fit.design.spring.stiffness = 1.377e-3;
   const auto ranked = compare_friction(fit, [](const std::string& key) { return design_parameter(key); });
   ASSERT_EQ(ranked.size(), 5U);
