@@ -1,4 +1,4 @@
-#include "wingbeat/cycle/lane_orbit.hpp"
+#include "wingbeat/cycle/lane_block_body.hpp"
 
 namespace wingbeat {
 

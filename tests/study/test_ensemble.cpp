@@ -247,7 +247,9 @@ TEST(Ensemble, WinglessHasItsClosedForm) {
   std::mt19937_64 random(31);
   std::vector<EnsembleMember> members;
   for (int n = 0; n < 40; ++n) members.push_back(member_of(box_design(random), Condition::wingless));
-  const auto outcomes = solve(members, {});
+  EnsembleOptions options;
+  options.tolerance = 1e-9;
+  const auto outcomes = solve(members, options);
   for (std::size_t n = 0; n < members.size(); ++n) {
     const Vehicle<double>& v = members[n].vehicle;
     ASSERT_EQ(outcomes[n].status, FlappingStatus::flapping);

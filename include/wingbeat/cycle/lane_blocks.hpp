@@ -42,7 +42,7 @@ struct LaneSettings {
   int medium_laps = 1;
   int medium_steps = 6;    ///< of half a lap
   int fine_steps = 9;      ///< of half a lap
-  double peak_tolerance = 3e-8;  ///< relative, of the peaks on the solution found
+  double peak_tolerance = 5e-7;  ///< a peak is settled when the cubic at its top promises less, relative
   std::array<bool, quantity_count> wanted{};
   bool multipliers = false;
 };

@@ -2,7 +2,8 @@
 //
 // A lap runs from the lower dead centre through two half laps, on each of which the stroke velocity keeps its sign. The
 // half laps' steps end where the rod force changes sign, which differs from lane to lane while the number of steps does
-// not. A coarse lap finds where, a medium lap corrects it, the fine lap integrates the metrics. Everything is computed
+// not. Coarse laps find where, a medium lap corrects it, the fine lap integrates the metrics; lane_peaks.hpp holds the
+// search for extremes. Everything is computed
 // lane by lane without looking at the neighbours, so that a vehicle gets the same bits in any company.
 #pragma once
 
@@ -11,6 +12,7 @@
 
 #include "wingbeat/core/lanes.hpp"
 #include "wingbeat/core/math.hpp"
+#include "wingbeat/cycle/half_lap.hpp"
 #include "wingbeat/cycle/lane_blocks.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/solve/explicit_step.hpp"
@@ -20,179 +22,6 @@ namespace wingbeat {
 
 inline constexpr int coarse_half_steps = 8;
 inline constexpr int most_energy_extremes = 5;  ///< of the energy stored in wings and springs, within half a lap
-
-/// Integrals of the fine lap. The others follow: the supply's work from the current, the motor's from what it drives,
-/// the reactive work from the extremes of the stored energy.
-inline constexpr std::array lane_integrals = {Integral::time,          Integral::current,   Integral::current_square,
-                                              Integral::speed_square,  Integral::friction_work, Integral::aero_work,
-                                              Integral::residual_work, Integral::lift,      Integral::rod_force};
-
-/// The crank over half a lap as a system for solve/: the independent variable u runs from -pi/2 to pi/2.
-template <Scalar S, int N>
-struct HalfLap {
-  using Real = S;
-  using State = std::array<S, N>;
-  using Quadrature = std::array<S, lane_integrals.size()>;
-  using Switches = std::array<S, 2>;  ///< force_switch, stored moment along the stroke
-  using Signs = std::array<S, 2>;     ///< of the rod force; of the stored moment where the step begins
-  static constexpr std::array<std::size_t, 4> controlled_integrals = {0, 4, 5, 7};
-
-  const Vehicle<S>& vehicle;
-  CrankGeometry<S> geometry;
-  S per_inductance;  ///< 1 / L_a [1/H]
-  S half;            ///< +1: crank angle u, stroke upward; -1: crank angle pi + u, stroke downward
-
-  static bool admissible(const State&) { return true; }
-
-  S current(const State& y) const {
-    if constexpr (N == 2) {
-      return y[1];
-    } else {
-      return algebraic_current(vehicle, vehicle.voltage, y[0]);
-    }
-  }
-
-  CrankKinematics<S> kinematics(const S& u) const {
-    const SineCosine<S> of = sine_cosine_of_reduced(u);
-    return crank_kinematics(geometry, S(half * of.sine), S(half * of.cosine));
-  }
-
-  Branch<S> branch(const S& force) const { return {half, force, S(1.0), S(1.0)}; }
-
-  Motion<S> motion(const CrankKinematics<S>& k, const State& y, const S& force) const {
-    const S i = current(y);
-    const Instant<S> at = instant_at(vehicle, k, y[0], i, vehicle.voltage, half, S(1.0));
-    return motion_on(vehicle, at, i, vehicle.voltage, branch(force));
-  }
-
-  /// The branch that holds is chosen on the spot.
-  Motion<S> motion_on_its_branch(const CrankKinematics<S>& k, const State& y) const {
-    const S i = current(y);
-    const Instant<S> at = instant_at(vehicle, k, y[0], i, vehicle.voltage, half, S(1.0));
-    return motion_on(vehicle, at, i, vehicle.voltage, branch(sign_of(at.force_switch)));
-  }
-
-  template <bool quadratures>
-  solve::Rates<HalfLap> rates_of(const Motion<S>& m, const State& y, const S& force) const {
-    const S per_omega = inverse_of(y[0]);
-    solve::Rates<HalfLap> r;
-    r.dy[0] = m.crank_acceleration * per_omega;
-    if constexpr (N == 2) {
-      // Not m.current_rate, which divides by the inductance every time.
-      const S reserve = motor_loads(vehicle.motor, vehicle.voltage, y[1], y[0]).voltage_reserve;
-      r.dy[1] = reserve * per_inductance * per_omega;
-    }
-    r.switches = {m.force_switch, half * m.stored_moment};
-    if constexpr (quadratures) {
-      const CycleIntegrals<S> in_time = integrands(vehicle, m, y[0], branch(force));
-      for (std::size_t q = 0; q < lane_integrals.size(); ++q) {
-        r.dq[q] = in_time[std::size_t(lane_integrals[q])] * per_omega;
-      }
-    }
-    return r;
-  }
-
-  template <bool quadratures>
-  solve::Rates<HalfLap> rates(const S& u, const State& y, const Signs& signs) const {
-    return rates_of<quadratures>(motion(kinematics(u), y, signs[0]), y, signs[0]);
-  }
-};
-
-inline constexpr std::size_t late_stage = 10;  ///< its force is seen before the end of a step
-
-// A lap's code must stay within the processor's instruction cache: the right-hand side is one function, called in a loop
-// over the stages, where the scalar solver unrolls them.
-template <bool quadratures, class System>
-[[gnu::noinline, gnu::flatten]] void evaluate(const System& system, const typename System::Real& u,
-                                              const typename System::State& y, const typename System::Real& force,
-                                              solve::Rates<System>& out) {
-  out = system.template rates<quadratures>(u, y, {force, typename System::Real(1.0)});
-}
-
-/// What is seen inside a step beside its result.
-template <class S>
-struct StepSights {
-  S late_force_switch;  ///< at 6/7 of the step
-  S dip_at;             ///< fraction of the step at which the stored moment is least by its sign at the start
-};
-
-/// One step of Dormand and Prince's pair as solve::explicit_step takes it.
-template <bool quadratures, class System>
-[[gnu::noinline]] void lane_step(const System& system, const typename System::Real& u, const typename System::State& y,
-                                 const typename System::Real& h, const typename System::Real& force,
-                                 const solve::Rates<System>& first, solve::StepResult<System>& result,
-                                 StepSights<typename System::Real>& sights) {
-  using S = typename System::Real;
-  constexpr std::size_t states = std::tuple_size_v<typename System::State>;
-  namespace pair = solve::dop853;
-  std::array<typename System::State, pair::stages> k;
-  k[0] = first.dy;
-  const auto add_integrands = [&](std::size_t stage, const typename System::Quadrature& dq) {
-    if constexpr (quadratures) {
-      const S weight(pair::b[stage]), third(pair::e3[stage]), fifth(pair::e5[stage]);
-      for (std::size_t q = 0; q < dq.size(); ++q) result.dq[q] = result.dq[q] + weight * dq[q];
-      for (const std::size_t q : System::controlled_integrals) {
-        result.integral_error3[q] = result.integral_error3[q] + third * dq[q];
-        result.integral_error5[q] = result.integral_error5[q] + fifth * dq[q];
-      }
-    }
-  };
-  if constexpr (quadratures) {
-    result.dq.fill(S(0.0));
-    for (const std::size_t q : System::controlled_integrals) result.integral_error3[q] = result.integral_error5[q] = S(0.0);
-    add_integrands(0, first.dq);
-  }
-  result.lowest.fill(S(1e300));
-  const S trend = sign_of(first.switches[1]);
-  solve::Rates<System> rates;
-#pragma GCC unroll 1
-  for (std::size_t stage = 1; stage < std::size_t(pair::stages); ++stage) {
-    typename System::State sum;
-    for (std::size_t n = 0; n < states; ++n) sum[n] = S(pair::a[stage][0]) * k[0][n];
-#pragma GCC unroll 1
-    for (std::size_t j = stage < 4 ? 1 : stage < 6 ? 2 : 3; j < stage; ++j) {
-      const S a(pair::a[stage][j]);
-      for (std::size_t n = 0; n < states; ++n) sum[n] = sum[n] + a * k[j][n];
-    }
-    typename System::State at;
-    for (std::size_t n = 0; n < states; ++n) at[n] = y[n] + h * sum[n];
-    const S here = u + S(pair::c[stage]) * h;
-    if (quadratures && pair::b[stage] != 0.0) {
-      evaluate<true>(system, here, at, force, rates);
-      add_integrands(stage, rates.dq);
-    } else {
-      evaluate<false>(system, here, at, force, rates);
-    }
-    k[stage] = rates.dy;
-    if (stage == late_stage) sights.late_force_switch = rates.switches[0];
-    if (quadratures && stage >= 5) {
-      result.lowest[0] = min(result.lowest[0], rates.switches[0] * force);
-      const S along = rates.switches[1] * trend;
-      sights.dip_at = select<S>(along < result.lowest[1], S(pair::c[stage]), sights.dip_at);
-      result.lowest[1] = min(result.lowest[1], along);
-    }
-  }
-  for (std::size_t n = 0; n < states; ++n) {
-    S sum(0.0), third(0.0), fifth(0.0);
-    for (std::size_t j = 0; j < std::size_t(pair::stages); ++j) {
-      sum = sum + S(pair::b[j]) * k[j][n];
-      if constexpr (quadratures) {
-        third = third + S(pair::e3[j]) * k[j][n];
-        fifth = fifth + S(pair::e5[j]) * k[j][n];
-      }
-    }
-    result.y[n] = y[n] + h * sum;
-    result.error3[n] = h * third;
-    result.error5[n] = h * fifth;
-  }
-  if constexpr (quadratures) {
-    for (std::size_t q = 0; q < result.dq.size(); ++q) result.dq[q] = h * result.dq[q];
-    for (const std::size_t q : System::controlled_integrals) {
-      result.integral_error3[q] = h * result.integral_error3[q];
-      result.integral_error5[q] = h * result.integral_error5[q];
-    }
-  }
-}
 
 /// Where the rod force changes sign within half a lap.
 template <class L>
@@ -206,8 +35,7 @@ struct ForceSwitches {
 template <class L>
 struct HalfMesh {
   std::array<L, most_half_steps + 1> u;
-  std::array<L, most_half_steps> force;           ///< sign of the rod force on each step
-  std::array<L, most_force_switches> switch_node; ///< node at each switch; the last one beyond the count
+  std::array<L, most_half_steps> force;  ///< sign of the rod force on each step
 };
 
 /// Value and derivative by crank angle: |beta'| [rad/s], i [A], -omega and omega [rad/s], |F| [N], energy stored in wings
@@ -288,6 +116,7 @@ class LaneOrbit {
   [[gnu::noinline, gnu::flatten]] void judge_statics();
   [[gnu::noinline, gnu::flatten]] void guess_speed();
   [[gnu::noinline, gnu::flatten]] void start_from_rest();
+  template <bool last>
   [[gnu::noinline, gnu::flatten]] void coarse_lap();
   [[gnu::noinline, gnu::flatten]] void find_switches(int half, const L* u, const L* force, int count, L& offset);
   [[gnu::noinline, gnu::flatten]] void build_mesh(int half, int steps);
@@ -319,6 +148,7 @@ class LaneOrbit {
                      const L& force);
   void append_to_monodromy(const Matrix& a, const Matrix& b, double h);
   [[gnu::noinline, gnu::flatten]] void accelerate(const State& start);
+  L residual_weight() const;
 
   const Vehicle<L>& vehicle_;
   const LaneSettings& settings_;
@@ -452,6 +282,7 @@ void LaneOrbit<L, N>::start_from_rest() {
   };
   Moving x;
   x.fill(L(0.0));
+  y_.fill(L(0.0));
   Mask done = L(1.0) < L(0.0), started = done, slow = done, stopped = done;
   for (int n = 0; n < steps_per_lap * most_laps && !all<L>(done || stopped); ++n) {
     const Moving k1 = rates(x);
@@ -545,8 +376,10 @@ void LaneOrbit<L, N>::accelerate(const State& start) {
   }
 }
 
-/// One lap by the classical fourth-order method, each stage on the branch that holds there.
+/// One lap by the classical fourth-order method, each stage on the branch that holds there; the last one finds the
+/// switches and the monodromy matrix.
 template <class L, int N>
+template <bool last>
 void LaneOrbit<L, N>::coarse_lap() {
   constexpr double h = pi / coarse_half_steps;
   const State start = y_;
@@ -574,10 +407,12 @@ void LaneOrbit<L, N>::coarse_lap() {
         return system.template rates_of<false>(m, y, L(1.0)).dy;
       };
       const State k1 = at(k, y_);
-      const Matrix jacobian = jacobian_at(system, table[k], y_, k1, sign_of(force[k]));
-      if (half > 0 || k > 0) append_to_monodromy(jacobian_before, jacobian, h);
-      else first_jacobian = jacobian;
-      jacobian_before = jacobian;
+      if constexpr (last) {
+        const Matrix jacobian = jacobian_at(system, table[k], y_, k1, sign_of(force[k]));
+        if (half > 0 || k > 0) append_to_monodromy(jacobian_before, jacobian, h);
+        else first_jacobian = jacobian;
+        jacobian_before = jacobian;
+      }
       const State k2 = at(k + 1, advance(y_, k1, 0.5 * h));
       const State k3 = at(k + 1, advance(y_, k2, 0.5 * h));
       const State k4 = at(k + 2, advance(y_, k3, h));
@@ -586,10 +421,12 @@ void LaneOrbit<L, N>::coarse_lap() {
       }
       slowest_ = min(slowest_, y_[0]);
     }
-    find_switches(half, angles.data(), force.data(), coarse_samples - 1, switch_offset_);
+    if constexpr (last) find_switches(half, angles.data(), force.data(), coarse_samples - 1, switch_offset_);
   }
-  append_to_monodromy(jacobian_before, first_jacobian, h);
-  accelerate(start);
+  if constexpr (last) {
+    append_to_monodromy(jacobian_before, first_jacobian, h);
+    accelerate(start);
+  }
   doubtful_ = doubtful_ || !(slowest_ > floor_);
 }
 
@@ -660,7 +497,6 @@ void LaneOrbit<L, N>::build_mesh(int half, int steps) {
     const L within = min(max(wanted, node[n] + L(1.0)), all - (s.count - L(double(n))));
     node[n + 1] = select<L>(used, within, all);
     at[n + 1] = select<L>(used, s.at[n], L(quarter));
-    mesh.switch_node[n] = node[n + 1];
   }
   node[most_force_switches + 1] = all;
   at[most_force_switches + 1] = L(quarter);
@@ -792,216 +628,6 @@ void LaneOrbit<L, N>::visit_node(const System& system, const L& u, const L& forc
   read(system, u, y_, force, motion, first.dy, wanted_, node.readings);
 }
 
-/// A quantity, with the motion, at distance x from the start of a step.
-template <class L, int N>
-Reading<L> LaneOrbit<L, N>::reading_inside(Quantity quantity, const PeakBracket<L, N>& b, const L& x) const {
-  std::array<bool, quantity_count> wanted{};
-  wanted[std::size_t(quantity)] = true;
-  const System system = {vehicle_, geometry_, per_inductance_, b.half};
-  solve::Rates<System> first;
-  solve::StepResult<System> step;
-  StepSights<L> sights;
-  evaluate<false>(system, b.u, b.y, b.force, first);
-  lane_step<false>(system, b.u, b.y, x, b.force, first, step, sights);
-  const L u = b.u + x;
-  const Motion<L> motion = system.motion(system.kinematics(u), step.y, b.force);
-  const State dy = system.template rates_of<false>(motion, step.y, b.force).dy;
-  std::array<Reading<L>, quantity_count> readings;
-  read(system, u, step.y, b.force, motion, dy, wanted, readings);
-  return readings[std::size_t(quantity)];
-}
-
-/// Calls visit(bracket, mask) for each stretch of half a lap, in order: the steps, and where the cubic through a step's
-/// ends turns twice inside, its two parts; the latter only where the step may rise above `floor`.
-template <class L, int N>
-template <class Visit>
-void LaneOrbit<L, N>::for_each_stretch(int half, Quantity quantity, const L& floor, const Visit& visit) const {
-  const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
-  const auto& nodes = nodes_[std::size_t(half)];
-  for (std::size_t m = 0; m < std::size_t(settings_.fine_steps); ++m) {
-    const Reading<L>& from = nodes[m].readings[std::size_t(quantity)];
-    const Reading<L>& to = nodes[m + 1].readings[std::size_t(quantity)];
-    PeakBracket<L, N> b = {L(half == 0 ? 1.0 : -1.0), mesh.u[m], mesh.force[m], nodes[m].y, L(0.0), from.value,
-                           from.slope, mesh.u[m + 1] - mesh.u[m], to.value, to.slope, L(0.0), L(0.0)};
-    const L slope = (b.v1 - b.v0) * inverse_of(b.x1);
-    const L c2 = L(3.0) * slope - L(2.0) * b.d0 - b.d1, c3 = b.d0 + b.d1 - L(2.0) * slope;
-    const L discriminant = square(c2) - L(3.0) * c3 * b.d0;
-    const L per_3c3 = inverse_of(select<L>(c3 == L(0.0), L(1e-300), L(3.0) * c3));
-    const L middle = -(c2 * per_3c3), reach = sqrt(max(discriminant, L(0.0))) * abs(per_3c3);
-    Mask twice = b.d0 * b.d1 > L(0.0) && discriminant > L(0.0) && middle - reach > L(0.0) &&
-                       middle + reach < L(1.0) &&
-                       max(b.v0, b.v1) + abs(b.v1 - b.v0) + L(0.1) * b.x1 * (abs(b.d0) + abs(b.d1)) > floor;
-    L split = middle;
-    if (quantity == Quantity::energy) {
-      // The stages have seen what a cubic may miss.
-      const Mask dips = sign_of(b.d0) == sign_of(b.d1) && nodes[m].dip < L(0.0);
-      split = select<L>(dips, nodes[m].dip_at, split);
-      twice = twice || dips;
-    }
-    visit(b, !twice);
-    if (!any<L>(twice)) continue;
-    const L x = select<L>(twice, split, L(0.5)) * b.x1;
-    const Reading<L> at = reading_inside(quantity, b, x);
-    PeakBracket<L, N> first = b, second = b;
-    first.x1 = second.x0 = x;
-    first.v1 = second.v0 = at.value;
-    first.d1 = second.d0 = at.slope;
-    visit(first, twice);
-    visit(second, twice);
-  }
-}
-
-/// The highest stretch of half a lap, by the cubics through values and slopes.
-template <class L, int N>
-PeakBracket<L, N> LaneOrbit<L, N>::bracket(int half, Quantity quantity) const {
-  PeakBracket<L, N> best{};
-  best.estimate = L(-1e300);
-  L highest_node(-1e300);
-  for (int m = 0; m <= settings_.fine_steps; ++m) {
-    highest_node = max(highest_node, nodes_[std::size_t(half)][std::size_t(m)].readings[std::size_t(quantity)].value);
-  }
-  for_each_stretch(half, quantity, highest_node, [&](PeakBracket<L, N> b, const Mask& where) {
-    estimate_peak(b);
-    keep(b, where && b.estimate > best.estimate, best);
-  });
-  return best;
-}
-
-template <class L, int N>
-void LaneOrbit<L, N>::keep(const PeakBracket<L, N>& from, const Mask& where, PeakBracket<L, N>& to) {
-  const auto choose = [&](L PeakBracket<L, N>::*member) { to.*member = select<L>(where, from.*member, to.*member); };
-  using P = PeakBracket<L, N>;
-  for (L P::*member : {&P::half, &P::u, &P::force, &P::x0, &P::v0, &P::d0, &P::x1, &P::v1, &P::d1, &P::rises_and_falls,
-                       &P::estimate}) {
-    choose(member);
-  }
-  for (std::size_t n = 0; n < N; ++n) to.y[n] = select<L>(where, from.y[n], to.y[n]);
-}
-
-/// Distance from x0, as a fraction of the bracket, of the maximum of the cubic through its ends; sets the estimate.
-template <class L, int N>
-L LaneOrbit<L, N>::estimate_peak(PeakBracket<L, N>& b) {
-  const L h = b.x1 - b.x0;
-  const L slope = (b.v1 - b.v0) * inverse_of(max(h, L(1e-300)));
-  const L z = b.d0 + b.d1 - L(3.0) * slope;
-  const L root = sqrt(max(L(z * z - b.d0 * b.d1), L(0.0)));
-  const Mask turns = b.d0 > L(0.0) && b.d1 < L(0.0);
-  const L below = select<L>(turns, L(b.d0 - b.d1 + L(2.0) * root), L(1.0));
-  const L t = min(max(L((b.d0 + root - z) * inverse_of(below)), L(0.0)), L(1.0));
-  const L c2 = L(3.0) * slope - L(2.0) * b.d0 - b.d1, c3 = b.d0 + b.d1 - L(2.0) * slope;
-  b.rises_and_falls = select<L>(turns, L(1.0), L(0.0));
-  b.estimate = select<L>(turns, b.v0 + h * t * (b.d0 + t * (c2 + t * c3)), max(b.v0, b.v1));
-  return t;
-}
-
-/// The maximum within a bracket: a step of the integrator to the cubic's maximum, and again within the bracket that this leaves.
-template <class L, int N>
-L LaneOrbit<L, N>::refine(Quantity quantity, const L& sign, PeakBracket<L, N> b) const {
-  L highest = max(b.v0, b.v1);
-  const Mask inside = b.rises_and_falls > L(0.0);
-  Mask active = inside;
-  for (int n = 0; n < 8 && any<L>(active); ++n) {
-    const L t = estimate_peak(b);
-    const L x = b.x0 + t * (b.x1 - b.x0);
-    const Reading<L> at = reading_inside(quantity, b, x);
-    const L v = sign * at.value, d = sign * at.slope;
-    const Mask rising = active && d > L(0.0), falling = active && !rising;
-    b.x0 = select<L>(rising, x, b.x0);
-    b.v0 = select<L>(rising, v, b.v0);
-    b.d0 = select<L>(rising, d, b.d0);
-    b.x1 = select<L>(falling, x, b.x1);
-    b.v1 = select<L>(falling, v, b.v1);
-    b.d1 = select<L>(falling, d, b.d1);
-    highest = select<L>(active, max(highest, v), highest);
-    // What is left to gain, by the cubic through the shrunken bracket.
-    estimate_peak(b);
-    active = active && b.estimate - highest > L(settings_.peak_tolerance) * abs(highest);
-  }
-  return select<L>(inside, max(highest, b.estimate), highest);
-}
-
-/// The maximum of a quantity over the lap. Of two half laps with almost the same peak both are refined.
-template <class L, int N>
-L LaneOrbit<L, N>::peak(Quantity quantity) const {
-  PeakBracket<L, N> best = bracket(0, quantity), other = bracket(1, quantity);
-  const PeakBracket<L, N> first = best;
-  const Mask second_is_higher = other.estimate > best.estimate;
-  keep(other, second_is_higher, best);
-  keep(first, second_is_higher, other);
-  const L highest = refine(quantity, L(1.0), best);
-  // The cubics err by a small part of what they rise above their ends.
-  const L rise = other.estimate - min(other.v0, other.v1) + best.estimate - min(best.v0, best.v1);
-  const Mask close = other.estimate + L(0.2) * rise > best.estimate;
-  if (!any<L>(close)) return highest;
-  return select<L>(close, max(highest, refine(quantity, L(1.0), other)), highest);
-}
-
-/// The work that wings and springs exchange with the rest, |power| integrated over the lap [J]: the energy that they store
-/// rises and falls by it between its extremes.
-template <class L, int N>
-L LaneOrbit<L, N>::exchanged_energy() {
-  L total(0.0);
-  for (int half = 0; half < 2; ++half) {
-    const auto& nodes = nodes_[std::size_t(half)];
-    std::array<PeakBracket<L, N>, most_energy_extremes> extremes;
-    std::array<L, most_energy_extremes> signs;
-    L count(0.0);
-    for_each_stretch(half, Quantity::energy, L(-1e300), [&](PeakBracket<L, N> b, const Mask& where) {
-      const L sign = sign_of(b.d0);
-      const Mask turns = where && !(sign_of(b.d1) == sign);
-      if (!any<L>(turns)) return;
-      for (L* part : {&b.v0, &b.d0, &b.v1, &b.d1}) *part = sign * *part;
-      estimate_peak(b);
-      for (std::size_t n = 0; n < most_energy_extremes; ++n) {
-        const Mask here = turns && count == L(double(n));
-        keep(b, here, extremes[n]);
-        signs[n] = select<L>(here, sign, signs[n]);
-      }
-      count = select<L>(turns, count + L(1.0), count);
-    });
-    doubtful_ = doubtful_ || count > L(double(most_energy_extremes));
-    L before = nodes[0].readings[std::size_t(Quantity::energy)].value;
-    for (std::size_t n = 0; n < most_energy_extremes; ++n) {
-      const Mask exists = count > L(double(n));
-      if (!any<L>(exists)) break;
-      const L here = signs[n] * refine(Quantity::energy, signs[n], extremes[n]);
-      total = select<L>(exists, total + abs(here - before), total);
-      before = select<L>(exists, here, before);
-    }
-    const L end = nodes[std::size_t(settings_.fine_steps)].readings[std::size_t(Quantity::energy)].value;
-    total = total + abs(end - before);
-  }
-  return total;
-}
-
-/// The largest lift while |beta'| runs from zero to its peak: at the peak, or where lift falls with speed before it.
-template <class L, int N>
-L LaneOrbit<L, N>::lift_peak(const L& highest_velocity) const {
-  const BladeElement<L>& w = vehicle_.wings;
-  // Samples of lift over speed find the highest stretch; a parabola's vertex, twice, the maximum in it.
-  constexpr int samples = 12;
-  L at = highest_velocity, best = lift_force(w, highest_velocity);
-  for (int n = 1; n < samples; ++n) {
-    const L u = L(double(n) / samples) * highest_velocity;
-    const L lift = lift_force(w, u);
-    const Mask higher = lift > best;
-    best = select<L>(higher, lift, best);
-    at = select<L>(higher, u, at);
-  }
-  const Mask within = at < highest_velocity || lift_force(w, L(L(0.999) * highest_velocity)) > best;
-  if (!any<L>(within)) return best;
-  L width = L(1.0 / samples) * highest_velocity;
-  for (int n = 0; n < 6; ++n) {
-    const L below = lift_force(w, L(at - width)), here = lift_force(w, at), above = lift_force(w, L(at + width));
-    const L curve = below - L(2.0) * here + above;
-    const L move = L(0.5) * width * (below - above) * inverse_of(select<L>(curve < L(0.0), curve, L(-1e300)));
-    at = min(max(at + min(max(move, -width), width), L(0.0)), highest_velocity);
-    best = select<L>(within, max(best, lift_force(w, at)), best);
-    width = L(0.25) * width;
-  }
-  return best;
-}
-
 /// The largest modulus of the eigenvalues of the lap map's derivative, by central differences on the fine lap's mesh.
 template <class L, int N>
 L LaneOrbit<L, N>::floquet_multiplier(const State& start) {
@@ -1093,6 +719,14 @@ void LaneOrbit<L, N>::fine_lap() {
   }
 }
 
+/// What the means feel of a start off the orbit, which fades within the lap: the slower, the more.
+template <class L, int N>
+L LaneOrbit<L, N>::residual_weight() const {
+  L size = abs(monodromy_[0][0]);
+  if constexpr (N == 2) size = max(size, abs(L(monodromy_[0][0] + monodromy_[1][1])));
+  return L(0.3) + L(2.5) * sqrt(size);
+}
+
 template <class L, int N>
 Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant) {
   if (settings_.approach == LaneApproach::resume) {
@@ -1106,7 +740,8 @@ Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
     } else {
       start_from_rest();
     }
-    for (int n = 0; n < settings_.coarse_laps; ++n) coarse_lap();
+    for (int n = 1; n < settings_.coarse_laps; ++n) coarse_lap<false>();
+    coarse_lap<true>();
   }
   for (int n = 0; n < settings_.medium_laps; ++n) {
     const bool last = n + 1 == settings_.medium_laps;
@@ -1140,65 +775,10 @@ Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   seek(Quantity::speed, Extreme::crank_speed_max);
   const L multiplier = settings_.multipliers ? floquet_multiplier(start) : L(0.0);
 
-  error_estimate_ = L(2.0) * step_error_ + residual_ + L(0.03) * square(switch_offset_);
+  error_estimate_ = L(1.5) * step_error_ + residual_weight() * residual_ + L(0.03) * square(switch_offset_);
   doubtful_ = doubtful_ || !(slowest_ > floor_);
   accelerate(start);
   return cycle_metrics(vehicle_, integrals, extremes, multiplier, ReportingOf<L>{mass, bench_torque_constant});
-}
-
-/// The body of solve_block_*() for one instruction set. No containers: what this leaves behind must belong to the
-/// instruction set alone.
-template <class L>
-void solve_block(const EnsembleMember* const* members, int count, const LaneSettings& settings,
-                 LaneResult* const* results) {
-  alignas(64) double numbers[std::size_t(L::lanes)];
-  // The block is filled up with its last member.
-  const auto member = [&](int lane) -> const EnsembleMember& { return *members[lane < count ? lane : count - 1]; };
-  const auto gather = [&](const auto& number_of) {
-    for (int lane = 0; lane < L::lanes; ++lane) numbers[lane] = number_of(member(lane));
-    return L::load(numbers);
-  };
-  const auto with_states = [&](auto states) {
-    constexpr int N = decltype(states)::value;
-    Vehicle<L> vehicle;
-    vehicle.crank.formulation = members[0]->vehicle.crank.formulation;
-    for_each_number(vehicle, [&](L& to, const auto& of) {
-      to = gather([&](const EnsembleMember& m) { return of(m.vehicle); });
-    });
-    LaneOrbit<L, N> orbit(vehicle, settings);
-    if (settings.approach == LaneApproach::resume) {
-      orbit.visit_start([&](L& to, const auto& of) {
-        for (int lane = 0; lane < L::lanes; ++lane) numbers[lane] = of(results[lane < count ? lane : count - 1]->start);
-        to = L::load(numbers);
-      });
-    }
-    const Metrics<L> found = orbit.solve(gather([](const EnsembleMember& m) { return m.reporting.mass; }),
-                                         gather([](const EnsembleMember& m) {
-                                           return m.reporting.bench_torque_constant;
-                                         }));
-    const auto scatter = [&](const L& from, const auto& to) {
-      from.store(numbers);
-      for (int lane = 0; lane < count; ++lane) to(*results[lane]) = numbers[lane];
-    };
-    for (std::size_t m = 0; m < std::size_t(metric_count); ++m) {
-      scatter(found.values[m], [m](LaneResult& r) -> double& { return r.metrics.values[m]; });
-    }
-    scatter(orbit.error_estimate(), [](LaneResult& r) -> double& { return r.error_estimate; });
-    select<L>(orbit.locked(), L(2.0), select<L>(orbit.doubtful(), L(1.0), L(0.0))).store(numbers);
-    for (int lane = 0; lane < count; ++lane) {
-      results[lane]->verdict = numbers[lane] == 0.0   ? LaneVerdict::rotates
-                               : numbers[lane] == 1.0 ? LaneVerdict::doubtful
-                                                      : LaneVerdict::locked;
-    }
-    orbit.visit_start([&](L& from, const auto& to) {
-      scatter(from, [&](LaneResult& r) -> double& { return to(r.start); });
-    });
-  };
-  if (settings.inductance) {
-    with_states(std::integral_constant<int, 2>{});
-  } else {
-    with_states(std::integral_constant<int, 1>{});
-  }
 }
 
 }  // namespace wingbeat
