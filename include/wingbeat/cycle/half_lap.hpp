@@ -17,6 +17,13 @@ inline constexpr std::array lane_integrals = {Integral::time,          Integral:
                                               Integral::speed_square,  Integral::friction_work, Integral::aero_work,
                                               Integral::residual_work, Integral::lift,      Integral::rod_force};
 
+/// All that depends on the crank angle alone.
+template <Scalar S>
+struct Place {
+  CrankKinematics<S> kinematics;
+  S spring_moment;  ///< N_w k beta [N m]
+};
+
 /// The crank over half a lap as a system for solve/: the independent variable u runs from -pi/2 to pi/2.
 template <Scalar S, int N>
 struct HalfLap {
@@ -42,23 +49,26 @@ struct HalfLap {
     }
   }
 
-  CrankKinematics<S> kinematics(const S& u) const {
+  Place<S> place(const S& u) const {
     const SineCosine<S> of = sine_cosine_of_reduced(u);
-    return crank_kinematics(geometry, S(half * of.sine), S(half * of.cosine));
+    return place_of(crank_kinematics(geometry, S(half * of.sine), S(half * of.cosine)));
   }
+  Place<S> place_of(const CrankKinematics<S>& k) const { return {k, spring_moment(vehicle, k)}; }
 
   Branch<S> branch(const S& force) const { return {half, force, S(1.0), S(1.0)}; }
 
-  Motion<S> motion(const CrankKinematics<S>& k, const State& y, const S& force) const {
+  Motion<S> motion(const Place<S>& place, const State& y, const S& force) const {
     const S i = current(y);
-    const Instant<S> at = instant_at(vehicle, k, y[0], i, vehicle.voltage, half, S(1.0));
+    const Instant<S> at =
+        instant_at(vehicle, place.kinematics, place.spring_moment, y[0], i, vehicle.voltage, half, S(1.0));
     return motion_on(vehicle, at, i, vehicle.voltage, branch(force));
   }
 
   /// The branch that holds is chosen on the spot.
-  Motion<S> motion_on_its_branch(const CrankKinematics<S>& k, const State& y) const {
+  Motion<S> motion_on_its_branch(const Place<S>& place, const State& y) const {
     const S i = current(y);
-    const Instant<S> at = instant_at(vehicle, k, y[0], i, vehicle.voltage, half, S(1.0));
+    const Instant<S> at =
+        instant_at(vehicle, place.kinematics, place.spring_moment, y[0], i, vehicle.voltage, half, S(1.0));
     return motion_on(vehicle, at, i, vehicle.voltage, branch(sign_of(at.force_switch)));
   }
 
@@ -82,11 +92,6 @@ struct HalfLap {
     }
     return r;
   }
-
-  template <bool quadratures>
-  solve::Rates<HalfLap> rates(const S& u, const State& y, const Signs& signs) const {
-    return rates_of<quadratures>(motion(kinematics(u), y, signs[0]), y, signs[0]);
-  }
 };
 
 inline constexpr std::size_t late_stage = 10;  ///< its force is seen before the end of a step
@@ -94,10 +99,22 @@ inline constexpr std::size_t late_stage = 10;  ///< its force is seen before the
 // A lap's code must stay within the processor's instruction cache: the right-hand side is one function, called in a loop
 // over the stages, where the scalar solver unrolls them.
 template <bool quadratures, class System>
-[[gnu::noinline, gnu::flatten]] void evaluate(const System& system, const typename System::Real& u,
+[[gnu::noinline, gnu::flatten]] void evaluate(const System& system, const Place<typename System::Real>& place,
                                               const typename System::State& y, const typename System::Real& force,
                                               solve::Rates<System>& out) {
-  out = system.template rates<quadratures>(u, y, {force, typename System::Real(1.0)});
+  out = system.template rates_of<quadratures>(system.motion(place, y, force), y, force);
+}
+
+/// The places of a step's stages. Apart from the stages, which wait for each other while these do not.
+template <class System>
+[[gnu::noinline, gnu::flatten]] void find_places(const System& system, const typename System::Real& u,
+                                                 const typename System::Real& h,
+                                                 std::array<Place<typename System::Real>, solve::dop853::stages>& places) {
+  using S = typename System::Real;
+#pragma GCC unroll 1
+  for (std::size_t stage = 1; stage < places.size(); ++stage) {
+    places[stage] = system.place(S(u + S(solve::dop853::c[stage]) * h));
+  }
 }
 
 /// What is seen inside a step beside its result.
@@ -105,6 +122,7 @@ template <class S>
 struct StepSights {
   S late_force_switch;  ///< at 6/7 of the step
   S dip_at;             ///< fraction of the step at which the stored moment is least by its sign at the start
+  Place<S> end;         ///< of the step
 };
 
 /// One step of Dormand and Prince's pair as solve::explicit_step takes it.
@@ -137,6 +155,9 @@ template <bool quadratures, class System>
   S trend;
   if constexpr (quadratures) trend = sign_of(first.switches[1]);
   solve::Rates<System> rates;
+  std::array<Place<S>, pair::stages> places;
+  find_places(system, u, h, places);
+  sights.end = places[pair::stages - 1];
 #pragma GCC unroll 1
   for (std::size_t stage = 1; stage < std::size_t(pair::stages); ++stage) {
     typename System::State sum;
@@ -148,12 +169,11 @@ template <bool quadratures, class System>
     }
     typename System::State at;
     for (std::size_t n = 0; n < states; ++n) at[n] = y[n] + h * sum[n];
-    const S here = u + S(pair::c[stage]) * h;
     if (quadratures && pair::b[stage] != 0.0) {
-      evaluate<true>(system, here, at, force, rates);
+      evaluate<true>(system, places[stage], at, force, rates);
       add_integrands(stage, rates.dq);
     } else {
-      evaluate<false>(system, here, at, force, rates);
+      evaluate<false>(system, places[stage], at, force, rates);
     }
     k[stage] = rates.dy;
     if (stage == late_stage) sights.late_force_switch = rates.switches[0];

@@ -124,7 +124,8 @@ class LaneOrbit {
   [[gnu::noinline, gnu::flatten]] void medium_lap(int steps);
   [[gnu::noinline, gnu::flatten]] void fine_lap();
   [[gnu::noinline, gnu::flatten]] void visit_node(const System& system, const L& u, const L& force,
-                                                  LaneNode<L, N>& node, solve::Rates<System>& first);
+                                                  LaneNode<L, N>& node, const Place<L>& place,
+                                                  solve::Rates<System>& first);
   [[gnu::noinline, gnu::flatten]] void read(const System& system, const L& u, const State& y, const L& force,
                                             const Motion<L>& m, const State& dy,
                                             const std::array<bool, quantity_count>& wanted,
@@ -143,8 +144,8 @@ class LaneOrbit {
   [[gnu::noinline, gnu::flatten]] L floquet_multiplier(const State& start);
   template <bool quadratures>
   [[gnu::noinline, gnu::flatten]] void correct_for_offset(const System& system, const HalfMesh<L>& mesh,
-                                                          std::size_t node, const L& late_force_switch);
-  Matrix jacobian_at(const System& system, const CrankKinematics<L>& k, const State& y, const State& rates,
+                                                          std::size_t node, const StepSights<L>& sights);
+  Matrix jacobian_at(const System& system, const Place<L>& place, const State& y, const State& rates,
                      const L& force);
   void append_to_monodromy(const Matrix& a, const Matrix& b, double h);
   [[gnu::noinline, gnu::flatten]] void accelerate(const State& start);
@@ -155,7 +156,7 @@ class LaneOrbit {
   CrankGeometry<L> geometry_;
   L per_inductance_, current_scale_, no_load_, floor_;
   Matrix monodromy_;  ///< of a lap, to a few per cent
-  std::array<std::array<CrankKinematics<L>, coarse_samples>, 2> table_;
+  std::array<std::array<Place<L>, coarse_samples>, 2> table_;
   State y_;
   Mask doubtful_, locked_;
   std::array<ForceSwitches<L>, 2> switches_;
@@ -171,7 +172,7 @@ void LaneOrbit<L, N>::tabulate() {
   for (int half = 0; half < 2; ++half) {
     const System system = half_lap(half);
     for (int k = 0; k < coarse_samples; ++k) {
-      table_[std::size_t(half)][std::size_t(k)] = system.kinematics(L(quarter * (2.0 * k / (coarse_samples - 1) - 1.0)));
+      table_[std::size_t(half)][std::size_t(k)] = system.place(L(quarter * (2.0 * k / (coarse_samples - 1) - 1.0)));
     }
   }
 }
@@ -191,14 +192,15 @@ void LaneOrbit<L, N>::judge_statics() {
   const L inertia_margin(from_rest ? 0.05 : 0.3), lever_margin(from_rest ? 0.02 : 0.1);
   const bool springs = !from_rest && any<L>(v.spring.stiffness > L(0.0));
   for (const auto& half : table_) {
-    for (const CrankKinematics<L>& k : half) {
+    for (const Place<L>& place : half) {
+      const CrankKinematics<L>& k = place.kinematics;
       const L g = k.wing_lever;
       const L A_g = N_J * k.stroke_slope;
       const L least_g = v.motor.inertia * g + A_g * k.crank_lever - abs(A_g) * mu_r;
       doubtful_ = doubtful_ || !(least_g > inertia_margin * v.motor.inertia * g) ||
                   !(g > lever_margin * v.crank.hinge_offset);
       if (springs) {
-        const L moment = spring_moment(v, k);
+        const L moment = place.spring_moment;
         const L needed_g = moment * k.crank_lever + mu_r * abs(moment);
         doubtful_ = doubtful_ || !((L(0.8) * stall - held) * g > needed_g);
       }
@@ -216,11 +218,12 @@ void LaneOrbit<L, N>::guess_speed() {
   std::array<L, 2 * count> inertia, slope, sign, spring, lever, per_g;
   for (int n = 0; n < 2 * count; ++n) {
     const std::size_t at = std::size_t(n);
-    const CrankKinematics<L>& k = table_[at / count][std::size_t(stride / 2 + stride * (n % count))];
+    const Place<L>& place = table_[at / count][std::size_t(stride / 2 + stride * (n % count))];
+    const CrankKinematics<L>& k = place.kinematics;
     inertia[at] = N_J * k.stroke_curve;
     slope[at] = abs(k.stroke_slope);
     sign[at] = L(n < count ? 1.0 : -1.0);
-    spring[at] = spring_moment(v, k);
+    spring[at] = place.spring_moment;
     lever[at] = k.crank_lever;
     per_g[at] = inverse_of(k.wing_lever);
   }
@@ -266,7 +269,7 @@ void LaneOrbit<L, N>::start_from_rest() {
     for (std::size_t n = 0; n < N; ++n) y[n] = x[n + 1];
     const CrankKinematics<L> k = crank_kinematics(geometry_, sine, cosine);
     system.half = sign_of(k.stroke_slope);
-    const Motion<L> m = system.motion_on_its_branch(k, y);
+    const Motion<L> m = system.motion_on_its_branch(system.place_of(k), y);
     Moving r;
     r[0] = y[0];
     r[1] = m.crank_acceleration;
@@ -284,7 +287,9 @@ void LaneOrbit<L, N>::start_from_rest() {
   x.fill(L(0.0));
   y_.fill(L(0.0));
   Mask done = L(1.0) < L(0.0), started = done, slow = done, stopped = done;
-  for (int n = 0; n < steps_per_lap * most_laps && !all<L>(done || stopped); ++n) {
+  L waited(0.0);  // steps at rest, or since the crank was slow: after a few laps' worth others must decide
+  for (int n = 0; n < steps_per_lap * most_laps; ++n) {
+    if (all<L>(done || stopped || waited > L(2.0 * steps_per_lap))) break;
     const Moving k1 = rates(x);
     const Moving k2 = rates(moved(x, k1, L(0.5) * dt));
     const Moving k3 = rates(moved(x, k2, L(0.5) * dt));
@@ -299,6 +304,7 @@ void LaneOrbit<L, N>::start_from_rest() {
     next[1] = select<L>(held, L(0.0), next[1]);
     started = started || next[1] > L(0.05) * no_load_;
     slow = slow || (started && !done && !(next[1] > L(0.04) * no_load_));
+    waited = select<L>(slow || !started, waited + L(1.0), waited);
     const Mask stops = started && !done && !stopped && !(next[1] > L(0.0));
     const Mask arrives = !done && !stopped && next[0] >= L(end);
     const L part = (L(end) - x[0]) * inverse_of(max(L(next[0] - x[0]), L(1e-300)));
@@ -323,14 +329,14 @@ void LaneOrbit<L, N>::start_from_rest() {
 
 /// Derivatives of the rates by the state, to four digits.
 template <class L, int N>
-auto LaneOrbit<L, N>::jacobian_at(const System& system, const CrankKinematics<L>& k, const State& y, const State& rates,
+auto LaneOrbit<L, N>::jacobian_at(const System& system, const Place<L>& place, const State& y, const State& rates,
                                   const L& force) -> Matrix {
   Matrix jacobian;
   for (std::size_t n = 0; n < N; ++n) {
     State moved = y;
     const L by = n == 0 ? L(1e-4) * y[0] : L(1e-4) * current_scale_;
     moved[n] = moved[n] + by;
-    const State at = system.template rates_of<false>(system.motion(k, moved, force), moved, force).dy;
+    const State at = system.template rates_of<false>(system.motion(place, moved, force), moved, force).dy;
     const L per_move = inverse_of(by);
     for (std::size_t row = 0; row < N; ++row) jacobian[row][n] = (at[row] - rates[row]) * per_move;
   }
@@ -523,18 +529,18 @@ void LaneOrbit<L, N>::build_mesh(int half, int steps) {
 template <class L, int N>
 template <bool quadratures>
 void LaneOrbit<L, N>::correct_for_offset(const System& system, const HalfMesh<L>& mesh, std::size_t node,
-                                         const L& late_force_switch) {
+                                         const StepSights<L>& sights) {
   const L before = mesh.force[node - 1], after = mesh.force[node];
   const Mask switches = before * after < L(0.0);
   if (!any<L>(switches)) return;
-  const CrankKinematics<L> k = system.kinematics(mesh.u[node]);
-  const Motion<L> motion_before = system.motion(k, y_, before), motion_after = system.motion(k, y_, -before);
+  const Motion<L> motion_before = system.motion(sights.end, y_, before);
+  const Motion<L> motion_after = system.motion(sights.end, y_, -before);
   const auto on_before = system.template rates_of<quadratures>(motion_before, y_, before);
   const auto on_after = system.template rates_of<quadratures>(motion_after, y_, -before);
   const L h = mesh.u[node] - mesh.u[node - 1];
   const L rest = L(1.0 - solve::dop853::c[late_stage]) * h;
   const L f = on_before.switches[0];
-  const L offset = min(max(f * rest * inverse_of(L(f - late_force_switch)), -h), h);
+  const L offset = min(max(f * rest * inverse_of(L(f - sights.late_force_switch)), -h), h);
   const L half_offset = select<L>(switches, L(0.5) * offset, L(0.0));
   if constexpr (quadratures) {
     for (std::size_t q = 0; q < integrals_.size(); ++q) {
@@ -553,15 +559,16 @@ void LaneOrbit<L, N>::advance(int half, int steps, L* force) {
   StepSights<L> sights;
   const System system = half_lap(half);
   const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+  sights.end = system.place(mesh.u[0]);
   for (std::size_t m = 0; m < std::size_t(steps); ++m) {
-    evaluate<false>(system, mesh.u[m], y_, mesh.force[m], first);
+    evaluate<false>(system, sights.end, y_, mesh.force[m], first);
     force[m] = first.switches[0];
     lane_step<false>(system, mesh.u[m], y_, L(mesh.u[m + 1] - mesh.u[m]), mesh.force[m], first, step, sights);
     y_ = step.y;
-    if (m + 1 < std::size_t(steps)) correct_for_offset<false>(system, mesh, m + 1, sights.late_force_switch);
+    if (m + 1 < std::size_t(steps)) correct_for_offset<false>(system, mesh, m + 1, sights);
     slowest_ = min(slowest_, y_[0]);
   }
-  evaluate<false>(system, mesh.u[std::size_t(steps)], y_, mesh.force[std::size_t(steps - 1)], first);
+  evaluate<false>(system, sights.end, y_, mesh.force[std::size_t(steps - 1)], first);
   force[std::size_t(steps)] = first.switches[0];
 }
 
@@ -612,7 +619,7 @@ void LaneOrbit<L, N>::read(const System& system, const L& u, const State& y, con
       const L move(side == 0 ? -by : by);
       State moved;
       for (std::size_t n = 0; n < N; ++n) moved[n] = y[n] + move * dy[n];
-      ahead[side] = system.motion(system.kinematics(u + move), moved, force).rod_force;
+      ahead[side] = system.motion(system.place(u + move), moved, force).rod_force;
     }
     at(Quantity::force) = {force * m.rod_force, force * (ahead[1] - ahead[0]) * L(0.5 / by)};
   }
@@ -621,8 +628,8 @@ void LaneOrbit<L, N>::read(const System& system, const L& u, const State& y, con
 /// Rates and readings at a node of the fine lap.
 template <class L, int N>
 void LaneOrbit<L, N>::visit_node(const System& system, const L& u, const L& force, LaneNode<L, N>& node,
-                                 solve::Rates<System>& first) {
-  const Motion<L> motion = system.motion(system.kinematics(u), y_, force);
+                                 const Place<L>& place, solve::Rates<System>& first) {
+  const Motion<L> motion = system.motion(place, y_, force);
   first = system.template rates_of<true>(motion, y_, force);
   node.y = y_;
   read(system, u, y_, force, motion, first.dy, wanted_, node.readings);
@@ -678,8 +685,9 @@ void LaneOrbit<L, N>::fine_lap() {
     const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
     auto& nodes = nodes_[std::size_t(half)];
     std::array<L, most_half_steps + 1> force;
+    sights.end = system.place(mesh.u[0]);
     const auto visit = [&](std::size_t m, const L& sign) {
-      visit_node(system, mesh.u[m], sign, nodes[m], first);
+      visit_node(system, mesh.u[m], sign, nodes[m], sights.end, first);
       force[m] = first.switches[0];
     };
     for (std::size_t m = 0; m < std::size_t(steps); ++m) {
@@ -698,7 +706,7 @@ void LaneOrbit<L, N>::fine_lap() {
       nodes[m].dip = step.lowest[1];
       nodes[m].dip_at = sights.dip_at;
       y_ = step.y;
-      if (m + 1 < std::size_t(steps)) correct_for_offset<true>(system, mesh, m + 1, sights.late_force_switch);
+      if (m + 1 < std::size_t(steps)) correct_for_offset<true>(system, mesh, m + 1, sights);
       slowest_ = min(slowest_, y_[0]);
     }
     visit(std::size_t(steps), mesh.force[std::size_t(steps - 1)]);

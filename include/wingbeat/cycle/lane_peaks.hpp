@@ -14,10 +14,10 @@ Reading<L> LaneOrbit<L, N>::reading_inside(Quantity quantity, const PeakBracket<
   solve::Rates<System> first;
   solve::StepResult<System> step;
   StepSights<L> sights;
-  evaluate<false>(system, b.u, b.y, b.force, first);
+  evaluate<false>(system, system.place(b.u), b.y, b.force, first);
   lane_step<false>(system, b.u, b.y, x, b.force, first, step, sights);
   const L u = b.u + x;
-  const Motion<L> motion = system.motion(system.kinematics(u), step.y, b.force);
+  const Motion<L> motion = system.motion(sights.end, step.y, b.force);
   const State dy = system.template rates_of<false>(motion, step.y, b.force).dy;
   std::array<Reading<L>, quantity_count> readings;
   read(system, u, step.y, b.force, motion, dy, wanted, readings);

@@ -180,11 +180,11 @@ struct Instant {
   S force_switch;     ///< J C_g + A_g drive: has the sign of F on either branch while there is one solution [N m kg m2]
 };
 
-/// The instant at crank speed omega [rad/s] and current i [A] under the terminal voltage v_t [V]; `stroke` and
-/// `direction` are the signs of beta' and omega (model.md section 2).
+/// The instant at crank speed omega [rad/s] and current i [A] under the terminal voltage v_t [V], N_k_beta being the
+/// spring_moment() there; `stroke` and `direction` are the signs of beta' and omega (model.md section 2).
 template <Scalar S>
-Instant<S> instant_at(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& omega, const S& i, const S& v_t,
-                      const S& stroke, const S& direction) {
+Instant<S> instant_at(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& N_k_beta, const S& omega, const S& i,
+                      const S& v_t, const S& stroke, const S& direction) {
   Instant<S> at;
   at.kinematics = k;
   at.omega = omega;
@@ -192,7 +192,7 @@ Instant<S> instant_at(const Vehicle<S>& v, const CrankKinematics<S>& k, const S&
   at.stroke_velocity = k.stroke_slope * omega;
   const S stroke_speed = stroke * at.stroke_velocity;
   at.aero_moment = stroke * drag_moment(v.wings, stroke_speed);
-  at.spring_moment = spring_moment(v, k);
+  at.spring_moment = N_k_beta;
   at.load_free = load_free_friction(v.friction, omega, direction) + direction * v.motor.friction_torque;
   at.drive = at.motor.torque - at.motor.drag_torque - at.load_free;
 
@@ -240,7 +240,8 @@ template <Scalar S>
 Motion<S> motion_at(const Vehicle<S>& v, const S& sin_theta, const S& cos_theta, const S& omega, const S& i,
                     const S& v_t, const Branch<S>& branch) {
   const CrankKinematics<S> k = crank_kinematics(v.crank, sin_theta, cos_theta);
-  return motion_on(v, instant_at(v, k, omega, i, v_t, branch.stroke, branch.direction), i, v_t, branch);
+  const S N_k_beta = spring_moment(v, k);
+  return motion_on(v, instant_at(v, k, N_k_beta, omega, i, v_t, branch.stroke, branch.direction), i, v_t, branch);
 }
 
 /// The current [A] where L_a = 0: i = (v - K omega) / R_a.
