@@ -10,7 +10,7 @@
 #include <set>
 #include <utility>
 
-#include "toml_document.hpp"
+#include "study_sections.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/io/design_keys.hpp"
 #include "wingbeat/io/units.hpp"
@@ -19,7 +19,7 @@ namespace wingbeat {
 namespace {
 
 namespace fs = std::filesystem;
-using Kind = TomlNode::Kind;
+using detail::Kind, detail::Place, detail::place_of, detail::toml_text;
 
 constexpr std::uint64_t longest_axis = 1000000;
 constexpr std::uint64_t most_designs = 1000000000000;
@@ -31,55 +31,9 @@ constexpr std::string_view table_keys[] = {"wing.planform.file", "wing.planform.
                                            "aerodynamics.coefficients.table"};
 constexpr std::string_view own_variables[] = {"status", "recomputed", "error_estimate", "sample"};
 
-struct Place {
-  int line = 0, column = 0;
-};
-Place place_of(const TomlNode& node) { return {node.line, node.column}; }
-
-/// A node as a TOML value on one line.
-std::string toml_text(const TomlNode& node) {
-  std::string text;
-  switch (node.kind) {
-    case Kind::text:
-      text = "\"";
-      for (const char c : node.text) {
-        if (c == '"' || c == '\\') text += '\\';
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) text += fmt::format("\\u{:04X}", int(c));
-        else text += c;
-      }
-      return text + "\"";
-    case Kind::number: return node.whole ? fmt::format("{:.0f}", node.number) : fmt::format("{:#}", node.number);
-    case Kind::boolean: return node.number != 0.0 ? "true" : "false";
-    case Kind::array:
-      for (const TomlNode& item : node.items) text += (text.empty() ? "" : ", ") + toml_text(item);
-      return "[" + text + "]";
-    case Kind::table:
-      for (const auto& [key, value] : node.members) {
-        text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", key, toml_text(value));
-      }
-      return "{" + text + "}";
-    case Kind::other: break;
-  }
-  return "1970-01-01";
-}
-
-std::string joined(std::span<const std::string_view> names) { return fmt::format("{}", fmt::join(names, ", ")); }
-
-class StudyReader {
+class StudyReader : public detail::StudySections {
  public:
-  /// Everything that refuses does so in the study file unless it names another.
-  StudyReader(std::string name, std::string_view text) : name_(std::move(name)), root_(parse_toml_tree(text, name_)) {
-    known_keys(root_, "", {"study", "set", "axis", "samples"});
-    study_ = &need(root_, "", "study", "a section [study] with the name of a vehicle file");
-    if (study_->kind != Kind::table) wrong(*study_, "study", "a section [study]");
-    known_keys(*study_, "study", {"vehicle", "title", "tolerance", "metrics", "hold"});
-    read_hold();
-  }
-
-  std::string vehicle_file() const {
-    const TomlNode& node = need(*study_, "study", "vehicle", "the name of a vehicle file");
-    return text_of(node, "study.vehicle", "the name of a vehicle file");
-  }
+  StudyReader(std::string name, std::string_view text) : StudySections(std::move(name), text, {"axis", "samples"}) {}
 
   /// The CSV of designs that the study names, or nothing.
   std::optional<std::string> table_file() const {
@@ -89,41 +43,14 @@ class StudyReader {
     return text_of(*file, "samples.file", "the name of a CSV file");
   }
 
-  [[noreturn]] void refuse_file(const char* section, const char* key, const std::string& message) const {
-    const TomlNode* node = root_.find(section)->find(key);
-    refuse(*node, fmt::format("{}.{}", section, key), message);
-  }
-
-  /// The vehicle file with [set] and a held voltage, complete in itself.
-  std::string vehicle_text(const fs::path& file) const {
-    read_design(file);  // its own errors come first, at its own lines
-    std::vector<std::string> overrides;
-    std::vector<std::pair<Place, std::string>> origins;
-    const auto add = [&](const std::string& key, const TomlNode& value, const std::string& shown) {
-      overrides.push_back(fmt::format("{}={}", key, toml_text(value)));
-      origins.emplace_back(place_of(value), shown);
-    };
-    for (const auto& [key, value] : set_) add(key, *value, "set." + key);
-    if (held_voltage_) add("supply.voltage", *held_voltage_, "study.hold.voltage");
-    try {
-      return write_design(read_design(file, overrides));
-    } catch (const InputError& error) {
-      for (std::size_t k = 0; k < overrides.size(); ++k) {
-        if (error.file() != "--set " + one_line(overrides[k], 120)) continue;
-        throw InputError(name_, origins[k].first.line, origins[k].first.column, origins[k].second, reason_of(error));
-      }
-      throw;
-    }
-  }
-
   Study read(const StudyInput& input) {
     Study study;
     study.input = input;
     input_ = &input;
     sweep_ = &study.sweep;
     if (const TomlNode* title = study_->find("title")) study.title = text_of(*title, "study.title", "a text");
-    read_tolerance();
-    read_metrics();
+    read_tolerance(sweep_->options);
+    read_metrics(sweep_->options);
     if (held_frequency_) sweep_->frequency = quantity(*held_frequency_, "study.hold.frequency", "Hz");
     if (sweep_->frequency && !(*sweep_->frequency > 0.0)) {
       refuse(*held_frequency_, "study.hold.frequency", "must be > 0 Hz");
@@ -143,156 +70,6 @@ class StudyReader {
   }
 
  private:
-  // ---- Refusals and plain values
-
-  [[noreturn]] void refuse(Place p, const std::string& key, const std::string& message) const {
-    throw InputError(name_, p.line, p.column, key, message);
-  }
-  [[noreturn]] void refuse(const TomlNode& node, const std::string& key, const std::string& message) const {
-    refuse(place_of(node), key, message);
-  }
-  [[noreturn]] void wrong(const TomlNode& node, const std::string& key, std::string_view expected) const {
-    refuse(node, key, fmt::format("expected {}, got {}", expected, kind_of(node)));
-  }
-
-  static std::string within(std::string_view section, std::string_view key) {
-    const std::string shown = one_line(key);
-    return section.empty() ? shown : fmt::format("{}.{}", section, shown);
-  }
-
-  void known_keys(const TomlNode& table, const std::string& section,
-                  std::initializer_list<std::string_view> known) const {
-    const std::span<const std::string_view> names(known.begin(), known.size());
-    for (const auto& [key, node] : table.members) {
-      if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-      const std::string_view near = nearest_name(key, names);
-      refuse(node, within(section, key),
-             near.empty() ? fmt::format("unknown key; known here: {}", joined(names))
-                          : fmt::format("unknown key; did you mean {}?", within(section, near)));
-    }
-  }
-
-  const TomlNode& need(const TomlNode& table, const std::string& section, std::string_view key,
-                       std::string_view expected) const {
-    const TomlNode* node = table.find(key);
-    if (!node) {
-      const Place p = table.line > 0 ? place_of(table) : Place{1, 1};
-      refuse(p, within(section, key), fmt::format("missing; expected {}", expected));
-    }
-    return *node;
-  }
-
-  std::string text_of(const TomlNode& node, const std::string& key, std::string_view expected) const {
-    if (node.kind != Kind::text || node.text.empty()) wrong(node, key, expected);
-    return node.text;
-  }
-
-  double quantity(const TomlNode& node, const std::string& key, std::string_view unit) const {
-    if (node.kind == Kind::number && std::isfinite(node.number)) return node.number;
-    if (node.kind != Kind::text) wrong(node, key, quantity_example(unit));
-    try {
-      return parse_quantity(node.text, unit);
-    } catch (const UnitError& error) {
-      refuse(node, key, error.what());
-    }
-  }
-
-  std::uint64_t whole_number(const TomlNode& node, const std::string& key, std::uint64_t least,
-                             std::uint64_t most) const {
-    const std::string expected = fmt::format("a whole number from {} to {}", least, most);
-    if (node.kind != Kind::number || !node.whole) wrong(node, key, expected);
-    if (!(node.number >= double(least) && node.number <= double(most))) wrong(node, key, expected);
-    return std::uint64_t(node.number);
-  }
-
-  std::string one_of(const TomlNode& node, const std::string& key, std::initializer_list<std::string_view> known) const {
-    const std::span<const std::string_view> names(known.begin(), known.size());
-    std::string expected;
-    for (const std::string_view name : names) {
-      expected += fmt::format("{}\"{}\"", expected.empty() ? "" : name == names.back() ? " or " : ", ", name);
-    }
-    if (node.kind != Kind::text || std::find(known.begin(), known.end(), node.text) == known.end()) {
-      wrong(node, key, expected);
-    }
-    return node.text;
-  }
-
-  /// What an error of a vehicle says, without its place: `key: reason`.
-  static std::string reason_of(const InputError& error) {
-    const std::string text = error.what();
-    std::string prefix = error.file();
-    if (error.line() > 0) prefix += fmt::format(":{}:{}", error.line(), error.column());
-    return text.substr(std::min(text.size(), prefix.size() + 2));
-  }
-
-  // ---- [study] and [set]
-
-  void read_hold() {
-    if (const TomlNode* set = root_.find("set")) {
-      if (set->kind != Kind::table) wrong(*set, "set", "a section [set] of vehicle-file keys");
-      flatten(*set, "");
-    }
-    const TomlNode* hold = study_->find("hold");
-    if (!hold) return;
-    if (hold->kind != Kind::table) wrong(*hold, "study.hold", "{ voltage = \"3 V\" } or { frequency = \"22 Hz\" }");
-    known_keys(*hold, "study.hold", {"voltage", "frequency"});
-    held_voltage_ = hold->find("voltage");
-    held_frequency_ = hold->find("frequency");
-    if (bool(held_voltage_) == bool(held_frequency_)) {
-      refuse(*hold, "study.hold", "give one of voltage and frequency");
-    }
-    if (held_voltage_ && !(quantity(*held_voltage_, "study.hold.voltage", "V") >= 0.0)) {
-      refuse(*held_voltage_, "study.hold.voltage", "must be >= 0 V");
-    }
-    if (set_.contains("supply.voltage")) refuse(*hold, "study.hold", "[set] gives supply.voltage already");
-  }
-
-  void flatten(const TomlNode& table, const std::string& path) {
-    for (const auto& [key, node] : table.members) {
-      const std::string full = path.empty() ? key : path + "." + key;
-      const bool known = find_key<double>(full) != nullptr;
-      if (!known && !is_section(full)) refuse(node, "set." + one_line(full), unknown_key_message(full));
-      if (!known && node.kind == Kind::table && full != "wing.planform" && full != "aerodynamics.coefficients") {
-        flatten(node, full);
-      } else {
-        set_.emplace(full, &node);
-      }
-    }
-  }
-
-  void read_tolerance() {
-    const TomlNode* node = study_->find("tolerance");
-    if (!node) return;
-    const bool fits = node->kind == Kind::number && node->number >= 1e-12 && node->number <= 1e-2;
-    if (!fits) wrong(*node, "study.tolerance", "a number from 1e-12 to 1e-2");
-    sweep_->options.tolerance = node->number;
-  }
-
-  void read_metrics() {
-    const TomlNode* node = study_->find("metrics");
-    if (!node) return;
-    if (node->kind != Kind::array || node->items.empty()) {
-      wrong(*node, "study.metrics", "an array of names such as [\"frequency_hz\", \"lift_mean_n\"]");
-    }
-    std::vector<std::string_view> names;
-    for (const MetricInfo& metric : metric_table()) names.push_back(metric.key);
-    sweep_->options.metrics.reset();
-    for (const TomlNode& item : node->items) {
-      if (item.kind != Kind::text) wrong(item, "study.metrics", "the name of a metric");
-      const int index = metric_index(item.text);
-      if (index == metric_count) {
-        const std::string_view near = nearest_name(item.text, names);
-        refuse(item, "study.metrics",
-               near.empty() ? fmt::format("{} is no metric; the metrics are {}", in_quotes(item.text), joined(names))
-                            : fmt::format("{} is no metric; did you mean {}?", in_quotes(item.text), near));
-      }
-      if (sweep_->options.metrics[std::size_t(index)]) {
-        refuse(item, "study.metrics", fmt::format("{} is given twice", in_quotes(item.text)));
-      }
-      sweep_->options.metrics.set(std::size_t(index));
-    }
-  }
-
   // ---- [[axis]]
 
   /// What is varied under that name. `where` is the key of the study file that gives the name.
@@ -826,12 +603,6 @@ class StudyReader {
     }
   }
 
-  std::string name_;
-  TomlNode root_;
-  const TomlNode* study_ = nullptr;
-  const TomlNode* held_voltage_ = nullptr;
-  const TomlNode* held_frequency_ = nullptr;
-  std::map<std::string, const TomlNode*, std::less<>> set_;
   bool frequency_axis_ = false;
   std::set<std::string> used_;
   std::map<std::string, Place, std::less<>> origins_;  ///< of the varied keys

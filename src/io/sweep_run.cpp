@@ -277,6 +277,29 @@ SweepResult run_sweep(const Study& study, const SweepRunOptions& options) {
   return result;
 }
 
+SweepColumns solve_sweep(const Sweep& sweep, int threads, const std::function<void(const SweepProgress&)>& progress) {
+  std::optional<tbb::global_control> limit;
+  if (threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
+  Solvers solvers = make_solvers(sweep);
+  const ChunkLayout layout{sweep.size(), sweep.size(), sweep.options.metrics.count()};
+  SweepColumns columns;
+  SweepProgress state;
+  state.designs = sweep.size();
+  std::mutex mutex;
+  const Clock::time_point start = Clock::now();
+  Clock::time_point shown = start;
+  solve_chunk(solvers, layout, 0, columns, [&](std::size_t designs) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    state.done = state.computed += designs;
+    const Clock::time_point now = Clock::now();
+    if (!progress || now - shown < std::chrono::milliseconds(100)) return;
+    shown = now;
+    state.seconds = std::chrono::duration<double>(now - start).count();
+    progress(state);
+  });
+  return columns;
+}
+
 void serve_sweep(Ranks& ranks, int threads) {
   std::optional<tbb::global_control> limit;
   if (threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(threads));

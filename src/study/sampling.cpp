@@ -62,6 +62,10 @@ double LatinHypercube::operator()(std::uint64_t index, std::size_t dimension) co
   return (double(permuted(index, count, key)) + within) / double(count);
 }
 
+double PseudoRandom::operator()(std::uint64_t index, std::size_t dimension) const {
+  return (double(mixed(mixed(seed, 2 * dimension), index) >> 12) + 0.5) * 0x1p-52;
+}
+
 ScrambledSobol::ScrambledSobol(std::size_t dimensions, std::uint64_t seed) {
   require(dimensions >= 1 && dimensions <= most_dimensions, "samples", "must vary 1 to 100 parameters", "1",
           double(dimensions));

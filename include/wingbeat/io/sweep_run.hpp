@@ -49,6 +49,11 @@ std::filesystem::path journal_file(const std::filesystem::path& output);
 /// written or is something else, std::runtime_error where there is no room; what is finished is kept then.
 SweepResult run_sweep(const Study& study, const SweepRunOptions& options);
 
+/// A whole sweep that fits into memory, by at most so many threads (0: one for each core). `progress` is called as that
+/// of run_sweep is.
+SweepColumns solve_sweep(const Sweep& sweep, int threads = 0,
+                         const std::function<void(const SweepProgress&)>& progress = {});
+
 /// On rank 0: lets the other ranks go in the end, whatever happens.
 class SweepRelease {
  public:

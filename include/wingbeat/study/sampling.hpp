@@ -18,6 +18,14 @@ struct LatinHypercube {
   double operator()(std::uint64_t index, std::size_t dimension) const;
 };
 
+/// Pseudo-random numbers, independent of each other: plain Monte Carlo.
+struct PseudoRandom {
+  std::uint64_t seed = 0;
+
+  /// Coordinate of a sample, between 0 and 1.
+  double operator()(std::uint64_t index, std::size_t dimension) const;
+};
+
 /// The Sobol sequence with the direction numbers of Boost.Random (Joe and Kuo 2008) under Owen's nested scrambling, by
 /// the hash of Laine and Karras in Vegdahl's form (Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020).
 /// Any 2^k samples from a multiple of 2^k on hold one in each of 2^k equal intervals along each dimension.

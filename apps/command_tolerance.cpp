@@ -1,0 +1,97 @@
+// wingbeat tolerance STUDY: what uncertain parameters do to a vehicle's metrics.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "command.hpp"
+#include "wingbeat/io/output_file.hpp"
+#include "wingbeat/io/sweep_run.hpp"
+#include "wingbeat/io/tolerance_file.hpp"
+#include "wingbeat/study/run.hpp"
+
+namespace wingbeat::app {
+namespace {
+
+struct Arguments {
+  std::string study, output, plot, plot_metric;
+  int threads = 0;
+  bool json = false;
+};
+
+void show_progress(const SweepProgress& p) {
+  const double percent = 100.0 * double(p.done) / double(p.designs);
+  fmt::print(stderr, "\r{:<78}", fmt::format("tolerance: {:.0f} % of {} vehicles", percent, p.designs));
+}
+
+int run(const Arguments& arguments) {
+  std::optional<PlotFormat> format;
+  if (!arguments.plot.empty()) {
+    format = plot_format(arguments.plot);
+    if (!format) throw InputError("--plot " + arguments.plot, 0, 0, "", "the name must end in .svg, .pdf or .png");
+  }
+  if (!arguments.output.empty() && std::filesystem::path(arguments.output).extension() != ".nc") {
+    throw InputError("-o " + arguments.output, 0, 0, "", "the name must end in .nc");
+  }
+  const ToleranceStudy study = read_tolerance_study(arguments.study);
+  const std::string option = "--plot-metric " + arguments.plot_metric;
+  if (!arguments.plot_metric.empty()) {
+    const int index = metric_index(arguments.plot_metric);
+    if (index == metric_count || !study.options.metrics[std::size_t(index)]) {
+      throw InputError(option, 0, 0, "", "is not among the metrics of the study");
+    }
+  }
+  std::optional<OutputFile> output, plot;
+  if (!arguments.output.empty()) output.emplace("-o", arguments.output);
+  if (format) plot.emplace("--plot", arguments.plot);
+
+  const bool terminal = ::isatty(STDERR_FILENO) != 0;
+  std::function<void(const SweepProgress&)> progress;
+  if (terminal) progress = show_progress;
+  const SweepColumns columns = solve_sweep(tolerance_sweep(study), arguments.threads, progress);
+  if (terminal) fmt::print(stderr, "\r{:<78}\r", "");
+  const ToleranceResult result = assess_tolerance(study, columns, start_up_in_time());
+
+  if (output) {
+    write_tolerance(study, result, columns, read_text_file(arguments.study), version, output->temporary());
+    output->commit();
+  }
+  if (plot) {
+    const ToleranceOutput* drawn =
+        arguments.plot_metric.empty() ? main_output(result) : result.find(arguments.plot_metric);
+    if (!drawn || !(drawn->deviation > 0.0)) {
+      throw InputError("--plot " + arguments.plot, 0, 0, "",
+                       "nothing to draw: no vehicle flaps, or the metric does not vary");
+    }
+    plot_tolerance(study, columns, *drawn, *format, plot->temporary());
+    plot->commit();
+  }
+  print(arguments.json ? json_tolerance(study, result) : text_tolerance(study, result));
+  return result.status[std::size_t(SweepStatus::flapping)].count > 0 ? done : does_not_flap;
+}
+
+}  // namespace
+
+void add_tolerance(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("tolerance", "What uncertain parameters do to a vehicle's metrics");
+  const auto a = std::make_shared<Arguments>();
+  command->add_option("study", a->study, "Study file (TOML): vehicle, distributions")->required()->type_name("STUDY");
+  command->add_option("-o,--output", a->output, "Write samples, metrics and indices (NetCDF-4)")->type_name("FILE.nc");
+  command->add_flag("--json", a->json, "Print one JSON object instead of tables");
+  command->add_option("--threads", a->threads, "Use at most so many threads (default: one for each core)")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  CLI::Option* plot =
+      command->add_option("--plot", a->plot, "Draw a metric's distribution and sources to FILE.svg, .pdf or .png")
+          ->type_name("FILE");
+  command->add_option("--plot-metric", a->plot_metric, "Which one (default: lift to weight, else mean lift)")
+      ->needs(plot)
+      ->type_name("METRIC");
+  command->footer("Example:\n  wingbeat tolerance data/studies/tolerance-hover.toml --plot tolerance.svg\n\n"
+                  "Exit status: 0 done, 2 bad input or usage, 3 no vehicle flaps, 1 anything else.");
+  command->callback([a, &action] { action = [a] { return run(*a); }; });
+}
+
+}  // namespace wingbeat::app

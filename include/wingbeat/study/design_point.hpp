@@ -1,0 +1,35 @@
+// One design of a study with its exact derivatives.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "wingbeat/cycle/orbit_gradient.hpp"
+#include "wingbeat/study/frequency_search.hpp"
+#include "wingbeat/study/sweep.hpp"
+
+namespace wingbeat {
+
+struct DesignPointOptions {
+  Condition condition = Condition::air;
+  std::optional<double> frequency;  ///< held [Hz]; the voltage follows
+  double tolerance = 1e-6;          ///< of the orbit
+  bool peaks = true;                ///< differentiate metrics that are peaks
+};
+
+/// What a design does, and how its metrics change with parameters.
+struct DesignPoint {
+  SweepStatus status = SweepStatus::invalid;
+  std::string detail;       ///< one sentence: why it does not flap
+  Metrics<double> metrics;  ///< all absent unless flapping
+  /// By each parameter, SI; the supply's voltage and duty included. All absent unless flapping and regular.
+  std::vector<std::array<double, metric_count>> gradients;
+};
+
+/// Solves a design by the scalar solver; a design out of its physical range has the status invalid. Throws
+/// ParameterError for a parameter without a value in the design.
+DesignPoint design_point(const Design<double>& design, const DesignPointOptions& options,
+                         std::span<const DesignParameter> parameters, const StartUp& start_up);
+
+}  // namespace wingbeat

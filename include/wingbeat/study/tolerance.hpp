@@ -1,0 +1,94 @@
+// What uncertain parameters do to a vehicle's metrics: samples of their joint distribution, solved as a sweep, and the
+// linear prediction from the gradient beside them.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "wingbeat/study/design_point.hpp"
+#include "wingbeat/study/distribution.hpp"
+#include "wingbeat/study/sobol_indices.hpp"
+#include "wingbeat/study/sweep.hpp"
+
+namespace wingbeat {
+
+struct UncertainParameter {
+  DesignParameter parameter;
+  Distribution distribution;
+  bool correlated = false;  ///< one of those that share ToleranceStudy::covariance; `distribution` is its marginal
+};
+
+enum class ToleranceMethod {
+  sobol,       ///< scrambled Sobol sequence
+  monte_carlo  ///< pseudo-random
+};
+
+struct ToleranceStudy {
+  std::string title;
+  Design<double> design;
+  Condition condition = Condition::air;
+  std::optional<double> frequency;  ///< held [Hz]
+  EnsembleOptions options;
+  std::vector<UncertainParameter> parameters;
+  std::vector<std::vector<double>> covariance;  ///< of the correlated parameters, in their order [SI]; or empty
+  std::string covariance_name;                  ///< what they are called together
+  ToleranceMethod method = ToleranceMethod::sobol;
+  std::uint64_t count = 1024;  ///< N: rows of one sample
+  std::uint64_t seed = 1;
+  bool indices = true;         ///< Sobol indices: 2 N vehicles and N more for each factor, instead of N
+  int resamples = 500;         ///< of the bootstrap
+};
+
+/// Inputs that vary independently of each other: each parameter, the correlated ones together.
+struct ToleranceFactor {
+  std::string name;
+  std::vector<std::size_t> parameters;
+};
+std::vector<ToleranceFactor> factors(const ToleranceStudy& study);
+
+/// The covariance matrix of all parameters [SI].
+std::vector<std::vector<double>> parameter_covariance(const ToleranceStudy& study);
+
+/// Vehicles of the plain sample: N, or 2 N with indices. The others mix rows of its two halves.
+std::uint64_t base_count(const ToleranceStudy& study);
+
+/// All vehicles of the study as one axis of samples: A, B, then A with the factor i taken from B for each i. Throws
+/// ParameterError for more parameters than a Sobol sequence has dimensions and for a covariance that is not positive
+/// definite.
+Sweep tolerance_sweep(const ToleranceStudy& study);
+
+/// A share of the samples with its 95 % interval (Wilson; wider than need be for a Sobol sequence).
+struct Probability {
+  std::uint64_t count = 0;
+  double share = 0.0, lower = 0.0, upper = 1.0;
+};
+Probability probability_of(std::uint64_t count, std::uint64_t of);
+
+/// One output of the study. Moments and percentiles are of the vehicles that flap.
+struct ToleranceOutput {
+  std::string name;        ///< key of the metric; "flaps", "hovers" for 0 or 1
+  std::optional<Metric> metric;
+  double mean = absent, deviation = absent;
+  double least = absent, p025 = absent, median = absent, p975 = absent, most = absent;
+  double linear_mean = absent, linear_deviation = absent;  ///< from the gradient at the parameters' means
+  std::vector<double> linear_share;  ///< of the linear variance, by factor; empty where there is none
+  std::optional<SobolIndices> indices;  ///< where it varies by more than the tolerance of the orbits
+};
+
+struct ToleranceResult {
+  std::uint64_t vehicles = 0;  ///< solved, those for indices included
+  std::array<Probability, sweep_status_count> status;
+  std::optional<Probability> hover;  ///< lift_to_weight >= 1, where the mass is known
+  double linear_hover = absent;      ///< the same from the linear prediction; absent where it has none
+  DesignPoint centre;                ///< at the parameters' means
+  std::vector<ToleranceOutput> outputs;
+
+  const ToleranceOutput* find(std::string_view name) const;
+};
+
+/// Sums up the solved sweep of tolerance_sweep(study).
+ToleranceResult assess_tolerance(const ToleranceStudy& study, const SweepColumns& columns, const StartUp& start_up);
+
+}  // namespace wingbeat

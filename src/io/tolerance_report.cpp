@@ -1,0 +1,374 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "figure.hpp"
+#include "wingbeat/io/design_file.hpp"
+#include "wingbeat/io/design_keys.hpp"
+#include "wingbeat/io/netcdf.hpp"
+#include "wingbeat/io/report.hpp"
+#include "wingbeat/io/tolerance_file.hpp"
+#include "wingbeat/io/units.hpp"
+
+namespace wingbeat {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+
+std::string percent(double x) {
+  // Never rounded to certainty.
+  if (x > 0.0 && x < 5e-5) return "< 0.01 %";
+  if (x < 1.0 && x > 0.99995) return "> 99.99 %";
+  return fmt::format("{:.2f} %", 100.0 * x);
+}
+
+std::string share_text(double x, double low, double high) {
+  return fmt::format("{:5.3f} ({:5.3f} .. {:5.3f})", x, low, high);
+}
+
+std::string spread_text(const Distribution& d, bool correlated, const std::string& unit) {
+  const std::string u = unit == "1" ? "" : " " + unit;
+  std::string text;
+  switch (d.kind) {
+    case DistributionKind::uniform: return fmt::format("uniform, {:.4g} to {:.4g}{}", d.lower, d.upper, u);
+    case DistributionKind::normal: text = fmt::format("normal, {:.4g} +- {:.2g}{}", d.centre, d.spread, u); break;
+    case DistributionKind::lognormal:
+      text = fmt::format("lognormal, median {:.4g}{}, factor {:.3g}", d.centre, u, std::exp(d.spread));
+      break;
+  }
+  if (std::isfinite(d.lower)) text += fmt::format(", not below {:.4g}", d.lower);
+  if (std::isfinite(d.upper)) text += fmt::format(", not above {:.4g}", d.upper);
+  return text + (correlated ? ", correlated" : "");
+}
+
+/// The samples' values of an output that is a metric.
+std::span<const double> samples_of(const ToleranceStudy& study, const SweepColumns& columns, Metric metric) {
+  std::size_t column = 0;
+  for (int m = 0; m < int(metric); ++m) column += study.options.metrics[std::size_t(m)];
+  return std::span(columns.metrics[column]).subspan(0, base_count(study));
+}
+
+Json probability(const Probability& p) {
+  return {{"count", p.count}, {"share", p.share}, {"lower_95", p.lower}, {"upper_95", p.upper}};
+}
+
+}  // namespace
+
+const ToleranceOutput* main_output(const ToleranceResult& result) {
+  for (const char* name : {"lift_to_weight", "lift_mean_n"}) {
+    const ToleranceOutput* output = result.find(name);
+    if (output && output->deviation > 0.0) return output;
+  }
+  for (const ToleranceOutput& output : result.outputs) {
+    if (output.metric && output.deviation > 0.0) return &output;
+  }
+  return nullptr;
+}
+
+std::string text_tolerance(const ToleranceStudy& study, const ToleranceResult& result) {
+  std::string text;
+  auto out = std::back_inserter(text);
+  if (!study.title.empty()) fmt::format_to(out, "{}\n", wrapped(study.title, 100, 0));
+  const char* method = study.method == ToleranceMethod::sobol ? "scrambled Sobol" : "Monte Carlo";
+  fmt::format_to(out, "{} {} samples", base_count(study), method);
+  if (study.indices) fmt::format_to(out, ", {} vehicles with those for the indices", result.vehicles);
+  if (study.frequency) fmt::format_to(out, "; flapping held at {:.6g} Hz", *study.frequency);
+  fmt::format_to(out, "\n\nUncertain parameters\n");
+  for (const UncertainParameter& p : study.parameters) {
+    fmt::format_to(out, "  {:<34}{}\n", p.parameter.key, spread_text(p.distribution, p.correlated, p.parameter.unit));
+  }
+
+  fmt::format_to(out, "\nProbability                             95 % interval\n");
+  const auto line = [&](const std::string& name, const Probability& p, const std::string& note) {
+    fmt::format_to(out, "  {:<24}{:>10}    {} .. {}{}\n", name, percent(p.share), percent(p.lower), percent(p.upper),
+                   note.empty() ? "" : "   " + note);
+  };
+  for (int s = 0; s < sweep_status_count; ++s) {
+    const Probability& p = result.status[std::size_t(s)];
+    if (p.count > 0 || s <= int(SweepStatus::stalled)) line(name_of(SweepStatus(s)), p, "");
+  }
+  if (result.hover) {
+    line("hovers", *result.hover,
+         std::isfinite(result.linear_hover) ? fmt::format("linear prediction {}", percent(result.linear_hover)) : "");
+  }
+  if (result.centre.status != SweepStatus::flapping) {
+    const std::string reason = fmt::format("No linear prediction: at the parameters' means the vehicle is {}: {}",
+                                           name_of(result.centre.status), result.centre.detail);
+    fmt::format_to(out, "{}\n", wrapped(reason, 100, 2));
+  }
+
+  fmt::format_to(out, "\n{:<34}{:>11}{:>11}{:>11}{:>11} {:>11}{:>11}\n", "Metric (those that flap)", "mean",
+                 "deviation", "2.5 %", "97.5 %", "lin. mean", "lin. dev.");
+  const auto cell = [](double x) { return std::isfinite(x) ? fmt::format("{:.4g}", x) : std::string("-"); };
+  for (const ToleranceOutput& o : result.outputs) {
+    if (!o.metric || !(o.deviation > 0.0)) continue;
+    fmt::format_to(out, "  {:<32}{:>11}{:>11}{:>11}{:>11} {:>11}{:>11}\n", o.name, cell(o.mean),
+                   cell(o.deviation), cell(o.p025), cell(o.p975), cell(o.linear_mean), cell(o.linear_deviation));
+  }
+
+  const auto inputs = factors(study);
+  const auto sources = [&](const ToleranceOutput& o) {
+    const bool sobol = o.indices && o.indices->rows > 1;
+    if (!sobol && o.linear_share.empty()) return;
+    fmt::format_to(out, "\nWhere the variance of {} comes from\n  {:<34}", o.name, "");
+    if (sobol) fmt::format_to(out, "{:<26}{:<26}", "first order (95 %)", "total (95 %)");
+    fmt::format_to(out, "linear\n");
+    std::vector<std::size_t> order(inputs.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    const auto weight = [&](std::size_t i) { return sobol ? o.indices->inputs[i].total : o.linear_share[i]; };
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return weight(a) > weight(b); });
+    double sum = 0.0;
+    for (const std::size_t i : order) {
+      fmt::format_to(out, "  {:<34}", inputs[i].name);
+      if (sobol) {
+        const SobolIndex& s = o.indices->inputs[i];
+        sum += s.first;
+        fmt::format_to(out, "{:<26}{:<26}", share_text(s.first, s.first_lower, s.first_upper),
+                       share_text(s.total, s.total_lower, s.total_upper));
+      }
+      fmt::format_to(out, "{}\n", o.linear_share.empty() ? "-" : fmt::format("{:.3f}", o.linear_share[i]));
+    }
+    if (sobol) fmt::format_to(out, "  {:<34}{:5.3f}: the rest are interactions and noise\n", "sum of first order", sum);
+    if (sobol && o.indices->rows < study.count) {
+      fmt::format_to(out, "{}\n", wrapped(fmt::format("  from {} of {} rows: in the others a vehicle does not flap",
+                                                      o.indices->rows, study.count), 100, 2));
+    }
+  };
+  if (const ToleranceOutput* o = main_output(result)) sources(*o);
+  for (const char* name : {"hovers", "flaps", "power_electrical_w"}) {
+    if (const ToleranceOutput* o = result.find(name)) sources(*o);
+  }
+  for (const ToleranceFactor& factor : inputs) {
+    if (factor.parameters.size() < 2) continue;
+    std::string names;
+    for (const std::size_t k : factor.parameters) {
+      names += (names.empty() ? "" : ", ") + study.parameters[k].parameter.key;
+    }
+    const std::string sentence = fmt::format(
+        "{} stands for {}: they are correlated, so they vary together and share one index.", factor.name, names);
+    fmt::format_to(out, "\n{}\n", wrapped(sentence, 100, 0));
+  }
+  return text;
+}
+
+std::string json_tolerance(const ToleranceStudy& study, const ToleranceResult& result) {
+  Json json;
+  json["title"] = study.title;
+  json["method"] = study.method == ToleranceMethod::sobol ? "sobol" : "monte-carlo";
+  json["samples"] = base_count(study);
+  json["vehicles"] = result.vehicles;
+  for (const UncertainParameter& p : study.parameters) {
+    json["parameters"].push_back({{"key", p.parameter.key}, {"unit", p.parameter.unit},
+                                  {"mean", p.distribution.mean()},
+                                  {"deviation", std::sqrt(p.distribution.variance())}, {"correlated", p.correlated}});
+  }
+  for (int s = 0; s < sweep_status_count; ++s) {
+    json["probability"][name_of(SweepStatus(s))] = probability(result.status[std::size_t(s)]);
+  }
+  json["probability"]["hover"] = result.hover ? probability(*result.hover) : Json(nullptr);
+  json["probability"]["hover_linear"] = number(result.linear_hover);
+  const auto inputs = factors(study);
+  for (const ToleranceOutput& o : result.outputs) {
+    Json& entry = json["outputs"][o.name];
+    entry = {{"mean", number(o.mean)}, {"deviation", number(o.deviation)}, {"least", number(o.least)},
+             {"percentile_2_5", number(o.p025)}, {"median", number(o.median)}, {"percentile_97_5", number(o.p975)},
+             {"most", number(o.most)}, {"linear_mean", number(o.linear_mean)},
+             {"linear_deviation", number(o.linear_deviation)}};
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      Json factor = {{"name", inputs[i].name}};
+      if (!o.linear_share.empty()) factor["linear_share"] = number(o.linear_share[i]);
+      if (o.indices) {
+        const SobolIndex& s = o.indices->inputs[i];
+        factor["first"] = number(s.first);
+        factor["first_95"] = {number(s.first_lower), number(s.first_upper)};
+        factor["total"] = number(s.total);
+        factor["total_95"] = {number(s.total_lower), number(s.total_upper)};
+      }
+      if (factor.size() > 1) entry["factors"].push_back(factor);
+    }
+    if (o.indices) entry["rows"] = o.indices->rows;
+  }
+  return json.dump(2) + "\n";
+}
+
+void write_tolerance(const ToleranceStudy& study, const ToleranceResult& result, const SweepColumns& columns,
+                     const std::string& input, const std::string& version, const std::filesystem::path& file) {
+  NetcdfFile data(file);
+  data.set_attribute("Conventions", "CF-1.8");
+  data.set_attribute("title", study.title.empty() ? "tolerance study" : study.title);
+  data.set_attribute("source", "wingbeat " + version);
+  data.set_attribute("study", input);
+  data.set_attribute("vehicle", write_design(study.design));
+  data.set_attribute("condition", name_of(study.condition));
+  const std::size_t base = std::size_t(base_count(study));
+  const auto sample = data.define_dimension("sample", base);
+  const Sweep sweep = tolerance_sweep(study);
+  for (const SweptQuantity& q : sweep.axes.front().quantities) {
+    data.write(data.define_variable(q.name, {sample}, q.unit, std::string(find_key<double>(q.key)->meaning)),
+               std::span(q.values).subspan(0, base));
+  }
+  const auto status =
+      data.define_dense("status", {sample}, "1", "what became of the vehicle", NetcdfFile::Storage::flag);
+  std::vector<std::string> names;
+  for (int s = 0; s < sweep_status_count; ++s) names.push_back(name_of(SweepStatus(s)));
+  data.set_flags(status, names);
+  data.write_run(status, 0, std::span(columns.status).subspan(0, base));
+  for (int m = 0; m < metric_count; ++m) {
+    if (!study.options.metrics[std::size_t(m)]) continue;
+    const MetricInfo& info = metric_table()[std::size_t(m)];
+    const auto variable = data.define_variable(info.key, {sample}, info.unit, info.long_name);
+    data.write(variable, samples_of(study, columns, Metric(m)));
+  }
+
+  const auto inputs = factors(study);
+  const auto factor = data.define_dimension("factor", inputs.size());
+  const auto output = data.define_dimension("output", result.outputs.size());
+  std::vector<std::string> labels;
+  for (const ToleranceFactor& f : inputs) labels.push_back(f.name);
+  data.define_texts("factor", factor, labels, "what varies independently");
+  labels.clear();
+  for (const ToleranceOutput& o : result.outputs) labels.push_back(o.name);
+  data.define_texts("output", output, labels, "metric, or 0 and 1 for flaps and hovers");
+  const auto table = [&](const char* name, const char* meaning, const auto& value) {
+    std::vector<double> values;
+    for (const ToleranceOutput& o : result.outputs) {
+      for (std::size_t i = 0; i < inputs.size(); ++i) values.push_back(value(o, i));
+    }
+    data.write(data.define_variable(name, {output, factor}, "1", meaning), values);
+  };
+  const auto index = [](double SobolIndex::*member) {
+    return [member](const ToleranceOutput& o, std::size_t i) {
+      return o.indices ? o.indices->inputs[i].*member : absent;
+    };
+  };
+  table("sobol_first", "Sobol index of first order", index(&SobolIndex::first));
+  table("sobol_first_lower", "its 95 % interval, lower end", index(&SobolIndex::first_lower));
+  table("sobol_first_upper", "its 95 % interval, upper end", index(&SobolIndex::first_upper));
+  table("sobol_total", "total Sobol index", index(&SobolIndex::total));
+  table("sobol_total_lower", "its 95 % interval, lower end", index(&SobolIndex::total_lower));
+  table("sobol_total_upper", "its 95 % interval, upper end", index(&SobolIndex::total_upper));
+  table("linear_share", "share of the variance by the linear prediction", [](const ToleranceOutput& o, std::size_t i) {
+    return o.linear_share.empty() ? absent : o.linear_share[i];
+  });
+  const auto row = [&](const char* name, const char* meaning, double ToleranceOutput::*member) {
+    std::vector<double> values;
+    for (const ToleranceOutput& o : result.outputs) values.push_back(o.*member);
+    data.write(data.define_variable(name, {output}, "1", meaning), values);
+  };
+  row("linear_mean", "value at the parameters' means, unit of the output", &ToleranceOutput::linear_mean);
+  row("linear_deviation", "standard deviation by the linear prediction, unit of the output",
+      &ToleranceOutput::linear_deviation);
+  data.close();
+}
+
+void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns,
+                    const ToleranceOutput& output, PlotFormat format, const std::filesystem::path& file) {
+  std::vector<double> values;
+  for (const double x : samples_of(study, columns, *output.metric)) {
+    if (std::isfinite(x)) values.push_back(x);
+  }
+  std::sort(values.begin(), values.end());
+  // Freedman and Diaconis, 1981; the few samples beyond the drawn range are in the tails.
+  const auto at = [&](double p) { return values[std::size_t(p * double(values.size() - 1))]; };
+  const double low = at(0.001), high = at(0.999);
+  double width = 2.0 * (at(0.75) - at(0.25)) / std::cbrt(double(values.size()));
+  if (!(width > (high - low) / 200.0)) width = (high - low) / 50.0;
+  const int bins = std::max(1, int(std::ceil((high - low) / width)));
+  std::vector<double> counts(std::size_t(bins), 0.0);
+  for (const double x : values) {
+    if (x >= low && x <= high) ++counts[std::min(std::size_t(bins - 1), std::size_t((x - low) / width))];
+  }
+
+  const auto inputs = factors(study);
+  std::vector<std::size_t> order;
+  const bool sobol = output.indices && output.indices->rows > 1;
+  const auto weight = [&](std::size_t i) {
+    return sobol ? output.indices->inputs[i].total : output.linear_share.empty() ? 0.0 : output.linear_share[i];
+  };
+  for (std::size_t i = 0; i < inputs.size(); ++i) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return weight(a) > weight(b); });
+  const bool linear = output.linear_deviation > 0.0;
+  const bool sources = sobol || !output.linear_share.empty();
+
+  const double rows_height = sources ? 0.24 * double(inputs.size()) : 0.0;
+  const double inches = 2.55 + (sources ? 0.95 + rows_height : 0.0);
+  Figure figure(format, 3.5, inches);
+  const auto y = [&](double from_top) { return 1.0 - from_top / inches; };
+  figure.add("$bins << END\n");
+  double highest = 0.0;
+  for (int b = 0; b < bins; ++b) {
+    const double density = counts[std::size_t(b)] / (double(values.size()) * width);
+    highest = std::max(highest, density);
+    figure.add("{} {}\n", low + (b + 0.5) * width, density);
+  }
+  figure.add("END\nset multiplot\nset lmargin at screen 0.07\nset rmargin at screen 0.97\n");
+  figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", y(0.62), y(2.1));
+  const std::string title = study.title.empty() ? "Tolerance" : study.title;
+  figure.text(title, 8.0, fmt::format("screen 0.5,{} center", y(0.12)));
+  figure.key_entry(0.07, y(0.32), "lw 5 lc rgb '#9ecae1'", fmt::format("{} vehicles that flap", values.size()));
+  if (linear) figure.key_entry(0.07, y(0.48), vermillion_dashed, "linear prediction from the gradient");
+  if (output.metric == Metric::lift_to_weight) figure.key_entry(0.6, y(0.32), black_dotted, "hover");
+  const MetricInfo& info = metric_table()[std::size_t(*output.metric)];
+  const std::string unit = std::string(info.unit) == "1" ? "" : fmt::format(" ({})", info.unit);
+  figure.text(info.long_name + unit, 7.5, fmt::format("screen 0.52,{} center", y(2.42)));
+  double left = low, right = high;
+  if (linear) {
+    left = std::min(left, output.linear_mean - 3.0 * output.linear_deviation);
+    right = std::max(right, output.linear_mean + 3.0 * output.linear_deviation);
+    highest = std::max(highest, 0.4 / output.linear_deviation);
+  }
+  const bool one_inside = output.metric == Metric::lift_to_weight && left < 1.0 && right > 1.0;
+  figure.add("unset ytics\nset border 1\nset xrange [{}:{}]\nset yrange [0:{}]\n", left, right, 1.08 * highest);
+  figure.add("set style fill solid 1.0 noborder\n");
+  if (one_inside) figure.add("set arrow 900 from 1,graph 0 to 1,graph 1 nohead front {}\n", black_dotted);
+  figure.add("set samples 400\nplot $bins using 1:2:({}) with boxes lc rgb '#9ecae1'", width);
+  if (linear) {
+    figure.add(", exp(-0.5*((x-{0})/{1})**2)/({1}*sqrt(2*pi)) with lines {2}", output.linear_mean,
+               output.linear_deviation, vermillion_dashed);
+  }
+  figure.add("\n");
+  if (sources) {
+    figure.next_panel();
+    const double top = 2.98, bottom = top + rows_height;
+    figure.add("set tmargin at screen {}\nset bmargin at screen {}\nset lmargin at screen 0.46\n", y(top), y(bottom));
+    figure.text("share of the variance", 7.5, fmt::format("screen 0.07,{} left", y(top - 0.14)));
+    figure.text("first order", 6.5, fmt::format("screen 0.49,{} left", y(top - 0.14)));
+    figure.text("total", 6.5, fmt::format("screen 0.67,{} left", y(top - 0.14)));
+    figure.text("linear", 6.5, fmt::format("screen 0.82,{} left", y(top - 0.14)));
+    figure.add("set label 901 '' at screen 0.475,{0} point pt 7 ps 0.45 lc rgb '#0072b2'\n"
+               "set label 902 '' at screen 0.655,{0} point pt 5 ps 0.45 lc rgb '#009e73'\n"
+               "set label 903 '' at screen 0.805,{0} point pt 8 ps 0.6 lc rgb '#d55e00'\n",
+               y(top - 0.14));
+    figure.add("$sources << END\n");
+    double most = 0.1;
+    for (std::size_t r = 0; r < order.size(); ++r) {
+      const std::size_t i = order[r];
+      const SobolIndex none{absent, absent, absent, absent, absent, absent};
+      const SobolIndex s = sobol ? output.indices->inputs[i] : none;
+      figure.add("{} {} {} {} {} {} {} {}\n", -double(r), s.first, s.first_lower, s.first_upper, s.total, s.total_lower,
+                 s.total_upper, output.linear_share.empty() ? absent : output.linear_share[i]);
+      for (const double x : {s.first_upper, s.total_upper, weight(i)}) {
+        if (std::isfinite(x)) most = std::max(most, x);
+      }
+    }
+    figure.add("END\n");
+    for (std::size_t r = 0; r < order.size(); ++r) {
+      const double row = y(top + rows_height * (double(r) + 0.5) / double(order.size()));
+      figure.text(inputs[order[r]].name, 6.5, fmt::format("screen 0.44,{} right", row));
+    }
+    figure.add("set xrange [{}:{}]\nset yrange [{}:0.5]\nset border 3\nset datafile missing 'nan'\n", -0.03 * most,
+               1.04 * most, 0.5 - double(order.size()));
+    figure.add("plot $sources using 2:($1+0.22):3:4 with xerrorbars pt 7 ps 0.45 lc rgb '#0072b2', "
+               "$sources using 5:1:6:7 with xerrorbars pt 5 ps 0.45 lc rgb '#009e73', "
+               "$sources using 8:($1-0.22) with points pt 8 ps 0.6 lc rgb '#d55e00'\n");
+  }
+
+  figure.add("unset multiplot\nunset output\n");
+  run_gnuplot(figure.script(), file);
+}
+
+}  // namespace wingbeat

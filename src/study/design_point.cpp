@@ -1,0 +1,45 @@
+#include "wingbeat/study/design_point.hpp"
+
+
+namespace wingbeat {
+
+DesignPoint design_point(const Design<double>& design, const DesignPointOptions& options,
+                         std::span<const DesignParameter> parameters, const StartUp& start_up) {
+  DesignPoint point;
+  point.metrics.values.fill(absent);
+  std::array<double, metric_count> nothing;
+  nothing.fill(absent);
+  point.gradients.assign(parameters.size(), nothing);
+  try {
+    validate(design);
+  } catch (const ParameterError& error) {
+    point.detail = error.what();
+    return point;
+  }
+  Vehicle<double> vehicle = resolve(design, options.condition);
+  const SteadyOptions steady{options.tolerance, false, reporting_of(design)};
+  if (options.frequency) {
+    const FrequencySearch search = find_voltage_for_frequency(vehicle, *options.frequency, steady, start_up);
+    if (search.outcome != FrequencyOutcome::reached) {
+      const bool flaps = search.status == FlappingStatus::flapping;
+      point.status = flaps ? SweepStatus::unreached : SweepStatus(int(search.status));
+      point.detail = search.detail;
+      return point;
+    }
+    vehicle.voltage = search.voltage;
+  }
+  const SteadyFlapping orbit = find_steady_flapping(vehicle, steady, start_up);
+  point.status = SweepStatus(int(orbit.status));
+  point.detail = orbit.detail;
+  if (orbit.status != FlappingStatus::flapping) return point;
+  point.metrics = orbit.metrics;
+  if (parameters.empty()) return point;
+
+  const GradientOptions held{options.frequency ? Held::frequency : Held::voltage, options.peaks, {}};
+  const MetricGradients gradients = metric_gradients(design, options.condition, orbit, parameters, held);
+  if (!gradients.regular) return point;
+  point.gradients = gradients.by_parameter;
+  return point;
+}
+
+}  // namespace wingbeat

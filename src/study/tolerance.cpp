@@ -1,0 +1,258 @@
+#include "wingbeat/study/tolerance.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace wingbeat {
+namespace {
+
+std::vector<std::size_t> correlated(const ToleranceStudy& study) {
+  std::vector<std::size_t> which;
+  for (std::size_t k = 0; k < study.parameters.size(); ++k) {
+    if (study.parameters[k].correlated) which.push_back(k);
+  }
+  return which;
+}
+
+/// Lower triangular root of the covariance.
+Eigen::MatrixXd root_of(const std::vector<std::vector<double>>& covariance) {
+  const Eigen::Index n = Eigen::Index(covariance.size());
+  // In units of the standard deviations: parameters differ by many powers of ten.
+  Eigen::VectorXd scale(n);
+  for (Eigen::Index i = 0; i < n; ++i) scale[i] = std::sqrt(covariance[std::size_t(i)][std::size_t(i)]);
+  Eigen::MatrixXd c(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) c(i, j) = covariance[std::size_t(i)][std::size_t(j)] / (scale[i] * scale[j]);
+  }
+  const Eigen::LLT<Eigen::MatrixXd> factored(c);
+  if (factored.info() != Eigen::Success || !c.allFinite()) {
+    throw ParameterError("covariance.matrix", "is not positive definite");
+  }
+  return scale.asDiagonal() * factored.matrixL().toDenseMatrix();
+}
+
+double percentile(const std::vector<double>& sorted, double p) {
+  const double at = p * double(sorted.size() - 1);
+  const std::size_t k = std::size_t(at);
+  const std::size_t above = std::min(k + 1, sorted.size() - 1);
+  return sorted[k] + (at - double(k)) * (sorted[above] - sorted[k]);
+}
+
+/// Moments and percentiles of the values that are there.
+void describe(ToleranceOutput& output, std::span<const double> values) {
+  std::vector<double> there;
+  for (const double x : values) {
+    if (std::isfinite(x)) there.push_back(x);
+  }
+  if (there.empty()) return;
+  std::sort(there.begin(), there.end());
+  double sum = 0.0, squares = 0.0;
+  for (const double x : there) sum += x;
+  output.mean = sum / double(there.size());
+  for (const double x : there) squares += (x - output.mean) * (x - output.mean);
+  output.deviation = there.size() > 1 ? std::sqrt(squares / double(there.size() - 1)) : absent;
+  output.least = there.front();
+  output.p025 = percentile(there, 0.025);
+  output.median = percentile(there, 0.5);
+  output.p975 = percentile(there, 0.975);
+  output.most = there.back();
+}
+
+}  // namespace
+
+std::vector<ToleranceFactor> factors(const ToleranceStudy& study) {
+  std::vector<ToleranceFactor> result;
+  const std::vector<std::size_t> together = correlated(study);
+  if (!together.empty()) result.push_back({study.covariance_name, together});
+  for (std::size_t k = 0; k < study.parameters.size(); ++k) {
+    if (!study.parameters[k].correlated) result.push_back({study.parameters[k].parameter.key, {k}});
+  }
+  return result;
+}
+
+std::vector<std::vector<double>> parameter_covariance(const ToleranceStudy& study) {
+  const std::size_t n = study.parameters.size();
+  std::vector<std::vector<double>> c(n, std::vector<double>(n, 0.0));
+  for (std::size_t k = 0; k < n; ++k) c[k][k] = study.parameters[k].distribution.variance();
+  const std::vector<std::size_t> together = correlated(study);
+  for (std::size_t i = 0; i < together.size(); ++i) {
+    for (std::size_t j = 0; j < together.size(); ++j) c[together[i]][together[j]] = study.covariance[i][j];
+  }
+  return c;
+}
+
+std::uint64_t base_count(const ToleranceStudy& study) { return study.indices ? 2 * study.count : study.count; }
+
+Sweep tolerance_sweep(const ToleranceStudy& study) {
+  const std::size_t d = study.parameters.size();
+  const std::size_t samples = study.indices ? 2 : 1;
+  std::function<double(std::uint64_t, std::size_t)> uniform = PseudoRandom{study.seed};
+  if (study.method == ToleranceMethod::sobol) uniform = ScrambledSobol(samples * d, study.seed);
+
+  const std::vector<std::size_t> together = correlated(study);
+  Eigen::MatrixXd root;
+  if (!together.empty()) root = root_of(study.covariance);
+  const std::vector<ToleranceFactor> inputs = factors(study);
+  const std::uint64_t blocks = study.indices ? 2 + inputs.size() : 1;
+
+  SweepAxis axis;
+  axis.name = "sample";
+  axis.samples = true;
+  axis.count = blocks * study.count;
+  for (const UncertainParameter& p : study.parameters) {
+    SweptQuantity q;
+    q.key = p.parameter.key;
+    q.name = q.key;
+    std::replace(q.name.begin(), q.name.end(), '.', '_');
+    q.unit = p.parameter.unit;
+    q.set = p.parameter.set;
+    q.values.reserve(axis.count);
+    q.values.resize(samples * study.count);
+    axis.quantities.push_back(std::move(q));
+  }
+  for (std::size_t s = 0; s < samples; ++s) {
+    for (std::uint64_t n = 0; n < study.count; ++n) {
+      Eigen::VectorXd z(Eigen::Index(together.size()));
+      for (std::size_t k = 0, c = 0; k < d; ++k) {
+        const double u = uniform(n, s * d + k);
+        if (study.parameters[k].correlated) z[Eigen::Index(c++)] = normal_quantile(u);
+        else axis.quantities[k].values[s * study.count + n] = study.parameters[k].distribution.quantile(u);
+      }
+      if (together.empty()) continue;
+      const Eigen::VectorXd shift = root * z;
+      for (std::size_t c = 0; c < together.size(); ++c) {
+        axis.quantities[together[c]].values[s * study.count + n] =
+            study.parameters[together[c]].distribution.centre + shift[Eigen::Index(c)];
+      }
+    }
+  }
+  if (study.indices) {
+    for (const ToleranceFactor& factor : inputs) {
+      for (std::size_t k = 0; k < d; ++k) {
+        const bool own = std::find(factor.parameters.begin(), factor.parameters.end(), k) != factor.parameters.end();
+        std::vector<double>& values = axis.quantities[k].values;
+        for (std::uint64_t n = 0; n < study.count; ++n) values.push_back(values[(own ? study.count : 0) + n]);
+      }
+    }
+  }
+
+  Sweep sweep;
+  sweep.axes.push_back(std::move(axis));
+  sweep.variants.push_back({study.design, study.condition, true});
+  sweep.variant_stride = {0};
+  sweep.frequency = study.frequency;
+  sweep.options = study.options;
+  return sweep;
+}
+
+Probability probability_of(std::uint64_t count, std::uint64_t of) {
+  // Wilson, JASA 22, 1927.
+  constexpr double z = 1.959963984540054;
+  const double n = double(of), p = double(count) / n;
+  const double middle = p + z * z / (2.0 * n), half = z * std::sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n));
+  const double scale = 1.0 / (1.0 + z * z / n);
+  return {count, p, count == 0 ? 0.0 : scale * (middle - half), count == of ? 1.0 : scale * (middle + half)};
+}
+
+const ToleranceOutput* ToleranceResult::find(std::string_view name) const {
+  for (const ToleranceOutput& output : outputs) {
+    if (output.name == name) return &output;
+  }
+  return nullptr;
+}
+
+ToleranceResult assess_tolerance(const ToleranceStudy& study, const SweepColumns& columns, const StartUp& start_up) {
+  const std::uint64_t base = base_count(study), rows = study.count;
+  const std::vector<ToleranceFactor> inputs = factors(study);
+  ToleranceResult result;
+  result.vehicles = columns.status.size();
+  std::array<std::uint64_t, sweep_status_count> counts{};
+  for (std::uint64_t n = 0; n < base; ++n) ++counts[std::size_t(columns.status[n])];
+  for (std::size_t s = 0; s < counts.size(); ++s) result.status[s] = probability_of(counts[s], base);
+
+  Design<double> centre = study.design;
+  std::vector<DesignParameter> parameters;
+  for (const UncertainParameter& p : study.parameters) {
+    p.parameter.set(centre, p.distribution.mean());
+    parameters.push_back(p.parameter);
+  }
+  const DesignPointOptions options{study.condition, study.frequency, study.options.tolerance, true};
+  result.centre = design_point(centre, options, parameters, start_up);
+  const auto covariance = parameter_covariance(study);
+
+  const auto add_linear = [&](ToleranceOutput& output, Metric metric) {
+    if (result.centre.status != SweepStatus::flapping) return;
+    const auto slope = [&](std::size_t k) { return result.centre.gradients[k][std::size_t(metric)]; };
+    double variance = 0.0;
+    std::vector<double> parts(inputs.size(), 0.0);
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      for (const std::size_t k : inputs[i].parameters) {
+        for (const std::size_t l : inputs[i].parameters) parts[i] += slope(k) * covariance[k][l] * slope(l);
+      }
+      variance += parts[i];
+    }
+    if (!std::isfinite(variance)) return;
+    output.linear_mean = result.centre.metrics[metric];
+    output.linear_deviation = std::sqrt(variance);
+    if (!(variance > 0.0)) return;
+    for (const double part : parts) output.linear_share.push_back(part / variance);
+  };
+  const auto add_indices = [&](ToleranceOutput& output, std::span<const double> values) {
+    if (!study.indices) return;
+    std::vector<std::vector<double>> mixed;
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      const auto from = values.begin() + std::ptrdiff_t((2 + i) * rows);
+      mixed.emplace_back(from, from + std::ptrdiff_t(rows));
+    }
+    output.indices =
+        sobol_indices(values.subspan(0, rows), values.subspan(rows, rows), mixed, study.resamples, study.seed);
+  };
+
+  std::size_t column = 0;
+  for (int m = 0; m < metric_count; ++m) {
+    if (!study.options.metrics[std::size_t(m)]) continue;
+    const std::vector<double>& values = columns.metrics[column++];
+    ToleranceOutput output;
+    output.name = metric_table()[std::size_t(m)].key;
+    output.metric = Metric(m);
+    describe(output, std::span(values).subspan(0, base));
+    add_linear(output, Metric(m));
+    // The Floquet multiplier stands near zero, where its error is all there is.
+    const bool varies = output.deviation > study.options.tolerance * std::abs(output.mean);
+    if (varies && Metric(m) != Metric::floquet_multiplier_max) add_indices(output, values);
+    result.outputs.push_back(std::move(output));
+
+    if (Metric(m) != Metric::lift_to_weight || !study.design.mass) continue;
+    std::vector<double> hovers(values.size());
+    std::uint64_t count = 0;
+    for (std::size_t n = 0; n < values.size(); ++n) {
+      hovers[n] = values[n] >= 1.0 ? 1.0 : 0.0;
+      if (n < base) count += values[n] >= 1.0;
+    }
+    result.hover = probability_of(count, base);
+    const ToleranceOutput& lift = result.outputs.back();
+    if (lift.linear_deviation > 0.0) {
+      result.linear_hover = normal_probability((lift.linear_mean - 1.0) / lift.linear_deviation);
+    }
+    if (count == 0 || count == base) continue;
+    ToleranceOutput indicator;
+    indicator.name = "hovers";
+    describe(indicator, std::span(hovers).subspan(0, base));
+    add_indices(indicator, hovers);
+    result.outputs.push_back(std::move(indicator));
+  }
+  if (counts[0] > 0 && counts[0] < base) {
+    std::vector<double> flaps(columns.status.size());
+    for (std::size_t n = 0; n < flaps.size(); ++n) flaps[n] = columns.status[n] == 0 ? 1.0 : 0.0;
+    ToleranceOutput indicator;
+    indicator.name = "flaps";
+    describe(indicator, std::span(flaps).subspan(0, base));
+    add_indices(indicator, flaps);
+    result.outputs.push_back(std::move(indicator));
+  }
+  return result;
+}
+
+}  // namespace wingbeat
