@@ -1,13 +1,14 @@
-// The same designs through the batched solver, the scalar solver and general-purpose solvers, in one run on one core: time
-// per design, ratio to the batched solver and the accuracy that each reached. docs/benchmarks.md has a run and its meaning.
+// The same designs through the batched solver, the scalar solver and general-purpose solvers, in one run on one core:
+// time per design, ratio to the batched solver and the accuracy that each reached. docs/benchmarks.md has a run and its
+// meaning.
 //
 //   benchmark_peers             1024 designs (fewer for the slow ones)
 //   benchmark_peers DESIGNS     another number of designs
 //
-// Every peer integrates in crank angle, where the period is known, from the same guess; its first laps are coarse; and its
-// tolerance (for AUTO-07p: its number of mesh intervals) is the loosest of a ladder that brings the median lift error to
-// 1e-6. SciPy is asked of /usr/bin/python3, or of what WINGBEAT_PYTHON names; AUTO-07p is expected where Debian puts it, or
-// in AUTO_DIR.
+// Every peer integrates in crank angle, where the period is known, from the same guess; its first laps are coarse; and
+// its tolerance (for AUTO-07p: its number of mesh intervals) is the loosest of a ladder that brings the median lift
+// error to 1e-6. SciPy is asked of /usr/bin/python3, or of what WINGBEAT_PYTHON names; AUTO-07p is expected where
+// Debian puts it, or in AUTO_DIR.
 #include <algorithm>
 #include <boost/numeric/odeint.hpp>
 #include <chrono>
@@ -104,8 +105,8 @@ double change_of(const double* from, const double* to) {
   return std::max(std::abs(to[0] - from[0]) / std::abs(to[0]), std::abs(to[1] - from[1]));
 }
 
-// Laps until periodic: `plain` takes the two states over a coarse lap, `measured` all states over a lap at the tolerance
-// asked for (the quadratures count from zero). Both return false where they fail.
+// Laps until periodic: `plain` takes the two states over a coarse lap, `measured` all states over a lap at the
+// tolerance asked for (the quadratures count from zero). Both return false where they fail.
 template <class Plain, class Measured>
 Steady flap(const Peer& peer, bool start_coarse, const Plain& plain, const Measured& measured,
             std::array<double, 2>* start = nullptr) {
@@ -128,7 +129,7 @@ Steady flap(const Peer& peer, bool start_coarse, const Plain& plain, const Measu
   return {};
 }
 
-// Boost.odeint --------------------------------------------------------------------------------------------------------
+// Boost.odeint -------------------------------------------------------------------------------------------------------
 
 template <std::size_t N>
 struct Dopri5 {
@@ -143,8 +144,8 @@ struct Dopri5 {
     std::copy_n(u, N, state.begin());
     auto stepper = odeint::make_controlled(tolerance, tolerance, odeint::runge_kutta_dopri5<State>());
     const auto rates = [&](const State& x, State& dx, double theta) { peer.rates<N>(theta, x.data(), dx.data()); };
-    // As odeint::integrate_adaptive, but the step found is kept for the next lap, and a step to where the crank would turn
-    // back (which odeint accepts if its error is no number) is taken again in quarters.
+    // As odeint::integrate_adaptive, but the step found is kept for the next lap, and a step to where the crank would
+    // turn back (which odeint accepts if its error is no number) is taken again in quarters.
     double theta = from;
     while (to - theta > 1e-12) {
       const State before = state;
@@ -179,7 +180,7 @@ Steady by_odeint(const Peer& peer, double tolerance, std::array<double, 2>* star
               [&](int, double* u) { return lap(measured, u); }, start);
 }
 
-// CVODE: Adams with functional iteration ---------------------------------------------------------------------------------
+// CVODE: Adams with functional iteration -----------------------------------------------------------------------------
 
 template <std::size_t N>
 class Adams {
@@ -258,7 +259,7 @@ Steady by_cvode(Adams<2>& plain, Adams<all_states>& measured, const Peer& peer, 
       });
 }
 
-// Other programs -------------------------------------------------------------------------------------------------------
+// Other programs -----------------------------------------------------------------------------------------------------
 
 std::string environment(const char* name, const char* otherwise) {
   const char* value = std::getenv(name);
@@ -312,7 +313,7 @@ std::vector<std::pair<const char*, double>> numbers_of(const Vehicle<double>& v)
           {"drag3", c.drag.phase}};
 }
 
-// Tuning and the table ----------------------------------------------------------------------------------------------------
+// Tuning and the table -----------------------------------------------------------------------------------------------
 
 struct Answers {
   std::vector<Steady> got, exact;
@@ -339,7 +340,8 @@ Errors errors_of(const Answers& answers) {
       continue;
     }
     lift.push_back(std::abs(got.lift / exact.lift - 1.0));
-    e.others = std::max({e.others, std::abs(got.power / exact.power - 1.0), std::abs(got.frequency / exact.frequency - 1.0)});
+    e.others =
+        std::max({e.others, std::abs(got.power / exact.power - 1.0), std::abs(got.frequency / exact.frequency - 1.0)});
   }
   std::sort(lift.begin(), lift.end());
   e.median = quantile(lift, 0.5);
@@ -385,7 +387,8 @@ Steady steady_of(const Metrics<double>& m) {
 }
 
 // AUTO-07p: one branch of orbits per design, continued in voltage. Time is AUTO's own count, per point of the branch.
-Answers by_auto(const std::vector<EnsembleMember>& members, int intervals, const fs::path& folder, const StartUp& start_up) {
+Answers by_auto(const std::vector<EnsembleMember>& members, int intervals, const fs::path& folder,
+                const StartUp& start_up) {
   constexpr int points = 60;
   constexpr int rows = 201;
   std::ofstream(folder / "fort.2") << "NDIM=6 IPS=4 IRS=0 ILP=0\nICP=[1,2,3,4]\nNTST=" << intervals
@@ -485,11 +488,13 @@ int main(int argc, char** argv) {
       options.scalar_only = scalar;
       if (!every_metric) {
         options.metrics.reset();
-        for (const Metric m : {Metric::lift_mean, Metric::power_electrical, Metric::frequency}) options.metrics.set(std::size_t(m));
+        for (const Metric m : {Metric::lift_mean, Metric::power_electrical, Metric::frequency})
+          options.metrics.set(std::size_t(m));
       }
       std::vector<EnsembleOutcome> outcomes(members.size());
       Answers answers;
-      answers.seconds = seconds_of([&] { solve_ensemble(members, options, start_up, outcomes); }) / double(members.size());
+      answers.seconds =
+          seconds_of([&] { solve_ensemble(members, options, start_up, outcomes); }) / double(members.size());
       answers.exact = exact;
       for (const EnsembleOutcome& out : outcomes) answers.got.push_back(steady_of(out.metrics));
       return answers;
@@ -527,8 +532,9 @@ int main(int argc, char** argv) {
     std::snprintf(rtol, sizeof rtol, "%.17g", tolerance);
     const fs::path out = scratch.path / "lsoda.txt";
     Answers answers;
-    std::system((python + " '" WINGBEAT_PEERS "/peers_lsoda.py' '" + (scratch.path / "designs.csv").string() + "' " + rtol + " >'" +
-                 out.string() + "' 2>/dev/null").c_str());
+    std::system((python + " '" WINGBEAT_PEERS "/peers_lsoda.py' '" + (scratch.path / "designs.csv").string() + "' " +
+                 rtol + " >'" + out.string() + "' 2>/dev/null")
+                    .c_str());
     std::ifstream rows(out);
     for (std::string line; std::getline(rows, line);) {
       Steady s;
@@ -546,7 +552,8 @@ int main(int argc, char** argv) {
   std::string no_auto;
   if (!fs::exists(auto_dir + "/lib/main.o")) {
     no_auto = "not installed";
-  } else if (!runs("cd '" + scratch.path.string() + "' && gfortran -O3 -fopenmp -w '" WINGBEAT_PEERS "/peers_auto.f90' '" + auto_dir +
+  } else if (!runs("cd '" + scratch.path.string() +
+                   "' && gfortran -O3 -fopenmp -w '" WINGBEAT_PEERS "/peers_auto.f90' '" + auto_dir +
                    "'/lib/*.o -o peers_auto")) {
     no_auto = "installed, but gfortran could not build its equations";
   }
@@ -555,7 +562,11 @@ int main(int argc, char** argv) {
   Adams<all_states> measured;
   std::vector<Rival> rivals;
   rivals.push_back({"wingbeat, batched", "", "tolerance %.0e", {goal}, 40, ours(false, false)});
-  rivals.push_back({"wingbeat, batched, tuned alike", "", "tolerance %.0e", {1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, goal}, 40,
+  rivals.push_back({"wingbeat, batched, tuned alike",
+                    "",
+                    "tolerance %.0e",
+                    {1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, goal},
+                    40,
                     ours(false, false)});
   rivals.push_back({"wingbeat, batched, all metrics", "", "tolerance %.0e", {goal}, 20, ours(false, true)});
   rivals.push_back({"wingbeat, scalar orbit", "", "tolerance %.0e", {goal}, 5, ours(true, false)});
@@ -566,22 +577,31 @@ int main(int argc, char** argv) {
                       return by_cvode(plain, measured, p, tolerance);
                     })});
   rivals.push_back({"SciPy LSODA", scipy ? "" : "not installed", "rtol %.1e", tolerances(), 2, by_lsoda});
-  rivals.push_back({"AUTO-07p, per point", no_auto, "NTST %.0f", {10, 14, 20, 28, 40, 56, 80, 112, 160, 224, 320}, 2, [&](double intervals) {
-                      return by_auto({members.begin(), members.begin() + std::ptrdiff_t(fewer)}, int(intervals), scratch.path, start_up);
+  rivals.push_back({"AUTO-07p, per point",
+                    no_auto,
+                    "NTST %.0f",
+                    {10, 14, 20, 28, 40, 56, 80, 112, 160, 224, 320},
+                    2,
+                    [&](double intervals) {
+                      return by_auto({members.begin(), members.begin() + std::ptrdiff_t(fewer)}, int(intervals),
+                                     scratch.path, start_up);
                     }});
 
-  std::printf("%zu designs of the reference box that flap (%zu for LSODA, %zu branches for AUTO), one core, %s\n", count, few, fewer,
-              std::string(std::find_if(std::begin(instruction_sets), std::end(instruction_sets), [](const auto& entry) {
-                            return entry.second == best_instruction_set();
-                          })->first).c_str());
+  std::printf("%zu designs of the reference box that flap (%zu for LSODA, %zu branches for AUTO), one core, %s\n",
+              count, few, fewer,
+              std::string(std::find_if(std::begin(instruction_sets), std::end(instruction_sets),
+                                       [](const auto& entry) { return entry.second == best_instruction_set(); })
+                              ->first)
+                  .c_str());
   std::printf("errors are relative, against the scalar solver at 1e-10; 'others': worst of power and frequency\n\n");
-  std::printf("%-31s %-16s %14s %9s   %8s %8s %8s %8s\n", "method", "tuned to", "us per design", "ratio", "lift 50%", "99%", "worst",
-              "others");
+  std::printf("%-31s %-16s %14s %9s   %8s %8s %8s %8s\n", "method", "tuned to", "us per design", "ratio", "lift 50%",
+              "99%", "worst", "others");
 
   // Tuned first; then timed in turns, so that a busy moment meets all alike. The best of each counts.
   std::vector<Row> rows;
   for (const Rival& rival : rivals) rows.push_back(rival.missing.empty() ? tuned(rival) : Row{});
-  const int most = std::max_element(rivals.begin(), rivals.end(), [](auto& a, auto& b) { return a.rounds < b.rounds; })->rounds;
+  const int most =
+      std::max_element(rivals.begin(), rivals.end(), [](auto& a, auto& b) { return a.rounds < b.rounds; })->rounds;
   for (int round = 0; round < most; ++round) {
     for (std::size_t n = 0; n < rivals.size(); ++n) {
       if (round >= rivals[n].rounds || !rivals[n].missing.empty()) continue;
@@ -596,8 +616,9 @@ int main(int argc, char** argv) {
     char setting[64];
     std::snprintf(setting, sizeof setting, rivals[n].setting.c_str(), rows[n].setting);
     const Errors& e = rows[n].errors;
-    std::printf("%-31s %-16s %14.2f %9.1f   %8.1e %8.1e %8.1e %8.1e", rivals[n].name.c_str(), setting, 1e6 * rows[n].answers.seconds,
-                rows[n].answers.seconds / rows[0].answers.seconds, e.median, e.high, e.worst, e.others);
+    std::printf("%-31s %-16s %14.2f %9.1f   %8.1e %8.1e %8.1e %8.1e", rivals[n].name.c_str(), setting,
+                1e6 * rows[n].answers.seconds, rows[n].answers.seconds / rows[0].answers.seconds, e.median, e.high,
+                e.worst, e.others);
     if (e.failed > 0) std::printf("  (%d of %zu without an answer)", e.failed, rows[n].answers.got.size());
     std::printf("\n");
   }

@@ -20,7 +20,8 @@ LAPS = 60
 
 def rates_of(d, scale):
     """d(state)/d(theta) of crank speed, current, time, lift impulse and charge, each divided by its scale."""
-    J, b, K, R_a, L_a, v = d["inertia"], d["damping"], d["torque_constant"], d["resistance"], d["inductance"], d["voltage"]
+    J, b, K = d["inertia"], d["damping"], d["torque_constant"]
+    R_a, L_a, v = d["resistance"], d["inductance"], d["voltage"]
     T_c, mu_r = d["friction_torque"], d["friction_radius"]
     r_c, l, H, y_0 = d["crank_radius"], d["rod_length"], d["hinge_offset"], d["mid_stroke_height"]
     NJ, Nk = d["wing_count"] * d["wing_inertia"], d["wing_count"] * d["stiffness"]
