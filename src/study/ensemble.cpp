@@ -27,7 +27,7 @@ LaneSolver solver_for(InstructionSet isa) {
 /// How a tolerance is met: what the estimate of the means' error is multiplied by, and the meshes.
 struct Plan {
   double amplification;
-  LaneSettings first, from_rest;
+  LaneSettings first, from_rest, from_rest_finely;
   std::array<LaneSettings, 3> again;
 };
 
@@ -73,6 +73,8 @@ Plan plan_for(const EnsembleOptions& options) {
   plan.from_rest = s;
   plan.from_rest.approach = LaneApproach::from_rest;
   plan.from_rest.medium_laps = s.medium_laps + 1;
+  plan.from_rest_finely = plan.from_rest;
+  plan.from_rest_finely.start_up_steps = 16 * plan.from_rest.start_up_steps;
   return plan;
 }
 
@@ -113,9 +115,10 @@ class EnsembleRun {
   }
 
   void solve_alike(const std::vector<std::size_t>& all) {
-    std::vector<std::size_t> doubtful, inexact, left;
+    std::vector<std::size_t> doubtful, still_doubtful, inexact, left;
     run(all, plan_.first, doubtful, inexact);
-    run(doubtful, plan_.from_rest, left, inexact);
+    run(doubtful, plan_.from_rest, still_doubtful, inexact);
+    run(still_doubtful, plan_.from_rest_finely, left, inexact);
     for (const LaneSettings& finer : plan_.again) {
       std::vector<std::size_t> still_inexact;
       run(inexact, finer, left, still_inexact);

@@ -179,7 +179,8 @@ template <bool quadratures, class System>
     if (stage == late_stage) sights.late_force_switch = rates.switches[0];
     if constexpr (quadratures) {
       if (stage < 5) continue;
-      result.lowest[0] = min(result.lowest[0], rates.switches[0] * force);
+      // At the end of a step the force may be zero on purpose.
+      if (stage <= late_stage) result.lowest[0] = min(result.lowest[0], rates.switches[0] * force);
       const S along = rates.switches[1] * trend;
       sights.dip_at = select<S>(along < result.lowest[1], S(pair::c[stage]), sights.dip_at);
       result.lowest[1] = min(result.lowest[1], along);

@@ -37,6 +37,7 @@ enum class LaneApproach {
 
 struct LaneSettings {
   LaneApproach approach = LaneApproach::guess;
+  int start_up_steps = 48; ///< from rest: of a turn at the speed without load
   bool inductance = true;  ///< whether the block's motors have one
   int coarse_laps = 2;
   int medium_laps = 1;

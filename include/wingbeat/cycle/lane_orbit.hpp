@@ -164,7 +164,9 @@ class LaneOrbit {
   std::array<std::array<LaneNode<L, N>, most_half_steps + 1>, 2> nodes_;
   std::array<L, lane_integrals.size()> integrals_;
   std::array<bool, quantity_count> wanted_;
-  L slowest_, residual_, step_error_, switch_offset_, error_estimate_;
+  L slowest_, residual_, step_error_, switch_offset_;
+  L overlooked_;  ///< depth to which the rod force has the wrong sign inside a step, of its largest magnitude
+  L error_estimate_;
 };
 
 template <class L, int N>
@@ -259,9 +261,12 @@ void LaneOrbit<L, N>::guess_speed() {
 template <class L, int N>
 void LaneOrbit<L, N>::start_from_rest() {
   using Moving = std::array<L, N + 1>;  // crank angle, state
-  constexpr int steps_per_lap = 48, most_laps = 24;
+  const int steps_per_lap = settings_.start_up_steps;
+  constexpr int most_laps = 24;
+  // The kinks leave an error of the second order, which counts most where the crank almost stands still.
+  const L slow_limit = L(1.92 / steps_per_lap) * no_load_;
   constexpr double end = 3.5 * pi;
-  const L dt = L(two_pi / steps_per_lap) * inverse_of(no_load_);
+  const L dt = L(two_pi / double(steps_per_lap)) * inverse_of(no_load_);
   const auto rates = [&](const Moving& x) {
     const L sine = sin(x[0]), cosine = cos(x[0]);
     System system = half_lap(0);
@@ -303,7 +308,7 @@ void LaneOrbit<L, N>::start_from_rest() {
     next[0] = select<L>(held, x[0], next[0]);
     next[1] = select<L>(held, L(0.0), next[1]);
     started = started || next[1] > L(0.05) * no_load_;
-    slow = slow || (started && !done && !(next[1] > L(0.04) * no_load_));
+    slow = slow || (started && !done && !(next[1] > slow_limit));
     waited = select<L>(slow || !started, waited + L(1.0), waited);
     const Mask stops = started && !done && !stopped && !(next[1] > L(0.0));
     const Mask arrives = !done && !stopped && next[0] >= L(end);
@@ -679,6 +684,7 @@ void LaneOrbit<L, N>::fine_lap() {
   solve::Rates<System> first;
   solve::StepResult<System> step;
   StepSights<L> sights;
+  L overlooked(0.0), highest(0.0);
   for (int half = 0; half < 2; ++half) {
     const System system = half_lap(half);
     build_mesh(half, steps);
@@ -689,6 +695,7 @@ void LaneOrbit<L, N>::fine_lap() {
     const auto visit = [&](std::size_t m, const L& sign) {
       visit_node(system, mesh.u[m], sign, nodes[m], sights.end, first);
       force[m] = first.switches[0];
+      highest = max(highest, abs(force[m]));
     };
     for (std::size_t m = 0; m < std::size_t(steps); ++m) {
       visit(m, mesh.force[m]);
@@ -703,6 +710,7 @@ void LaneOrbit<L, N>::fine_lap() {
         error3[c + 1] = error3[c + 1] + abs(step.integral_error3[q]);
         error5[c + 1] = error5[c + 1] + abs(step.integral_error5[q]);
       }
+      overlooked = max(overlooked, -step.lowest[0]);
       nodes[m].dip = step.lowest[1];
       nodes[m].dip_at = sights.dip_at;
       y_ = step.y;
@@ -712,6 +720,7 @@ void LaneOrbit<L, N>::fine_lap() {
     visit(std::size_t(steps), mesh.force[std::size_t(steps - 1)]);
     find_switches(half, mesh.u.data(), force.data(), steps, switch_offset_);
   }
+  overlooked_ = overlooked * inverse_of(max(highest, L(1e-300)));
   residual_ = abs(y_[0] - start[0]) * inverse_of(start[0]);
   if constexpr (N == 2) {
     residual_ = max(residual_, abs(y_[1] - start[1]) * inverse_of(L(abs(start[1]) + L(0.1) * current_scale_)));
@@ -783,7 +792,8 @@ Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   seek(Quantity::speed, Extreme::crank_speed_max);
   const L multiplier = settings_.multipliers ? floquet_multiplier(start) : L(0.0);
 
-  error_estimate_ = L(1.5) * step_error_ + residual_weight() * residual_ + L(0.03) * square(switch_offset_);
+  error_estimate_ = L(1.5) * step_error_ + residual_weight() * residual_ + L(0.03) * square(switch_offset_) +
+                    overlooked_ * sqrt(overlooked_);
   doubtful_ = doubtful_ || !(slowest_ > floor_);
   accelerate(start);
   return cycle_metrics(vehicle_, integrals, extremes, multiplier, ReportingOf<L>{mass, bench_torque_constant});
