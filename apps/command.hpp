@@ -27,5 +27,6 @@ void add_sweep(CLI::App& program, Action& action);
 void add_identify_motor(CLI::App& program, Action& action);
 void add_fit(CLI::App& program, Action& action);
 void add_tolerance(CLI::App& program, Action& action);
+void add_optimise(CLI::App& program, Action& action);
 
 }  // namespace wingbeat::app

@@ -1,0 +1,91 @@
+// The best design within bounds and constraints: gradient-based from several starts, with what holds the optimum and
+// how flat it is.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "wingbeat/study/design_point.hpp"
+
+namespace wingbeat {
+
+struct OptimisedParameter {
+  DesignParameter parameter;
+  double lower = 0.0, upper = 1.0;  ///< SI
+  bool logarithmic = false;         ///< searched in the logarithm
+};
+
+/// A bound on a metric, SI.
+struct MetricConstraint {
+  Metric metric = Metric::lift_to_weight;
+  bool at_least = true;
+  double limit = 1.0;
+};
+
+struct OptimiseStudy {
+  Design<double> design;
+  DesignPointOptions options{Condition::air, std::nullopt, 1e-8, true};
+  Metric objective = Metric::power_electrical;
+  bool maximise = false;
+  std::vector<OptimisedParameter> parameters;
+  std::vector<MetricConstraint> constraints;
+  int starts = 20;           ///< the design as given where it lies within the bounds, the others from the screening
+  std::uint64_t seed = 1;
+  std::uint64_t screen = 1024;  ///< designs of a scrambled Sobol sequence solved first
+};
+
+/// What the screening found.
+struct ScreenCounts {
+  std::array<std::uint64_t, sweep_status_count> status{};
+  std::uint64_t feasible = 0;                 ///< flapping and within every constraint
+  std::vector<std::uint64_t> violated;        ///< by constraint: flapping, but beyond it
+  std::vector<double> closest;                ///< by constraint: the metric's best value met [SI]; absent if none flaps
+};
+
+/// A constraint or bound that holds the optimum.
+struct ActiveLimit {
+  std::string name;        ///< "lift_to_weight >= 1", "supply.voltage <= 5 V"
+  double sensitivity = 0.0;  ///< relative loss for a relative tightening of the limit; absent for a limit of 0
+};
+
+/// How far the design can move along one direction, the active limits kept, until the objective is 0.1 % worse.
+struct FlatDirection {
+  std::vector<double> from, to;  ///< parameters at either end [SI]
+  double width = 0.0;            ///< largest share of a parameter's bounds that is covered
+  double curvature = 0.0;        ///< of the Lagrangian, relative to the objective, per (range of the bounds)^2
+  bool flat = false;             ///< a null direction: a bound ends it, or its width exceeds half the bounds
+};
+inline constexpr double flat_loss = 1e-3;
+
+struct OptimiseResult {
+  enum class Outcome {
+    found,
+    infeasible,     ///< designs flap, but none within the constraints was found
+    nothing_flaps   ///< in the screening
+  };
+  Outcome outcome = Outcome::nothing_flaps;
+  std::string reason;                ///< a sentence where nothing was found
+  ScreenCounts screen;
+  std::vector<double> parameters;    ///< of the optimum [SI]
+  Design<double> design;             ///< with them; where the frequency is held, with the voltage found
+  DesignPoint point;
+  std::vector<ActiveLimit> active;
+  std::vector<FlatDirection> directions;  ///< flattest first; empty where active limits leave no freedom
+  int starts = 0, same = 0, elsewhere = 0, failed = 0;  ///< starts by where they ended
+  int evaluations = 0;               ///< orbits with gradients
+};
+
+/// Calls `act` for 0 to count - 1, in any order, perhaps side by side.
+using ForEach = std::function<void(std::size_t count, const std::function<void(std::size_t)>& act)>;
+
+/// Local searches by SLSQP (Kraft 1994; NLopt) with exact gradients. The result depends on the study alone. Throws
+/// ParameterError for a parameter without a place in the design.
+OptimiseResult optimise(const OptimiseStudy& study, const StartUp& start_up, const ForEach& for_each = {});
+
+/// "lift_to_weight >= 1"
+std::string name_of(const MetricConstraint& constraint);
+
+}  // namespace wingbeat

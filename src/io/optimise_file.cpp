@@ -1,0 +1,317 @@
+#include "wingbeat/io/optimise_file.hpp"
+
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "study_sections.hpp"
+
+namespace wingbeat {
+namespace {
+
+namespace fs = std::filesystem;
+using detail::Kind;
+
+class OptimiseReader : public detail::StudySections {
+ public:
+  OptimiseReader(const fs::path& file, std::string_view text)
+      : StudySections(file.string(), text, {"objective", "parameter", "constraint", "motors"}, {"condition"}),
+        folder_(file.parent_path()) {}
+
+  OptimiseFile read() {
+    OptimiseFile file;
+    OptimiseStudy& study = file.study;
+    if (const TomlNode* title = study_->find("title")) file.title = text_of(*title, "study.title", "a text");
+    if (const TomlNode* metrics = study_->find("metrics")) {
+      refuse(*metrics, "study.metrics", "has no place here: the objective and the constraints say which are wanted");
+    }
+    const fs::path vehicle = folder_ / vehicle_file();
+    if (!fs::exists(vehicle)) refuse_file("study", "vehicle", fmt::format("there is no file {}", vehicle.string()));
+    study.design = parse_design(vehicle_text(vehicle), "the vehicle with [set]");
+    study.options.condition = read_condition();
+    EnsembleOptions accuracy;
+    accuracy.tolerance = study.options.tolerance;
+    read_tolerance(accuracy);
+    study.options.tolerance = accuracy.tolerance;
+    study.options.frequency = read_frequency(study.design);
+    if (const TomlNode* motors = root_.find("motors")) read_motors(*motors, file);
+    // The keys of a catalogue's motors are those of its first usable one.
+    Design<double> base = study.design;
+    for (const MotorCandidate& motor : file.motors) {
+      if (motor.refused.empty()) {
+        base = motor.design;
+        break;
+      }
+    }
+    read_objective(study, base);
+    read_parameters(study, base);
+    read_constraints(study, base);
+    return file;
+  }
+
+ private:
+  /// The metric of that name. One that the vehicle does not have is refused with what it needs.
+  Metric metric_named(const TomlNode& node, const std::string& where, const Design<double>& design) const {
+    std::vector<std::string_view> names;
+    for (const MetricInfo& metric : metric_table()) names.push_back(metric.key);
+    const std::string name = text_of(node, where, "the name of a metric such as \"power_electrical_w\"");
+    const int index = metric_index(name);
+    if (index == metric_count) {
+      const std::string_view near = nearest_name(name, names);
+      refuse(node, where,
+             near.empty() ? fmt::format("{} is no metric; the metrics are {}", in_quotes(name), detail::joined(names))
+                          : fmt::format("{} is no metric; did you mean {}?", in_quotes(name), near));
+    }
+    const Metric metric = Metric(index);
+    if (metric == Metric::floquet_multiplier_max) refuse(node, where, fmt::format("{} has no derivative", name));
+    if (metric == Metric::lift_to_weight && !design.mass) {
+      refuse(node, where, "lift_to_weight needs vehicle.mass; give it in the vehicle file or in [set]");
+    }
+    if (metric == Metric::power_motor_reference && !design.bench_torque_constant) {
+      refuse(node, where, "power_motor_reference_w needs bench.torque_constant");
+    }
+    return metric;
+  }
+
+  void read_objective(OptimiseStudy& study, const Design<double>& design) {
+    const TomlNode& node = need(root_, "", "objective", "a section [objective] with minimise or maximise");
+    if (node.kind != Kind::table) wrong(node, "objective", "a section [objective]");
+    known_keys(node, "objective", {"minimise", "maximise", "starts", "seed", "screen"});
+    const TomlNode *low = node.find("minimise"), *high = node.find("maximise");
+    if (bool(low) == bool(high)) refuse(node, "objective", "give one of minimise and maximise");
+    study.maximise = high != nullptr;
+    study.objective = metric_named(high ? *high : *low, high ? "objective.maximise" : "objective.minimise", design);
+    if (const TomlNode* starts = node.find("starts")) {
+      study.starts = int(whole_number(*starts, "objective.starts", 1, 10000));
+    }
+    if (const TomlNode* seed = node.find("seed")) {
+      study.seed = whole_number(*seed, "objective.seed", 0, std::uint64_t(1) << 53);
+    }
+    if (const TomlNode* screen = node.find("screen")) {
+      study.screen = whole_number(*screen, "objective.screen", 16, 1000000);
+    }
+  }
+
+  void read_parameters(OptimiseStudy& study, const Design<double>& design) {
+    const TomlNode& list = need(root_, "", "parameter", "[[parameter]] sections with key, lower and upper");
+    if (list.kind != Kind::array || list.items.empty()) wrong(list, "parameter", "[[parameter]] sections");
+    std::set<std::string> used;
+    Design<double> all = design;
+    for (const TomlNode& node : list.items) {
+      if (node.kind != Kind::table) wrong(node, "parameter", "[[parameter]] sections");
+      known_keys(node, "parameter", {"key", "lower", "upper", "scale"});
+      OptimisedParameter p;
+      const TomlNode& key = need(node, "parameter", "key", "a vehicle-file key");
+      p.parameter = parameter_named(key, "parameter.key", design);
+      if (!used.insert(p.parameter.key).second) {
+        refuse(key, "parameter.key", fmt::format("{} is given already", p.parameter.key));
+      }
+      const TomlNode& lower = need(node, "parameter", "lower", quantity_example(p.parameter.unit));
+      const TomlNode& upper = need(node, "parameter", "upper", quantity_example(p.parameter.unit));
+      p.lower = quantity(lower, "parameter.lower", p.parameter.unit);
+      p.upper = quantity(upper, "parameter.upper", p.parameter.unit);
+      if (!(p.upper > p.lower)) refuse(upper, "parameter.upper", "must exceed parameter.lower");
+      if (const TomlNode* scale = node.find("scale")) {
+        p.logarithmic = one_of(*scale, "parameter.scale", {"linear", "log"}) == "log";
+      }
+      if (p.logarithmic && !(p.lower > 0.0)) {
+        refuse(lower, "parameter.lower", "must be > 0 on a logarithmic scale");
+      }
+      // No design at a bound: the parameter's own range is left.
+      for (const TomlNode* bound : {&lower, &upper}) {
+        Design<double> d = design;
+        p.parameter.set(d, bound == &lower ? p.lower : p.upper);
+        try {
+          validate(d);
+        } catch (const ParameterError& error) {
+          if (error.key() == p.parameter.key) {
+            refuse(*bound, bound == &lower ? "parameter.lower" : "parameter.upper", error.what());
+          }
+        }
+      }
+      p.parameter.set(all, p.lower);
+      study.parameters.push_back(std::move(p));
+    }
+    for (std::size_t k = 0; k < study.parameters.size(); ++k) {
+      const OptimisedParameter& p = study.parameters[k];
+      const auto found = p.parameter.value(all);
+      if (!found || *found != p.lower) {
+        refuse(list.items[k], "parameter.key", fmt::format("another parameter takes the place of {}", p.parameter.key));
+      }
+    }
+    if (study.parameters.size() > ScrambledSobol::most_dimensions) {
+      refuse(list, "parameter", fmt::format("more than {} parameters", ScrambledSobol::most_dimensions));
+    }
+  }
+
+  void read_constraints(OptimiseStudy& study, const Design<double>& design) {
+    const TomlNode* list = root_.find("constraint");
+    if (!list) return;
+    if (list->kind != Kind::array) wrong(*list, "constraint", "[[constraint]] sections");
+    for (const TomlNode& node : list->items) {
+      if (node.kind != Kind::table) wrong(node, "constraint", "[[constraint]] sections");
+      known_keys(node, "constraint", {"metric", "at_least", "at_most"});
+      const TomlNode& name = need(node, "constraint", "metric", "the name of a metric");
+      const Metric metric = metric_named(name, "constraint.metric", design);
+      const TomlNode *low = node.find("at_least"), *high = node.find("at_most");
+      if (!low && !high) refuse(node, "constraint", "give at_least, at_most or both");
+      const std::string_view unit = metric_table()[std::size_t(metric)].unit;
+      if (low) study.constraints.push_back({metric, true, quantity(*low, "constraint.at_least", unit)});
+      if (high) study.constraints.push_back({metric, false, quantity(*high, "constraint.at_most", unit)});
+      if (low && high && !(study.constraints.back().limit > study.constraints.rbegin()[1].limit)) {
+        refuse(*high, "constraint.at_most", "must exceed constraint.at_least");
+      }
+    }
+  }
+
+  // ---- [motors]
+
+  void read_motors(const TomlNode& node, OptimiseFile& file) {
+    if (node.kind != Kind::table) wrong(node, "motors", "a section [motors]");
+    known_keys(node, "motors", {"catalogue", "gear_ratio", "mass_without"});
+    const TomlNode& name = need(node, "motors", "catalogue", "the name of a CSV file");
+    const fs::path path = folder_ / text_of(name, "motors.catalogue", "the name of a CSV file");
+    if (!fs::exists(path)) refuse(name, "motors.catalogue", fmt::format("there is no file {}", path.string()));
+    const TomlNode& ratio = need(node, "motors", "gear_ratio", "the ratio of the gearbox behind motors that have none");
+    const double gear = quantity(ratio, "motors.gear_ratio", "1");
+    if (!(gear > 0.0)) refuse(ratio, "motors.gear_ratio", "must be > 0");
+    std::optional<double> rest;
+    if (const TomlNode* mass = node.find("mass_without")) {
+      rest = quantity(*mass, "motors.mass_without", "kg");
+      if (!(*rest > 0.0)) refuse(*mass, "motors.mass_without", "must be > 0 kg");
+    }
+    read_catalogue(path.string(), read_text_file(path), gear, rest, file);
+    if (std::none_of(file.motors.begin(), file.motors.end(), [](const auto& m) { return m.refused.empty(); })) {
+      std::string reason = file.motors.empty() ? "holds no motors" : "holds no motor that can be tried";
+      if (!file.motors.empty()) reason += fmt::format(": {}: {}", file.motors[0].model, file.motors[0].refused);
+      refuse(name, "motors.catalogue", reason);
+    }
+  }
+
+  static std::vector<std::string> cells_of(std::string_view line) {
+    std::vector<std::string> cells(1);
+    bool quoted = false;
+    for (const char c : line) {
+      if (c == '"') quoted = !quoted;
+      else if (c == ',' && !quoted) cells.emplace_back();
+      else if (c != '\r') cells.back() += c;
+    }
+    return cells;
+  }
+
+  void read_catalogue(const std::string& name, std::string_view text, double gear, std::optional<double> rest,
+                      OptimiseFile& file) {
+    std::vector<std::string> header;
+    int line_number = 0;
+    const auto refuse_there = [&](const std::string& key, const std::string& message) {
+      throw InputError(name, line_number, 1, key, message);
+    };
+    while (!text.empty()) {
+      const std::size_t end = std::min(text.find('\n'), text.size());
+      const std::string_view line = text.substr(0, end);
+      text.remove_prefix(std::min(end + 1, text.size()));
+      ++line_number;
+      if (line.find_first_not_of(" \t\r") == std::string_view::npos || line.front() == '#') continue;
+      const std::vector<std::string> cells = cells_of(line);
+      if (header.empty()) {
+        header = cells;
+        for (const char* needed : {"model", "gear_ratio", "resistance_ohm", "torque_constant_Nm_per_A",
+                                   "rotor_inertia_kgm2", "inductance_H"}) {
+          if (std::find(header.begin(), header.end(), needed) == header.end()) {
+            refuse_there(needed, "missing; expected a column of that name");
+          }
+        }
+        continue;
+      }
+      if (cells.size() != header.size()) {
+        refuse_there("", fmt::format("expected {} cells, got {}", header.size(), cells.size()));
+      }
+      const auto cell = [&](std::string_view column) -> std::string {
+        const auto found = std::find(header.begin(), header.end(), column);
+        return found == header.end() ? "" : cells[std::size_t(found - header.begin())];
+      };
+      const auto number = [&](std::string_view column) -> std::optional<double> {
+        const std::string content = cell(column);
+        if (content.find_first_not_of(" \t") == std::string::npos) return std::nullopt;
+        try {
+          return parse_quantity(content, "1");
+        } catch (const UnitError&) {
+          refuse_there(std::string(column), fmt::format("expected a number, got {}", in_quotes(content)));
+        }
+        return std::nullopt;
+      };
+      file.motors.push_back(candidate(cell("model"), number, gear, rest, file.study.design));
+    }
+  }
+
+  /// A row as a vehicle, or what it lacks.
+  template <class Number>
+  static MotorCandidate candidate(const std::string& model, const Number& number, double gear,
+                                  std::optional<double> rest, const Design<double>& design) {
+    MotorCandidate motor{one_line(model), "", {}, design};
+    const auto resistance = number("resistance_ohm"), constant = number("torque_constant_Nm_per_A");
+    const auto inertia = number("rotor_inertia_kgm2"), inductance = number("inductance_H");
+    const auto mass = number("mass_kg");
+    std::string lacks;
+    const auto need_value = [&](const std::optional<double>& x, const char* what) {
+      if (!x) lacks += fmt::format("{}{}", lacks.empty() ? "" : ", ", what);
+    };
+    need_value(resistance, "armature resistance");
+    need_value(constant, "torque constant");
+    need_value(inertia, "rotor inertia");
+    need_value(inductance, "inductance");
+    if (rest) need_value(mass, "mass");
+    if (!lacks.empty()) {
+      motor.refused = "incomplete, no " + lacks;
+      return motor;
+    }
+    auto& c = motor.design.motor.constants;
+    c.armature_resistance = *resistance;
+    c.torque_constant = *constant;
+    c.inertia = *inertia;
+    c.armature_inductance = *inductance;
+    c.friction_torque = number("friction_torque_Nm").value_or(0.0);
+    const auto no_load_current = number("no_load_current_A"), no_load_speed = number("no_load_speed_rad_s");
+    if (const auto damping = number("viscous_friction_Nms")) {
+      c.viscous_damping = *damping;
+    } else if (no_load_current && no_load_speed) {
+      // At no load the motor's torque covers its own friction alone.
+      const double rest_of_torque = *constant * *no_load_current - c.friction_torque;
+      c.viscous_damping = std::max(0.0, rest_of_torque) / *no_load_speed;
+      motor.derived.push_back(fmt::format("b = {:.2g} N m s/rad from the no-load current", c.viscous_damping));
+    } else {
+      motor.refused = "incomplete, neither viscous friction nor no-load current and speed";
+      return motor;
+    }
+    // A gearmotor's sheet states its output shaft; a bare motor gets the study's gearbox.
+    const double own = number("gear_ratio").value_or(1.0);
+    if (own == 1.0) motor.design.motor.gear_ratio = gear;
+    else motor.design.motor.gear_ratio.reset();
+    motor.design.motor.gear_inertia = 0.0;
+    motor.design.motor.gear_damping = 0.0;
+    if (rest) motor.design.mass = *rest + *mass;
+    try {
+      validate(motor.design);
+    } catch (const ParameterError& error) {
+      motor.refused = error.what();
+    }
+    return motor;
+  }
+
+  fs::path folder_;
+};
+
+}  // namespace
+
+OptimiseFile read_optimise_study(const fs::path& file) { return OptimiseReader(file, read_text_file(file)).read(); }
+
+void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& act, int threads) {
+  std::optional<tbb::global_control> limit;
+  if (threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
+  tbb::parallel_for(std::size_t(0), count, act);
+}
+
+}  // namespace wingbeat
