@@ -3,9 +3,13 @@
 #include <gmock/gmock.h>
 #include <stdlib.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <sstream>
+
+#include "wingbeat/io/optimise_file.hpp"
+#include "wingbeat/io/tolerance_file.hpp"
 
 namespace wingbeat {
 namespace {
@@ -53,10 +57,22 @@ const std::string radius_axis = "[[axis]]\nkey = \"transmission.crank_radius\"\n
 
 TEST_F(StudyFile, ExamplesAreRead) {
   std::vector<std::uint64_t> sizes;
-  for (const char* name : {"crank-radius", "sobol-22hz", "voltage-crank-radius"}) {
+  for (const char* name :
+       {"crank-radius", "sobol-22hz", "voltage-crank-radius", "trend-crank-fixed-hinge", "trend-crank-fixed-stroke",
+        "trend-rod", "trend-voltage", "trend-spring", "trend-frequency"}) {
     sizes.push_back(read_study(fs::path(WINGBEAT_DATA) / "studies" / (std::string(name) + ".toml")).sweep.size());
   }
-  EXPECT_THAT(sizes, ElementsAre(222U, 2048U, 56U * 76U));
+  EXPECT_THAT(sizes, ElementsAre(222U, 2048U, 56U * 76U, 444U, 444U, 484U, 16U * 161U, 2U * 181U, 4U * 149U));
+}
+
+TEST_F(StudyFile, ExamplesOfToleranceAndOptimiseAreRead) {
+  const fs::path studies = fs::path(WINGBEAT_DATA) / "studies";
+  EXPECT_EQ(read_tolerance_study(studies / "tolerance-hover.toml").parameters.size(), 10U);
+  EXPECT_EQ(read_optimise_study(studies / "optimise-hover.toml").study.constraints.size(), 3U);
+  const OptimiseFile motors = read_optimise_study(studies / "optimise-motor.toml");
+  EXPECT_EQ(motors.motors.size(), 18U);
+  const auto refused = [](const MotorCandidate& motor) { return !motor.refused.empty(); };
+  EXPECT_EQ(std::count_if(motors.motors.begin(), motors.motors.end(), refused), 10);
 }
 
 TEST_F(StudyFile, LinearAndLogarithmicAxesHitTheirEnds) {
