@@ -1,7 +1,9 @@
 #include "wingbeat/solve/linear.hpp"
 
 // g++ 12 takes Eigen's unrolled loops for uses of uninitialised memory.
+#if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
 #include <Eigen/Dense>
 #include <cmath>
 

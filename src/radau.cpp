@@ -1,5 +1,7 @@
 // The five-stage Radau IIA tableau from its defining conditions.
+#if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
 #include <Eigen/Dense>
 #include <cmath>
 

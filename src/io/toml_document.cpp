@@ -250,10 +250,10 @@ TomlNode tree_of(const toml::node& node) {
       // What is wrong with a key is shown where its name stands.
       member.line = line_of(key.source().begin);
       member.column = column_of(key.source().begin);
-      tree.members.emplace_back(std::string(key.str()), std::move(member));
+      tree.members.push_back({std::string(key.str()), std::move(member)});
     }
     std::stable_sort(tree.members.begin(), tree.members.end(), [](const auto& a, const auto& b) {
-      return std::pair(a.second.line, a.second.column) < std::pair(b.second.line, b.second.column);
+      return std::pair(a.node.line, a.node.column) < std::pair(b.node.line, b.node.column);
     });
   } else {
     tree.text = node.is_time() ? "a time" : "a date";

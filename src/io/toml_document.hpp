@@ -49,6 +49,7 @@ struct Document {
 };
 
 /// A value of any TOML file, tables included.
+struct TomlMember;
 struct TomlNode {
   enum class Kind { text, number, boolean, array, table, other };
   Kind kind = Kind::other;
@@ -56,10 +57,15 @@ struct TomlNode {
   double number = 0.0;  ///< 1 or 0 for a boolean
   bool whole = false;   ///< a number written without fraction and exponent
   int line = 0, column = 0;
-  std::vector<TomlNode> items;                            ///< of an array
-  std::vector<std::pair<std::string, TomlNode>> members;  ///< of a table, in the order of the file; keys unquoted
+  std::vector<TomlNode> items;      ///< of an array
+  std::vector<TomlMember> members;  ///< of a table, in the order of the file
 
   const TomlNode* find(std::string_view key) const;
+};
+
+struct TomlMember {
+  std::string key;  ///< unquoted
+  TomlNode node;
 };
 
 /// A whole file as a table. Throws InputError for text that is not TOML.

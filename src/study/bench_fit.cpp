@@ -1,7 +1,9 @@
 #include "wingbeat/study/bench_fit.hpp"
 
 // g++ 12 takes Eigen's resizing for a use of freed memory.
+#if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wuse-after-free"
+#endif
 #include <ceres/ceres.h>
 
 #include <Eigen/Dense>
