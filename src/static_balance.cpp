@@ -30,14 +30,6 @@ CrankKinematics<double> kinematics_at(const Vehicle<double>& v, double theta) {
   return crank_kinematics(v.crank, std::sin(theta), std::cos(theta));
 }
 
-double least_inertia(const Vehicle<double>& v, const CrankKinematics<double>& k) {
-  return std::min(effective_inertia(v, k, 1.0), effective_inertia(v, k, -1.0));
-}
-
-double static_rod_force(const Vehicle<double>& v, const CrankKinematics<double>& k) {
-  return spring_moment(v, k) / k.wing_lever;
-}
-
 /// Golden-section minimum of f on [a, b].
 template <class F>
 std::pair<double, double> minimise(const F& f, double a, double b) {
@@ -80,16 +72,12 @@ double bisect(const F& f, double a, double b) {
 
 double advance_torque(const Vehicle<double>& v, double crank_angle) {
   const CrankKinematics<double> k = kinematics_at(v, crank_angle);
-  const double F_s = static_rod_force(v, k);
-  return stall_torque(v) - F_s * k.crank_lever -
-         v.friction.radius * std::abs(F_s) - breakaway_torque(v);
+  return advance_torque(v, k, spring_moment(v, k), stall_torque(v));
 }
 
 double lock_margin(const Vehicle<double>& v, double crank_angle) {
   const CrankKinematics<double> k = kinematics_at(v, crank_angle);
-  const double F_s = static_rod_force(v, k);
-  const double drive = stall_torque(v) - F_s * k.crank_lever;
-  return v.friction.radius * std::abs(F_s) + breakaway_torque(v) - std::abs(drive);
+  return lock_margin(v, k, spring_moment(v, k), stall_torque(v));
 }
 
 StaticBalance static_balance(const Vehicle<double>& v) {
@@ -109,10 +97,7 @@ StaticBalance static_balance(const Vehicle<double>& v) {
     const CrankKinematics<double> k = crank_kinematics(v.crank, circle.sine[n], circle.cosine[n]);
     inertia[n] = least_inertia(v, k);
     lever[n] = k.wing_lever;
-    if (springs) {
-      const double F_s = static_rod_force(v, k);
-      advance[n] = s.advance_least - F_s * k.crank_lever - v.friction.radius * std::abs(F_s);
-    }
+    if (springs) advance[n] = advance_torque(v, k, spring_moment(v, k), s.stall_torque);
   }
   std::tie(s.inertia_angle, s.inertia_least) = least_on_circle(
       [&](double angle) { return least_inertia(v, kinematics_at(v, angle)); }, inertia, 0.3 * v.motor.inertia);
@@ -167,44 +152,16 @@ std::vector<LockInterval> lock_intervals(const Vehicle<double>& v) {
   return found;
 }
 
-std::vector<double> balanced_speeds(const Vehicle<double>& v) {
+BalancedSpeed<double> balanced_speed(const Vehicle<double>& v) {
   const UnitCircle& circle = unit_circle();
-  constexpr int stride = 4, speeds = 8;
-  const double no_load = no_load_speed(v.motor, v.voltage);
-  const bool has_wings = v.wing_inertia > 0.0;
-  std::array<CrankKinematics<double>, angle_count / stride> kinematics;
-  if (has_wings) {
-    for (std::size_t n = 0; n < kinematics.size(); ++n) {
-      kinematics[n] = crank_kinematics(v.crank, circle.sine[stride * n], circle.cosine[stride * n]);
-    }
+  constexpr std::size_t stride = 4, count = angle_count / stride;
+  std::array<LoadPlace<double>, count> places;
+  if (!(v.wing_inertia > 0.0)) return balanced_speed<double>(v, {});
+  for (std::size_t n = 0; n < count; ++n) {
+    const CrankKinematics<double> k = crank_kinematics(v.crank, circle.sine[stride * n], circle.cosine[stride * n]);
+    places[n] = load_place(v, k, spring_moment(v, k));
   }
-  const double N_J = v.wing_count * v.wing_inertia;
-  const auto surplus = [&](double omega) {
-    double load = 0.0;
-    for (const CrankKinematics<double>& k : kinematics) {
-      if (!has_wings) break;
-      const double velocity = k.stroke_slope * omega;
-      const double moment = N_J * k.stroke_curve * square(omega) +
-                            std::copysign(drag_moment(v.wings, std::abs(velocity)), velocity) +
-                            spring_moment(v, k);
-      const double F = moment / k.wing_lever;
-      load += F * k.crank_lever + v.friction.radius * std::abs(F);
-    }
-    return v.motor.torque_constant * algebraic_current(v, v.voltage, omega) - v.motor.viscous_damping * omega -
-           v.motor.friction_torque - load_free_friction(v.friction, omega, 1.0) - load / double(kinematics.size());
-  };
-
-  std::vector<double> roots;
-  double before = 0.02 * no_load, surplus_before = surplus(before);
-  for (int n = 1; n <= speeds; ++n) {
-    const double omega = no_load * n / speeds, at = surplus(omega);
-    if (surplus_before > 0.0 && at <= 0.0) {
-      roots.push_back(before + (omega - before) * surplus_before / (surplus_before - at));
-    }
-    before = omega;
-    surplus_before = at;
-  }
-  return roots;
+  return balanced_speed<double>(v, places);
 }
 
 }  // namespace wingbeat

@@ -116,9 +116,9 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
   OrbitSearch<N> orbit(vehicle, options);
   bool found = false, several = false;
   if (!statics.can_jam()) {
-    const std::vector<double> speeds = balanced_speeds(vehicle);
-    several = speeds.size() > 1;
-    found = !speeds.empty() && orbit.from(speeds.front());
+    const BalancedSpeed<double> balanced = balanced_speed(vehicle);
+    several = balanced.count > 1.0;
+    found = balanced.count > 0.0 && orbit.from(balanced.slowest);
     // The fastest start: if laps from there fail, no slower one can be expected to last.
     if (!found) found = orbit.from(no_load_speed(vehicle.motor, vehicle.voltage));
   }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "sundials_cvode.hpp"
+#include "wingbeat/cycle/static_balance.hpp"
 
 namespace wingbeat {
 
@@ -320,7 +321,7 @@ std::unique_ptr<detail::Cvode> StartUp::integrator(bool measuring) {
 
 double StartUp::static_force(const CrankKinematics<double>& k) const {
   if (wingless_) return 0.0;
-  return vehicle_.wing_count * spring_loads(vehicle_.spring, stroke_angle(k)).moment / k.wing_lever;
+  return wingbeat::static_rod_force(k, spring_moment(vehicle_, k));
 }
 
 /// K i - F_s h [N m]: what would turn the crank at rest.
@@ -331,13 +332,12 @@ double StartUp::net_static_torque(double theta, double i) const {
 
 /// mu r_e |F_s| + T_c [N m]: what friction can hold at rest.
 double StartUp::holding_torque(double theta) const {
-  return vehicle_.friction.radius * std::abs(static_force(kinematics(theta))) + constant_friction_;
+  return wingbeat::holding_torque(vehicle_, static_force(kinematics(theta)));
 }
 
 double StartUp::wing_energy() const {
   const CrankKinematics<double> k = kinematics(theta_);
-  return 0.5 * vehicle_.wing_count * vehicle_.wing_inertia * square(k.stroke_slope * omega_) +
-         vehicle_.wing_count * spring_loads(vehicle_.spring, stroke_angle(k)).energy;
+  return wingbeat::wing_energy(vehicle_, k, k.stroke_slope * omega_);
 }
 
 /// di/dt [A/s]; `rates` are needed without inductance only.
@@ -356,8 +356,7 @@ double StartUp::uniqueness(double theta) const {
   const CrankKinematics<double> k = kinematics(theta);
   const double lever = k.wing_lever / vehicle_.crank.hinge_offset;
   if (!(lever > 0.0)) return lever;
-  const double inertia = std::min(effective_inertia(vehicle_, k, 1.0), effective_inertia(vehicle_, k, -1.0));
-  return std::min(lever, inertia / vehicle_.motor.inertia);
+  return std::min(lever, least_inertia(vehicle_, k) / vehicle_.motor.inertia);
 }
 
 /// Nearest crank angles on either side of the start that the crank cannot pass.
@@ -405,7 +404,7 @@ void StartUp::prepare() {
   wingless_ = vehicle_.wing_count * vehicle_.wing_inertia == 0.0 &&
               vehicle_.wing_count * vehicle_.spring.stiffness == 0.0 &&
               vehicle_.wings.air_density * vehicle_.wings.s3 == 0.0;
-  constant_friction_ = vehicle_.friction.torque + m.friction_torque;
+  constant_friction_ = breakaway_torque(vehicle_);
   switched_voltage_ = supply_.voltage;
   i_ = inductive_ ? options_.current : algebraic_current(vehicle_, voltage(0.0), omega_);
   find_jams();

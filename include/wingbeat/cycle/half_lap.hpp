@@ -17,6 +17,13 @@ inline constexpr std::array lane_integrals = {Integral::time,          Integral:
                                               Integral::speed_square,  Integral::friction_work, Integral::aero_work,
                                               Integral::residual_work, Integral::lift,      Integral::rod_force};
 
+/// Where an integral stands among lane_integrals.
+constexpr std::size_t lane_integral(Integral which) {
+  std::size_t at = 0;
+  while (lane_integrals[at] != which) ++at;
+  return at;
+}
+
 /// All that depends on the crank angle alone.
 template <Scalar S>
 struct Place {
@@ -31,15 +38,14 @@ struct HalfLap {
   using State = std::array<S, N>;
   using Quadrature = std::array<S, lane_integrals.size()>;
   using Switches = std::array<S, 2>;  ///< force_switch, stored moment along the stroke
-  using Signs = std::array<S, 2>;     ///< of the rod force; of the stored moment where the step begins
-  static constexpr std::array<std::size_t, 4> controlled_integrals = {0, 4, 5, 7};
+  static constexpr std::array<std::size_t, 4> controlled_integrals = {
+      lane_integral(Integral::time), lane_integral(Integral::friction_work), lane_integral(Integral::aero_work),
+      lane_integral(Integral::lift)};
 
   const Vehicle<S>& vehicle;
   CrankGeometry<S> geometry;
   S per_inductance;  ///< 1 / L_a [1/H]
   S half;            ///< +1: crank angle u, stroke upward; -1: crank angle pi + u, stroke downward
-
-  static bool admissible(const State&) { return true; }
 
   S current(const State& y) const {
     if constexpr (N == 2) {
@@ -83,8 +89,8 @@ struct HalfLap {
       r.dy[1] = reserve * per_inductance * per_omega;
     }
     r.switches[0] = m.force_switch;
-    if constexpr (quadratures) r.switches[1] = half * m.stored_moment;
     if constexpr (quadratures) {
+      r.switches[1] = half * m.stored_moment;
       const CycleIntegrals<S> in_time = integrands(vehicle, m, y[0], branch(force));
       for (std::size_t q = 0; q < lane_integrals.size(); ++q) {
         r.dq[q] = in_time[std::size_t(lane_integrals[q])] * per_omega;

@@ -15,6 +15,7 @@
 #include "wingbeat/cycle/half_lap.hpp"
 #include "wingbeat/cycle/lane_blocks.hpp"
 #include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/cycle/static_balance.hpp"
 #include "wingbeat/solve/explicit_step.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
@@ -118,7 +119,7 @@ class LaneOrbit {
   [[gnu::noinline, gnu::flatten]] void start_from_rest();
   template <bool last>
   [[gnu::noinline, gnu::flatten]] void coarse_lap();
-  [[gnu::noinline, gnu::flatten]] void find_switches(int half, const L* u, const L* force, int count, L& offset);
+  [[gnu::noinline, gnu::flatten]] L find_switches(int half, const L* u, const L* force, int count);
   [[gnu::noinline, gnu::flatten]] void build_mesh(int half, int steps);
   [[gnu::noinline, gnu::flatten]] void advance(int half, int steps, L* force);
   [[gnu::noinline, gnu::flatten]] void medium_lap(int steps);
@@ -159,7 +160,7 @@ class LaneOrbit {
   std::array<std::array<Place<L>, coarse_samples>, 2> table_;
   State y_;
   Mask doubtful_, locked_;
-  std::array<ForceSwitches<L>, 2> switches_;
+  std::array<ForceSwitches<L>, 2> switches_{};
   std::array<HalfMesh<L>, 2> mesh_;
   std::array<std::array<LaneNode<L, N>, most_half_steps + 1>, 2> nodes_;
   std::array<L, lane_integrals.size()> integrals_;
@@ -183,11 +184,8 @@ void LaneOrbit<L, N>::tabulate() {
 template <class L, int N>
 void LaneOrbit<L, N>::judge_statics() {
   const Vehicle<L>& v = vehicle_;
-  const L N_J = v.wing_count * v.wing_inertia;
-  const L stall = v.motor.torque_constant * v.voltage / v.motor.armature_resistance;
-  const L held = v.friction.torque + v.motor.friction_torque;
-  const L mu_r = v.friction.radius;
-  doubtful_ = !(stall > held);
+  const L stall = stall_torque(v);
+  doubtful_ = !(stall > breakaway_torque(v));
   locked_ = !doubtful_ && doubtful_;
   // From rest, locking shows by itself, and only jams on the way are left to be told from near ones.
   const bool from_rest = settings_.approach == LaneApproach::from_rest;
@@ -196,68 +194,32 @@ void LaneOrbit<L, N>::judge_statics() {
   for (const auto& half : table_) {
     for (const Place<L>& place : half) {
       const CrankKinematics<L>& k = place.kinematics;
-      const L g = k.wing_lever;
-      const L A_g = N_J * k.stroke_slope;
-      const L least_g = v.motor.inertia * g + A_g * k.crank_lever - abs(A_g) * mu_r;
-      doubtful_ = doubtful_ || !(least_g > inertia_margin * v.motor.inertia * g) ||
-                  !(g > lever_margin * v.crank.hinge_offset);
+      doubtful_ = doubtful_ || !(least_inertia(v, k) > inertia_margin * v.motor.inertia) ||
+                  !(k.wing_lever > lever_margin * v.crank.hinge_offset);
       if (springs) {
-        const L moment = place.spring_moment;
-        const L needed_g = moment * k.crank_lever + mu_r * abs(moment);
-        doubtful_ = doubtful_ || !((L(0.8) * stall - held) * g > needed_g);
+        doubtful_ = doubtful_ || !(advance_torque(v, k, place.spring_moment, L(L(0.8) * stall)) > L(0.0));
       }
     }
   }
 }
 
-/// The slowest crank speed at which the motor's torque balances the mean load of a lap at constant speed, as
-/// balanced_speeds() finds it; more than one, or none, is doubtful.
+/// Starts at the balanced_speed(); more than one, or none, is doubtful.
 template <class L, int N>
 void LaneOrbit<L, N>::guess_speed() {
-  const Vehicle<L>& v = vehicle_;
-  constexpr int stride = 4, count = coarse_samples / stride, speeds = 8;
-  const L N_J = v.wing_count * v.wing_inertia;
-  std::array<L, 2 * count> inertia, slope, sign, spring, lever, per_g;
+  constexpr int stride = 4, count = coarse_samples / stride;
+  std::array<LoadPlace<L>, 2 * count> places;
   for (int n = 0; n < 2 * count; ++n) {
-    const std::size_t at = std::size_t(n);
-    const Place<L>& place = table_[at / count][std::size_t(stride / 2 + stride * (n % count))];
-    const CrankKinematics<L>& k = place.kinematics;
-    inertia[at] = N_J * k.stroke_curve;
-    slope[at] = abs(k.stroke_slope);
-    sign[at] = L(n < count ? 1.0 : -1.0);
-    spring[at] = place.spring_moment;
-    lever[at] = k.crank_lever;
-    per_g[at] = inverse_of(k.wing_lever);
+    const Place<L>& at = table_[std::size_t(n / count)][std::size_t(stride / 2 + stride * (n % count))];
+    places[std::size_t(n)] = load_place(vehicle_, at.kinematics, at.spring_moment);
   }
-  const auto surplus = [&](const L& omega) {
-    L load(0.0);
-    for (std::size_t n = 0; n < 2 * count; ++n) {
-      const L moment = inertia[n] * square(omega) + sign[n] * drag_moment(v.wings, L(slope[n] * omega)) + spring[n];
-      const L F = moment * per_g[n];
-      load = load + F * lever[n] + v.friction.radius * abs(F);
-    }
-    return v.motor.torque_constant * algebraic_current(v, v.voltage, omega) - v.motor.viscous_damping * omega -
-           v.motor.friction_torque - load_free_friction(v.friction, omega, L(1.0)) - L(1.0 / (2 * count)) * load;
-  };
-  L roots(0.0), root = no_load_;
-  L before = L(0.02) * no_load_, surplus_before = surplus(before);
-  for (int n = 1; n <= speeds; ++n) {
-    const L omega = no_load_ * L(double(n) / speeds), at = surplus(omega);
-    const Mask crossed = surplus_before > L(0.0) && at <= L(0.0);
-    const L found = before + (omega - before) * surplus_before / (surplus_before - at);
-    root = select<L>(crossed && roots == L(0.0), found, root);
-    roots = select<L>(crossed, roots + L(1.0), roots);
-    before = omega;
-    surplus_before = at;
-  }
-  doubtful_ = doubtful_ || !(roots == L(1.0));
-  y_[0] = root;
-  if constexpr (N == 2) y_[1] = algebraic_current(v, v.voltage, root);
+  const BalancedSpeed<L> balanced = balanced_speed<L>(vehicle_, places);
+  doubtful_ = doubtful_ || !(balanced.count == L(1.0));
+  y_[0] = balanced.slowest;
+  if constexpr (N == 2) y_[1] = algebraic_current(vehicle_, vehicle_.voltage, y_[0]);
 }
 
 /// From rest at crank angle zero, in time, by the classical fourth-order method: over the lower dead centre twice, where
-/// the lap may begin. Lanes that come near
-/// standing still are doubtful, but for those that come to rest and stay.
+/// the lap may begin. Lanes that come near standing still are doubtful, but for those that come to rest and stay.
 template <class L, int N>
 void LaneOrbit<L, N>::start_from_rest() {
   using Moving = std::array<L, N + 1>;  // crank angle, state
@@ -320,15 +282,15 @@ void LaneOrbit<L, N>::start_from_rest() {
   }
   // A crank that has come to rest where friction outweighs the drive, at the present current and at the one that it
   // settles to, stays.
-  const L stall = vehicle_.motor.torque_constant * vehicle_.voltage / vehicle_.motor.armature_resistance;
+  const L stall = stall_torque(vehicle_);
   const L sine = sin(x[0]), cosine = cos(x[0]);
   const CrankKinematics<L> k = crank_kinematics(geometry_, sine, cosine);
-  const L F_s = spring_moment(vehicle_, k) * inverse_of(k.wing_lever);
-  const L resistance = vehicle_.friction.radius * abs(F_s) + vehicle_.friction.torque + vehicle_.motor.friction_torque;
-  L present = stall;
-  if constexpr (N == 2) present = vehicle_.motor.torque_constant * x[2];
-  const L drive = max(abs(L(stall - F_s * k.crank_lever)), abs(L(present - F_s * k.crank_lever)));
-  locked_ = stopped && !doubtful_ && resistance - drive > L(0.05) * stall;
+  const L N_k_beta = spring_moment(vehicle_, k);
+  L margin = lock_margin(vehicle_, k, N_k_beta, stall);
+  if constexpr (N == 2) {
+    margin = min(margin, lock_margin(vehicle_, k, N_k_beta, L(vehicle_.motor.torque_constant * x[2])));
+  }
+  locked_ = stopped && !doubtful_ && margin > L(0.05) * stall;
   doubtful_ = doubtful_ || slow || !done;
 }
 
@@ -395,18 +357,19 @@ void LaneOrbit<L, N>::coarse_lap() {
   constexpr double h = pi / coarse_half_steps;
   const State start = y_;
   Matrix jacobian_before, first_jacobian;
-  for (std::size_t row = 0; row < N; ++row) {
-    for (std::size_t column = 0; column < N; ++column) monodromy_[row][column] = L(row == column ? 1.0 : 0.0);
+  if constexpr (last) {
+    for (std::size_t row = 0; row < N; ++row) {
+      for (std::size_t column = 0; column < N; ++column) monodromy_[row][column] = L(row == column ? 1.0 : 0.0);
+    }
   }
   slowest_ = y_[0];
-  switch_offset_ = L(0.0);
   std::array<L, coarse_samples> angles;
   for (std::size_t k = 0; k < coarse_samples; ++k) angles[k] = L(quarter * (2.0 * double(k) / (coarse_samples - 1) - 1.0));
   for (int half = 0; half < 2; ++half) {
     const System system = half_lap(half);
     const auto& table = table_[std::size_t(half)];
     std::array<L, coarse_samples> force;
-    const auto advance = [&](const State& from, const State& slope, double by) {
+    const auto moved = [](const State& from, const State& slope, double by) {
       State to;
       for (std::size_t n = 0; n < N; ++n) to[n] = from[n] + L(by) * slope[n];
       return to;
@@ -420,19 +383,22 @@ void LaneOrbit<L, N>::coarse_lap() {
       const State k1 = at(k, y_);
       if constexpr (last) {
         const Matrix jacobian = jacobian_at(system, table[k], y_, k1, sign_of(force[k]));
-        if (half > 0 || k > 0) append_to_monodromy(jacobian_before, jacobian, h);
-        else first_jacobian = jacobian;
+        if (half > 0 || k > 0) {
+          append_to_monodromy(jacobian_before, jacobian, h);
+        } else {
+          first_jacobian = jacobian;
+        }
         jacobian_before = jacobian;
       }
-      const State k2 = at(k + 1, advance(y_, k1, 0.5 * h));
-      const State k3 = at(k + 1, advance(y_, k2, 0.5 * h));
-      const State k4 = at(k + 2, advance(y_, k3, h));
+      const State k2 = at(k + 1, moved(y_, k1, 0.5 * h));
+      const State k3 = at(k + 1, moved(y_, k2, 0.5 * h));
+      const State k4 = at(k + 2, moved(y_, k3, h));
       for (std::size_t n = 0; n < N; ++n) {
         y_[n] = y_[n] + L(h / 6.0) * (k1[n] + L(2.0) * (k2[n] + k3[n]) + k4[n]);
       }
       slowest_ = min(slowest_, y_[0]);
     }
-    if constexpr (last) find_switches(half, angles.data(), force.data(), coarse_samples - 1, switch_offset_);
+    if constexpr (last) find_switches(half, angles.data(), force.data(), coarse_samples - 1);
   }
   if constexpr (last) {
     append_to_monodromy(jacobian_before, first_jacobian, h);
@@ -441,10 +407,10 @@ void LaneOrbit<L, N>::coarse_lap() {
   doubtful_ = doubtful_ || !(slowest_ > floor_);
 }
 
-/// Sign changes of the rod force between the samples force[0..count] at u[0..count] of half a lap, by parabolas.
-/// `offset` is raised to the largest distance [rad] from the switches known before.
+/// Sign changes of the rod force between the samples force[0..count] at u[0..count] of half a lap, by parabolas. Returns
+/// the largest distance from the switches known before [rad].
 template <class L, int N>
-void LaneOrbit<L, N>::find_switches(int half, const L* u, const L* force, int count, L& offset) {
+L LaneOrbit<L, N>::find_switches(int half, const L* u, const L* force, int count) {
   ForceSwitches<L> found;
   found.at.fill(L(quarter));
   found.count = L(0.0);
@@ -489,8 +455,10 @@ void LaneOrbit<L, N>::find_switches(int half, const L* u, const L* force, int co
   }
   doubtful_ = doubtful_ || found.count > L(double(most_force_switches));
   ForceSwitches<L>& known = switches_[std::size_t(half)];
+  L offset(0.0);
   for (std::size_t n = 0; n < most_force_switches; ++n) offset = max(offset, abs(found.at[n] - known.at[n]));
   known = found;
+  return offset;
 }
 
 /// Steps of equal length between the switches, their number in proportion to the distance.
@@ -585,7 +553,7 @@ void LaneOrbit<L, N>::medium_lap(int steps) {
     build_mesh(half, steps);
     std::array<L, most_half_steps + 1> force;
     advance(half, steps, force.data());
-    find_switches(half, mesh_[std::size_t(half)].u.data(), force.data(), steps, switch_offset_);
+    find_switches(half, mesh_[std::size_t(half)].u.data(), force.data(), steps);
   }
   accelerate(start);
 }
@@ -607,10 +575,7 @@ void LaneOrbit<L, N>::read(const System& system, const L& u, const State& y, con
     at(Quantity::current) = {m.current, -(vehicle_.motor.torque_constant * dy[0] * per_resistance)};
   }
   if (is_wanted(Quantity::energy)) {
-    L energy = L(0.5) * vehicle_.wing_count * vehicle_.wing_inertia * square(m.stroke_velocity);
-    if (any<L>(vehicle_.spring.stiffness > L(0.0))) {
-      energy = energy + vehicle_.wing_count * spring_loads(vehicle_.spring, stroke_angle(m.kinematics)).energy;
-    }
+    const L energy = wing_energy(vehicle_, m.kinematics, m.stroke_velocity);
     // At the dead centres the slope is zero but for rounding; its sign is that of the moment there.
     const L rising = sign_of(L(system.half * m.stored_moment));
     const L steepness = max(abs(L(m.stored_moment * m.kinematics.stroke_slope)), L(1e-30));
@@ -718,7 +683,7 @@ void LaneOrbit<L, N>::fine_lap() {
       slowest_ = min(slowest_, y_[0]);
     }
     visit(std::size_t(steps), mesh.force[std::size_t(steps - 1)]);
-    find_switches(half, mesh.u.data(), force.data(), steps, switch_offset_);
+    switch_offset_ = max(switch_offset_, find_switches(half, mesh.u.data(), force.data(), steps));
   }
   overlooked_ = overlooked * inverse_of(max(highest, L(1e-300)));
   residual_ = abs(y_[0] - start[0]) * inverse_of(start[0]);

@@ -1,7 +1,7 @@
 // Where the mechanism can stand still or jam, from its geometry and statics alone; model.md section 2, "Not flapping".
 #pragma once
 
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "wingbeat/vehicle/vehicle.hpp"
@@ -33,18 +33,57 @@ struct StaticBalance {
 };
 
 /// K v / R_a [N m].
-inline double stall_torque(const Vehicle<double>& v) {
+template <Scalar S>
+S stall_torque(const Vehicle<S>& v) {
   return v.motor.torque_constant * v.voltage / v.motor.armature_resistance;
 }
 
 /// T_c, the constant friction that holds the motor at rest, its own included [N m].
-inline double breakaway_torque(const Vehicle<double>& v) { return v.friction.torque + v.motor.friction_torque; }
+template <Scalar S>
+S breakaway_torque(const Vehicle<S>& v) {
+  return v.friction.torque + v.motor.friction_torque;
+}
 
-/// Torque that would start the crank forward from rest at an angle: K v/R_a - F_s h - mu r_e |F_s| - T_c [N m], with the
-/// static rod force F_s = N_w k beta / g.
+/// F_s = N_w k beta / g [N], the rod force at rest under the springs' moment N_w k beta [N m].
+template <Scalar S>
+S static_rod_force(const CrankKinematics<S>& k, const S& N_k_beta) {
+  return N_k_beta / k.wing_lever;
+}
+
+/// mu r_e |F_s| + T_c [N m]: what friction can hold at rest.
+template <Scalar S>
+S holding_torque(const Vehicle<S>& v, const S& F_s) {
+  using std::abs;
+  return v.friction.radius * abs(F_s) + breakaway_torque(v);
+}
+
+/// Torque that would start the crank forward from rest, `torque` being the motor's: torque - F_s h - mu r_e |F_s| - T_c
+/// [N m].
+template <Scalar S>
+S advance_torque(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& N_k_beta, const S& torque) {
+  const S F_s = static_rod_force(k, N_k_beta);
+  return torque - F_s * k.crank_lever - holding_torque(v, F_s);
+}
+
+/// mu r_e |F_s| + T_c - |torque - F_s h| [N m]: >= 0 where friction holds a crank at rest.
+template <Scalar S>
+S lock_margin(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& N_k_beta, const S& torque) {
+  using std::abs;
+  const S F_s = static_rod_force(k, N_k_beta);
+  return holding_torque(v, F_s) - abs(S(torque - F_s * k.crank_lever));
+}
+
+/// The least of J + A (h + s mu r_e) over both branches [kg m2]; <= 0 jams.
+template <Scalar S>
+S least_inertia(const Vehicle<S>& v, const CrankKinematics<S>& k) {
+  using std::min;
+  return min(effective_inertia(v, k, S(1.0)), effective_inertia(v, k, S(-1.0)));
+}
+
+/// advance_torque() of the motor's stall torque at a crank angle [rad].
 double advance_torque(const Vehicle<double>& vehicle, double crank_angle);
 
-/// mu r_e |F_s| + T_c - |K v/R_a - F_s h| [N m]: >= 0 where a crank at rest stays.
+/// lock_margin() of the motor's stall torque at a crank angle [rad].
 double lock_margin(const Vehicle<double>& vehicle, double crank_angle);
 
 StaticBalance static_balance(const Vehicle<double>& vehicle);
@@ -52,8 +91,63 @@ StaticBalance static_balance(const Vehicle<double>& vehicle);
 /// All intervals in which the crank locks, in order of crank angle; empty unless static_balance().can_lock().
 std::vector<LockInterval> lock_intervals(const Vehicle<double>& vehicle);
 
-/// Crank speeds [rad/s], lowest first, at which the motor's mean torque balances the mean load of a lap at constant
-/// speed: first guesses for periodic orbits. More than one hints at several orbits. Empty: the load stalls the motor.
-std::vector<double> balanced_speeds(const Vehicle<double>& vehicle);
+/// A crank angle as the mean load of a lap sees it.
+template <Scalar S>
+struct LoadPlace {
+  S inertia;         ///< N_w J_w B2 [kg m2]
+  S slope;           ///< |B1| [1]
+  S stroke;          ///< sign of beta'
+  S spring;          ///< N_w k beta [N m]
+  S crank_lever;     ///< h [m]
+  S per_wing_lever;  ///< 1 / g [1/m]
+};
+
+template <Scalar S>
+LoadPlace<S> load_place(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& N_k_beta) {
+  using std::abs;
+  return {v.wing_count * v.wing_inertia * k.stroke_curve, abs(k.stroke_slope), sign_of(k.stroke_slope), N_k_beta,
+          k.crank_lever, inverse_of(k.wing_lever)};
+}
+
+/// Motor torque less the mean load over evenly spaced places of a lap at the constant crank speed omega [N m].
+template <Scalar S>
+S torque_surplus(const Vehicle<S>& v, std::span<const LoadPlace<S>> places, const S& omega) {
+  using std::abs;
+  S load(0.0);
+  for (const LoadPlace<S>& p : places) {
+    const S moment = p.inertia * square(omega) + p.stroke * drag_moment(v.wings, S(p.slope * omega)) + p.spring;
+    const S F = moment * p.per_wing_lever;
+    load = load + F * p.crank_lever + v.friction.radius * abs(F);
+  }
+  if (!places.empty()) load = load * S(1.0 / double(places.size()));
+  return v.motor.torque_constant * algebraic_current(v, v.voltage, omega) - v.motor.viscous_damping * omega -
+         v.motor.friction_torque - load_free_friction(v.friction, omega, S(1.0)) - load;
+}
+
+/// Crank speeds at which the motor's torque balances the mean load of a lap at constant speed.
+template <Scalar S>
+struct BalancedSpeed {
+  S slowest;  ///< first guess for the periodic orbit [rad/s]; the no-load speed where there is none
+  S count;    ///< more than one hints at several orbits; 0: the load stalls the motor
+};
+
+template <Scalar S>
+BalancedSpeed<S> balanced_speed(const Vehicle<S>& v, std::span<const LoadPlace<S>> places) {
+  constexpr int speeds = 8;
+  const S no_load = no_load_speed(v.motor, v.voltage);
+  BalancedSpeed<S> balanced{no_load, S(0.0)};
+  S before = S(0.02) * no_load, surplus_before = torque_surplus(v, places, before);
+  for (int n = 1; n <= speeds; ++n) {
+    const S omega = no_load * S(double(n) / speeds), at = torque_surplus(v, places, omega);
+    const auto crossed = surplus_before > S(0.0) && at <= S(0.0);
+    const S root = before + (omega - before) * surplus_before / (surplus_before - at);
+    balanced.slowest = select<S>(crossed && balanced.count == S(0.0), root, balanced.slowest);
+    balanced.count = select<S>(crossed, balanced.count + S(1.0), balanced.count);
+    before = omega;
+    surplus_before = at;
+  }
+  return balanced;
+}
+BalancedSpeed<double> balanced_speed(const Vehicle<double>& vehicle);
 
 }  // namespace wingbeat

@@ -250,12 +250,18 @@ S algebraic_current(const Vehicle<S>& v, const S& v_t, const S& omega) {
   return (v_t - v.motor.torque_constant * omega) / v.motor.armature_resistance;
 }
 
+/// Kinetic energy of all wings and elastic energy of all hinge springs [J].
+template <Scalar S>
+S wing_energy(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& stroke_velocity) {
+  const S kinetic = S(0.5) * v.wing_count * v.wing_inertia * square(stroke_velocity);
+  if (!ScalarTraits<S>::differentiates && !any<S>(v.spring.stiffness > S(0.0))) return kinetic;
+  return kinetic + v.wing_count * spring_loads(v.spring, stroke_angle(k)).energy;
+}
+
 /// Kinetic and elastic energy of rotor, wings, springs and inductance [J].
 template <Scalar S>
 S stored_energy(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& omega, const S& i) {
-  return S(0.5) * v.motor.inertia * square(omega) +
-         S(0.5) * v.wing_count * v.wing_inertia * square(k.stroke_slope * omega) +
-         v.wing_count * spring_loads(v.spring, stroke_angle(k)).energy +
+  return S(0.5) * v.motor.inertia * square(omega) + wing_energy(v, k, S(k.stroke_slope * omega)) +
          S(0.5) * v.motor.armature_inductance * square(i);
 }
 
