@@ -1,0 +1,13 @@
+# The libraries behind wingbeat's archives. Loaded by find_package(wingbeat) from an installation or a build folder.
+include(CMakeFindDependencyMacro)
+find_dependency(Eigen3 NO_MODULE)
+find_dependency(Boost)
+find_dependency(SUNDIALS CONFIG)
+find_dependency(Ceres)
+find_dependency(NLopt)
+find_dependency(fmt)
+find_dependency(tomlplusplus)
+find_dependency(nlohmann_json)
+find_dependency(netCDF)
+find_dependency(TBB)
+include(${CMAKE_CURRENT_LIST_DIR}/wingbeat-targets.cmake)
