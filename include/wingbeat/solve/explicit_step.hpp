@@ -85,9 +85,9 @@ constexpr void unroll(std::index_sequence<j...>, F&& f) {
 
 /// One step of the 8(5,3) pair. `first` holds the rates at (x, y) on this branch. `System` provides Real, State,
 /// Quadrature, Switches, Signs and
-///   template <bool quadratures> Rates<System> rates(const Real& x, const State& y, const Signs& branch) const
-///   bool admissible(const State& y) const
-///   static controlled_integrals: indices of the integrals whose error is wanted
+///   `template <bool quadratures> Rates<System> rates(const Real& x, const State& y, const Signs& branch) const`
+///   `bool admissible(const State& y) const`
+///   `static controlled_integrals`: indices of the integrals whose error is wanted
 /// The system's equations must be smooth on the branch over the whole step.
 template <bool quadratures, class System>
 StepResult<System> explicit_step(const System& system, const typename System::Real& x, const typename System::State& y,
