@@ -87,7 +87,7 @@ struct Peer {
     const Motion<double> m = motion_on(vehicle, at, i, vehicle.voltage, branch);
     const double dt = 1.0 / omega;
     du[0] = m.crank_acceleration * dt / scale[0];
-    du[1] = m.current_rate * dt / scale[1];
+    du[1] = m.voltage_reserve / vehicle.motor.armature_inductance * dt / scale[1];
     if constexpr (N == all_states) {
       du[2] = dt / scale[2];
       du[3] = lift_force(vehicle.wings, stroke * m.stroke_velocity) * dt / scale[3];

@@ -81,12 +81,12 @@ void last_lap(const Vehicle<double>& vehicle, const Supply<double>& supply, Tran
     const double theta = hermite(a.crank_angle, b.crank_angle, a.crank_speed, b.crank_speed);
     const double omega = hermite(a.crank_speed, b.crank_speed, ma.crank_acceleration, mb.crank_acceleration);
     const double v = voltage_at(supply, time);
-    const bool inductive = vehicle.motor.armature_inductance > 0.0;
+    const double L_a = vehicle.motor.armature_inductance;
     // A switching supply kinks the current between samples: there a straight line is the safer guess.
-    const double current = !inductive ? algebraic_current(vehicle, v, omega)
+    const double current = !(L_a > 0.0) ? algebraic_current(vehicle, v, omega)
                            : supply.type == SupplyType::pwm
                                ? a.current + x * (b.current - a.current)
-                               : hermite(a.current, b.current, ma.current_rate, mb.current_rate);
+                               : hermite(a.current, b.current, ma.voltage_reserve / L_a, mb.voltage_reserve / L_a);
     const Motion<double> m = motion_of(vehicle, theta, omega, current, v);
     result.cycle.push_back(row_of(vehicle, time - start, theta - start_angle, omega, m));
     result.cycle_voltage.push_back(v);

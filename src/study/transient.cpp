@@ -265,7 +265,7 @@ bool StartUp::rates(double t, const double* y, double* dy, bool quadrature) cons
   const Motion<double> m = motion(t, y, &branch);
   dy[0] = y[1];
   dy[1] = m.crank_acceleration;
-  if (inductive_) dy[2] = m.current_rate;
+  if (inductive_) dy[2] = m.voltage_reserve / vehicle_.motor.armature_inductance;
   if (quadrature) {
     const CycleIntegrals<double> all = integrands(vehicle_, m, y[1], branch);
     for (int k = 0; k < quadrature_count; ++k) dy[coupled_ + k] = all[std::size_t(quadratures[k])];

@@ -29,7 +29,7 @@ std::array<S, instant_size> instant(const Vehicle<S>& v, const Point<S>& p) {
                                      k.wing_lever,
                                      k.crank_lever,
                                      m.crank_acceleration,
-                                     m.current_rate,
+                                     m.voltage_reserve,
                                      m.rod_force,
                                      m.force_switch,
                                      m.stroke_velocity,

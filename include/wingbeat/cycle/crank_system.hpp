@@ -78,7 +78,7 @@ struct CrankSystem {
     const S per_omega = S(1.0) / y[0];
     solve::Rates<CrankSystem> r;
     r.dy[0] = m.crank_acceleration * per_omega;
-    if constexpr (N == 2) r.dy[1] = m.current_rate * per_omega;
+    if constexpr (N == 2) r.dy[1] = m.voltage_reserve / vehicle.motor.armature_inductance * per_omega;
     r.switches = {m.force_switch, m.stored_moment};
     if constexpr (quadratures) {
       const CycleIntegrals<S> in_time = integrands(vehicle, m, y[0], branch(signs));

@@ -83,11 +83,7 @@ struct HalfLap {
     const S per_omega = inverse_of(y[0]);
     solve::Rates<HalfLap> r;
     r.dy[0] = m.crank_acceleration * per_omega;
-    if constexpr (N == 2) {
-      // Not m.current_rate, which divides by the inductance every time.
-      const S reserve = motor_loads(vehicle.motor, vehicle.voltage, y[1], y[0]).voltage_reserve;
-      r.dy[1] = reserve * per_inductance * per_omega;
-    }
+    if constexpr (N == 2) r.dy[1] = m.voltage_reserve * per_inductance * per_omega;
     r.switches[0] = m.force_switch;
     if constexpr (quadratures) {
       r.switches[1] = half * m.stored_moment;

@@ -135,7 +135,7 @@ template <Scalar S>
 struct Motion {
   CrankKinematics<S> kinematics;
   S crank_acceleration;   ///< omega' [rad/s2]
-  S current_rate;         ///< di/dt [A/s]; 0 where L_a = 0
+  S voltage_reserve;      ///< v - R_a i - K omega = L_a di/dt [V]
   S current;              ///< i [A]
   S voltage;              ///< v at the terminals [V]
   S rod_force;            ///< F [N], positive when the crank pushes the slider up
@@ -229,8 +229,7 @@ Motion<S> motion_on(const Vehicle<S>& v, const Instant<S>& at, const S& i, const
   m.friction_torque = load_friction(v.friction, branch.force * m.rod_force, branch.direction) + at.load_free;
   m.motor_torque = m.rod_force * k.crank_lever + m.friction_torque;
   m.stored_moment = v.wing_count * v.wing_inertia * m.stroke_acceleration + at.spring_moment;
-  m.current_rate = at.motor.voltage_reserve;  // L_a di/dt; divided by L_a below where there is an inductance
-  if (value_of(v.motor.armature_inductance) > 0.0) m.current_rate = m.current_rate / v.motor.armature_inductance;
+  m.voltage_reserve = at.motor.voltage_reserve;
   return m;
 }
 
