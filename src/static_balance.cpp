@@ -170,7 +170,7 @@ std::vector<LockInterval> lock_intervals(const Vehicle<double>& v) {
 std::vector<double> balanced_speeds(const Vehicle<double>& v) {
   const UnitCircle& circle = unit_circle();
   constexpr int stride = 4, speeds = 8;
-  const double no_load = no_load_speed(v.motor, v.voltage);
+  const double no_load = no_load_speed(v);
   const bool has_wings = v.wing_inertia > 0.0;
   std::array<CrankKinematics<double>, angle_count / stride> kinematics;
   if (has_wings) {

@@ -59,17 +59,17 @@ struct HalfLap {
 
   Motion<S> motion(const Place<S>& place, const State& y, const S& force) const {
     const S i = current(y);
-    const Instant<S> at =
-        instant_at(vehicle, place.kinematics, place.spring_moment, y[0], i, vehicle.voltage, half, S(1.0));
-    return motion_on(vehicle, at, i, vehicle.voltage, branch(force));
+    const S v_t = terminal_voltage(vehicle, vehicle.voltage, i);
+    const Instant<S> at = instant_at(vehicle, place.kinematics, place.spring_moment, y[0], i, v_t, half, S(1.0));
+    return motion_on(vehicle, at, i, v_t, branch(force));
   }
 
   /// The branch that holds is chosen on the spot.
   Motion<S> motion_on_its_branch(const Place<S>& place, const State& y) const {
     const S i = current(y);
-    const Instant<S> at =
-        instant_at(vehicle, place.kinematics, place.spring_moment, y[0], i, vehicle.voltage, half, S(1.0));
-    return motion_on(vehicle, at, i, vehicle.voltage, branch(sign_of(at.force_switch)));
+    const S v_t = terminal_voltage(vehicle, vehicle.voltage, i);
+    const Instant<S> at = instant_at(vehicle, place.kinematics, place.spring_moment, y[0], i, v_t, half, S(1.0));
+    return motion_on(vehicle, at, i, v_t, branch(sign_of(at.force_switch)));
   }
 
   template <bool quadratures>
@@ -79,7 +79,7 @@ struct HalfLap {
     r.dy[0] = m.crank_acceleration * per_omega;
     if constexpr (N == 2) {
       // Not m.current_rate, which divides by the inductance every time.
-      const S reserve = motor_loads(vehicle.motor, vehicle.voltage, y[1], y[0]).voltage_reserve;
+      const S reserve = motor_loads(vehicle.motor, m.voltage, y[1], y[0]).voltage_reserve;
       r.dy[1] = reserve * per_inductance * per_omega;
     }
     r.switches[0] = m.force_switch;
