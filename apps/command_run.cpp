@@ -96,6 +96,10 @@ void apply_voltage(Supply<double>& supply, const std::string& text) {
   if (supply.type == SupplyType::sine) {
     throw InputError("--voltage", 0, 0, "", "the supply is a sine; use --set supply.amplitude=\"3 V\"");
   }
+  if (supply.type == SupplyType::battery) {
+    throw InputError("--voltage", 0, 0, "", "the supply is a battery, whose charge gives its voltage; use --set "
+                                            "supply.charge=0.5, or --set supply.cell_voltage=\"3.7 V\"");
+  }
   supply.voltage = quantity("--voltage", text, "V");
   if (supply.voltage < 0.0) throw InputError("--voltage", 0, 0, "", "must be >= 0 V");
 }

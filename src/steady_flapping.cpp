@@ -28,8 +28,8 @@ class OrbitSearch {
  public:
   OrbitSearch(const Vehicle<double>& vehicle, const SteadyOptions& options)
       : options_(options),
-        system_{vehicle, 1e-4 * no_load_speed(vehicle.motor, vehicle.voltage),
-                vehicle.voltage / vehicle.motor.armature_resistance} {}
+        system_{vehicle, 1e-4 * no_load_speed(vehicle),
+                vehicle.voltage / circuit_resistance(vehicle)} {}
 
   /// One search from crank speed omega at crank angle zero; without a current, the quasi-steady one is assumed.
   bool from(double omega, double current = absent) {
@@ -120,7 +120,7 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
     several = balanced.count > 1.0;
     found = balanced.count > 0.0 && orbit.from(balanced.slowest);
     // The fastest start: if laps from there fail, no slower one can be expected to last.
-    if (!found) found = orbit.from(no_load_speed(vehicle.motor, vehicle.voltage));
+    if (!found) found = orbit.from(no_load_speed(vehicle));
   }
 
   bool rotates_in_time = false;

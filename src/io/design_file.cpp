@@ -34,6 +34,7 @@ std::string message_text(const std::string& file, int line, int column, const st
 constexpr std::string_view wave_coefficients[] = {"aerodynamics.coefficients.lift", "aerodynamics.coefficients.drag"};
 
 constexpr CsvColumn chord_columns[] = {{"distance", "m"}, {"chord", "m"}};
+constexpr CsvColumn discharge_columns[] = {{"charge", "1"}, {"voltage", "V"}};
 constexpr CsvColumn coefficient_columns[] = {{"alpha", "rad"}, {"cl", "1"}, {"cd", "1"}};
 
 class Reader {
@@ -58,6 +59,7 @@ class Reader {
     check_alternatives();
     read_coefficients(d.aerodynamics);
     read_numbers(d);
+    if (d.supply.type == SupplyType::battery) read_discharge_curve(d.supply.battery);
     if (d.wing.planform.shape == PlanformShape::tabulated) read_chords(d.wing.planform);
     check(d);
     return d;
@@ -107,7 +109,6 @@ class Reader {
     for (const auto& [name, value] : names) {
       if (name == given) return value;
     }
-    if (given == "battery") unsupported(path, given);
     wrong(*document_.find(path), path, find_key<double>(path)->range);
   }
 
@@ -166,10 +167,12 @@ class Reader {
 
   void check_alternatives() const {
     const bool tabulated = document_.find("wing.planform.shape")->text == "tabulated";
+    const bool battery = document_.find("supply.type")->text == "battery";
     const std::tuple<std::string_view, std::string_view, bool> pairs[] = {
         {"transmission.hinge_offset", "transmission.stroke_amplitude", true},
         {"spring.stiffness", "spring.resonance", document_.has_section("spring")},
-        {"wing.planform.file", "wing.planform.chords", tabulated}};
+        {"wing.planform.file", "wing.planform.chords", tabulated},
+        {"supply.cell_voltage", "supply.discharge_curve", battery}};
     for (const auto& [one, other, required] : pairs) {
       const Value* first = document_.find(one);
       const Value* second = document_.find(other);
@@ -221,6 +224,16 @@ class Reader {
         missing(key.path, quantity_example(key.unit));
       }
     }
+  }
+
+  void read_discharge_curve(Battery<double>& battery) const {
+    const std::string_view path = "supply.discharge_curve";
+    const Value* value = document_.find(path);
+    if (!value) return;
+    for (const auto& row : read_table(*value, path, discharge_columns)) {
+      battery.discharge_curve.emplace_back(row[0], row[1]);
+    }
+    if (battery.discharge_curve.empty()) value->origin.refuse(std::string(path), "has no rows");
   }
 
   void read_chords(Planform<double>& planform) const {

@@ -41,6 +41,14 @@ std::string chord_rows(const Planform<double>& planform) {
   return rows + "\n]";
 }
 
+std::string discharge_rows(const Battery<double>& battery) {
+  std::string rows = "[";
+  for (const auto& [charge, voltage] : battery.discharge_curve) {
+    rows += fmt::format("\n  [{}, {}],", toml_number(charge), toml_quantity(voltage, "V"));
+  }
+  return rows + "\n]";
+}
+
 std::string coefficient_rows(const CoefficientTable& table) {
   std::string rows = "[";
   for (std::size_t n = 0; n < table.alpha().size(); ++n) {
@@ -67,6 +75,9 @@ std::string write_design(const Design<double>& design) {
     const bool of_wave = key.get && key.path.starts_with("aerodynamics.coefficients.");
     if (key.path == "wing.planform.chords") {
       if (design.wing.planform.shape == PlanformShape::tabulated) write(key.path, chord_rows(design.wing.planform));
+    } else if (key.path == "supply.discharge_curve") {
+      const bool battery = design.supply.type == SupplyType::battery;
+      if (battery && !design.supply.battery.discharge_curve.empty()) write(key.path, discharge_rows(design.supply.battery));
     } else if (key.path == "aerodynamics.coefficients.table") {
       if (const auto& table = design.aerodynamics.coefficients.table) write(key.path, coefficient_rows(*table));
     } else if (key.text) {

@@ -498,6 +498,9 @@ class StudyReader : public detail::StudySections {
       if (v.design.supply.type == SupplyType::sine) {
         refuse(at("supply.type"), "supply.type", "a sine supply gives no steady flapping in crank angle; expected constant or pwm");
       }
+      if (frequency && v.design.supply.type == SupplyType::battery) {
+        refuse(at("supply.type"), "supply.type", no_held_frequency);
+      }
       if (frequency && v.design.supply.type == SupplyType::pwm && !(v.design.supply.duty > 0.0)) {
         refuse(at("supply.duty"), "supply.duty", "is 0: no voltage sets the flapping frequency");
       }

@@ -286,6 +286,7 @@ class StudySections {
              "a sine supply gives no steady flapping in crank angle; expected constant or pwm");
     }
     if (!held_frequency_) return std::nullopt;
+    if (design.supply.type == SupplyType::battery) refuse(*held_frequency_, "study.hold.frequency", no_held_frequency);
     const double f = quantity(*held_frequency_, "study.hold.frequency", "Hz");
     if (!(f > 0.0)) refuse(*held_frequency_, "study.hold.frequency", "must be > 0 Hz");
     return f;
@@ -300,7 +301,9 @@ class StudySections {
     } catch (const ParameterError& error) {
       refuse(node, where, fmt::format("{}: {}", one_line(key), error.reason()));
     }
-    if (key == "wing.count") refuse(node, where, "wing.count is a whole number and has no derivative");
+    if (key == "wing.count" || key == "supply.cells") {
+      refuse(node, where, fmt::format("{} is a whole number and has no derivative", key));
+    }
     const bool supply = key == "supply.voltage" || key == "supply.duty";
     if (supply && held_voltage_) refuse(node, where, "study.hold holds the voltage already");
     if (supply && held_frequency_) {
@@ -313,6 +316,9 @@ class StudySections {
     }
     return parameter;
   }
+
+  static constexpr const char* no_held_frequency =
+      "the charge of a battery gives its voltage, so none can be found for a frequency";
 
   std::string name_;
   TomlNode root_;

@@ -26,6 +26,7 @@ constexpr std::pair<std::string_view, std::string_view> alternatives[] = {
     {"transmission.hinge_offset", "transmission.stroke_amplitude"},
     {"spring.stiffness", "spring.resonance"},
     {"wing.planform.file", "wing.planform.chords"},
+    {"supply.cell_voltage", "supply.discharge_curve"},
     {"aerodynamics.coefficients.table", "aerodynamics.coefficients.lift"},
     {"aerodynamics.coefficients.table", "aerodynamics.coefficients.drag"}};
 

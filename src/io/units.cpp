@@ -256,6 +256,7 @@ std::string quantity_example(std::string_view unit) {
       {"s", "a time such as \"5 ms\""},
       {"V", "a voltage such as \"3 V\""},
       {"A", "a current such as \"0.2 A\""},
+      {"C", "an electric charge such as \"50 mA h\""},
       {"Hz", "a frequency such as \"22 Hz\""},
       {"rad", "an angle such as \"40 deg\""},
       {"rad/s", "an angular speed such as \"100 rad/s\""},

@@ -25,7 +25,7 @@ Search begin(const Vehicle<double>& v, std::size_t member, double frequency) {
   const Motor<double>& m = v.motor;
   const double omega = two_pi * frequency;
   const double unloaded = m.torque_constant * omega +
-                          m.armature_resistance * (m.viscous_damping * omega + m.friction_torque) / m.torque_constant;
+                          circuit_resistance(v) * (m.viscous_damping * omega + m.friction_torque) / m.torque_constant;
   Search s;
   s.member = member;
   s.target = frequency;

@@ -37,7 +37,7 @@ class Search {
     const double K = m.torque_constant;
     const double omega = two_pi * target_;
     const double unloaded =
-        K * omega + m.armature_resistance * (m.viscous_damping * omega + m.friction_torque) / K;
+        K * omega + circuit_resistance(vehicle_) * (m.viscous_damping * omega + m.friction_torque) / K;
 
     Trial high = attempt(unloaded);
     Trial low = high;

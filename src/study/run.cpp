@@ -16,14 +16,15 @@ std::string format(const char* pattern, Args... args) {
   return text;
 }
 
-/// Everything that acts at a state, on the branch that the state itself decides.
+/// Everything that acts at a state where the supply drives v, on the branch that the state itself decides.
 Motion<double> motion_of(const Vehicle<double>& vehicle, double crank_angle, double omega, double i, double v) {
+  const double v_t = terminal_voltage(vehicle, v, i);
   const double s = std::sin(crank_angle), c = std::cos(crank_angle);
   Branch<double> branch{c * omega >= 0.0 ? 1.0 : -1.0, 1.0, omega >= 0.0 ? 1.0 : -1.0, 1.0};
-  const Motion<double> m = motion_at(vehicle, s, c, omega, i, v, branch);
+  const Motion<double> m = motion_at(vehicle, s, c, omega, i, v_t, branch);
   if (m.force_switch >= 0.0) return m;
   branch.force = -1.0;
-  return motion_at(vehicle, s, c, omega, i, v, branch);
+  return motion_at(vehicle, s, c, omega, i, v_t, branch);
 }
 
 WaveformRow row_of(const Vehicle<double>& vehicle, double time, double crank_angle, double omega,
@@ -89,7 +90,18 @@ void last_lap(const Vehicle<double>& vehicle, const Supply<double>& supply, Tran
                                : hermite(a.current, b.current, ma.voltage_reserve / L_a, mb.voltage_reserve / L_a);
     const Motion<double> m = motion_of(vehicle, theta, omega, current, v);
     result.cycle.push_back(row_of(vehicle, time - start, theta - start_angle, omega, m));
-    result.cycle_voltage.push_back(v);
+    result.cycle_voltage.push_back(m.voltage);
+  }
+}
+
+/// Refuses a supply whose voltage cannot be chosen: `wanted` depends on it.
+void require_choice_of_voltage(const Supply<double>& supply, const char* wanted) {
+  const char* why = nullptr;
+  if (supply.type == SupplyType::sine) why = "a sine supply has no voltage that sets the %s";
+  if (supply.type == SupplyType::battery) why = "the charge of a battery gives its voltage, so none can be chosen for the %s";
+  if (why) throw ParameterError("supply.type", format(why, wanted));
+  if (supply.type == SupplyType::pwm && !(supply.duty > 0.0)) {
+    throw ParameterError("supply.duty", format("is 0: no voltage reaches the motor, so none sets the %s", wanted));
   }
 }
 
@@ -111,7 +123,9 @@ void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunRes
   }
   if (options.waveform_rows > 1 && !found.record.empty()) {
     result.cycle = found.record.waveform(options.waveform_rows);
-    result.cycle_voltage.assign(result.cycle.size(), vehicle.voltage);
+    for (const WaveformRow& row : result.cycle) {
+      result.cycle_voltage.push_back(terminal_voltage(vehicle, vehicle.voltage, row.current));
+    }
   }
 }
 
@@ -148,23 +162,16 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
   require(options.tolerance >= 1e-12 && options.tolerance <= 1e-2, "tolerance", "must lie between 1e-12 and 1e-2", "1",
           options.tolerance);
   const Supply<double>& supply = design.supply;
-  if (supply.type == SupplyType::sine) {
-    if (options.frequency) {
-      throw ParameterError("supply.type", "a sine supply has no voltage that sets the flapping frequency");
-    }
-    if (options.method == Method::orbit) {
-      throw ParameterError("supply.type", "with a sine supply the crank has no periodic orbit in crank angle; simulate "
-                                          "it in time with --method transient");
-    }
+  if (options.frequency) require_choice_of_voltage(supply, "flapping frequency");
+  if (supply.type == SupplyType::sine && options.method == Method::orbit) {
+    throw ParameterError("supply.type", "with a sine supply the crank has no periodic orbit in crank angle; simulate "
+                                        "it in time with --method transient");
   }
   RunResult result;
   result.metrics.values.fill(absent);
   result.design = design;
   Vehicle<double> vehicle = resolve(design, options.condition);
   if (options.frequency) {
-    if (supply.type == SupplyType::pwm && !(supply.duty > 0.0)) {
-      throw ParameterError("supply.duty", "is 0: no voltage reaches the motor, so none sets the flapping frequency");
-    }
     SteadyOptions steady;
     steady.tolerance = options.tolerance;
     result.search = find_voltage_for_frequency(vehicle, *options.frequency, steady, start_up_in_time());

@@ -245,8 +245,11 @@ StartUp::StartUp(const Vehicle<double>& vehicle, const TransientOptions& options
   require(std::isfinite(options.crank_angle), "transient.crank_angle", "must be finite", "rad", options.crank_angle);
   require(std::isfinite(options.crank_speed), "transient.crank_speed", "must be finite", "rad/s", options.crank_speed);
   require(std::isfinite(options.current), "transient.current", "must be finite", "A", options.current);
+  require(vehicle_.source_resistance >= 0.0, "supply.internal_resistance", "must be >= 0", "ohm",
+          vehicle_.source_resistance);
   vehicle_.voltage = mean_voltage(supply_);
-  if (supply_.type == SupplyType::pwm && (supply_.duty <= 0.0 || supply_.duty >= 1.0)) {
+  const bool steady_pwm = supply_.type == SupplyType::pwm && (supply_.duty <= 0.0 || supply_.duty >= 1.0);
+  if (steady_pwm || supply_.type == SupplyType::battery) {
     supply_ = {SupplyType::constant, vehicle_.voltage, 0.0, 1.0};
   }
 }
@@ -257,7 +260,8 @@ Motion<double> StartUp::motion(double t, const double* y, Branch<double>* used) 
   Branch<double> branch = branch_;
   branch.stroke = sign_of(cos_theta * y[1]);  // B1 has the sign of cos theta as long as the rod outreaches the crank
   if (used) *used = branch;
-  return motion_at(vehicle_, sin_theta, cos_theta, y[1], current_of(t, y), voltage(t), branch);
+  const double i = current_of(t, y);
+  return motion_at(vehicle_, sin_theta, cos_theta, y[1], i, terminal_voltage(vehicle_, voltage(t), i), branch);
 }
 
 bool StartUp::rates(double t, const double* y, double* dy, bool quadrature) const {
@@ -343,11 +347,12 @@ double StartUp::wing_energy() const {
 /// di/dt [A/s]; `rates` are needed without inductance only.
 double StartUp::current_slope(double t, const double* y, const double* rates) const {
   const Motor<double>& m = vehicle_.motor;
-  if (inductive_) return (voltage(t) - m.armature_resistance * y[2] - m.torque_constant * y[1]) / m.armature_inductance;
+  const double R = circuit_resistance(vehicle_);
+  if (inductive_) return (voltage(t) - R * y[2] - m.torque_constant * y[1]) / m.armature_inductance;
   const double angular = two_pi * supply_.frequency;
   const double voltage_slope =
       supply_.type == SupplyType::sine ? supply_.voltage * angular * std::cos(angular * t) : 0.0;
-  return (voltage_slope - m.torque_constant * rates[1]) / m.armature_resistance;
+  return (voltage_slope - m.torque_constant * rates[1]) / R;
 }
 
 /// The smaller of the effective inertias over J, and the wing lever over H: the equations have one solution while
@@ -396,7 +401,7 @@ void StartUp::find_jams() {
 
 void StartUp::prepare() {
   const Motor<double>& m = vehicle_.motor;
-  const double R_a = m.armature_resistance, K = m.torque_constant;
+  const double R = circuit_resistance(vehicle_), K = m.torque_constant;
   theta_ = swing_low_ = swing_high_ = options_.crank_angle;
   omega_ = options_.crank_speed;
   inductive_ = m.armature_inductance > 0.0;
@@ -410,25 +415,25 @@ void StartUp::prepare() {
   find_jams();
 
   const double damping = m.viscous_damping + vehicle_.friction.damping;
-  current_scale_ = supply_.voltage / R_a;
-  speed_scale_ = K * supply_.voltage / (K * K + R_a * damping);
+  current_scale_ = supply_.voltage / R;
+  speed_scale_ = K * supply_.voltage / (K * K + R * damping);
   if (vehicle_.friction.quadratic > 0.0) {
     speed_scale_ = std::min(speed_scale_, std::sqrt(K * current_scale_ / vehicle_.friction.quadratic));
   }
   if (!(speed_scale_ > 0.0)) speed_scale_ = omega_ != 0.0 ? std::abs(omega_) : 1.0;
-  if (!(current_scale_ > 0.0)) current_scale_ = std::max(std::abs(i_), K * speed_scale_ / R_a);
+  if (!(current_scale_ > 0.0)) current_scale_ = std::max(std::abs(i_), K * speed_scale_ / R);
   const double released = 0.5 * pi * std::sqrt(vehicle_.wing_count * vehicle_.spring.stiffness / m.inertia);
-  runaway_speed_ = 1e3 * std::max({speed_scale_, std::abs(omega_), std::abs(i_) * R_a / K, released});
+  runaway_speed_ = 1e3 * std::max({speed_scale_, std::abs(omega_), std::abs(i_) * R / K, released});
   const double lap = two_pi / speed_scale_;
-  const double electrical = m.armature_inductance / R_a;
+  const double electrical = m.armature_inductance / R;
   const double wings = vehicle_.wing_count * vehicle_.wing_inertia *
                        square(vehicle_.crank.crank_radius / vehicle_.crank.hinge_offset);
-  const double mechanical = (m.inertia + wings) * R_a / (K * K + R_a * m.viscous_damping);
+  const double mechanical = (m.inertia + wings) * R / (K * K + R * m.viscous_damping);
   time_scale_ = lap;
   force_scale_ = (m.inertia + wings) * K * current_scale_ * vehicle_.crank.hinge_offset / vehicle_.crank.crank_radius;
 
   const double fastest = inductive_ ? std::max(1.0 / electrical, damping / smallest_inertia_)
-                                    : (damping + K * K / R_a) / smallest_inertia_;
+                                    : (damping + K * K / R) / smallest_inertia_;
   const double drive = supply_.type == SupplyType::constant ? 0.0 : 1.0 / supply_.frequency;
   stiff_ = fastest * (drive > 0.0 ? std::min(lap, drive) : lap) > stiff_decays_per_lap;
   result_.stiff = stiff_;
@@ -444,7 +449,7 @@ void StartUp::prepare() {
   window_low_ = window_high_ = theta_;
 
   const double force = K * current_scale_ / vehicle_.crank.crank_radius;
-  const double power = current_scale_ * K * speed_scale_ + current_scale_ * current_scale_ * R_a;
+  const double power = current_scale_ * K * speed_scale_ + current_scale_ * current_scale_ * R;
   const auto natural = [&](Integral which) {
     switch (which) {
       case Integral::current: return current_scale_;
@@ -508,7 +513,7 @@ void StartUp::stand() {
   const double load = static_force(k) * k.crank_lever;
   const double hold = vehicle_.friction.radius * std::abs(static_force(k)) + constant_friction_;
   const double K = vehicle_.motor.torque_constant;
-  if (!inductive_) i_ = voltage(t_) / vehicle_.motor.armature_resistance;
+  if (!inductive_) i_ = voltage(t_) / circuit_resistance(vehicle_);
   const double net = K * i_ - load;
   if (std::abs(net) > hold) {
     branch_.direction = sign_of(net);
@@ -523,18 +528,18 @@ void StartUp::stand() {
 /// then being set; false when the verdict is in.
 bool StartUp::stick(double low, double high) {
   const Motor<double>& m = vehicle_.motor;
-  const double R_a = m.armature_resistance;
-  const double tau = m.armature_inductance / R_a;
+  const double R = circuit_resistance(vehicle_);
+  const double tau = m.armature_inductance / R;
   const auto inside = [&](double i) { return i >= low && i <= high; };
 
-  if (supply_.type == SupplyType::constant && inside(switched_voltage_ / R_a)) {
+  if (supply_.type == SupplyType::constant && inside(switched_voltage_ / R)) {
     rest(theta_, true);
     return false;
   }
   if (supply_.type == SupplyType::pwm) {
     // The current's limit cycle; on the way there it stays between its start and the cycle's ends.
     const double period = 1.0 / supply_.frequency;
-    double top = supply_.voltage / R_a, bottom = 0.0;
+    double top = supply_.voltage / R, bottom = 0.0;
     if (inductive_) {
       top *= std::expm1(-supply_.duty * period / tau) / std::expm1(-period / tau);
       bottom = top * std::exp(-(1.0 - supply_.duty) * period / tau);
@@ -567,7 +572,7 @@ bool StartUp::stick(double low, double high) {
       if (!inside(i_)) i_ = i_ > high ? high : low;
       return true;
     }
-    const double limit = switched_voltage_ / R_a;
+    const double limit = switched_voltage_ / R;
     const double piece_end = std::min(end_time_, next_switch());
     if (!inside(limit)) {
       const double bound = limit > high ? high : low;
@@ -588,13 +593,13 @@ bool StartUp::stick(double low, double high) {
 /// Lets the current of the standing motor run on to the time `until`, before any switching of the supply.
 void StartUp::relax(double until) {
   const Motor<double>& m = vehicle_.motor;
-  const double R_a = m.armature_resistance;
-  const double tau = m.armature_inductance / R_a;
+  const double R = circuit_resistance(vehicle_);
+  const double tau = m.armature_inductance / R;
   const double start = t_, i_0 = i_, span = until - start;
   const auto forced = [&](double t) {
-    if (supply_.type != SupplyType::sine) return switched_voltage_ / R_a;
+    if (supply_.type != SupplyType::sine) return switched_voltage_ / R;
     const double angular = two_pi * supply_.frequency, lag = std::atan(angular * tau);
-    return supply_.voltage / R_a * std::cos(lag) * std::sin(angular * t - lag);
+    return supply_.voltage / R * std::cos(lag) * std::sin(angular * t - lag);
   };
   const auto current = [&](double t) {
     return inductive_ ? forced(t) + (i_0 - forced(start)) * std::exp(-(t - start) / tau) : forced(t);
@@ -608,7 +613,7 @@ void StartUp::relax(double until) {
         const double t = start + 0.5 * span * (1.0 + at);
         charge += weight * span * current(t);
         heat += weight * span * square(current(t));
-        work += weight * span * current(t) * voltage(t);
+        work += weight * span * current(t) * terminal_voltage(vehicle_, voltage(t), current(t));
       }
     } else {
       const double limit = forced(start);
@@ -617,7 +622,7 @@ void StartUp::relax(double until) {
       const double b = inductive_ ? -0.5 * tau * std::expm1(-2.0 * span / tau) : 0.0;
       charge = limit * span + d * a;
       heat = square(limit) * span + 2.0 * limit * d * a + square(d) * b;
-      work = switched_voltage_ * charge;
+      work = switched_voltage_ * charge - vehicle_.source_resistance * heat;
     }
     for (int k = 0; k < quadrature_count; ++k) {
       switch (quadratures[k]) {
@@ -867,7 +872,7 @@ void StartUp::add_variation() {
 bool StartUp::captured() {
   if (supply_.type != SupplyType::constant || std::abs(omega_) > 0.02 * speed_scale_) return false;
   const Motor<double>& m = vehicle_.motor;
-  const double final_current = switched_voltage_ / m.armature_resistance;
+  const double final_current = switched_voltage_ / circuit_resistance(vehicle_);
   if (wingless_ || vehicle_.spring.stiffness == 0.0) {
     if (final_current > 0.0 || std::abs(omega_) > 1e-7 * speed_scale_) return false;
     rest(theta_, false);
@@ -1078,9 +1083,9 @@ void StartUp::rest(double theta, bool held_by_friction) {
   result_.settled = true;
   theta_ = theta;
   omega_ = 0.0;
-  const double R_a = vehicle_.motor.armature_resistance;
-  const double stall_torque = vehicle_.motor.torque_constant * supply_.voltage / R_a;
-  const double mean_current = supply_.type == SupplyType::sine ? 0.0 : vehicle_.voltage / R_a;
+  const double R = circuit_resistance(vehicle_);
+  const double stall_torque = vehicle_.motor.torque_constant * supply_.voltage / R;
+  const double mean_current = supply_.type == SupplyType::sine ? 0.0 : vehicle_.voltage / R;
   const double angle = wrap_angle(theta);
   const double load = std::abs(net_static_torque(theta, mean_current));
   result_.lock_angle = angle;

@@ -258,7 +258,7 @@ TEST(DesignErrors, MissingKeyOrSection) {
             "v.toml:12:2: transmission.hinge_offset: missing in [transmission]; expected a length such as \"5 mm\", or "
             "stroke_amplitude instead");
   EXPECT_EQ(refusal(without_line("type = \"constant\"")),
-            "v.toml:3:2: supply.type: missing in [supply]; expected constant, sine or pwm");
+            "v.toml:3:2: supply.type: missing in [supply]; expected constant, sine, pwm or battery");
   EXPECT_EQ(refusal(with("[friction]\ntype = \"load-proportional\"\nradius = \"2.5 mm\"\n", "")),
             "v.toml:22:1: friction: missing section [friction]: the friction law; without friction write type = "
             "\"none\"");
@@ -284,9 +284,7 @@ TEST(DesignErrors, WrongType) {
   EXPECT_EQ(refusal(with("[motor]", "[[motor]]")),
             "v.toml:6:3: motor: expected a section [motor], got a list of tables");
   EXPECT_EQ(refusal(with("\"constant\"", "\"steady\"")),
-            "v.toml:4:1: supply.type: expected constant, sine or pwm, got \"steady\"");
-  EXPECT_EQ(refusal(with("\"constant\"", "\"battery\"")),
-            "v.toml:4:1: supply.type: battery is not supported yet; expected constant, sine or pwm");
+            "v.toml:4:1: supply.type: expected constant, sine, pwm or battery, got \"steady\"");
   EXPECT_EQ(refusal(with("\"slider-crank\"", "\"direct\"")),
             "v.toml:13:1: transmission.type: direct is not supported yet; expected slider-crank");
 }

@@ -49,7 +49,7 @@ TEST(DesignKeys, WhatIsSetIsRead) {
   for (const auto& key : vehicle_keys<double>()) {
     if (!key.set) continue;
     Design<double> d{};
-    for (const SupplyType supply : {SupplyType::constant, SupplyType::sine, SupplyType::pwm}) {
+    for (const SupplyType supply : {SupplyType::constant, SupplyType::sine, SupplyType::pwm, SupplyType::battery}) {
       d.supply.type = supply;
       if (key.set(d, 0.25)) break;
     }
@@ -71,6 +71,11 @@ TEST(DesignKeys, AlternativesReplaceEachOther) {
   set_parameter(d, "spring.stiffness", 1e-3);
   set_parameter(d, "spring.resonance", 22.0);
   EXPECT_FALSE(d.spring.stiffness);
+  d.supply.type = SupplyType::battery;
+  d.supply.battery.discharge_curve = {{0.0, 3.0}, {1.0, 4.2}};
+  EXPECT_EQ(find_key<double>("supply.cell_voltage")->get(d), std::nullopt);
+  set_parameter(d, "supply.cell_voltage", 3.7);
+  EXPECT_TRUE(d.supply.battery.discharge_curve.empty());
   set_parameter(d, "friction.damping", 1e-6);
   EXPECT_EQ(d.friction.law, FrictionLaw::viscous);
   EXPECT_EQ(find_key<double>("friction.radius")->get(d), std::nullopt);

@@ -41,7 +41,7 @@ std::array<S, instant_size> instant(const Vehicle<S>& v, const Point<S>& p) {
                                      stored_energy(v, k, p.omega, p.current),
                                      effective_inertia(v, k, p.force),
                                      stroke_amplitude(v.crank),
-                                     no_load_speed(v.motor, p.voltage),
+                                     no_load_speed(v),
                                      algebraic_current(v, p.voltage, p.omega)};
   const CycleIntegrals<S> q = integrands(v, m, p.omega, branch);
   const CycleExtremes<S> e = extreme_candidates(v, m, p.omega, branch);

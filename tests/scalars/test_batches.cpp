@@ -87,8 +87,9 @@ Vehicle<double> mixed_vehicle(std::mt19937_64& random, Formulation formulation, 
     d.transmission.formulation = formulation;
     d.motor.constants.armature_inductance = inductance == Inductance::some ? 29e-3 : 0.0;
     const int condition = std::uniform_int_distribution<int>(0, 5)(random);
-    const Vehicle<double> v = resolve(
+    Vehicle<double> v = resolve(
         d, condition == 0 ? Condition::wingless : condition == 1 ? Condition::vacuum : Condition::air);
+    v.source_resistance = 0.2 * v.motor.armature_resistance;
     // Near a jam rounding grows without bound.
     double least = 1.0;
     for (double theta = 0.0; theta < two_pi; theta += 0.05) {

@@ -21,6 +21,7 @@ Vehicle<double> generic_vehicle(Formulation formulation) {
   v.crank.formulation = formulation;
   v.friction = {1.5e-3, 3e-6, 2e-8, 1e-4};
   v.spring.stiffness = 1.1e-3;
+  v.source_resistance = 1.7;
   return v;
 }
 
@@ -91,7 +92,8 @@ struct InstantOf {
     using std::cos;
     using std::sin;
     return instant<S>(in.vehicle,
-                      {sin(in.theta), cos(in.theta), in.omega, in.current, in.vehicle.voltage, S(force), S(1.0)});
+                      {sin(in.theta), cos(in.theta), in.omega, in.current,
+                       terminal_voltage(in.vehicle, in.vehicle.voltage, in.current), S(force), S(1.0)});
   }
 };
 
@@ -195,8 +197,9 @@ TEST(Jets, DerivativesAreFiniteAndContinuousAtTheDeadCentres) {
       J sin_theta(sine), cos_theta(0.0);
       cos_theta.v[parameter_count] = -sine;
       for (const double force : {1.0, -1.0}) {
-        const auto at = instant<J>(dual.vehicle, {sin_theta, cos_theta, dual.omega, dual.current, dual.vehicle.voltage,
-                                                  J(force), J(1.0)});
+        const J v_t = terminal_voltage(dual.vehicle, dual.vehicle.voltage, dual.current);
+        const auto at =
+            instant<J>(dual.vehicle, {sin_theta, cos_theta, dual.omega, dual.current, v_t, J(force), J(1.0)});
         expect_finite(at);
         for (const double aside : {-1e-9, 1e-9}) {
           const auto near = InstantOf{force}(dual_inputs({v, std::asin(sine) + aside, 140.0, 0.13}));

@@ -8,9 +8,9 @@
 
 namespace wingbeat {
 
-inline constexpr int parameter_count = 30;
+inline constexpr int parameter_count = 31;
 
-// Thirty numbers, the formulation and the pointer to the coefficient table: a new parameter must be listed below.
+// Thirty-one numbers, the formulation and the pointer to the coefficient table: a new parameter must be listed below.
 static_assert(sizeof(Vehicle<double>) ==
               parameter_count * sizeof(double) + sizeof(double) + sizeof(std::shared_ptr<const CoefficientTable>));
 
@@ -47,7 +47,8 @@ std::array<std::pair<const char*, S*>, parameter_count> parameters(Vehicle<S>& v
            {"drag.offset", &drag.offset},
            {"drag.amplitude", &drag.amplitude},
            {"drag.rate", &drag.rate},
-           {"drag.phase", &drag.phase}}};
+           {"drag.phase", &drag.phase},
+           {"source_resistance", &v.source_resistance}}};
 }
 
 }  // namespace wingbeat

@@ -90,6 +90,41 @@ std::vector<EnsembleMember> mixed_members(int count, std::uint64_t seed) {
   return members;
 }
 
+TEST(Ensemble, InternalResistanceAgreesWithTheScalarSolver) {
+  std::mt19937_64 random(31);
+  std::vector<EnsembleMember> members;
+  for (int n = 0; n < 600; ++n) {
+    members.push_back(member_of(n % 10 == 0 ? random_design(random, 1.5) : box_design(random)));
+    Vehicle<double>& v = members.back().vehicle;
+    if (n % 4 == 0) v.motor.armature_inductance = 0.0;
+    v.source_resistance = v.motor.armature_resistance * std::uniform_real_distribution<>(0.0, 0.5)(random);
+  }
+  EnsembleOptions options;
+  options.metrics.reset(std::size_t(Metric::floquet_multiplier_max));
+  EnsembleOptions exact = options;
+  exact.scalar_only = true;
+  exact.tolerance = 1e-9;
+  const auto expected = solve(members, exact);
+  for (const InstructionSet isa : available()) {
+    options.isa = isa;
+    const auto got = solve(members, options);
+    int flapping = 0, by_lanes = 0, outside = 0;
+    for (std::size_t n = 0; n < members.size(); ++n) {
+      EXPECT_EQ(got[n].status, expected[n].status) << n;
+      if (expected[n].status != FlappingStatus::flapping) continue;
+      ++flapping;
+      by_lanes += !got[n].scalar;
+      std::string where;
+      const double error = largest_error(got[n].metrics, expected[n].metrics, &where);
+      outside += error > 1e-6;
+      EXPECT_LT(error, 3e-6) << n << ' ' << where;
+    }
+    EXPECT_GT(flapping, 400);
+    EXPECT_GT(by_lanes, flapping * 4 / 5);
+    EXPECT_LE(outside, flapping / 50);
+  }
+}
+
 TEST(Ensemble, AgreesWithTheScalarSolver) {
   std::mt19937_64 random(3);
   std::vector<EnsembleMember> members;

@@ -47,7 +47,7 @@ std::optional<Metrics<double>> metrics_at_frequency(Design<double> design, Condi
 std::vector<DesignParameter> numeric_parameters(const Design<double>& design) {
   std::vector<DesignParameter> parameters;
   for (const auto& key : vehicle_keys<double>()) {
-    if (!key.set || key.path == "wing.count") continue;  // a whole number
+    if (!key.set || key.path == "wing.count" || key.path == "supply.cells") continue;  // whole
     const auto value = key.get(design);
     if (!value || (*value == 0.0 && key.path != "motor.friction_torque" && key.path != "spring.stiffness")) continue;
     parameters.push_back(design_parameter(key.path));
@@ -133,6 +133,32 @@ TEST_P(OrbitGradients, ReferenceVehiclesInEveryCondition) {
     }
   }
   EXPECT_GT(worst.compared, 2500);
+  EXPECT_LT(worst.error, 1e-6) << worst.where;
+}
+
+TEST(OrbitGradient, BatteriesByResistanceChargeAndEverythingElse) {
+  Worst worst;
+  for (const bool curve : {false, true}) {
+    for (const double inductance : {29e-3, 0.0}) {
+      Design<double> d = reference_design();
+      d.motor.constants.armature_inductance = inductance;
+      d.supply.type = SupplyType::battery;
+      Battery<double>& b = d.supply.battery;
+      b.internal_resistance = 1.7;
+      b.capacity = 180.0;
+      b.charge = 0.6;
+      b.cell_voltage = 3.7;
+      if (curve) b.discharge_curve = {{0.0, 3.0}, {0.2, 3.6}, {0.7, 3.8}, {1.0, 4.2}};
+      const SteadyFlapping s = orbit_of(d, Condition::air);
+      const DesignParameter by[] = {design_parameter("supply.internal_resistance"), design_parameter("supply.charge")};
+      const MetricGradients g = metric_gradients(d, Condition::air, s, by);
+      EXPECT_LT(g.by_parameter[0][std::size_t(Metric::frequency)], 0.0);
+      EXPECT_LT(g.by_parameter[0][std::size_t(Metric::voltage)], 0.0);
+      EXPECT_EQ(g.by_parameter[1][std::size_t(Metric::frequency)] > 0.0, curve);
+      compare_gradients(d, Condition::air, Held::voltage, worst);
+    }
+  }
+  EXPECT_GT(worst.compared, 1500);
   EXPECT_LT(worst.error, 1e-6) << worst.where;
 }
 

@@ -28,7 +28,7 @@ struct CrankSystem {
 
   Vehicle<S> vehicle;
   S speed_floor = S(0.0);    ///< below this crank speed [rad/s] the crank counts as stopped
-  S current_scale = S(0.0);  ///< v / R_a [A], scale of errors in the current
+  S current_scale = S(0.0);  ///< v / (R_a + R_i) [A], scale of errors in the current
 
   template <Scalar T>
   CrankSystem<T, N> cast() const {
@@ -69,7 +69,9 @@ struct CrankSystem {
   Motion<S> motion(const S& theta, const State& y, const Signs& signs) const {
     using std::cos;
     using std::sin;
-    return motion_at(vehicle, S(sin(theta)), S(cos(theta)), y[0], current(y), vehicle.voltage, branch(signs));
+    const S i = current(y);
+    const S v_t = terminal_voltage(vehicle, vehicle.voltage, i);
+    return motion_at(vehicle, S(sin(theta)), S(cos(theta)), y[0], i, v_t, branch(signs));
   }
 
   template <bool quadratures>

@@ -65,17 +65,17 @@ struct HalfLap {
 
   Motion<S> motion(const Place<S>& place, const State& y, const S& force) const {
     const S i = current(y);
-    const Instant<S> at =
-        instant_at(vehicle, place.kinematics, place.spring_moment, y[0], i, vehicle.voltage, half, S(1.0));
-    return motion_on(vehicle, at, i, vehicle.voltage, branch(force));
+    const S v_t = terminal_voltage(vehicle, vehicle.voltage, i);
+    const Instant<S> at = instant_at(vehicle, place.kinematics, place.spring_moment, y[0], i, v_t, half, S(1.0));
+    return motion_on(vehicle, at, i, v_t, branch(force));
   }
 
   /// The branch that holds is chosen on the spot.
   Motion<S> motion_on_its_branch(const Place<S>& place, const State& y) const {
     const S i = current(y);
-    const Instant<S> at =
-        instant_at(vehicle, place.kinematics, place.spring_moment, y[0], i, vehicle.voltage, half, S(1.0));
-    return motion_on(vehicle, at, i, vehicle.voltage, branch(sign_of(at.force_switch)));
+    const S v_t = terminal_voltage(vehicle, vehicle.voltage, i);
+    const Instant<S> at = instant_at(vehicle, place.kinematics, place.spring_moment, y[0], i, v_t, half, S(1.0));
+    return motion_on(vehicle, at, i, v_t, branch(sign_of(at.force_switch)));
   }
 
   template <bool quadratures>

@@ -76,9 +76,9 @@ class LaneOrbit {
 
  public:
   LaneOrbit(const Vehicle<L>& vehicle, const LaneSettings& settings) : vehicle_(vehicle), settings_(settings) {
-    no_load_ = no_load_speed(vehicle.motor, vehicle.voltage);
+    no_load_ = no_load_speed(vehicle);
     floor_ = L(1e-4) * no_load_;
-    current_scale_ = vehicle.voltage / vehicle.motor.armature_resistance;
+    current_scale_ = vehicle.voltage / circuit_resistance(vehicle);
     wanted_ = settings.wanted;
     geometry_ = geometry_of(vehicle.crank);
     if constexpr (N == 2) per_inductance_ = L(1.0) / vehicle.motor.armature_inductance;
@@ -241,7 +241,7 @@ void LaneOrbit<L, N>::start_from_rest() {
     r[0] = y[0];
     r[1] = m.crank_acceleration;
     if constexpr (N == 2) {
-      r[2] = motor_loads(vehicle_.motor, vehicle_.voltage, y[1], y[0]).voltage_reserve * per_inductance_;
+      r[2] = motor_loads(vehicle_.motor, m.voltage, y[1], y[0]).voltage_reserve * per_inductance_;
     }
     return r;
   };
@@ -571,7 +571,7 @@ void LaneOrbit<L, N>::read(const System& system, const L& u, const State& y, con
   if constexpr (N == 2) {
     at(Quantity::current) = {y[1], dy[1]};
   } else {
-    const L per_resistance = inverse_of(vehicle_.motor.armature_resistance);
+    const L per_resistance = inverse_of(circuit_resistance(vehicle_));
     at(Quantity::current) = {m.current, -(vehicle_.motor.torque_constant * dy[0] * per_resistance)};
   }
   if (is_wanted(Quantity::energy)) {
@@ -736,7 +736,8 @@ Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   integrals.fill(L(0.0));
   const auto total = [&](Integral which) -> L& { return integrals[std::size_t(which)]; };
   for (std::size_t q = 0; q < lane_integrals.size(); ++q) total(lane_integrals[q]) = integrals_[q];
-  total(Integral::electrical_work) = vehicle_.voltage * total(Integral::current);
+  total(Integral::electrical_work) =
+      vehicle_.voltage * total(Integral::current) - vehicle_.source_resistance * total(Integral::current_square);
   total(Integral::motor_work) =
       total(Integral::friction_work) + total(Integral::aero_work) + total(Integral::residual_work);
   const auto is_wanted = [&](Quantity q) { return wanted_[std::size_t(q)]; };

@@ -148,9 +148,9 @@ Metrics<S> cycle_metrics(const Vehicle<S>& v, const CycleIntegrals<S>& integrals
   };
 
   Metrics<S> m;
-  m[Metric::voltage] = v.voltage;
   m[Metric::frequency] = f;
   m[Metric::current_mean] = f * total(Integral::current);
+  m[Metric::voltage] = terminal_voltage(v, v.voltage, m[Metric::current_mean]);
   m[Metric::current_peak] = peak(Extreme::current);
   m[Metric::power_electrical] = f * total(Integral::electrical_work);
   m[Metric::power_motor] = f * total(Integral::motor_work);

@@ -13,17 +13,17 @@ struct LockInterval {
   double from;    ///< [rad], 0 to 2 pi
   double to;      ///< [rad], > from; may exceed 2 pi where the interval holds theta = 0
   double angle;   ///< where the margin is largest [rad], 0 to 2 pi
-  double margin;  ///< there: mu r_e |F_s| + T_c - |K v/R_a - F_s h| [N m], >= 0
+  double margin;  ///< there: mu r_e |F_s| + T_c - |K v/(R_a + R_i) - F_s h| [N m], >= 0
 };
 
 struct StaticBalance {
-  double stall_torque;       ///< K v / R_a [N m]
+  double stall_torque;       ///< K v / (R_a + R_i) [N m]
   double breakaway_torque;   ///< T_c, the constant friction that holds the motor [N m]
   double inertia_least;      ///< least J + A (h + s mu r_e) over crank angle and branch [kg m2]; <= 0 jams
   double inertia_angle;      ///< crank angle of it [rad]
   double lever_least;        ///< least wing lever g over crank angle [m]; <= 0 jams
   double lever_angle;        ///< crank angle of it [rad]
-  double advance_least;      ///< least K v/R_a - F_s h - mu r_e |F_s| - T_c over crank angle [N m]; <= 0: locks exist
+  double advance_least;      ///< least K v/(R_a + R_i) - F_s h - mu r_e |F_s| - T_c over crank angle [N m]; <= 0: locks exist
   double advance_angle;      ///< crank angle of it [rad]
   bool has_wings;            ///< false: rod force zero, nothing can jam or lock
 
@@ -32,10 +32,10 @@ struct StaticBalance {
   bool can_lock() const { return has_wings && advance_least <= 0.0; }
 };
 
-/// K v / R_a [N m].
+/// K v / (R_a + R_i) [N m].
 template <Scalar S>
 S stall_torque(const Vehicle<S>& v) {
-  return v.motor.torque_constant * v.voltage / v.motor.armature_resistance;
+  return v.motor.torque_constant * v.voltage / circuit_resistance(v);
 }
 
 /// T_c, the constant friction that holds the motor at rest, its own included [N m].
@@ -134,7 +134,7 @@ struct BalancedSpeed {
 template <Scalar S>
 BalancedSpeed<S> balanced_speed(const Vehicle<S>& v, std::span<const LoadPlace<S>> places) {
   constexpr int speeds = 8;
-  const S no_load = no_load_speed(v.motor, v.voltage);
+  const S no_load = no_load_speed(v);
   BalancedSpeed<S> balanced{no_load, S(0.0)};
   S before = S(0.02) * no_load, surplus_before = torque_surplus(v, places, before);
   for (int n = 1; n <= speeds; ++n) {

@@ -40,7 +40,8 @@ struct Key : KeyText {
 
 // Names of the choices in vehicle files.
 inline constexpr std::pair<std::string_view, SupplyType> supply_types[] = {
-    {"constant", SupplyType::constant}, {"sine", SupplyType::sine}, {"pwm", SupplyType::pwm}};
+    {"constant", SupplyType::constant}, {"sine", SupplyType::sine}, {"pwm", SupplyType::pwm},
+    {"battery", SupplyType::battery}};
 inline constexpr std::pair<std::string_view, Formulation> formulations[] = {
     {"rod-force", Formulation::rod_force}, {"virtual-work", Formulation::virtual_work}};
 inline constexpr std::pair<std::string_view, FrictionLaw> friction_laws[] = {
@@ -94,6 +95,22 @@ constexpr Key<S> alternative(KeyText text, Access, Other) {
           [](const Design<S>& d) -> std::optional<S> { return Access{}(d); }};
 }
 
+/// A battery's voltage at any charge, in place of its discharge curve.
+template <Scalar S>
+constexpr Key<S> battery_voltage(KeyText text) {
+  return {text,
+          [](Design<S>& d, const S& x) {
+            if (d.supply.type != SupplyType::battery) return false;
+            d.supply.battery.cell_voltage = x;
+            d.supply.battery.discharge_curve.clear();
+            return true;
+          },
+          [](const Design<S>& d) -> std::optional<S> {
+            if (d.supply.type != SupplyType::battery || !d.supply.battery.discharge_curve.empty()) return std::nullopt;
+            return d.supply.battery.cell_voltage;
+          }};
+}
+
 template <Scalar S, FrictionLaw law>
 constexpr Key<S> friction_number(KeyText text) {
   return {text,
@@ -135,12 +152,17 @@ constexpr Key<S> text(KeyText text, std::string (*read)(const Design<S>&)) {
 template <Scalar S>
 std::span<const Key<S>> vehicle_keys() {
   using D = Design<S>;
-  using detail::alternative, detail::choice_name, detail::friction_number, detail::number, detail::text,
-      detail::wave_number;
+  using detail::alternative, detail::battery_voltage, detail::choice_name, detail::friction_number, detail::number,
+      detail::text, detail::wave_number;
   constexpr auto sine = [](const auto& d) { return d.supply.type == SupplyType::sine; };
-  constexpr auto not_sine = [](const auto& d) { return d.supply.type != SupplyType::sine; };
-  constexpr auto switching = [](const auto& d) { return d.supply.type != SupplyType::constant; };
+  constexpr auto direct = [](const auto& d) {
+    return d.supply.type == SupplyType::constant || d.supply.type == SupplyType::pwm;
+  };
+  constexpr auto periodic = [](const auto& d) {
+    return d.supply.type == SupplyType::sine || d.supply.type == SupplyType::pwm;
+  };
   constexpr auto pwm = [](const auto& d) { return d.supply.type == SupplyType::pwm; };
+  constexpr auto battery = [](const auto& d) { return d.supply.type == SupplyType::battery; };
   constexpr auto geared = [](const auto& d) { return d.motor.gear_ratio.has_value(); };
   constexpr auto outline = [](const auto& d) {
     return d.wing.planform.shape == PlanformShape::semi_ellipse || d.wing.planform.shape == PlanformShape::rectangle;
@@ -158,18 +180,39 @@ std::span<const Key<S>> vehicle_keys() {
       number<S>({"vehicle.mass", "kg", "> 0", "unknown", "mass of the whole vehicle; enables lift_to_weight"},
                 [](auto& d) -> auto& { return d.mass; }),
 
-      text<S>({"supply.type", "", "constant, sine or pwm", "required", "what feeds the motor terminals"},
+      text<S>({"supply.type", "", "constant, sine, pwm or battery", "required", "what feeds the motor terminals"},
               [](const D& d) { return choice_name(supply_types, d.supply.type); }),
       number<S>({"supply.voltage", "V", ">= 0", "required", "v, terminal voltage; pwm: while switched on",
                  "supply.type = constant|pwm"},
-                [](auto& d) -> auto& { return d.supply.voltage; }, not_sine),
+                [](auto& d) -> auto& { return d.supply.voltage; }, direct),
       number<S>({"supply.amplitude", "V", ">= 0", "required", "amplitude of the sine", "supply.type = sine"},
                 [](auto& d) -> auto& { return d.supply.voltage; }, sine),
       number<S>({"supply.frequency", "Hz", "> 0", "required", "drive frequency (sine) or switching frequency (pwm)",
                  "supply.type = sine|pwm"},
-                [](auto& d) -> auto& { return d.supply.frequency; }, switching),
+                [](auto& d) -> auto& { return d.supply.frequency; }, periodic),
       number<S>({"supply.duty", "1", "0 to 1", "required", "fraction of a period switched on", "supply.type = pwm"},
                 [](auto& d) -> auto& { return d.supply.duty; }, pwm),
+      number<S>({"supply.cells", "1", "whole number >= 1", "1", "cells in series", "supply.type = battery"},
+                [](auto& d) -> auto& { return d.supply.battery.cells; }, battery),
+      battery_voltage<S>({"supply.cell_voltage", "V", "> 0", "required or discharge_curve",
+                          "E, open-circuit voltage of one cell at any charge", "supply.type = battery"}),
+      text<S>({"supply.discharge_curve", "", "name of a CSV file, or rows from charge 0 to 1, voltages not falling",
+               "required or cell_voltage",
+               "open-circuit voltage of one cell: rows [state of charge, voltage], monotone cubics, see below",
+               "supply.type = battery"},
+              [](const D&) { return std::string(); }),
+      number<S>({"supply.internal_resistance", "ohm", ">= 0", "required",
+                 "R_i of one cell: the terminals see E - R_i i, times cells", "supply.type = battery"},
+                [](auto& d) -> auto& { return d.supply.battery.internal_resistance; }, battery),
+      number<S>({"supply.capacity", "C", "> 0", "required", "charge that a full cell holds",
+                 "supply.type = battery"},
+                [](auto& d) -> auto& { return d.supply.battery.capacity; }, battery),
+      number<S>({"supply.charge", "1", "0 to 1", "1", "state of charge: where a run computes, where a flight starts",
+                 "supply.type = battery"},
+                [](auto& d) -> auto& { return d.supply.battery.charge; }, battery),
+      number<S>({"supply.cutoff_voltage", "V", ">= 0", "none",
+                 "mean terminal voltage of one cell at which a flight ends", "supply.type = battery"},
+                [](auto& d) -> auto& { return d.supply.battery.cutoff_voltage; }, battery),
 
       number<S>({"motor.gear_ratio", "1", "> 0", "none: constants at the output shaft",
                  "n, motor turns per output turn; given, the motor constants below are the motor shaft's"},

@@ -6,25 +6,28 @@
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/core/status.hpp"
+#include "wingbeat/parts/battery.hpp"
 
 namespace wingbeat {
 
-enum class SupplyType { constant, sine, pwm };
+enum class SupplyType { constant, sine, pwm, battery };
 
 template <Scalar S>
 struct Supply {
   SupplyType type = SupplyType::constant;
-  S voltage = S(0);    ///< constant: v; sine: amplitude; pwm: voltage while switched on [V], >= 0
+  S voltage = S(0);    ///< constant: v; sine: amplitude; pwm: voltage while switched on [V], >= 0; battery: not used
   S frequency = S(0);  ///< sine: drive frequency; pwm: switching frequency [Hz], > 0
   S duty = S(1);       ///< pwm: fraction of a period switched on [1], 0 to 1
+  Battery<S> battery = {};
 
   template <Scalar T>
   Supply<T> cast() const {
-    return {type, T(voltage), T(frequency), T(duty)};
+    return {type, T(voltage), T(frequency), T(duty), battery.template cast<T>()};
   }
 };
 
 inline void validate(const Supply<double>& s) {
+  if (s.type == SupplyType::battery) return validate(s.battery);
   require(s.voltage >= 0.0, s.type == SupplyType::sine ? "supply.amplitude" : "supply.voltage", "must be >= 0", "V",
           s.voltage);
   if (s.type != SupplyType::constant) {
@@ -35,20 +38,28 @@ inline void validate(const Supply<double>& s) {
   }
 }
 
-/// Terminal voltage [V] at time t [s].
+/// The constant voltage [V] that steady flapping sees: v itself, the mean over a switching period for pwm, the
+/// open-circuit voltage at its state of charge for a battery.
+template <Scalar S>
+S mean_voltage(const Supply<S>& s) {
+  if (s.type == SupplyType::battery) return open_circuit_voltage(s.battery, s.battery.charge);
+  return s.type == SupplyType::pwm ? s.duty * s.voltage : s.voltage;
+}
+
+/// Resistance [ohm] between that voltage and the motor terminals: that of a battery; none otherwise.
+template <Scalar S>
+S source_resistance(const Supply<S>& s) {
+  return s.type == SupplyType::battery ? source_resistance(s.battery) : S(0.0);
+}
+
+/// Voltage [V] at time t [s] that the supply drives through its resistance.
 inline double voltage_at(const Supply<double>& s, double t) {
   if (s.type == SupplyType::sine) return s.voltage * std::sin(two_pi * s.frequency * t);
   if (s.type == SupplyType::pwm) {
     const double phase = s.frequency * t - std::floor(s.frequency * t);
     return phase < s.duty ? s.voltage : 0.0;
   }
-  return s.voltage;
-}
-
-/// The constant voltage [V] that steady flapping sees: v itself, the mean over a switching period for pwm.
-template <Scalar S>
-S mean_voltage(const Supply<S>& s) {
-  return s.type == SupplyType::pwm ? s.duty * s.voltage : s.voltage;
+  return mean_voltage(s);
 }
 
 }  // namespace wingbeat

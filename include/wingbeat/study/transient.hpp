@@ -63,7 +63,7 @@ struct TransientResult {
   double inrush_current_time = 0.0;  ///< [s]
 
   std::optional<double> lock_angle;     ///< theta where the crank rests, 0 to 2 pi [rad] (locked, stalled)
-  std::optional<double> torque_margin;  ///< mu r_e |F_s| + T_c - |K v/R_a - F_s h| there [N m]
+  std::optional<double> torque_margin;  ///< mu r_e |F_s| + T_c - |K v/(R_a + R_i) - F_s h| there [N m]
   std::optional<double> jam_angle;      ///< theta where the equations lose their unique solution, 0 to 2 pi [rad]
 
   double crank_speed = 0.0;  ///< omega at theta = 0 (mod 2 pi) at the end of the last lap [rad/s]

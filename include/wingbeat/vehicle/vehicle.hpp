@@ -17,7 +17,7 @@ inline constexpr double standard_gravity = 9.80665;  ///< [m/s2], CGPM 1901
 /// The constants of one vehicle in one condition, all referred to the output shaft.
 template <Scalar S>
 struct Vehicle {
-  S voltage;  ///< v that steady flapping sees [V]
+  S voltage;  ///< v that steady flapping sees [V], at the motor terminals where there is no source resistance
   Motor<S> motor;
   SliderCrank<S> crank;
   Friction<S> friction;
@@ -25,6 +25,7 @@ struct Vehicle {
   S wing_count;    ///< N_w
   S wing_inertia;  ///< J_w of one wing [kg m2]; 0 when wingless
   BladeElement<S> wings;
+  S source_resistance = S(0);  ///< R_i inside the supply [ohm], >= 0: the terminals see v - R_i i
 
   template <Scalar T>
   Vehicle<T> cast() const {
@@ -35,7 +36,8 @@ struct Vehicle {
             spring.template cast<T>(),
             T(wing_count),
             T(wing_inertia),
-            wings.template cast<T>()};
+            wings.template cast<T>(),
+            T(source_resistance)};
   }
 };
 
@@ -44,6 +46,7 @@ template <Scalar S>
 Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air) {
   Vehicle<S> v;
   v.voltage = mean_voltage(design.supply);
+  v.source_resistance = source_resistance(design.supply);
   const MotorDesign<S>& m = design.motor;
   v.motor = m.gear_ratio ? at_output_shaft(GearMotor<S>{*m.gear_ratio, m.constants, m.gear_inertia, m.gear_damping})
                          : m.constants;
@@ -118,6 +121,7 @@ void for_each_number(Vehicle<S>& v, const Visit& visit) {
   WINGBEAT_NUMBER(wings.coefficients.drag.amplitude);
   WINGBEAT_NUMBER(wings.coefficients.drag.rate);
   WINGBEAT_NUMBER(wings.coefficients.drag.phase);
+  WINGBEAT_NUMBER(source_resistance);
 #undef WINGBEAT_NUMBER
 }
 
@@ -243,10 +247,30 @@ Motion<S> motion_at(const Vehicle<S>& v, const S& sin_theta, const S& cos_theta,
   return motion_on(v, instant_at(v, k, N_k_beta, omega, i, v_t, branch.stroke, branch.direction), i, v_t, branch);
 }
 
-/// The current [A] where L_a = 0: i = (v - K omega) / R_a.
+/// Voltage at the motor terminals [V] under the current i [A], where the supply drives `voltage` [V].
 template <Scalar S>
-S algebraic_current(const Vehicle<S>& v, const S& v_t, const S& omega) {
-  return (v_t - v.motor.torque_constant * omega) / v.motor.armature_resistance;
+S terminal_voltage(const Vehicle<S>& v, const S& voltage, const S& i) {
+  return voltage - v.source_resistance * i;
+}
+
+/// All resistance that the current passes, R_a + R_i [ohm].
+template <Scalar S>
+S circuit_resistance(const Vehicle<S>& v) {
+  return v.motor.armature_resistance + v.source_resistance;
+}
+
+/// The current [A] where L_a = 0 and the supply drives `voltage` [V]: i = (v - K omega) / (R_a + R_i).
+template <Scalar S>
+S algebraic_current(const Vehicle<S>& v, const S& voltage, const S& omega) {
+  return (voltage - v.motor.torque_constant * omega) / circuit_resistance(v);
+}
+
+/// Steady speed without load and friction [rad/s], K v / (K^2 + (R_a + R_i) b): the closed form of the wingless
+/// condition.
+template <Scalar S>
+S no_load_speed(const Vehicle<S>& v) {
+  const S& K = v.motor.torque_constant;
+  return K * v.voltage / (K * K + circuit_resistance(v) * v.motor.viscous_damping);
 }
 
 /// Kinetic energy of all wings and elastic energy of all hinge springs [J].

@@ -1,0 +1,73 @@
+// A battery of equal cells in series: open-circuit voltage against charge behind an internal resistance.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "wingbeat/core/scalar.hpp"
+#include "wingbeat/core/status.hpp"
+
+namespace wingbeat {
+
+/// The terminals of n cells carrying the current i see n (E(charge) - R_i i). Charge, voltages and resistance are those
+/// of one cell; the capacity is that of a cell and, the cells being in series, of the whole battery.
+template <Scalar S>
+struct Battery {
+  S cells = S(1);                ///< n, cells in series [1], whole number >= 1
+  S cell_voltage = S(0);         ///< E of one cell at any charge [V], > 0, where there is no curve
+  /// E of one cell: (state of charge [1], voltage [V]), from charge 0 to 1, both growing; empty: cell_voltage.
+  std::vector<std::pair<double, double>> discharge_curve = {};
+  S internal_resistance = S(0);  ///< R_i of one cell [ohm], >= 0
+  S capacity = S(0);             ///< Q, charge that a full battery holds [C], > 0
+  S charge = S(1);               ///< state of charge [1], 0 (empty) to 1 (full)
+  std::optional<S> cutoff_voltage;  ///< mean terminal voltage of one cell at which flight ends [V], >= 0
+
+  template <Scalar T>
+  Battery<T> cast() const {
+    return {T(cells),  T(cell_voltage), discharge_curve, T(internal_resistance),
+            T(capacity), T(charge),       cutoff_voltage ? std::optional<T>(T(*cutoff_voltage)) : std::nullopt};
+  }
+};
+
+/// Throws ParameterError for the first parameter out of its range.
+void validate(const Battery<double>& battery);
+
+namespace detail {
+
+/// Slope at row k of a monotone cubic interpolant: Fritsch and Butland's weighted harmonic mean inside, at the ends the
+/// three-point formula held to the sign and three times the size of the secant (Fritsch and Carlson 1980; Moler,
+/// Numerical Computing with MATLAB, section 3.4).
+double monotone_slope(const std::vector<std::pair<double, double>>& curve, std::size_t k);
+
+}  // namespace detail
+
+/// Open-circuit voltage of the whole battery at a state of charge [V]: piecewise cubic Hermite interpolation of the
+/// discharge curve that keeps it monotone, with a continuous first derivative.
+template <Scalar S>
+S open_circuit_voltage(const Battery<S>& b, const S& charge) {
+  const auto& curve = b.discharge_curve;
+  if (curve.size() < 2) return b.cells * (curve.empty() ? b.cell_voltage : S(curve.front().second));
+  const double at = value_of(charge);
+  std::size_t k = 0;
+  while (k + 2 < curve.size() && at >= curve[k + 1].first) ++k;
+  const auto [x0, y0] = curve[k];
+  const auto [x1, y1] = curve[k + 1];
+  const double h = x1 - x0, secant = (y1 - y0) / h;
+  const double d0 = detail::monotone_slope(curve, k), d1 = detail::monotone_slope(curve, k + 1);
+  const S x = charge - S(x0);
+  const double c2 = (3.0 * secant - 2.0 * d0 - d1) / h, c3 = (d0 + d1 - 2.0 * secant) / (h * h);
+  return b.cells * (S(y0) + x * (S(d0) + x * (S(c2) + x * S(c3))));
+}
+
+/// Resistance between that voltage and the terminals, n R_i [ohm].
+template <Scalar S>
+S source_resistance(const Battery<S>& b) {
+  return b.cells * b.internal_resistance;
+}
+
+}  // namespace wingbeat
