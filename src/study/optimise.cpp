@@ -53,6 +53,16 @@ class Problem {
     return d;
   }
 
+  /// The design with what was found; where the frequency is held, with its voltage.
+  Design<double> found(const Vector& u, const DesignPoint& point) const {
+    Design<double> d = design(u);
+    if (study_.options.frequency) {
+      const double duty = d.supply.type == SupplyType::pwm ? d.supply.duty : 1.0;
+      d.supply.voltage = point.metrics[Metric::voltage] / duty;
+    }
+    return d;
+  }
+
   /// Objective to be minimised and constraints <= 0, each relative, with gradients.
   struct Evaluation {
     DesignPoint point;
@@ -466,6 +476,36 @@ class Neighbourhood {
   Vector multipliers_;
 };
 
+/// A study without parameters: the one design there is.
+void judge(const Problem& problem, OptimiseResult& result) {
+  const OptimiseStudy& study = problem.study();
+  const Problem::Evaluation only = problem.evaluate(Vector(), false);
+  result.evaluations = result.starts = 1;
+  result.screen.status[std::size_t(only.point.status)] = 1;
+  result.screen.closest.assign(study.constraints.size(), absent);
+  result.screen.violated.assign(study.constraints.size(), 0);
+  if (!only.flaps) {
+    result.reason = "the design does not flap";
+    result.failed = 1;
+    return;
+  }
+  for (std::size_t c = 0; c < study.constraints.size(); ++c) {
+    result.screen.violated[c] = only.constraints[Eigen::Index(c)] > feasible_to;
+    result.screen.closest[c] = only.point.metrics[study.constraints[c].metric];
+  }
+  if (only.violation() > feasible_to) {
+    result.outcome = OptimiseResult::Outcome::infeasible;
+    result.reason = "the design flaps, but not within every constraint";
+    result.failed = 1;
+    return;
+  }
+  result.outcome = OptimiseResult::Outcome::found;
+  result.screen.feasible = 1;
+  result.same = 1;
+  result.point = only.point;
+  result.design = problem.found(Vector(), only.point);
+}
+
 }  // namespace
 
 std::string name_of(const MetricConstraint& c) {
@@ -476,6 +516,10 @@ std::string name_of(const MetricConstraint& c) {
 OptimiseResult optimise(const OptimiseStudy& study, const StartUp& start_up, const ForEach& for_each) {
   OptimiseResult result;
   const Problem problem(study, start_up);
+  if (study.parameters.empty()) {
+    judge(problem, result);
+    return result;
+  }
   const std::vector<Vector> ranked = screened(problem, start_up, result.screen);
 
   std::vector<Vector> starts;
@@ -527,12 +571,8 @@ OptimiseResult optimise(const OptimiseStudy& study, const StartUp& start_up, con
   }
   result.outcome = OptimiseResult::Outcome::found;
   for (Eigen::Index k = 0; k < problem.size(); ++k) result.parameters.push_back(problem.value(k, best->end[k]));
-  result.design = problem.design(best->end);
   result.point = problem.evaluate(best->end).point;
-  if (study.options.frequency) {
-    const double duty = result.design.supply.type == SupplyType::pwm ? result.design.supply.duty : 1.0;
-    result.design.supply.voltage = result.point.metrics[Metric::voltage] / duty;
-  }
+  result.design = problem.found(best->end, result.point);
   Neighbourhood around(problem, best->end, result.evaluations);
   result.active = around.active();
   result.directions = around.directions();
