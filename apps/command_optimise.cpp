@@ -9,6 +9,7 @@
 #include "command.hpp"
 #include "wingbeat/io/design_file.hpp"
 #include "wingbeat/io/evolution_module.hpp"
+#include "wingbeat/io/optimise_data.hpp"
 #include "wingbeat/io/optimise_file.hpp"
 #include "wingbeat/io/output_file.hpp"
 #include "wingbeat/io/pareto_report.hpp"
@@ -95,8 +96,9 @@ int run(const Arguments& arguments) {
   if (!arguments.designs.empty()) {
     throw InputError("--designs " + arguments.designs, 0, 0, "", "one objective has one best design; -o writes it");
   }
-  std::optional<OutputFile> output;
+  std::optional<OutputFile> output, plot;
   if (!arguments.output.empty()) output.emplace("-o", arguments.output);
+  if (!arguments.plot.empty()) plot.emplace("--plot", arguments.plot);
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
   const auto show = [&](const std::string& what) {
     if (terminal) fmt::print(stderr, "\r{:<78}", what.empty() ? "" : "optimise: " + what);
@@ -121,7 +123,10 @@ int run(const Arguments& arguments) {
   if (terminal) fmt::print(stderr, "\r");
 
   const MotorTrial* best = best_trial(file, trials);
-  if (output && best) {
+  if (output && is_data_set(arguments.output)) {
+    write_optimum(file, trials, read_text_file(arguments.study), version, output->temporary());
+    output->commit();
+  } else if (output && best) {
     std::string head = fmt::format("# Found by wingbeat {} optimise {}: {} = {:.6g}\n", version,
                                    std::filesystem::path(arguments.study).filename().string(),
                                    metric_table()[std::size_t(file.study.objective)].key,
@@ -129,6 +134,10 @@ int run(const Arguments& arguments) {
     if (best->motor) head += fmt::format("# Motor: {}\n", best->motor->model);
     output->write(head + "\n" + write_design(best->result.design));
     output->commit();
+  }
+  if (plot && best) {
+    plot_optimum(file, *best, *plot_format(arguments.plot), plot->temporary());
+    plot->commit();
   }
   if (single) print(arguments.json ? json_optimum(file, trials[0].result) : text_optimum(file, trials[0].result));
   else print(arguments.json ? json_motors(file, trials) : text_motors(file, trials));
@@ -144,9 +153,9 @@ void add_optimise(CLI::App& program, Action& action) {
       ->required()
       ->type_name("STUDY");
   command->add_option("-o,--output", a->output,
-                      "Write the optimum as a vehicle file; of several objectives the front (FILE.nc, NetCDF-4)")
+                      "Write the optimum as a vehicle file, or what was found on the way, and any front, as FILE.nc (NetCDF-4)")
       ->type_name("FILE");
-  command->add_option("--plot", a->plot, "Draw the front to FILE.svg, .pdf or .png")->type_name("FILE");
+  command->add_option("--plot", a->plot, "Draw the optimum and its neighbourhood, or the front, to FILE.svg, .pdf or .png")->type_name("FILE");
   command->add_option("--designs", a->designs, "Write designs of the front as vehicle files: ends, knee, even steps")
       ->type_name("FOLDER");
   command->add_flag("--json", a->json, "Print one JSON object instead of tables");

@@ -42,7 +42,8 @@ std::vector<const DesignParameter*> parameters_of(const ParetoStudy& study) {
 std::string hypervolume_unit(const ParetoStudy& study) {
   std::string unit;
   for (const ParetoObjective& o : study.objectives) {
-    if (std::string_view(info(o.metric).unit) != "1") unit += (unit.empty() ? "" : " ") + std::string(info(o.metric).unit);
+    const std::string_view of = info(o.metric).unit;
+    if (of != "1") unit += fmt::format("{}{}", unit.empty() ? "" : " ", of);
   }
   return unit.empty() ? "1" : unit;
 }

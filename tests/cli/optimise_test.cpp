@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "program.hpp"
+#include "wingbeat/io/netcdf.hpp"
 
 namespace {
 
@@ -44,6 +45,26 @@ TEST_F(Optimise, TheVehicleFileIsTheOptimum) {
   const Json best = run({"run", path("best.toml"), "--json"}).json();
   EXPECT_NEAR(best["power_electrical_w"].get<double>(), json["value"].get<double>(), 1e-5);
   EXPECT_NEAR(best["lift_to_weight"].get<double>(), 1.0, 1e-5);
+}
+
+TEST_F(Optimise, TheWayThereAsDataAndFigure) {
+  const std::string stiffness =
+      "[[parameter]]\nkey = \"spring.stiffness\"\nlower = \"0 N m/rad\"\nupper = \"4e-3 N m/rad\"\n";
+  const std::string file = study(objective + voltage + stiffness + hover);
+  const Outcome text = run({"optimise", file, "-o", path("way.nc"), "--plot", path("way.svg")});
+  ASSERT_EQ(text.status, 0) << text.err;
+  const std::string drawn = read(path("way.svg"));
+  EXPECT_THAT(drawn, HasSubstr("spring.stiffness"));
+  EXPECT_THAT(drawn, HasSubstr("objective worse by (%)"));
+  const wingbeat::NetcdfReader data(path("way.nc"));
+  const Json json = run({"optimise", file, "--json"}).json();
+  EXPECT_EQ(data.read("power_electrical_w")[0], json["value"].get<double>());
+  EXPECT_EQ(data.read("search_ended").size(), 3U);
+  EXPECT_NEAR(data.read("constraint_value")[0], 1.0, 1e-5);
+  // A walk ends where the objective is 0.1 % worse.
+  const std::vector<double> walk = data.read("walk_objective");
+  EXPECT_NEAR(walk.front(), 1.001 * json["value"].get<double>(), 1e-5);
+  EXPECT_THAT(*data.attribute("study"), HasSubstr("spring.stiffness"));
 }
 
 TEST_F(Optimise, NoDesignIsStatusThreeWithTheReason) {
