@@ -8,69 +8,140 @@
 
 #include "command.hpp"
 #include "wingbeat/io/design_file.hpp"
+#include "wingbeat/io/evolution_module.hpp"
+#include "wingbeat/io/optimise_data.hpp"
 #include "wingbeat/io/optimise_file.hpp"
 #include "wingbeat/io/output_file.hpp"
+#include "wingbeat/io/pareto_report.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat::app {
 namespace {
 
 struct Arguments {
-  std::string study, output;
+  std::string study, output, plot, designs;
   int threads = 0;
   bool json = false;
 };
 
-int run(const Arguments& arguments) {
-  const OptimiseFile file = read_optimise_study(arguments.study);
-  std::optional<OutputFile> output;
+bool is_data_set(const std::string& name) { return std::filesystem::path(name).extension() == ".nc"; }
+
+/// Writes the picked designs of a front into a folder, which is made where it is not there.
+void write_designs(const std::string& folder, const Arguments& arguments, const ParetoStudy& study,
+                   const ParetoResult& result) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw InputError("--designs " + folder, 0, 0, "", "cannot be made: " + error.message());
+  for (const auto& [name, place] : named_picks(study, result)) {
+    const ParetoDesign& design = result.front[place];
+    std::string head = fmt::format("# {} of the front found by wingbeat {} optimise {}:\n#", name, version,
+                                   std::filesystem::path(arguments.study).filename().string());
+    for (const ParetoObjective& o : study.objectives) {
+      head += fmt::format(" {} = {:.6g}", metric_table()[std::size_t(o.metric)].key, design.metrics[o.metric]);
+    }
+    if (study.vehicles.size() > 1) head += fmt::format("\n# Motor: {}", study.vehicles[design.vehicle].name);
+    OutputFile file("--designs", std::filesystem::path(folder) / (name + ".toml"));
+    file.write(head + "\n\n" + write_design(vehicle_of(study, design)));
+    file.commit();
+  }
+}
+
+/// Several objectives.
+int run_front(const Arguments& arguments, const OptimiseFile& file, const ForEach& for_each) {
+  if (!arguments.output.empty() && !is_data_set(arguments.output)) {
+    throw InputError("-o " + arguments.output, 0, 0, "",
+                     "several objectives have many best designs: the name must end in .nc; --designs writes vehicles");
+  }
+  std::optional<PlotFormat> format;
+  std::optional<OutputFile> output, plot;
   if (!arguments.output.empty()) output.emplace("-o", arguments.output);
+  if (!arguments.plot.empty()) {
+    format = plot_format(arguments.plot);
+    plot.emplace("--plot", arguments.plot);
+  }
+  const bool terminal = ::isatty(STDERR_FILENO) != 0;
+  std::function<void(std::uint64_t, std::uint64_t)> progress;
+  if (terminal) {
+    progress = [](std::uint64_t done, std::uint64_t all) {
+      const double percent = 100.0 * double(done) / double(all);
+      fmt::print(stderr, "\r{:<78}", fmt::format("optimise: {:.0f} % of {} designs", percent, all));
+    };
+  }
+  const ParetoStudy study = pareto_study(file);
+  const ParetoResult result = pareto_front(study, load_evolution(), start_up_in_time(), for_each, progress);
+  if (terminal) fmt::print(stderr, "\r{:<78}\r", "");
+  const bool found = result.outcome == ParetoResult::Outcome::found;
+  if (found && output) {
+    write_front(study, result, file.title, read_text_file(arguments.study), version, output->temporary());
+    output->commit();
+  }
+  if (found && plot) {
+    plot_front(study, result, file.title, *format, plot->temporary());
+    plot->commit();
+  }
+  if (found && !arguments.designs.empty()) write_designs(arguments.designs, arguments, study, result);
+  print(arguments.json ? json_front(file, study, result) : text_front(file, study, result));
+  return found ? done : does_not_flap;
+}
+
+int run(const Arguments& arguments) {
+  if (!arguments.plot.empty() && !plot_format(arguments.plot)) {
+    throw InputError("--plot " + arguments.plot, 0, 0, "", "the name must end in .svg, .pdf or .png");
+  }
+  const OptimiseFile file = read_optimise_study(arguments.study);
+  const ForEach for_each = [&](std::size_t count, const std::function<void(std::size_t)>& act) {
+    for_each_in_parallel(count, act, arguments.threads);
+  };
+  if (!file.objectives.empty()) return run_front(arguments, file, for_each);
+  if (!arguments.designs.empty()) {
+    throw InputError("--designs " + arguments.designs, 0, 0, "", "one objective has one best design; -o writes it");
+  }
+  std::optional<OutputFile> output, plot;
+  if (!arguments.output.empty()) output.emplace("-o", arguments.output);
+  if (!arguments.plot.empty()) plot.emplace("--plot", arguments.plot);
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
   const auto show = [&](const std::string& what) {
     if (terminal) fmt::print(stderr, "\r{:<78}", what.empty() ? "" : "optimise: " + what);
   };
-  const ForEach for_each = [&](std::size_t count, const std::function<void(std::size_t)>& act) {
-    for_each_in_parallel(count, act, arguments.threads);
-  };
   const StartUp start_up = start_up_in_time();
 
-  std::vector<MotorTrial> trials;
-  OptimiseResult own;
-  if (file.motors.empty()) {
+  std::vector<MotorTrial> trials = trials_of(file);
+  const bool single = trials.size() == 1 && !trials[0].motor;
+  if (single) {
     show("searching");
-    own = optimise(file.study, start_up, for_each);
+    trials[0].result = optimise(trial_study(file, trials[0]), start_up, for_each);
+  } else {
+    std::mutex mutex;
+    std::size_t finished = 0;
+    for_each(trials.size(), [&](std::size_t n) {
+      if (!trials[n].refused()) trials[n].result = optimise(trial_study(file, trials[n]), start_up);
+      const std::lock_guard<std::mutex> lock(mutex);
+      show(fmt::format("{} of {} {}", ++finished, trials.size(), file.motors.empty() ? "choices" : "motors"));
+    });
   }
-  for (const MotorCandidate& motor : file.motors) trials.push_back({&motor, {}});
-  std::mutex mutex;
-  std::size_t finished = 0;
-  for_each(trials.size(), [&](std::size_t n) {
-    const MotorCandidate& motor = *trials[n].motor;
-    if (motor.refused.empty()) {
-      OptimiseStudy study = file.study;
-      study.design = motor.design;
-      trials[n].result = optimise(study, start_up);
-    }
-    const std::lock_guard<std::mutex> lock(mutex);
-    show(fmt::format("{} of {} motors", ++finished, trials.size()));
-  });
   show("");
   if (terminal) fmt::print(stderr, "\r");
 
   const MotorTrial* best = best_trial(file, trials);
-  const OptimiseResult& result = best ? best->result : own;
-  const bool found = result.outcome == OptimiseResult::Outcome::found;
-  if (output && found) {
+  if (output && is_data_set(arguments.output)) {
+    write_optimum(file, trials, read_text_file(arguments.study), version, output->temporary());
+    output->commit();
+  } else if (output && best) {
     std::string head = fmt::format("# Found by wingbeat {} optimise {}: {} = {:.6g}\n", version,
                                    std::filesystem::path(arguments.study).filename().string(),
                                    metric_table()[std::size_t(file.study.objective)].key,
-                                   result.point.metrics[file.study.objective]);
-    if (best) head += fmt::format("# Motor: {}\n", best->motor->model);
-    output->write(head + "\n" + write_design(result.design));
+                                   best->result.point.metrics[file.study.objective]);
+    if (best->motor) head += fmt::format("# Motor: {}\n", best->motor->model);
+    output->write(head + "\n" + write_design(best->result.design));
     output->commit();
   }
-  if (file.motors.empty()) print(arguments.json ? json_optimum(file, own) : text_optimum(file, own));
+  if (plot && best) {
+    plot_optimum(file, *best, *plot_format(arguments.plot), plot->temporary());
+    plot->commit();
+  }
+  if (single) print(arguments.json ? json_optimum(file, trials[0].result) : text_optimum(file, trials[0].result));
   else print(arguments.json ? json_motors(file, trials) : text_motors(file, trials));
-  return found ? done : does_not_flap;
+  return best ? done : does_not_flap;
 }
 
 }  // namespace
@@ -81,12 +152,18 @@ void add_optimise(CLI::App& program, Action& action) {
   command->add_option("study", a->study, "Study file (TOML): objective, parameters, constraints, motors")
       ->required()
       ->type_name("STUDY");
-  command->add_option("-o,--output", a->output, "Write the optimum as a vehicle file")->type_name("FILE");
+  command->add_option("-o,--output", a->output,
+                      "Write the optimum as a vehicle file, or what was found on the way, and any front, as FILE.nc (NetCDF-4)")
+      ->type_name("FILE");
+  command->add_option("--plot", a->plot, "Draw the optimum and its neighbourhood, or the front, to FILE.svg, .pdf or .png")->type_name("FILE");
+  command->add_option("--designs", a->designs, "Write designs of the front as vehicle files: ends, knee, even steps")
+      ->type_name("FOLDER");
   command->add_flag("--json", a->json, "Print one JSON object instead of tables");
   command->add_option("--threads", a->threads, "Use at most so many threads (default: one for each core)")
       ->type_name("N")
       ->check(CLI::PositiveNumber);
-  command->footer("Example:\n  wingbeat optimise data/studies/optimise-hover.toml -o hover.toml\n\n"
+  command->footer("Example:\n  wingbeat optimise data/studies/optimise-hover.toml -o hover.toml\n"
+                  "  wingbeat optimise data/studies/optimise-pareto.toml --plot front.svg --designs front\n\n"
                   "Exit status: 0 found, 2 bad input or usage, 3 no design within the constraints, 1 anything else.");
   command->callback([a, &action] { action = [a] { return run(*a); }; });
 }

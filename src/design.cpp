@@ -8,6 +8,13 @@ namespace wingbeat {
 
 void validate(const Design<double>& d) {
   if (d.mass) require(*d.mass > 0.0, "vehicle.mass", "must be > 0", "kg", *d.mass);
+  const auto check_mass = [](const std::optional<double>& x, const char* key, const char* unit) {
+    if (x) require(*x >= 0.0, key, "must be >= 0", unit, *x);
+  };
+  check_mass(d.masses.supply, "supply.mass", "kg");
+  check_mass(d.masses.motor, "motor.mass", "kg");
+  check_mass(d.masses.rod_linear_density, "transmission.rod_linear_density", "kg/m");
+  check_mass(d.masses.spring, "spring.mass", "kg");
   if (d.bench_torque_constant) {
     require(*d.bench_torque_constant > 0.0, "bench.torque_constant", "must be > 0", "N m/A", *d.bench_torque_constant);
   }

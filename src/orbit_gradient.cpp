@@ -302,7 +302,7 @@ OrbitGradient differentiate(const SteadyFlapping& orbit, const CycleRecord::Reco
 GradientVehicle gradient_vehicle(const Design<GradientJet>& design, Condition condition) {
   GradientVehicle v;
   v.vehicle = resolve(design, condition);
-  if (design.mass) v.mass = *design.mass;
+  if (const auto mass = total_mass(design)) v.mass = *mass;
   if (design.bench_torque_constant) v.bench_torque_constant = *design.bench_torque_constant;
   return v;
 }

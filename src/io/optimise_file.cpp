@@ -18,7 +18,7 @@ using detail::Kind;
 class OptimiseReader : public detail::StudySections {
  public:
   OptimiseReader(const fs::path& file, std::string_view text)
-      : StudySections(file.string(), text, {"objective", "parameter", "constraint", "motors"}, {"condition"}),
+      : StudySections(file.string(), text, {"objective", "parameter", "constraint", "motors", "search"}, {"condition"}),
         folder_(file.parent_path()) {}
 
   OptimiseFile read() {
@@ -46,9 +46,12 @@ class OptimiseReader : public detail::StudySections {
         break;
       }
     }
-    read_objective(study, base);
-    read_parameters(study, base);
+    several_ = root_.find("objective") && root_.find("objective")->kind == Kind::array;
+    if (several_) read_objectives(file, base);
+    else read_objective(study, base);
+    read_parameters(file, base);
     read_constraints(study, base);
+    check_size(file);
     return file;
   }
 
@@ -66,7 +69,7 @@ class OptimiseReader : public detail::StudySections {
                           : fmt::format("{} is no metric; did you mean {}?", in_quotes(name), near));
     }
     const Metric metric = Metric(index);
-    if (metric == Metric::floquet_multiplier_max) refuse(node, where, fmt::format("{} has no derivative", name));
+    if (metric == Metric::floquet_multiplier_max && !several_) refuse(node, where, fmt::format("{} has no derivative", name));
     if (metric == Metric::lift_to_weight && !design.mass) {
       refuse(node, where, "lift_to_weight needs vehicle.mass; give it in the vehicle file or in [set]");
     }
@@ -84,6 +87,10 @@ class OptimiseReader : public detail::StudySections {
     if (bool(low) == bool(high)) refuse(node, "objective", "give one of minimise and maximise");
     study.maximise = high != nullptr;
     study.objective = metric_named(high ? *high : *low, high ? "objective.maximise" : "objective.minimise", design);
+    if (const TomlNode* search = root_.find("search")) {
+      refuse(*search, "search", "belongs to several [[objective]] sections; starts, screen and seed of one stand in "
+                                "[objective]");
+    }
     if (const TomlNode* starts = node.find("starts")) {
       study.starts = int(whole_number(*starts, "objective.starts", 1, 10000));
     }
@@ -95,56 +102,165 @@ class OptimiseReader : public detail::StudySections {
     }
   }
 
-  void read_parameters(OptimiseStudy& study, const Design<double>& design) {
+  void read_objectives(OptimiseFile& file, const Design<double>& design) {
+    const TomlNode& list = *root_.find("objective");
+    if (list.items.size() < 2 || list.items.size() > 3) {
+      refuse(list.items.empty() ? list : list.items.back(), "objective",
+             "expected one section [objective], or two or three sections [[objective]]");
+    }
+    for (const TomlNode& node : list.items) {
+      if (node.kind != Kind::table) wrong(node, "objective", "[[objective]] sections");
+      known_keys(node, "objective", {"minimise", "maximise", "reference"});
+      const TomlNode *low = node.find("minimise"), *high = node.find("maximise");
+      if (bool(low) == bool(high)) refuse(node, "objective", "give one of minimise and maximise");
+      ParetoObjective objective;
+      objective.maximise = high != nullptr;
+      const char* where = high ? "objective.maximise" : "objective.minimise";
+      objective.metric = metric_named(high ? *high : *low, where, design);
+      for (const ParetoObjective& other : file.objectives) {
+        if (other.metric != objective.metric) continue;
+        refuse(high ? *high : *low, where, "is an objective already");
+      }
+      if (const TomlNode* reference = node.find("reference")) {
+        objective.reference =
+            quantity(*reference, "objective.reference", metric_table()[std::size_t(objective.metric)].unit);
+      }
+      file.objectives.push_back(objective);
+    }
+    const TomlNode* search = root_.find("search");
+    EvolutionOptions& evolution = file.evolution;
+    if (search) {
+      if (search->kind != Kind::table) wrong(*search, "search", "a section [search]");
+      known_keys(*search, "search", {"method", "population", "generations", "screen", "seed", "designs"});
+      if (const TomlNode* method = search->find("method")) {
+        const std::string name = one_of(*method, "search.method", {"nsga2", "moead"});
+        evolution.method = name == "nsga2" ? EvolutionMethod::nsga2 : EvolutionMethod::moead;
+      }
+      if (const TomlNode* population = search->find("population")) {
+        evolution.population = unsigned(whole_number(*population, "search.population", 8, 10000));
+        if (evolution.population % 4 != 0) refuse(*population, "search.population", "must be a multiple of 4");
+      }
+      if (const TomlNode* generations = search->find("generations")) {
+        evolution.generations = unsigned(whole_number(*generations, "search.generations", 1, 100000));
+      }
+      if (const TomlNode* seed = search->find("seed")) {
+        evolution.seed = unsigned(whole_number(*seed, "search.seed", 0, (std::uint64_t(1) << 32) - 1));
+      }
+      if (const TomlNode* designs = search->find("designs")) {
+        file.designs = std::size_t(whole_number(*designs, "search.designs", 1, 1000));
+      }
+    }
+    file.study.screen = std::max<std::uint64_t>(file.study.screen, evolution.population);
+    const TomlNode* screen = search ? search->find("screen") : nullptr;
+    if (screen) {
+      file.study.screen = whole_number(*screen, "search.screen", 16, 1000000);
+      if (file.study.screen < evolution.population) {
+        refuse(*screen, "search.screen", fmt::format("must be at least the population, {}", evolution.population));
+      }
+    }
+  }
+
+  /// The list of a discrete parameter.
+  std::vector<double> values_of(const TomlNode& node, const TomlNode& values, const DesignParameter& parameter) {
+    for (const char* other : {"lower", "upper", "scale"}) {
+      if (const TomlNode* given = node.find(other)) {
+        refuse(*given, fmt::format("parameter.{}", other), "has no place beside parameter.values");
+      }
+    }
+    if (values.kind != Kind::array || values.items.size() < 2) {
+      wrong(values, "parameter.values", "an array of at least two values");
+    }
+    std::vector<double> list;
+    for (const TomlNode& item : values.items) {
+      list.push_back(quantity(item, "parameter.values", parameter.unit));
+      if (std::count(list.begin(), list.end(), list.back()) > 1) {
+        refuse(item, "parameter.values", fmt::format("{:.6g} is given twice", list.back()));
+      }
+    }
+    return list;
+  }
+
+  /// Refuses a value that leaves the parameter's own range.
+  void check_range(const TomlNode& node, const std::string& where, const DesignParameter& parameter, double value,
+                   const Design<double>& design) const {
+    Design<double> d = design;
+    parameter.set(d, value);
+    try {
+      validate(d);
+    } catch (const ParameterError& error) {
+      if (error.key() == parameter.key) refuse(node, where, error.what());
+    }
+  }
+
+  void check_size(const OptimiseFile& file) const {
+    const std::size_t most = 1000;
+    std::size_t combinations = 1;
+    for (const DiscreteParameter& p : file.choices) combinations *= p.values.size();
+    combinations *= std::max<std::size_t>(1, file.motors.size());
+    const TomlNode& list = *root_.find("parameter");
+    if (!several_ && combinations > most) {
+      refuse(list, "parameter.values", fmt::format("{} combinations are more than {}: one objective tries each of them; "
+                                                   "take fewer values, or bounds instead", combinations, most));
+    }
+    if (file.study.parameters.size() + file.choices.size() + 1 > ScrambledSobol::most_dimensions) {
+      refuse(list, "parameter", fmt::format("more than {} parameters", ScrambledSobol::most_dimensions - 1));
+    }
+  }
+
+  void read_parameters(OptimiseFile& file, const Design<double>& design) {
+    OptimiseStudy& study = file.study;
     const TomlNode& list = need(root_, "", "parameter", "[[parameter]] sections with key, lower and upper");
     if (list.kind != Kind::array || list.items.empty()) wrong(list, "parameter", "[[parameter]] sections");
     std::set<std::string> used;
     Design<double> all = design;
+    std::vector<std::pair<const DesignParameter*, double>> given;
+    study.parameters.reserve(list.items.size());
+    file.choices.reserve(list.items.size());
     for (const TomlNode& node : list.items) {
       if (node.kind != Kind::table) wrong(node, "parameter", "[[parameter]] sections");
-      known_keys(node, "parameter", {"key", "lower", "upper", "scale"});
-      OptimisedParameter p;
+      known_keys(node, "parameter", {"key", "lower", "upper", "scale", "values"});
       const TomlNode& key = need(node, "parameter", "key", "a vehicle-file key");
-      p.parameter = parameter_named(key, "parameter.key", design);
-      if (!used.insert(p.parameter.key).second) {
-        refuse(key, "parameter.key", fmt::format("{} is given already", p.parameter.key));
+      const DesignParameter parameter = parameter_named(key, "parameter.key", design);
+      if (!used.insert(parameter.key).second) {
+        refuse(key, "parameter.key", fmt::format("{} is given already", parameter.key));
       }
-      const TomlNode& lower = need(node, "parameter", "lower", quantity_example(p.parameter.unit));
-      const TomlNode& upper = need(node, "parameter", "upper", quantity_example(p.parameter.unit));
-      p.lower = quantity(lower, "parameter.lower", p.parameter.unit);
-      p.upper = quantity(upper, "parameter.upper", p.parameter.unit);
-      if (!(p.upper > p.lower)) refuse(upper, "parameter.upper", "must exceed parameter.lower");
-      if (const TomlNode* scale = node.find("scale")) {
-        p.logarithmic = one_of(*scale, "parameter.scale", {"linear", "log"}) == "log";
-      }
-      if (p.logarithmic && !(p.lower > 0.0)) {
-        refuse(lower, "parameter.lower", "must be > 0 on a logarithmic scale");
-      }
-      // No design at a bound: the parameter's own range is left.
-      for (const TomlNode* bound : {&lower, &upper}) {
-        Design<double> d = design;
-        p.parameter.set(d, bound == &lower ? p.lower : p.upper);
-        try {
-          validate(d);
-        } catch (const ParameterError& error) {
-          if (error.key() == p.parameter.key) {
-            refuse(*bound, bound == &lower ? "parameter.lower" : "parameter.upper", error.what());
-          }
+      if (const TomlNode* values = node.find("values")) {
+        file.choices.push_back({parameter, values_of(node, *values, parameter)});
+        const std::vector<double>& list_of = file.choices.back().values;
+        for (std::size_t n = 0; n < list_of.size(); ++n) {
+          check_range(values->items[n], "parameter.values", parameter, list_of[n], design);
         }
+        given.emplace_back(&file.choices.back().parameter, list_of[0]);
+      } else {
+        study.parameters.push_back(bounded(node, parameter, design));
+        given.emplace_back(&study.parameters.back().parameter, study.parameters.back().lower);
       }
-      p.parameter.set(all, p.lower);
-      study.parameters.push_back(std::move(p));
+      given.back().first->set(all, given.back().second);
     }
-    for (std::size_t k = 0; k < study.parameters.size(); ++k) {
-      const OptimisedParameter& p = study.parameters[k];
-      const auto found = p.parameter.value(all);
-      if (!found || *found != p.lower) {
-        refuse(list.items[k], "parameter.key", fmt::format("another parameter takes the place of {}", p.parameter.key));
+    for (std::size_t k = 0; k < given.size(); ++k) {
+      const auto found = given[k].first->value(all);
+      if (!found || *found != given[k].second) {
+        refuse(list.items[k], "parameter.key",
+               fmt::format("another parameter takes the place of {}", given[k].first->key));
       }
     }
-    if (study.parameters.size() > ScrambledSobol::most_dimensions) {
-      refuse(list, "parameter", fmt::format("more than {} parameters", ScrambledSobol::most_dimensions));
+  }
+
+  OptimisedParameter bounded(const TomlNode& node, const DesignParameter& parameter, const Design<double>& design) {
+    OptimisedParameter p;
+    p.parameter = parameter;
+    const TomlNode& lower = need(node, "parameter", "lower", quantity_example(parameter.unit));
+    const TomlNode& upper = need(node, "parameter", "upper", quantity_example(parameter.unit));
+    p.lower = quantity(lower, "parameter.lower", parameter.unit);
+    p.upper = quantity(upper, "parameter.upper", parameter.unit);
+    if (!(p.upper > p.lower)) refuse(upper, "parameter.upper", "must exceed parameter.lower");
+    if (const TomlNode* scale = node.find("scale")) {
+      p.logarithmic = one_of(*scale, "parameter.scale", {"linear", "log"}) == "log";
     }
+    if (p.logarithmic && !(p.lower > 0.0)) refuse(lower, "parameter.lower", "must be > 0 on a logarithmic scale");
+    check_range(lower, "parameter.lower", parameter, p.lower, design);
+    check_range(upper, "parameter.upper", parameter, p.upper, design);
+    return p;
   }
 
   void read_constraints(OptimiseStudy& study, const Design<double>& design) {
@@ -182,6 +298,10 @@ class OptimiseReader : public detail::StudySections {
     if (const TomlNode* mass = node.find("mass_without")) {
       rest = quantity(*mass, "motors.mass_without", "kg");
       if (!(*rest > 0.0)) refuse(*mass, "motors.mass_without", "must be > 0 kg");
+      if (file.study.design.masses.motor) {
+        refuse(*mass, "motors.mass_without", "has no place where the vehicle gives motor.mass: vehicle.mass is without "
+                                             "the motor already");
+      }
     }
     read_catalogue(path.string(), read_text_file(path), gear, rest, file);
     if (std::none_of(file.motors.begin(), file.motors.end(), [](const auto& m) { return m.refused.empty(); })) {
@@ -263,7 +383,8 @@ class OptimiseReader : public detail::StudySections {
     need_value(constant, "torque constant");
     need_value(inertia, "rotor inertia");
     need_value(inductance, "inductance");
-    if (rest) need_value(mass, "mass");
+    const bool weighed = rest || design.masses.motor;
+    if (weighed) need_value(mass, "mass");
     if (!lacks.empty()) {
       motor.refused = "incomplete, no " + lacks;
       return motor;
@@ -292,7 +413,8 @@ class OptimiseReader : public detail::StudySections {
     else motor.design.motor.gear_ratio.reset();
     motor.design.motor.gear_inertia = 0.0;
     motor.design.motor.gear_damping = 0.0;
-    if (rest) motor.design.mass = *rest + *mass;
+    if (rest) motor.design.mass = *rest;
+    if (weighed) motor.design.masses.motor = *mass;
     try {
       validate(motor.design);
     } catch (const ParameterError& error) {
@@ -302,9 +424,68 @@ class OptimiseReader : public detail::StudySections {
   }
 
   fs::path folder_;
+  bool several_ = false;  ///< objectives
 };
 
 }  // namespace
+
+std::vector<MotorTrial> trials_of(const OptimiseFile& file) {
+  std::size_t combinations = 1;
+  for (const DiscreteParameter& p : file.choices) combinations *= p.values.size();
+  std::vector<MotorTrial> trials;
+  const auto add = [&](const MotorCandidate* motor) {
+    for (std::size_t n = 0; n < combinations; ++n) {
+      std::vector<double> values(file.choices.size());
+      std::size_t rest = n;
+      for (std::size_t k = values.size(); k-- > 0;) {
+        values[k] = file.choices[k].values[rest % file.choices[k].values.size()];
+        rest /= file.choices[k].values.size();
+      }
+      trials.push_back({motor, std::move(values), {}});
+      if (trials.back().refused()) return;
+    }
+  };
+  for (const MotorCandidate& motor : file.motors) add(&motor);
+  if (file.motors.empty()) add(nullptr);
+  return trials;
+}
+
+OptimiseStudy trial_study(const OptimiseFile& file, const MotorTrial& trial) {
+  OptimiseStudy study = file.study;
+  if (trial.motor) study.design = trial.motor->design;
+  for (std::size_t k = 0; k < file.choices.size(); ++k) file.choices[k].parameter.set(study.design, trial.choices[k]);
+  return study;
+}
+
+std::string name_of(const OptimiseFile& file, const MotorTrial& trial) {
+  std::string name = trial.motor ? trial.motor->model : "";
+  if (trial.refused()) return name;
+  for (std::size_t k = 0; k < file.choices.size(); ++k) {
+    const DesignParameter& p = file.choices[k].parameter;
+    name += fmt::format("{}{} {:.6g}{}", name.empty() ? "" : ", ", p.key, trial.choices[k],
+                        p.unit == "1" ? "" : " " + p.unit);
+  }
+  return name;
+}
+
+ParetoStudy pareto_study(const OptimiseFile& file) {
+  ParetoStudy study;
+  for (const MotorCandidate& motor : file.motors) {
+    if (motor.refused.empty()) study.vehicles.push_back({motor.model, motor.design});
+  }
+  if (study.vehicles.empty()) study.vehicles.push_back({"", file.study.design});
+  study.condition = file.study.options.condition;
+  study.frequency = file.study.options.frequency;
+  study.tolerance = file.study.options.tolerance;
+  study.objectives = file.objectives;
+  study.parameters = file.study.parameters;
+  study.choices = file.choices;
+  study.constraints = file.study.constraints;
+  study.evolution = file.evolution;
+  study.screen = file.study.screen;
+  study.designs = file.designs;
+  return study;
+}
 
 OptimiseFile read_optimise_study(const fs::path& file) { return OptimiseReader(file, read_text_file(file)).read(); }
 

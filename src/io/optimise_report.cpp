@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <nlohmann/json.hpp>
 
 #include "wingbeat/io/optimise_file.hpp"
@@ -23,25 +24,34 @@ std::string with_unit(double x, std::string_view unit) {
   return unit == "1" ? fmt::format("{:.5g}", x) : fmt::format("{:.5g} {}", x, unit);
 }
 
-/// Why no design was found, with what the screening met.
-std::string explanation(const OptimiseStudy& study, const OptimiseResult& r) {
-  std::string text = r.reason;
-  if (r.outcome == Outcome::nothing_flaps) {
-    std::string counts;
-    for (int s = 1; s < sweep_status_count; ++s) {
-      const std::uint64_t n = r.screen.status[std::size_t(s)];
-      if (n > 0) counts += fmt::format("{}{} {}", counts.empty() ? ": " : ", ", n, name_of(SweepStatus(s)));
+/// What holds an optimum and how flat it is.
+template <class Out>
+void text_neighbourhood(Out& out, const OptimiseStudy& study, const OptimiseResult& r) {
+  fmt::format_to(out, "\nWhat holds it{:>52}\n", "tightened by 1 %: worse by");
+  for (const ActiveLimit& a : r.active) {
+    const std::string worse = std::isfinite(a.sensitivity) ? fmt::format("{:.2g} %", a.sensitivity) : "-";
+    fmt::format_to(out, "  {:<44}{:>18}\n", a.name, worse);
+  }
+  if (r.active.empty()) fmt::format_to(out, "  no constraint and no bound: the optimum lies inside\n");
+
+  fmt::format_to(out, "\nHow flat it is: moving along each direction until the objective is {:g} % worse\n",
+                 100.0 * flat_loss);
+  if (r.directions.empty()) fmt::format_to(out, "  the active limits leave no freedom\n");
+  int n = 0;
+  for (const FlatDirection& d : r.directions) {
+    fmt::format_to(out, "  direction {}, {:.0f} % of the bounds{}\n", ++n, 100.0 * d.width, d.flat ? ": FLAT" : "");
+    for (std::size_t k = 0; k < study.parameters.size(); ++k) {
+      const OptimisedParameter& p = study.parameters[k];
+      // Only what moves visibly.
+      if (std::abs(d.to[k] - d.from[k]) < 1e-3 * (p.upper - p.lower)) continue;
+      fmt::format_to(out, "    {:<32}{:>13.5g} .. {:<.5g}{}\n", p.parameter.key, d.from[k], d.to[k],
+                     p.parameter.unit == "1" ? "" : " " + p.parameter.unit);
     }
-    return text + counts;
   }
-  for (std::size_t c = 0; c < study.constraints.size(); ++c) {
-    if (r.screen.violated[c] == 0) continue;
-    const MetricConstraint& limit = study.constraints[c];
-    text += fmt::format("; {}: {} of {} that flap break it, the best of them reaches {}", name_of(limit),
-                        r.screen.violated[c], r.screen.status[0],
-                        with_unit(r.screen.closest[c], info(limit.metric).unit));
-  }
-  return text;
+}
+
+std::string explanation(const OptimiseStudy& study, const OptimiseResult& r) {
+  return explanation(r.reason, r.outcome == Outcome::nothing_flaps, study.constraints, r.screen);
 }
 
 Json result_json(const OptimiseFile& file, const OptimiseResult& r) {
@@ -82,11 +92,31 @@ Json result_json(const OptimiseFile& file, const OptimiseResult& r) {
 
 }  // namespace
 
+std::string explanation(const std::string& reason, bool nothing_flaps, std::span<const MetricConstraint> constraints,
+                        const ScreenCounts& screen) {
+  std::string text = reason;
+  if (nothing_flaps) {
+    std::string counts;
+    for (int s = 1; s < sweep_status_count; ++s) {
+      const std::uint64_t n = screen.status[std::size_t(s)];
+      if (n > 0) counts += fmt::format("{}{} {}", counts.empty() ? ": " : ", ", n, name_of(SweepStatus(s)));
+    }
+    return text + counts;
+  }
+  for (std::size_t c = 0; c < constraints.size(); ++c) {
+    if (screen.violated[c] == 0) continue;
+    text += fmt::format("; {}: {} of {} that flap break it, the best of them reaches {}", name_of(constraints[c]),
+                        screen.violated[c], screen.status[0],
+                        with_unit(screen.closest[c], info(constraints[c].metric).unit));
+  }
+  return text;
+}
+
 const MotorTrial* best_trial(const OptimiseFile& file, std::span<const MotorTrial> trials) {
   const double sign = file.study.maximise ? -1.0 : 1.0;
   const MotorTrial* best = nullptr;
   for (const MotorTrial& t : trials) {
-    if (!t.motor->refused.empty() || t.result.outcome != Outcome::found) continue;
+    if (t.refused() || t.result.outcome != Outcome::found) continue;
     const auto value = [&](const MotorTrial& of) { return sign * of.result.point.metrics[file.study.objective]; };
     if (!best || value(t) < value(*best)) best = &t;
   }
@@ -104,7 +134,8 @@ std::string text_optimum(const OptimiseFile& file, const OptimiseResult& r) {
     fmt::format_to(out, "{}{}", c == 0 ? " with " : ", ", name_of(study.constraints[c]));
   }
   if (study.options.frequency) fmt::format_to(out, "; flapping held at {:.6g} Hz", *study.options.frequency);
-  fmt::format_to(out, "\nscreened {} designs: {} flap, {} of these within every constraint\n", study.screen,
+  const std::uint64_t screened = std::accumulate(r.screen.status.begin(), r.screen.status.end(), std::uint64_t(0));
+  fmt::format_to(out, "\nscreened {} designs: {} flap, {} of these within every constraint\n", screened,
                  r.screen.status[0], r.screen.feasible);
   if (r.outcome != Outcome::found) {
     fmt::format_to(out, "{}\n", wrapped("No design found: " + explanation(study, r), width, 2));
@@ -114,33 +145,15 @@ std::string text_optimum(const OptimiseFile& file, const OptimiseResult& r) {
                  r.same, r.elsewhere, r.failed);
   fmt::format_to(out, "{} {}: {}\n", study.maximise ? "most" : "least", objective.long_name,
                  with_unit(r.point.metrics[study.objective], objective.unit));
-  fmt::format_to(out, "\n{:<36}{:>13}{:>13}{:>13}\n", "Parameter", "optimum", "lower", "upper");
+  if (!study.parameters.empty()) {
+    fmt::format_to(out, "\n{:<36}{:>13}{:>13}{:>13}\n", "Parameter", "optimum", "lower", "upper");
+  }
   for (std::size_t k = 0; k < study.parameters.size(); ++k) {
     const OptimisedParameter& p = study.parameters[k];
     fmt::format_to(out, "  {:<34}{:>13.5g}{:>13.5g}{:>13.5g} {}\n", p.parameter.key, r.parameters[k], p.lower, p.upper,
                    p.parameter.unit == "1" ? "" : p.parameter.unit);
   }
-  fmt::format_to(out, "\nWhat holds it{:>52}\n", "tightened by 1 %: worse by");
-  for (const ActiveLimit& a : r.active) {
-    const std::string worse = std::isfinite(a.sensitivity) ? fmt::format("{:.2g} %", a.sensitivity) : "-";
-    fmt::format_to(out, "  {:<44}{:>18}\n", a.name, worse);
-  }
-  if (r.active.empty()) fmt::format_to(out, "  no constraint and no bound: the optimum lies inside\n");
-
-  fmt::format_to(out, "\nHow flat it is: moving along each direction until the objective is {:g} % worse\n",
-                 100.0 * flat_loss);
-  if (r.directions.empty()) fmt::format_to(out, "  the active limits leave no freedom\n");
-  int n = 0;
-  for (const FlatDirection& d : r.directions) {
-    fmt::format_to(out, "  direction {}, {:.0f} % of the bounds{}\n", ++n, 100.0 * d.width, d.flat ? ": FLAT" : "");
-    for (std::size_t k = 0; k < study.parameters.size(); ++k) {
-      const OptimisedParameter& p = study.parameters[k];
-      // Only what moves visibly.
-      if (std::abs(d.to[k] - d.from[k]) < 1e-3 * (p.upper - p.lower)) continue;
-      fmt::format_to(out, "    {:<32}{:>13.5g} .. {:<.5g}{}\n", p.parameter.key, d.from[k], d.to[k],
-                     p.parameter.unit == "1" ? "" : " " + p.parameter.unit);
-    }
-  }
+  if (!study.parameters.empty()) text_neighbourhood(out, study, r);
   fmt::format_to(out, "\nThe design\n");
   for (const Metric m : {Metric::voltage, Metric::frequency, Metric::lift_to_weight, Metric::lift_mean,
                          Metric::power_electrical, Metric::efficiency_system, Metric::current_peak,
@@ -156,7 +169,7 @@ std::string text_motors(const OptimiseFile& file, std::span<const MotorTrial> tr
   std::vector<const MotorTrial*> order;
   for (const MotorTrial& t : trials) order.push_back(&t);
   const auto rank = [&](const MotorTrial* t) {
-    if (!t->motor->refused.empty()) return std::pair(3, 0.0);
+    if (t->refused()) return std::pair(3, 0.0);
     if (t->result.outcome != Outcome::found) return std::pair(int(t->result.outcome), 0.0);
     return std::pair(0, (study.maximise ? -1.0 : 1.0) * t->result.point.metrics[study.objective]);
   };
@@ -164,10 +177,10 @@ std::string text_motors(const OptimiseFile& file, std::span<const MotorTrial> tr
   std::string text;
   auto out = std::back_inserter(text);
   const MotorTrial* best = best_trial(file, trials);
-  fmt::format_to(out, "{:<30}{}\n", "Motor", info(study.objective).key);
+  fmt::format_to(out, "{:<30}{}\n", file.motors.empty() ? "Choice" : "Motor", info(study.objective).key);
   for (const MotorTrial* t : order) {
     std::string what;
-    if (!t->motor->refused.empty()) {
+    if (t->refused()) {
       what = t->motor->refused;
     } else if (t->result.outcome != Outcome::found) {
       what = explanation(study, t->result);
@@ -177,13 +190,20 @@ std::string text_motors(const OptimiseFile& file, std::span<const MotorTrial> tr
         const DesignParameter& p = study.parameters[k].parameter;
         what += fmt::format("; {} {}", p.key, with_unit(t->result.parameters[k], p.unit));
       }
-      for (const std::string& derived : t->motor->derived) what += "; " + derived;
+      if (t->motor) {
+        for (const std::string& derived : t->motor->derived) what += "; " + derived;
+      }
     }
+    const std::string name = name_of(file, *t);
+    if (name.size() > 29) fmt::format_to(out, "{}\n", name);
     // The name's columns are a stand-in while lines are broken.
-    fmt::format_to(out, "{:<30}{}\n", t->motor->model, wrapped(std::string(30, '_') + what, width, 30).substr(30));
+    fmt::format_to(out, "{:<30}{}\n", name.size() > 29 ? "" : name,
+                   wrapped(std::string(30, '_') + what, width, 30).substr(30));
   }
-  if (!best) return text + "\nNo motor of the catalogue does it.\n";
-  return text + "\nBest: " + best->motor->model + "\n\n" + text_optimum(file, best->result);
+  if (!best) {
+    return text + (file.motors.empty() ? "\nNone of the choices does it.\n" : "\nNo motor of the catalogue does it.\n");
+  }
+  return text + "\nBest: " + name_of(file, *best) + "\n\n" + text_optimum(file, best->result);
 }
 
 std::string json_optimum(const OptimiseFile& file, const OptimiseResult& result) {
@@ -193,12 +213,18 @@ std::string json_optimum(const OptimiseFile& file, const OptimiseResult& result)
 std::string json_motors(const OptimiseFile& file, std::span<const MotorTrial> trials) {
   const MotorTrial* best = best_trial(file, trials);
   Json json;
-  json["best"] = best ? Json(best->motor->model) : Json(nullptr);
+  json["best"] = best ? Json(name_of(file, *best)) : Json(nullptr);
   for (const MotorTrial& t : trials) {
-    Json entry = {{"model", t.motor->model}};
-    if (!t.motor->refused.empty()) entry["refused"] = t.motor->refused;
-    else entry["result"] = result_json(file, t.result);
-    json["motors"].push_back(entry);
+    Json entry = {{"model", t.motor ? Json(t.motor->model) : Json(nullptr)}};
+    if (t.refused()) {
+      entry["refused"] = t.motor->refused;
+    } else {
+      for (std::size_t k = 0; k < file.choices.size(); ++k) {
+        entry["choices"][file.choices[k].parameter.key] = t.choices[k];
+      }
+      entry["result"] = result_json(file, t.result);
+    }
+    json[file.motors.empty() ? "choices" : "motors"].push_back(entry);
   }
   return json.dump(2) + "\n";
 }

@@ -310,9 +310,10 @@ class StudySections {
       refuse(node, where, fmt::format("{} has no effect where the frequency is held", key));
     }
     if (!parameter.value(design)) {
-      const std::string_view only_with = find_key<double>(key)->only_with;
-      refuse(node, where, only_with.empty() ? fmt::format("{} is not in the vehicle; give it in [set] first", key)
-                                            : fmt::format("{}: only with {}", key, only_with));
+      Design<double> trial = design;
+      refuse(node, where, parameter.set(trial, 1.0)
+                              ? fmt::format("{} is not in the vehicle; give it in [set] first", key)
+                              : fmt::format("{}: only with {}", key, find_key<double>(key)->only_with));
     }
     return parameter;
   }

@@ -268,6 +268,7 @@ std::string quantity_example(std::string_view unit) {
       {"N m/rad", "a torsional stiffness such as \"1.4e-3 N m/rad\""},
       {"N m s/rad", "a torsional damping such as \"3.6e-6 N m s/rad\""},
       {"N m s2/rad2", "a quadratic damping such as \"2e-8 N m s2/rad2\""},
+      {"kg/m", "a mass over a length such as \"2 g/m\""},
       {"kg/m3", "a density such as \"1.225 kg/m3\""},
       {"m4", "a chord moment such as \"2.5e-6 m4\""},
       {"m5", "a chord moment such as \"1e-7 m5\""}};

@@ -53,6 +53,16 @@ class Problem {
     return d;
   }
 
+  /// The design with what was found; where the frequency is held, with its voltage.
+  Design<double> found(const Vector& u, const DesignPoint& point) const {
+    Design<double> d = design(u);
+    if (study_.options.frequency) {
+      const double duty = d.supply.type == SupplyType::pwm ? d.supply.duty : 1.0;
+      d.supply.voltage = point.metrics[Metric::voltage] / duty;
+    }
+    return d;
+  }
+
   /// Objective to be minimised and constraints <= 0, each relative, with gradients.
   struct Evaluation {
     DesignPoint point;
@@ -108,7 +118,7 @@ class Problem {
 /// One local search.
 struct Search {
   Vector end;
-  double objective = HUGE_VAL;
+  double objective = HUGE_VAL, began = absent;
   bool feasible = false;
   int evaluations = 0;
 
@@ -117,6 +127,7 @@ struct Search {
     std::vector<double> u(start.data(), start.data() + start.size());
     const Problem::Evaluation& first = memory.at(u.data());
     if (!first.flaps) return;
+    began = first.objective;
     memory.scale = std::max(std::abs(first.objective), 1e-300);
     // A search that runs into designs that do not flap may end there; from its best point it then starts anew.
     for (const nlopt::algorithm algorithm : {nlopt::LD_SLSQP, nlopt::LD_SLSQP, nlopt::LD_CCSAQ}) {
@@ -332,8 +343,12 @@ class Neighbourhood {
       const Vector direction = free * eigen.eigenvectors().col(k);
       FlatDirection flat;
       flat.curvature = eigen.eigenvalues()[k];
-      const auto [up, up_by_bound] = farthest(direction);
-      const auto [down, down_by_bound] = farthest(-direction);
+      std::vector<FlatDirection::Step> beyond;
+      const auto [up, up_by_bound] = farthest(direction, 1.0, beyond);
+      const auto [down, down_by_bound] = farthest(-direction, -1.0, beyond);
+      beyond.push_back({0.0, values(best_), problem_.study().maximise ? -at_.objective : at_.objective});
+      std::sort(beyond.begin(), beyond.end(), [](const auto& a, const auto& b) { return a.distance < b.distance; });
+      flat.walk = std::move(beyond);
       for (Eigen::Index j = 0; j < n; ++j) {
         flat.from.push_back(problem_.value(j, down[j]));
         flat.to.push_back(problem_.value(j, up[j]));
@@ -397,8 +412,15 @@ class Neighbourhood {
     return h.unaryExpr([](double x) { return std::isfinite(x) ? x : 0.0; });
   }
 
+  std::vector<double> values(const Vector& u) const {
+    std::vector<double> x;
+    for (Eigen::Index k = 0; k < u.size(); ++k) x.push_back(problem_.value(k, u[k]));
+    return x;
+  }
+
   /// The point at a distance along the direction, put back onto the active constraints; nothing if it is no design.
-  std::optional<Vector> moved(const Vector& direction, double distance) {
+  std::optional<Vector> moved(const Vector& direction, double distance, double sign,
+                              std::vector<FlatDirection::Step>& walk) {
     Vector u = best_ + distance * direction;
     if (u.minCoeff() < -1e-9 || u.maxCoeff() > 1.0 + 1e-9) return std::nullopt;
     u = u.cwiseMax(0.0).cwiseMin(1.0);
@@ -416,7 +438,9 @@ class Neighbourhood {
       const bool on = residual.size() == 0 || residual.lpNorm<Eigen::Infinity>() < 1e-6;
       if (on) {
         const bool worse = e.objective - at_.objective > flat_loss * std::abs(at_.objective);
-        return !worse && e.violation() <= active_within ? std::optional(u) : std::nullopt;
+        if (worse || e.violation() > active_within) return std::nullopt;
+        walk.push_back({sign * distance, values(u), problem_.study().maximise ? -e.objective : e.objective});
+        return u;
       }
       u -= a.completeOrthogonalDecomposition().solve(residual);
       if (!(u.minCoeff() > -1e-9 && u.maxCoeff() < 1.0 + 1e-9)) return std::nullopt;
@@ -426,19 +450,19 @@ class Neighbourhood {
   }
 
   /// The farthest point that is not more than flat_loss worse; true if a bound of the parameters ends the way there.
-  std::pair<Vector, bool> farthest(const Vector& direction) {
+  std::pair<Vector, bool> farthest(const Vector& direction, double sign, std::vector<FlatDirection::Step>& walk) {
     double room = HUGE_VAL;
     for (Eigen::Index k = 0; k < problem_.size(); ++k) {
       if (std::abs(direction[k]) < 1e-9) continue;
       room = std::min(room, ((direction[k] > 0.0 ? 1.0 : 0.0) - best_[k]) / direction[k]);
     }
     if (!(room > 1e-6)) return {best_, false};
-    if (const auto end = moved(direction, room)) return {*end, true};
+    if (const auto end = moved(direction, room, sign, walk)) return {*end, true};
     // Doubling first: the end may be very near, and what lies beyond a first failure does not count.
     double good = 0.0, bad = room;
     Vector at = best_;
     for (double t = std::min(1e-3, 0.5 * room); t < room; t *= 2.0) {
-      const auto u = moved(direction, t);
+      const auto u = moved(direction, t, sign, walk);
       if (!u) {
         bad = t;
         break;
@@ -448,7 +472,7 @@ class Neighbourhood {
     }
     for (int k = 0; k < 8; ++k) {
       const double t = 0.5 * (good + bad);
-      if (const auto u = moved(direction, t)) {
+      if (const auto u = moved(direction, t, sign, walk)) {
         good = t;
         at = *u;
       } else {
@@ -466,6 +490,36 @@ class Neighbourhood {
   Vector multipliers_;
 };
 
+/// A study without parameters: the one design there is.
+void judge(const Problem& problem, OptimiseResult& result) {
+  const OptimiseStudy& study = problem.study();
+  const Problem::Evaluation only = problem.evaluate(Vector(), false);
+  result.evaluations = result.starts = 1;
+  result.screen.status[std::size_t(only.point.status)] = 1;
+  result.screen.closest.assign(study.constraints.size(), absent);
+  result.screen.violated.assign(study.constraints.size(), 0);
+  if (!only.flaps) {
+    result.reason = "the design does not flap";
+    result.failed = 1;
+    return;
+  }
+  for (std::size_t c = 0; c < study.constraints.size(); ++c) {
+    result.screen.violated[c] = only.constraints[Eigen::Index(c)] > feasible_to;
+    result.screen.closest[c] = only.point.metrics[study.constraints[c].metric];
+  }
+  if (only.violation() > feasible_to) {
+    result.outcome = OptimiseResult::Outcome::infeasible;
+    result.reason = "the design flaps, but not within every constraint";
+    result.failed = 1;
+    return;
+  }
+  result.outcome = OptimiseResult::Outcome::found;
+  result.screen.feasible = 1;
+  result.same = 1;
+  result.point = only.point;
+  result.design = problem.found(Vector(), only.point);
+}
+
 }  // namespace
 
 std::string name_of(const MetricConstraint& c) {
@@ -476,6 +530,10 @@ std::string name_of(const MetricConstraint& c) {
 OptimiseResult optimise(const OptimiseStudy& study, const StartUp& start_up, const ForEach& for_each) {
   OptimiseResult result;
   const Problem problem(study, start_up);
+  if (study.parameters.empty()) {
+    judge(problem, result);
+    return result;
+  }
   const std::vector<Vector> ranked = screened(problem, start_up, result.screen);
 
   std::vector<Vector> starts;
@@ -511,8 +569,17 @@ OptimiseResult optimise(const OptimiseStudy& study, const StartUp& start_up, con
 
   result.starts = int(starts.size());
   const Search* best = nullptr;
-  for (const Search& s : searches) {
+  const auto values = [&](const Vector& u) {
+    std::vector<double> x;
+    for (Eigen::Index k = 0; k < u.size(); ++k) x.push_back(problem.value(k, u[k]));
+    return x;
+  };
+  const double sign = study.maximise ? -1.0 : 1.0;
+  for (std::size_t n = 0; n < searches.size(); ++n) {
+    const Search& s = searches[n];
     result.evaluations += s.evaluations;
+    result.searches.push_back({values(starts[n]), s.feasible ? values(s.end) : std::vector<double>(), sign * s.began,
+                               s.feasible ? sign * s.objective : absent, s.evaluations});
     if (s.feasible && (!best || s.objective < best->objective)) best = &s;
   }
   if (!best) {
@@ -527,12 +594,8 @@ OptimiseResult optimise(const OptimiseStudy& study, const StartUp& start_up, con
   }
   result.outcome = OptimiseResult::Outcome::found;
   for (Eigen::Index k = 0; k < problem.size(); ++k) result.parameters.push_back(problem.value(k, best->end[k]));
-  result.design = problem.design(best->end);
   result.point = problem.evaluate(best->end).point;
-  if (study.options.frequency) {
-    const double duty = result.design.supply.type == SupplyType::pwm ? result.design.supply.duty : 1.0;
-    result.design.supply.voltage = result.point.metrics[Metric::voltage] / duty;
-  }
+  result.design = problem.found(best->end, result.point);
   Neighbourhood around(problem, best->end, result.evaluations);
   result.active = around.active();
   result.directions = around.directions();

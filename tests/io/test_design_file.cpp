@@ -148,6 +148,22 @@ TEST(DesignFile, WritesWhatReadsBackBitIdentical) {
   }
 }
 
+TEST(DesignFile, MassesAreStatedBesideTheVehicles) {
+  const Overrides masses = {"vehicle.mass=1.5 g",    "supply.mass=0.8 g", "motor.mass=0.6 g",
+                            "spring.stiffness=1e-3", "spring.mass=50 mg", "transmission.rod_linear_density=5 g/m"};
+  const Design<double> d = parse_design(vehicle_text, "v.toml", masses);
+  EXPECT_DOUBLE_EQ(*total_mass(d), 1.5e-3 + 0.8e-3 + 0.6e-3 + 5e-3 * d.transmission.rod_length + 1e-4);
+  EXPECT_EQ(fingerprint(parse_design(write_design(d), "w.toml")), fingerprint(d));
+  const std::string mass = "vehicle.mass=1.5 g";
+  EXPECT_EQ(refusal(vehicle_text, {mass, "motor.mass=-1 g"}),
+            "--set motor.mass=-1 g: motor.mass: must be >= 0 [kg], got -0.001");
+  EXPECT_EQ(refusal(vehicle_text, {mass, "transmission.rod_linear_density=5 g"}),
+            "--set transmission.rod_linear_density=5 g: transmission.rod_linear_density: expected a mass over a length "
+            "such as \"2 g/m\", got \"5 g\"");
+  EXPECT_EQ(override_refusal("motor.mass=1 g"),
+            "--set motor.mass=1 g: motor.mass: needs vehicle.mass, which is not given");
+}
+
 TEST(DesignFile, BothMotorFormsGiveTheSameVehicle) {
   // n = 10: K = n K_b, J = J_G + n^2 J_m, b = b_G + n^2 b_m.
   const Overrides geared = {"motor.gear_ratio=10",        "motor.torque_constant=1e-3", "motor.inertia=1.4e-9",

@@ -224,6 +224,26 @@ TEST_P(OrbitGradients, SpringlessVehicleByItsStiffness) {
   EXPECT_LT(worst.error, 1e-6) << worst.where;
 }
 
+TEST_P(OrbitGradients, MassesThatAreStatedForThemselves) {
+  Design<double> d = reference_design();
+  d.spring.stiffness = 1.377e-3;
+  d.mass = 1.5e-3;
+  d.masses = {0.8e-3, 0.6e-3, 5e-3, 0.05e-3};
+  Worst worst;
+  compare_gradients(d, Condition::air, GetParam(), worst);
+  EXPECT_LT(worst.error, 1e-6) << worst.where;
+  // A longer rod weighs more: its own share of the derivative is -lift_to_weight (density / mass).
+  const DesignParameter rod = design_parameter("transmission.rod_length");
+  const SteadyFlapping orbit = orbit_of(d, Condition::air);
+  const auto by_rod = [&] {
+    return metric_gradients(d, Condition::air, orbit, {&rod, 1}).by_parameter[0][std::size_t(Metric::lift_to_weight)];
+  };
+  const double mass = *total_mass(d), weighed = by_rod();
+  d.mass = mass;
+  d.masses = {};
+  EXPECT_NEAR(weighed - by_rod(), -orbit.metrics[Metric::lift_to_weight] * 5e-3 / mass, 1e-9);
+}
+
 TEST_P(OrbitGradients, RandomVehicles) {
   std::mt19937_64 random(4);
   Worst worst;

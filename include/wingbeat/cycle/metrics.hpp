@@ -131,7 +131,7 @@ struct ReportingOf {
 using Reporting = ReportingOf<double>;
 
 inline Reporting reporting_of(const Design<double>& d) {
-  return {d.mass.value_or(absent), d.bench_torque_constant.value_or(absent)};
+  return {total_mass(d).value_or(absent), d.bench_torque_constant.value_or(absent)};
 }
 
 /// The metrics of a cycle from its integrals and extremes. `extremes` holds the maxima of extreme_candidates().

@@ -163,6 +163,10 @@ std::span<const Key<S>> vehicle_keys() {
   };
   constexpr auto pwm = [](const auto& d) { return d.supply.type == SupplyType::pwm; };
   constexpr auto battery = [](const auto& d) { return d.supply.type == SupplyType::battery; };
+  constexpr auto weighed = [](const auto& d) { return d.mass.has_value(); };
+  constexpr auto weighed_springs = [](const auto& d) {
+    return d.mass.has_value() && (d.spring.stiffness.has_value() || d.spring.resonance.has_value());
+  };
   constexpr auto geared = [](const auto& d) { return d.motor.gear_ratio.has_value(); };
   constexpr auto outline = [](const auto& d) {
     return d.wing.planform.shape == PlanformShape::semi_ellipse || d.wing.planform.shape == PlanformShape::rectangle;
@@ -177,7 +181,8 @@ std::span<const Key<S>> vehicle_keys() {
   static constexpr Key<S> keys[] = {
       text<S>({"vehicle.name", "", "any text", "no name", "name of the vehicle, for reports"},
               [](const D& d) { return d.name; }),
-      number<S>({"vehicle.mass", "kg", "> 0", "unknown", "mass of the whole vehicle; enables lift_to_weight"},
+      number<S>({"vehicle.mass", "kg", "> 0", "unknown", "mass of the vehicle but for the masses stated for themselves (motor.mass, supply.mass, "
+                 "spring.mass, transmission.rod_linear_density); enables lift_to_weight"},
                 [](auto& d) -> auto& { return d.mass; }),
 
       text<S>({"supply.type", "", "constant, sine, pwm or battery", "required", "what feeds the motor terminals"},
@@ -213,6 +218,9 @@ std::span<const Key<S>> vehicle_keys() {
       number<S>({"supply.cutoff_voltage", "V", ">= 0", "none",
                  "mean terminal voltage of one cell at which a flight ends", "supply.type = battery"},
                 [](auto& d) -> auto& { return d.supply.battery.cutoff_voltage; }, battery),
+      number<S>({"supply.mass", "kg", ">= 0", "none: in vehicle.mass", "mass of the battery, in addition to vehicle.mass",
+                 "vehicle.mass"},
+                [](auto& d) -> auto& { return d.masses.supply; }, weighed),
 
       number<S>({"motor.gear_ratio", "1", "> 0", "none: constants at the output shaft",
                  "n, motor turns per output turn; given, the motor constants below are the motor shaft's"},
@@ -241,6 +249,9 @@ std::span<const Key<S>> vehicle_keys() {
                  "constant friction torque of the motor itself, at the motor shaft with gear_ratio; "
                  "adds to every friction law"},
                 [](auto& d) -> auto& { return d.motor.constants.friction_torque; }),
+      number<S>({"motor.mass", "kg", ">= 0", "none: in vehicle.mass",
+                 "mass of the motor with its gearbox, in addition to vehicle.mass", "vehicle.mass"},
+                [](auto& d) -> auto& { return d.masses.motor; }, weighed),
 
       text<S>({"transmission.type", "", "slider-crank", "required", "kind of mechanism between motor and wings"},
               [](const D&) { return std::string("slider-crank"); }),
@@ -258,6 +269,10 @@ std::span<const Key<S>> vehicle_keys() {
       number<S>({"transmission.mid_stroke_height", "m", "any", "rod_length",
                  "y_0, slider height over the crank axis at stroke angle zero"},
                 [](auto& d) -> auto& { return d.transmission.mid_stroke_height; }),
+      number<S>({"transmission.rod_linear_density", "kg/m", ">= 0", "none: in vehicle.mass",
+                 "mass of the rod over its length: rod_length times this, in addition to vehicle.mass",
+                 "vehicle.mass"},
+                [](auto& d) -> auto& { return d.masses.rod_linear_density; }, weighed),
       text<S>({"transmission.formulation", "", "rod-force or virtual-work", "rod-force",
                "how the rod force turns the wings: the paper's eq (1), or conserving power exactly"},
               [](const D& d) { return choice_name(formulations, d.transmission.formulation); }),
@@ -281,6 +296,9 @@ std::span<const Key<S>> vehicle_keys() {
       alternative<S>({"spring.resonance", "Hz", ">= 0", "required or stiffness",
                       "f_s, resonance of one wing on its spring: k = J_w (2 pi f_s)^2"},
                      resonance, stiffness),
+      number<S>({"spring.mass", "kg", ">= 0", "none: in vehicle.mass",
+                 "mass of one hinge spring, in addition to vehicle.mass; one for each wing", "vehicle.mass"},
+                [](auto& d) -> auto& { return d.masses.spring; }, weighed_springs),
 
       number<S>({"wing.count", "1", "whole number >= 1", "2", "N_w, number of wings"},
                 [](auto& d) -> auto& { return d.wing.count; }),

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "wingbeat/study/optimise.hpp"
+#include "wingbeat/study/pareto.hpp"
 
 namespace wingbeat {
 
@@ -22,17 +23,39 @@ struct OptimiseFile {
   std::string title;
   OptimiseStudy study;
   std::vector<MotorCandidate> motors;  ///< empty: the vehicle's own motor alone
+  std::vector<DiscreteParameter> choices;
+  std::vector<ParetoObjective> objectives;  ///< empty: one objective, that of `study`
+  EvolutionOptions evolution;               ///< of several objectives
+  std::size_t designs = 5;                  ///< picked along their front
 };
 
 /// The study in a TOML file; the vehicle file and a motor catalogue that it names are sought beside it. Throws
 /// InputError.
 OptimiseFile read_optimise_study(const std::filesystem::path& file);
 
-/// A motor of the catalogue with what became of it; `result` is not used where the motor is refused.
+/// A motor of the catalogue, or the vehicle's own, with one value of each discrete parameter, and what became of it;
+/// `result` is not used where the motor is refused.
 struct MotorTrial {
-  const MotorCandidate* motor = nullptr;
+  const MotorCandidate* motor = nullptr;  ///< null: the vehicle's own
+  std::vector<double> choices;            ///< by discrete parameter [SI]
   OptimiseResult result;
+
+  bool refused() const { return motor && !motor->refused.empty(); }
 };
+
+/// Every combination of motors and discrete values, in their order; a refused motor once. One without either.
+std::vector<MotorTrial> trials_of(const OptimiseFile& file);
+/// The study of one of them.
+OptimiseStudy trial_study(const OptimiseFile& file, const MotorTrial& trial);
+/// "0816K003SR, motor.gear_ratio 10"
+std::string name_of(const OptimiseFile& file, const MotorTrial& trial);
+
+/// The study of several objectives, with the motors that can be tried.
+ParetoStudy pareto_study(const OptimiseFile& file);
+
+/// "lift_to_weight >= 1: 9 of 10 that flap break it, the best of them reaches 0.9", for a report without a design.
+std::string explanation(const std::string& reason, bool nothing_flaps, std::span<const MetricConstraint> constraints,
+                        const ScreenCounts& screen);
 
 /// The trial with the best objective, or null where none found a design.
 const MotorTrial* best_trial(const OptimiseFile& file, std::span<const MotorTrial> trials);

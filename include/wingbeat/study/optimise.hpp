@@ -57,8 +57,24 @@ struct FlatDirection {
   double width = 0.0;            ///< largest share of a parameter's bounds that is covered
   double curvature = 0.0;        ///< of the Lagrangian, relative to the objective, per (range of the bounds)^2
   bool flat = false;             ///< a null direction: a bound ends it, or its width exceeds half the bounds
+  /// The designs tried on the way, `from` to `to`: steps along the direction [ranges of the bounds], 0 at the optimum,
+  /// with parameters [SI] and objective [SI].
+  struct Step {
+    double distance = 0.0;
+    std::vector<double> parameters;
+    double objective = 0.0;
+  };
+  std::vector<Step> walk;
 };
 inline constexpr double flat_loss = 1e-3;
+
+/// Where a local search began and ended [SI].
+struct SearchEnd {
+  std::vector<double> start, end;  ///< `end` is empty where nothing within the constraints was found
+  double began = absent;           ///< objective at the start; absent if it does not flap
+  double ended = absent;           ///< objective at the end
+  int evaluations = 0;
+};
 
 struct OptimiseResult {
   enum class Outcome {
@@ -76,6 +92,7 @@ struct OptimiseResult {
   std::vector<FlatDirection> directions;  ///< flattest first; empty where active limits leave no freedom
   int starts = 0, same = 0, elsewhere = 0, failed = 0;  ///< starts by where they ended
   int evaluations = 0;               ///< orbits with gradients
+  std::vector<SearchEnd> searches;
 };
 
 /// Calls `act` for 0 to count - 1, in any order, perhaps side by side.

@@ -73,10 +73,20 @@ struct AerodynamicsDesign {
   ForceCoefficients<S> coefficients;
 };
 
+/// Masses that are stated for themselves. What is not counts in Design::mass.
+template <Scalar S>
+struct ItemMasses {
+  std::optional<S> supply;              ///< battery with its leads [kg], >= 0
+  std::optional<S> motor;               ///< motor with its gearbox [kg], >= 0
+  std::optional<S> rod_linear_density;  ///< the rod's mass over its length [kg/m], >= 0
+  std::optional<S> spring;              ///< one hinge spring [kg], >= 0; one for each wing
+};
+
 template <Scalar S>
 struct Design {
   std::string name;
-  std::optional<S> mass;                   ///< [kg]; enables lift_to_weight
+  std::optional<S> mass;  ///< of all that `masses` does not state [kg]; enables lift_to_weight
+  ItemMasses<S> masses;
   std::optional<S> bench_torque_constant;  ///< K_ref of eq (17) [N m/A]
   Supply<S> supply;
   MotorDesign<S> motor;
@@ -86,6 +96,20 @@ struct Design {
   WingDesign<S> wing;
   AerodynamicsDesign<S> aerodynamics;
 };
+
+/// Mass of the whole vehicle [kg]: vehicle.mass and every mass stated for itself; empty where vehicle.mass is not known.
+template <Scalar S>
+std::optional<S> total_mass(const Design<S>& design) {
+  if (!design.mass) return std::nullopt;
+  const ItemMasses<S>& items = design.masses;
+  S mass = *design.mass;
+  if (items.supply) mass = mass + *items.supply;
+  if (items.motor) mass = mass + *items.motor;
+  if (items.rod_linear_density) mass = mass + *items.rod_linear_density * design.transmission.rod_length;
+  const bool springs = design.spring.stiffness || design.spring.resonance;
+  if (items.spring && springs) mass = mass + design.wing.count * *items.spring;
+  return mass;
+}
 
 /// Throws ParameterError, naming the vehicle-file key, for the first parameter out of its physical range.
 void validate(const Design<double>& design);

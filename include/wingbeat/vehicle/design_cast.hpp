@@ -15,6 +15,8 @@ Design<T> cast_design(const Design<double>& d) {
   Design<T> r;
   r.name = d.name;
   r.mass = optional(d.mass);
+  r.masses = {optional(d.masses.supply), optional(d.masses.motor), optional(d.masses.rod_linear_density),
+              optional(d.masses.spring)};
   r.bench_torque_constant = optional(d.bench_torque_constant);
   r.supply = d.supply.template cast<T>();
   r.motor = {optional(d.motor.gear_ratio), d.motor.constants.template cast<T>(), T(d.motor.gear_inertia),
