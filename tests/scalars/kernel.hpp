@@ -57,18 +57,25 @@ inline constexpr std::size_t motor_work_at = 21 + std::size_t(Integral::motor_wo
 
 inline constexpr int step_size = 2 + integral_count;
 
-/// One explicit step of the crank, integrals included, on a given smooth branch.
-template <Scalar S>
-std::array<S, step_size> crank_step(const Vehicle<S>& v, const S& theta, const std::array<S, 2>& state, const S& h,
-                                    const std::array<S, 3>& signs) {
-  const CrankSystem<S, 2> system{v, S(0.0), S(1.0)};
+template <int N, Scalar S>
+std::array<S, step_size> crank_step_of(const Vehicle<S>& v, const S& theta, const std::array<S, N>& state, const S& h,
+                                       const std::array<S, 3>& signs) {
+  const CrankSystem<S, N> system{v, S(0.0), S(1.0)};
   const auto first = system.template rates<true>(theta, state, signs);
   const auto result = solve::explicit_step<true>(system, theta, state, h, signs, first);
   std::array<S, step_size> out;
   out[0] = result.y[0];
-  out[1] = result.y[1];
+  out[1] = system.current(result.y);
   for (std::size_t n = 0; n < result.dq.size(); ++n) out[2 + n] = result.dq[n];
   return out;
+}
+
+/// One explicit step of the crank, integrals included, on a given smooth branch. Lanes are alike in having an inductance.
+template <Scalar S>
+std::array<S, step_size> crank_step(const Vehicle<S>& v, const S& theta, const std::array<S, 2>& state, const S& h,
+                                    const std::array<S, 3>& signs) {
+  if (any<S>(v.motor.armature_inductance > S(0.0))) return crank_step_of<2, S>(v, theta, state, h, signs);
+  return crank_step_of<1, S>(v, theta, {state[0]}, h, signs);
 }
 
 }  // namespace wingbeat
