@@ -1,0 +1,93 @@
+// wingbeat endurance VEHICLE: how long its battery flies a vehicle.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command.hpp"
+#include "wingbeat/io/design_file.hpp"
+#include "wingbeat/io/endurance_report.hpp"
+#include "wingbeat/io/output_file.hpp"
+
+namespace wingbeat::app {
+namespace {
+
+struct Arguments {
+  std::string vehicle, output, plot;
+  std::vector<std::string> overrides;
+  bool json = false;
+};
+
+std::optional<OutputFile> reserved(const char* option, const std::string& path, const std::string& vehicle) {
+  if (path.empty()) return std::nullopt;
+  std::error_code error;
+  if (std::filesystem::equivalent(path, vehicle, error)) {
+    throw InputError(fmt::format("{} {}", option, path), 0, 0, "", "is the vehicle file itself");
+  }
+  return std::optional<OutputFile>(std::in_place, option, path);
+}
+
+int run(const Arguments& arguments) {
+  std::optional<PlotFormat> format;
+  if (!arguments.plot.empty()) {
+    format = plot_format(arguments.plot);
+    if (!format) throw InputError("--plot " + arguments.plot, 0, 0, "", "the name must end in .svg, .pdf or .png");
+  }
+  if (!arguments.output.empty() && std::filesystem::path(arguments.output).extension() != ".nc") {
+    throw InputError("-o " + arguments.output, 0, 0, "", "the name must end in .nc");
+  }
+  const Design<double> design = read_design(arguments.vehicle, arguments.overrides);
+  if (design.supply.type != SupplyType::battery) {
+    throw InputError(arguments.vehicle, 0, 0, "supply.type", "only a battery runs down; expected battery");
+  }
+  std::optional<OutputFile> output = reserved("-o", arguments.output, arguments.vehicle);
+  std::optional<OutputFile> plot = reserved("--plot", arguments.plot, arguments.vehicle);
+
+  const EnduranceOptions options;
+  const EnduranceResult result = fly_to_the_end(design, options);
+  const bool flies = result.endurance() > 0.0;
+  if (flies && output) {
+    write_endurance(result,
+                    {.title = fmt::format("Flight to the end of the battery of {}",
+                                          design.name.empty() ? arguments.vehicle : design.name),
+                     .version = version,
+                     .input = write_design(design),
+                     .condition = "air",
+                     .method = "orbit",
+                     .tolerance = options.tolerance},
+                    output->temporary());
+    output->commit();
+  }
+  if (flies && plot) {
+    plot_endurance(design, result, *format, plot->temporary());
+    plot->commit();
+  }
+  print(arguments.json ? json_endurance(result) : text_endurance(design, result));
+  if (!flies && (output || plot)) complain("the vehicle does not fly: no file was written");
+  return result.end == EnduranceEnd::never_starts ? does_not_flap : done;
+}
+
+}  // namespace
+
+void add_endurance(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("endurance", "How long its battery flies a vehicle");
+  const auto a = std::make_shared<Arguments>();
+  command->add_option("vehicle", a->vehicle, "Vehicle file (TOML) with a battery")->required()->type_name("VEHICLE");
+  command->add_option("--set", a->overrides, "Replace a key of the vehicle file; repeatable")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  command->add_flag("--json", a->json, "Print one JSON object (SI) instead of a table");
+  command->add_option("-o,--output", a->output, "Write the course of the flight (NetCDF-4)")->type_name("FILE.nc");
+  command->add_option("--plot", a->plot, "Plot the flight to FILE.svg, .pdf or .png")->type_name("FILE");
+  command->footer(
+      "Example:\n  wingbeat endurance data/designs/friction2022-battery.toml --plot flight.svg\n\n"
+      "The battery drains from supply.charge through steady flapping until it is empty, its terminals fall to\n"
+      "supply.cutoff_voltage, or it no longer turns the crank.\n\n"
+      "Exit status: 0 done, 2 bad input or usage, 3 the battery cannot start the vehicle, 1 anything else.");
+  command->callback([a, &action] { action = [a] { return run(*a); }; });
+}
+
+}  // namespace wingbeat::app

@@ -1,0 +1,68 @@
+// How long a battery flies a vehicle: quasi-static discharge through steady flapping.
+//
+// At every state of charge s the vehicle flaps steadily, for flapping settles within milliseconds to seconds and the
+// battery empties over minutes. Then Q ds/dt = -mean(i)(s), with the charge Q of a full battery, so time is a
+// quadrature over charge: t = integral of Q / mean(i) ds, and with it the energies. The crank starts from rest at the
+// first charge; from then on it turns, and flight goes on while a rotating orbit exists.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "wingbeat/cycle/steady_flapping.hpp"
+#include "wingbeat/vehicle/design.hpp"
+
+namespace wingbeat {
+
+struct EnduranceOptions {
+  Condition condition = Condition::air;
+  double tolerance = 1e-9;  ///< wanted relative accuracy of times and energies, 1e-10 to 1e-2
+  int intervals = 64;       ///< least number of rows between the first and the last charge
+};
+
+enum class EnduranceEnd {
+  never_starts,  ///< does not flap from rest at the first charge
+  empty,         ///< no charge is left
+  cutoff,        ///< the mean terminal voltage has fallen to the cut-off voltage
+  stops          ///< no rotating orbit is left
+};
+
+enum class Hover {
+  unknown,  ///< the vehicle has no mass
+  never,    ///< lift is below the weight from the start
+  lost,     ///< lift falls below the weight on the way
+  kept      ///< lift exceeds the weight to the end
+};
+
+/// The vehicle at one moment of the discharge.
+struct EnduranceRow {
+  double time = 0.0;                  ///< since the start [s]
+  double charge = 0.0;                ///< state of charge [1]
+  double open_circuit_voltage = 0.0;  ///< of the whole battery [V]
+  double energy_electrical = 0.0;     ///< delivered at the terminals since the start [J]
+  double energy_internal = 0.0;       ///< lost in the internal resistance since the start [J]
+  double energy_aerodynamic = 0.0;    ///< given to the air since the start [J]
+  double lift_impulse = 0.0;          ///< time integral of the mean lift since the start [N s]
+  Metrics<double> metrics;            ///< of steady flapping at this charge
+};
+
+struct EnduranceResult {
+  EnduranceEnd end = EnduranceEnd::never_starts;
+  FlappingStatus status = FlappingStatus::stalled;  ///< at the first charge
+  std::string detail;                               ///< one sentence: how it ends, or why it does not start
+  Hover hover = Hover::unknown;
+  std::optional<EnduranceRow> hover_lost;  ///< the moment of Hover::lost, where lift equals weight
+  std::vector<EnduranceRow> rows;          ///< from the first to the last charge; empty if it never starts
+  double capacity = 0.0;                   ///< Q [C]
+  int evaluations = 0;                     ///< orbits computed
+
+  /// Time to the end [s]; 0 if it never starts.
+  double endurance() const { return rows.empty() ? 0.0 : rows.back().time; }
+};
+
+/// Flies the design's battery from its charge until it is empty, at its cut-off voltage, or no longer turns the crank.
+/// Throws ParameterError for a supply that is no battery and for options out of range.
+EnduranceResult fly_to_the_end(const Design<double>& design, const EnduranceOptions& options = {});
+
+}  // namespace wingbeat
