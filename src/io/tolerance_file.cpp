@@ -22,10 +22,8 @@ class ToleranceReader : public detail::StudySections {
   ToleranceStudy read() {
     ToleranceStudy study;
     study_result_ = &study;
-    if (const TomlNode* title = study_->find("title")) study.title = text_of(*title, "study.title", "a text");
-    const fs::path vehicle = folder_ / vehicle_file();
-    if (!fs::exists(vehicle)) refuse_file("study", "vehicle", fmt::format("there is no file {}", vehicle.string()));
-    study.design = parse_design(vehicle_text(vehicle), "the vehicle with [set]");
+    study.title = read_title();
+    study.design = read_vehicle(folder_);
     study.condition = read_condition();
     read_tolerance(study.options);
     read_metrics(study.options);
@@ -73,13 +71,7 @@ class ToleranceReader : public detail::StudySections {
   }
 
   void read_parameters() {
-    const TomlNode* list = root_.find("parameter");
-    if (!list) return;
-    if (list->kind != Kind::array) wrong(*list, "parameter", "[[parameter]] sections");
-    for (const TomlNode& node : list->items) {
-      if (node.kind != Kind::table) wrong(node, "parameter", "[[parameter]] sections");
-      read_parameter(node);
-    }
+    for (const TomlNode& node : sections_of("parameter")) read_parameter(node);
   }
 
   void read_parameter(const TomlNode& node) {
