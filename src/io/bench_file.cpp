@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "csv_cells.hpp"
 #include "toml_fields.hpp"
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/io/design_file.hpp"
@@ -62,29 +63,6 @@ const std::vector<ColumnName>& waveform_quantities() {
   return columns;
 }
 
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
-struct Cell {
-  std::string_view text;
-  int column;
-};
-
-std::vector<Cell> split(std::string_view line) {
-  std::vector<Cell> cells;
-  for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
-    const std::string_view raw = line.substr(begin, end - begin);
-    const std::size_t blank = std::min(raw.find_first_not_of(" \t\r"), raw.size());
-    cells.push_back({trimmed(raw), int(begin + blank + 1)});
-    begin = end + 1;
-  }
-  return cells;
-}
-
 /// SI value of a number in a column: value * factor.
 double column_factor(const std::string& unit, const std::string& expected) {
   if (expected == "degree") return degrees_per_radian * unit_factor(unit, "rad");
@@ -102,17 +80,13 @@ class LogReader {
   BenchLog read(std::string_view text) {
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     bool header = true;
-    while (!text.empty()) {
-      const std::size_t end = std::min(text.find('\n'), text.size());
-      const std::string_view line = text.substr(0, end);
-      text.remove_prefix(std::min(end + 1, text.size()));
-      ++line_;
-      if (trimmed(line).empty() || trimmed(line).starts_with('#')) continue;
+    for (std::string_view line; next_line(text, line, line_);) {
+      if (is_blank_or_comment(line)) continue;
       if (header) {
-        read_header(split(line));
+        read_header(csv_cells(line));
         header = false;
       } else {
-        read_row(split(line));
+        read_row(csv_cells(line));
       }
     }
     if (header)
@@ -133,7 +107,7 @@ class LogReader {
     throw InputError(file_, line_, column, key, message);
   }
 
-  Column column_of(const Cell& cell) {
+  Column column_of(const CsvCell& cell) {
     const std::vector<ColumnName>& known = log_.waveform ? waveform_quantities() : metric_columns();
     static const ColumnName crank_angle{"crank_angle", "crank_angle", "rad", {}, true};
     const ColumnName* best = nullptr;
@@ -176,8 +150,8 @@ class LogReader {
     return column;
   }
 
-  void read_header(const std::vector<Cell>& cells) {
-    for (const Cell& cell : cells) {
+  void read_header(const std::vector<CsvCell>& cells) {
+    for (const CsvCell& cell : cells) {
       Column column = column_of(cell);
       for (const Column& before : columns_) {
         if (before.header == column.header) refuse(cell.column, column.header, "is given twice");
@@ -222,7 +196,7 @@ class LogReader {
     if (log_.columns.empty()) refuse(1, "", "no measured column beside what was set");
   }
 
-  void read_row(const std::vector<Cell>& cells) {
+  void read_row(const std::vector<CsvCell>& cells) {
     if (cells.size() != columns_.size()) {
       refuse(1, "", fmt::format("expected {} values, got {}", columns_.size(), cells.size()));
     }

@@ -189,7 +189,8 @@ void plot_optimum(const OptimiseFile& file, const MotorTrial& trial, PlotFormat 
   const std::string unit = std::string_view(objective.unit) == "1" ? "" : fmt::format(" ({})", objective.unit);
   const std::string chosen = name_of(file, trial);
   figure.add("set multiplot\nset rmargin at screen 0.96\nset datafile missing 'nan'\n");
-  figure.text(file.title.empty() ? "Optimum" : file.title, 8.0, fmt::format("screen 0.5,{} center", y(0.12)));
+  const std::string title = file.title.empty() ? "Optimum" : file.title;
+  figure.text(title, 8.0 * std::min(1.0, 52.0 / double(title.size())), fmt::format("screen 0.5,{} center", y(0.12)));
   if (!chosen.empty()) figure.text(chosen, 7.0, fmt::format("screen 0.5,{} center", y(0.28)));
   int marks = 900;
   const auto mark = [&](double x, double from_top, const char* style, const std::string& name) {
@@ -262,6 +263,15 @@ void plot_optimum(const OptimiseFile& file, const MotorTrial& trial, PlotFormat 
     figure.add("set border 3\nset ytics nomirror out scale 0.5\nset autoscale x\nset yrange [{}:{}]\n", -5.0 * flat_loss, 110.0 * flat_loss);
     const double best = r.point.metrics[study.objective];
     std::string plot;
+    double reach = 0.0;
+    for (std::size_t d = 0; d < drawn; ++d) {
+      for (const FlatDirection::Step& s : r.directions[d].walk) reach = std::max(reach, std::abs(s.distance));
+    }
+    // Three or four tics on either side would run into each other.
+    if (reach > 0.0) {
+      const double power = std::pow(10.0, std::floor(std::log10(reach)));
+      figure.add("set xtics {}\n", reach / power >= 4.0 ? 4.0 * power : reach / power >= 2.0 ? 2.0 * power : power);
+    }
     for (std::size_t d = 0; d < drawn; ++d) {
       figure.add("$walk{} << END\n", d);
       for (const FlatDirection::Step& s : r.directions[d].walk) {

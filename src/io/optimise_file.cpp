@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "csv_cells.hpp"
 #include "study_sections.hpp"
 
 namespace wingbeat {
@@ -24,13 +25,11 @@ class OptimiseReader : public detail::StudySections {
   OptimiseFile read() {
     OptimiseFile file;
     OptimiseStudy& study = file.study;
-    if (const TomlNode* title = study_->find("title")) file.title = text_of(*title, "study.title", "a text");
+    file.title = read_title();
     if (const TomlNode* metrics = study_->find("metrics")) {
       refuse(*metrics, "study.metrics", "has no place here: the objective and the constraints say which are wanted");
     }
-    const fs::path vehicle = folder_ / vehicle_file();
-    if (!fs::exists(vehicle)) refuse_file("study", "vehicle", fmt::format("there is no file {}", vehicle.string()));
-    study.design = parse_design(vehicle_text(vehicle), "the vehicle with [set]");
+    study.design = read_vehicle(folder_);
     study.options.condition = read_condition();
     EnsembleOptions accuracy;
     accuracy.tolerance = study.options.tolerance;
@@ -58,17 +57,8 @@ class OptimiseReader : public detail::StudySections {
  private:
   /// The metric of that name. One that the vehicle does not have is refused with what it needs.
   Metric metric_named(const TomlNode& node, const std::string& where, const Design<double>& design) const {
-    std::vector<std::string_view> names;
-    for (const MetricInfo& metric : metric_table()) names.push_back(metric.key);
     const std::string name = text_of(node, where, "the name of a metric such as \"power_electrical_w\"");
-    const int index = metric_index(name);
-    if (index == metric_count) {
-      const std::string_view near = nearest_name(name, names);
-      refuse(node, where,
-             near.empty() ? fmt::format("{} is no metric; the metrics are {}", in_quotes(name), detail::joined(names))
-                          : fmt::format("{} is no metric; did you mean {}?", in_quotes(name), near));
-    }
-    const Metric metric = Metric(index);
+    const Metric metric = metric_called(node, where, name);
     if (metric == Metric::floquet_multiplier_max && !several_) refuse(node, where, fmt::format("{} has no derivative", name));
     if (metric == Metric::lift_to_weight && !design.mass) {
       refuse(node, where, "lift_to_weight needs vehicle.mass; give it in the vehicle file or in [set]");
@@ -108,8 +98,7 @@ class OptimiseReader : public detail::StudySections {
       refuse(list.items.empty() ? list : list.items.back(), "objective",
              "expected one section [objective], or two or three sections [[objective]]");
     }
-    for (const TomlNode& node : list.items) {
-      if (node.kind != Kind::table) wrong(node, "objective", "[[objective]] sections");
+    for (const TomlNode& node : sections_of("objective")) {
       known_keys(node, "objective", {"minimise", "maximise", "reference"});
       const TomlNode *low = node.find("minimise"), *high = node.find("maximise");
       if (bool(low) == bool(high)) refuse(node, "objective", "give one of minimise and maximise");
@@ -216,8 +205,7 @@ class OptimiseReader : public detail::StudySections {
     std::vector<std::pair<const DesignParameter*, double>> given;
     study.parameters.reserve(list.items.size());
     file.choices.reserve(list.items.size());
-    for (const TomlNode& node : list.items) {
-      if (node.kind != Kind::table) wrong(node, "parameter", "[[parameter]] sections");
+    for (const TomlNode& node : sections_of("parameter")) {
       known_keys(node, "parameter", {"key", "lower", "upper", "scale", "values"});
       const TomlNode& key = need(node, "parameter", "key", "a vehicle-file key");
       const DesignParameter parameter = parameter_named(key, "parameter.key", design);
@@ -264,11 +252,7 @@ class OptimiseReader : public detail::StudySections {
   }
 
   void read_constraints(OptimiseStudy& study, const Design<double>& design) {
-    const TomlNode* list = root_.find("constraint");
-    if (!list) return;
-    if (list->kind != Kind::array) wrong(*list, "constraint", "[[constraint]] sections");
-    for (const TomlNode& node : list->items) {
-      if (node.kind != Kind::table) wrong(node, "constraint", "[[constraint]] sections");
+    for (const TomlNode& node : sections_of("constraint")) {
       known_keys(node, "constraint", {"metric", "at_least", "at_most"});
       const TomlNode& name = need(node, "constraint", "metric", "the name of a metric");
       const Metric metric = metric_named(name, "constraint.metric", design);
@@ -329,12 +313,8 @@ class OptimiseReader : public detail::StudySections {
     const auto refuse_there = [&](const std::string& key, const std::string& message) {
       throw InputError(name, line_number, 1, key, message);
     };
-    while (!text.empty()) {
-      const std::size_t end = std::min(text.find('\n'), text.size());
-      const std::string_view line = text.substr(0, end);
-      text.remove_prefix(std::min(end + 1, text.size()));
-      ++line_number;
-      if (line.find_first_not_of(" \t\r") == std::string_view::npos || line.front() == '#') continue;
+    for (std::string_view line; next_line(text, line, line_number);) {
+      if (is_blank_or_comment(line)) continue;
       const std::vector<std::string> cells = cells_of(line);
       if (header.empty()) {
         header = cells;

@@ -158,16 +158,16 @@ std::string text_front(const OptimiseFile& file, const ParetoStudy& study, const
                  100.0 * r.history[r.history.size() / 2] / r.hypervolume);
 
   const auto columns = columns_of(study, r);
-  const std::size_t fit = 5;  // beside the names
+  const std::size_t fit = 6;  // beside the names
   for (std::size_t first = 0; first < columns.size(); first += fit) {
     const std::size_t last = std::min(columns.size(), first + fit);
     if (first > 0) text += "\n";
-    fmt::format_to(out, "{:<44}", "Design");
-    for (std::size_t c = first; c < last; ++c) fmt::format_to(out, "{:>11}", columns[c].first);
+    fmt::format_to(out, "{:<40}", "Design");
+    for (std::size_t c = first; c < last; ++c) fmt::format_to(out, "{:>10}", columns[c].first);
     text += "\n";
     const auto row = [&](std::string_view name, std::string_view unit, const auto& value) {
-      fmt::format_to(out, "  {:<42}", unit == "1" ? std::string(name) : fmt::format("{} ({})", name, unit));
-      for (std::size_t c = first; c < last; ++c) fmt::format_to(out, "{:>11.4g}", value(r.front[columns[c].second]));
+      fmt::format_to(out, "  {:<38}", unit == "1" ? std::string(name) : fmt::format("{} ({})", name, unit));
+      for (std::size_t c = first; c < last; ++c) fmt::format_to(out, "{:>10.4g}", value(r.front[columns[c].second]));
       text += "\n";
     };
     const auto metric = [&](Metric m) {
@@ -336,7 +336,7 @@ void plot_front(const ParetoStudy& study, const ParetoResult& r, const std::stri
   for (std::size_t n = 0; n < r.evaluated.size(); ++n) {
     if (r.feasible[n]) cloud.push_back(&r.evaluated[n]);
   }
-  const std::size_t stride = cloud.size() / 2500 + 1;
+  const std::size_t stride = cloud.size() / 1500 + 1;
   const auto block = [&](const char* name, const auto& each) {
     figure.add("${} << END\n", name);
     each([&](const ParetoDesign& d) {
@@ -357,7 +357,8 @@ void plot_front(const ParetoStudy& study, const ParetoResult& r, const std::stri
   block("knee", [&](const auto& put) { put(r.front[r.picks.knee]); });
 
   figure.add("set multiplot\nset lmargin at screen 0.16\nset rmargin at screen 0.96\n");
-  figure.text(title.empty() ? "Pareto front" : title, 8.0, fmt::format("screen 0.5,{} center", y(0.12)));
+  const std::string heading = title.empty() ? "Pareto front" : title;
+  figure.text(heading, 8.0 * std::min(1.0, 52.0 / double(heading.size())), fmt::format("screen 0.5,{} center", y(0.12)));
   int keys = 900;
   const auto key = [&](double x, const char* style, const char* name) {
     figure.add("set label {} '' at screen {},{} point {}\n", ++keys, x, y(0.32), style);

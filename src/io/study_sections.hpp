@@ -250,26 +250,56 @@ class StudySections {
     if (node->kind != Kind::array || node->items.empty()) {
       wrong(*node, "study.metrics", "an array of names such as [\"frequency_hz\", \"lift_mean_n\"]");
     }
-    std::vector<std::string_view> names;
-    for (const MetricInfo& metric : metric_table()) names.push_back(metric.key);
     options.metrics.reset();
     for (const TomlNode& item : node->items) {
       if (item.kind != Kind::text) wrong(item, "study.metrics", "the name of a metric");
-      const int index = metric_index(item.text);
-      if (index == metric_count) {
-        const std::string_view near = nearest_name(item.text, names);
-        refuse(item, "study.metrics",
-               near.empty() ? fmt::format("{} is no metric; the metrics are {}", in_quotes(item.text), joined(names))
-                            : fmt::format("{} is no metric; did you mean {}?", in_quotes(item.text), near));
-      }
-      if (options.metrics[std::size_t(index)]) {
+      const std::size_t index = std::size_t(metric_called(item, "study.metrics", item.text));
+      if (options.metrics[index]) {
         refuse(item, "study.metrics", fmt::format("{} is given twice", in_quotes(item.text)));
       }
-      options.metrics.set(std::size_t(index));
+      options.metrics.set(index);
     }
   }
 
   // ---- What studies of one vehicle share
+
+  std::string read_title() const {
+    const TomlNode* title = study_->find("title");
+    return title ? text_of(*title, "study.title", "a text") : "";
+  }
+
+  /// The vehicle with [set], its file being sought in that folder.
+  Design<double> read_vehicle(const std::filesystem::path& folder) const {
+    const std::filesystem::path vehicle = folder / vehicle_file();
+    if (!std::filesystem::exists(vehicle)) {
+      refuse_file("study", "vehicle", fmt::format("there is no file {}", vehicle.string()));
+    }
+    return parse_design(vehicle_text(vehicle), "the vehicle with [set]");
+  }
+
+  /// The sections [[name]], none where there are none.
+  std::span<const TomlNode> sections_of(const std::string& name) const {
+    const TomlNode* list = root_.find(name);
+    if (!list) return {};
+    const std::string expected = fmt::format("[[{}]] sections", name);
+    if (list->kind != Kind::array) wrong(*list, name, expected);
+    for (const TomlNode& node : list->items) {
+      if (node.kind != Kind::table) wrong(node, name, expected);
+    }
+    return list->items;
+  }
+
+  /// The metric of that name.
+  Metric metric_called(const TomlNode& node, const std::string& where, const std::string& name) const {
+    const int index = metric_index(name);
+    if (index != metric_count) return Metric(index);
+    std::vector<std::string_view> names;
+    for (const MetricInfo& metric : metric_table()) names.push_back(metric.key);
+    const std::string_view near = nearest_name(name, names);
+    refuse(node, where,
+           near.empty() ? fmt::format("{} is no metric; the metrics are {}", in_quotes(name), joined(names))
+                        : fmt::format("{} is no metric; did you mean {}?", in_quotes(name), near));
+  }
 
   Condition read_condition() const {
     const TomlNode* node = study_->find("condition");

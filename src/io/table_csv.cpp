@@ -5,35 +5,13 @@
 #include <algorithm>
 #include <optional>
 
+#include "csv_cells.hpp"
 #include "wingbeat/io/design_file.hpp"
 #include "wingbeat/io/units.hpp"
 
 namespace wingbeat {
 
 namespace {
-
-std::string_view trim(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
-struct Cell {
-  std::string_view text;
-  int column;  ///< of its first character in the line, from 1
-};
-
-std::vector<Cell> split(std::string_view line) {
-  std::vector<Cell> cells;
-  for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
-    const std::string_view raw = line.substr(begin, end - begin);
-    const std::size_t blank = std::min(raw.find_first_not_of(" \t\r"), raw.size());
-    cells.push_back({trim(raw), int(begin + blank + 1)});
-    begin = end + 1;
-  }
-  return cells;
-}
 
 std::string example_header(std::span<const CsvColumn> columns) {
   std::string header;
@@ -59,28 +37,24 @@ std::vector<std::vector<double>> parse_csv(std::string_view text, const std::str
   std::vector<Heading> headings;
   std::vector<std::vector<double>> rows;
   int line_number = 0;
-  const auto refuse = [&](const Cell& cell, const std::string& message) {
+  const auto refuse = [&](const CsvCell& cell, const std::string& message) {
     throw InputError(file_name, line_number, cell.column, "", message);
   };
   const std::string header = example_header(columns);
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view line = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
-    ++line_number;
-    if (trim(line).empty() || trim(line).starts_with('#')) continue;
-    const std::vector<Cell> cells = split(line);
+  for (std::string_view line; next_line(text, line, line_number);) {
+    if (is_blank_or_comment(line)) continue;
+    const std::vector<CsvCell> cells = csv_cells(line);
 
     if (headings.empty()) {
-      for (const Cell& cell : cells) {
+      for (const CsvCell& cell : cells) {
         const std::size_t stop = std::min(cell.text.find_first_of("_[( "), cell.text.size());
         const std::string_view name = cell.text.substr(0, stop);
         std::string unit(cell.text.substr(stop));
         std::replace(unit.begin(), unit.end(), '_', ' ');
-        unit = trim(unit);
+        unit = trimmed(unit);
         const bool bracketed = unit.size() >= 2 && ((unit.front() == '[' && unit.back() == ']') ||
                                                     (unit.front() == '(' && unit.back() == ')'));
-        if (bracketed) unit = trim(unit.substr(1, unit.size() - 2));
+        if (bracketed) unit = trimmed(unit.substr(1, unit.size() - 2));
         const auto known =
             std::find_if(columns.begin(), columns.end(), [&](const CsvColumn& c) { return c.name == name; });
         if (known == columns.end()) {

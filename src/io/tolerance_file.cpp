@@ -22,10 +22,8 @@ class ToleranceReader : public detail::StudySections {
   ToleranceStudy read() {
     ToleranceStudy study;
     study_result_ = &study;
-    if (const TomlNode* title = study_->find("title")) study.title = text_of(*title, "study.title", "a text");
-    const fs::path vehicle = folder_ / vehicle_file();
-    if (!fs::exists(vehicle)) refuse_file("study", "vehicle", fmt::format("there is no file {}", vehicle.string()));
-    study.design = parse_design(vehicle_text(vehicle), "the vehicle with [set]");
+    study.title = read_title();
+    study.design = read_vehicle(folder_);
     study.condition = read_condition();
     read_tolerance(study.options);
     read_metrics(study.options);
@@ -34,6 +32,7 @@ class ToleranceReader : public detail::StudySections {
     read_samples();
     if (const TomlNode* fit = root_.find("fit")) read_fit(*fit);
     read_parameters();
+    read_correlations();
     if (study.parameters.empty()) {
       refuse(*study_, "study", "nothing is uncertain; give [[parameter]] sections or [fit]");
     }
@@ -72,18 +71,12 @@ class ToleranceReader : public detail::StudySections {
   }
 
   void read_parameters() {
-    const TomlNode* list = root_.find("parameter");
-    if (!list) return;
-    if (list->kind != Kind::array) wrong(*list, "parameter", "[[parameter]] sections");
-    for (const TomlNode& node : list->items) {
-      if (node.kind != Kind::table) wrong(node, "parameter", "[[parameter]] sections");
-      read_parameter(node);
-    }
+    for (const TomlNode& node : sections_of("parameter")) read_parameter(node);
   }
 
   void read_parameter(const TomlNode& node) {
     known_keys(node, "parameter", {"key", "distribution", "mean", "median", "deviation", "relative_deviation",
-                                   "geometric_deviation", "lower", "upper"});
+                                   "geometric_deviation", "lower", "upper", "correlation"});
     UncertainParameter p;
     const TomlNode& key = need(node, "parameter", "key", "a vehicle-file key");
     p.parameter = parameter_named(key, "parameter.key", study_result_->design);
@@ -149,6 +142,59 @@ class ToleranceReader : public detail::StudySections {
                          p.parameter.key));
     }
     study_result_->parameters.push_back(std::move(p));
+    if (const TomlNode* correlation = node.find("correlation")) {
+      if (correlation->kind != Kind::array) correlated_.emplace_back(study_result_->parameters.size() - 1, correlation);
+      else for (const TomlNode& item : correlation->items) {
+        correlated_.emplace_back(study_result_->parameters.size() - 1, &item);
+      }
+    }
+  }
+
+  /// Correlations, once every parameter is known.
+  void read_correlations() {
+    ToleranceStudy& study = *study_result_;
+    const std::string where = "parameter.correlation";
+    for (const auto& [first, node] : correlated_) {
+      if (node->kind != Kind::table) wrong(*node, where, "{ with = \"motor.torque_constant\", value = 0.5 }");
+      known_keys(*node, where, {"with", "value"});
+      const TomlNode& with = need(*node, where, "with", "the key of another uncertain parameter");
+      const std::string other = text_of(with, where + ".with", "the key of another uncertain parameter");
+      const auto found = std::find_if(study.parameters.begin(), study.parameters.end(),
+                                      [&](const UncertainParameter& p) { return p.parameter.key == other; });
+      if (found == study.parameters.end()) {
+        refuse(with, where + ".with", fmt::format("{} is no uncertain parameter of this study", in_quotes(other)));
+      }
+      if (found->correlated) {
+        refuse(with, where + ".with", fmt::format("{} comes with the covariance of a fit already", other));
+      }
+      const std::size_t second = std::size_t(found - study.parameters.begin());
+      if (second == first) refuse(with, where + ".with", "names the parameter itself");
+      for (const std::size_t k : {first, second}) {
+        const Distribution& d = study.parameters[k].distribution;
+        if (d.kind != DistributionKind::uniform && !std::isfinite(d.lower) && !std::isfinite(d.upper)) continue;
+        refuse(*node, where, fmt::format("{} must be normal or lognormal without bounds to be correlated",
+                                         study.parameters[k].parameter.key));
+      }
+      const TomlNode& value = need(*node, where, "value", "a number between -1 and 1");
+      const double rho = quantity(value, where + ".value", "1");
+      if (!(std::abs(rho) < 1.0)) refuse(value, where + ".value", "must lie between -1 and 1");
+      for (const Correlation& c : study.correlations) {
+        if (std::minmax(c.first, c.second) != std::minmax(first, second)) continue;
+        refuse(*node, where, fmt::format("the correlation of {} with {} is given already",
+                                         study.parameters[first].parameter.key, other));
+      }
+      study.correlations.push_back({first, second, rho});
+    }
+    if (correlated_.empty()) return;
+    ToleranceStudy trial = study;  // to learn whether the correlations go together
+    trial.count = 1;
+    trial.indices = false;
+    try {
+      tolerance_sweep(trial);
+    } catch (const ParameterError&) {
+      refuse(*correlated_.back().second, where, "no parameters can have all the correlations given: their matrix is not "
+                                                "positive definite");
+    }
   }
 
   void add_key(const TomlNode& node, const std::string& where, const std::string& key) {
@@ -246,6 +292,7 @@ class ToleranceReader : public detail::StudySections {
 
   fs::path folder_;
   std::set<std::string> used_;
+  std::vector<std::pair<std::size_t, const TomlNode*>> correlated_;  ///< parameter and what it says
   std::map<std::string, detail::Place, std::less<>> places_;
   ToleranceStudy* study_result_ = nullptr;
 };

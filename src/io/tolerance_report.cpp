@@ -78,8 +78,14 @@ std::string text_tolerance(const ToleranceStudy& study, const ToleranceResult& r
   if (study.indices) fmt::format_to(out, ", {} vehicles with those for the indices", result.vehicles);
   if (study.frequency) fmt::format_to(out, "; flapping held at {:.6g} Hz", *study.frequency);
   fmt::format_to(out, "\n\nUncertain parameters\n");
-  for (const UncertainParameter& p : study.parameters) {
-    fmt::format_to(out, "  {:<34}{}\n", p.parameter.key, spread_text(p.distribution, p.correlated, p.parameter.unit));
+  for (std::size_t k = 0; k < study.parameters.size(); ++k) {
+    const UncertainParameter& p = study.parameters[k];
+    fmt::format_to(out, "  {:<34}{}\n", p.parameter.key,
+                   spread_text(p.distribution, is_correlated(study, k), p.parameter.unit));
+  }
+  for (const Correlation& c : study.correlations) {
+    fmt::format_to(out, "  correlation {:.3g} of {} with {}\n", c.value, study.parameters[c.first].parameter.key,
+                   study.parameters[c.second].parameter.key);
   }
 
   fmt::format_to(out, "\nProbability                             95 % interval\n");
@@ -161,10 +167,11 @@ std::string json_tolerance(const ToleranceStudy& study, const ToleranceResult& r
   json["method"] = study.method == ToleranceMethod::sobol ? "sobol" : "monte-carlo";
   json["samples"] = base_count(study);
   json["vehicles"] = result.vehicles;
-  for (const UncertainParameter& p : study.parameters) {
+  for (std::size_t k = 0; k < study.parameters.size(); ++k) {
+    const UncertainParameter& p = study.parameters[k];
     json["parameters"].push_back({{"key", p.parameter.key}, {"unit", p.parameter.unit},
                                   {"mean", p.distribution.mean()},
-                                  {"deviation", std::sqrt(p.distribution.variance())}, {"correlated", p.correlated}});
+                                  {"deviation", std::sqrt(p.distribution.variance())}, {"correlated", is_correlated(study, k)}});
   }
   for (int s = 0; s < sweep_status_count; ++s) {
     json["probability"][name_of(SweepStatus(s))] = probability(result.status[std::size_t(s)]);

@@ -12,6 +12,7 @@
 #include <limits>
 #include <set>
 
+#include "least_squares.hpp"
 #include "wingbeat/study/frequency_search.hpp"
 #include "wingbeat/study/run.hpp"
 #include "wingbeat/study/sampling.hpp"
@@ -353,13 +354,7 @@ class Fitter {
       problem.SetParameterLowerBound(scaled.data(), int(k), 0.0);
       problem.SetParameterUpperBound(scaled.data(), int(k), 1.0);
     }
-    ceres::Solver::Options options;
-    options.linear_solver_type = ceres::DENSE_QR;
-    options.max_num_iterations = iterations;
-    options.function_tolerance = 1e-9;
-    options.parameter_tolerance = 1e-9;
-    options.gradient_tolerance = 1e-9;
-    options.logging_type = ceres::SILENT;
+    const ceres::Solver::Options options = least_squares(iterations, 1e-9, 1e-9);
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
     outcome.x = callback.natural();

@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "least_squares.hpp"
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/status.hpp"
 
@@ -296,13 +297,7 @@ MotorIdentification identify_motor(const MotorDatasheet& s, std::optional<double
       if (std::find(free.begin(), free.end(), k) == free.end()) fixed.push_back(k);
     }
     if (!fixed.empty()) problem.SetManifold(x, new ceres::SubsetManifold(unknowns, fixed));
-    ceres::Solver::Options options;
-    options.linear_solver_type = ceres::DENSE_QR;
-    options.max_num_iterations = 500;
-    options.function_tolerance = 1e-16;
-    options.parameter_tolerance = 1e-12;
-    options.gradient_tolerance = 1e-12;
-    options.logging_type = ceres::SILENT;
+    const ceres::Solver::Options options = least_squares(500, 1e-16, 1e-12);
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
     const Eigen::MatrixXd all = sensitivities(x);

@@ -33,6 +33,39 @@ Eigen::MatrixXd root_of(const std::vector<std::vector<double>>& covariance) {
   return scale.asDiagonal() * factored.matrixL().toDenseMatrix();
 }
 
+/// Parameters that ToleranceStudy::correlations link with each other, each group in the order of the study.
+std::vector<std::vector<std::size_t>> linked(const ToleranceStudy& study) {
+  std::vector<std::size_t> group(study.parameters.size());
+  for (std::size_t k = 0; k < group.size(); ++k) group[k] = k;
+  for (const Correlation& c : study.correlations) {
+    const std::size_t from = std::max(group[c.first], group[c.second]), to = std::min(group[c.first], group[c.second]);
+    std::replace(group.begin(), group.end(), from, to);
+  }
+  std::vector<std::vector<std::size_t>> groups;
+  for (std::size_t first = 0; first < group.size(); ++first) {
+    std::vector<std::size_t> members;
+    for (std::size_t k = first; k < group.size(); ++k) {
+      if (group[k] == first) members.push_back(k);
+    }
+    if (members.size() > 1) groups.push_back(std::move(members));
+  }
+  return groups;
+}
+
+/// Correlation matrix of a group.
+std::vector<std::vector<double>> correlation_of(const ToleranceStudy& study, const std::vector<std::size_t>& group) {
+  std::vector<std::vector<double>> matrix(group.size(), std::vector<double>(group.size(), 0.0));
+  const auto place = [&](std::size_t k) {
+    return std::size_t(std::find(group.begin(), group.end(), k) - group.begin());
+  };
+  for (std::size_t i = 0; i < group.size(); ++i) matrix[i][i] = 1.0;
+  for (const Correlation& c : study.correlations) {
+    const std::size_t i = place(c.first), j = place(c.second);
+    if (i < group.size()) matrix[i][j] = matrix[j][i] = c.value;
+  }
+  return matrix;
+}
+
 double percentile(const std::vector<double>& sorted, double p) {
   const double at = p * double(sorted.size() - 1);
   const std::size_t k = std::size_t(at);
@@ -66,10 +99,27 @@ std::vector<ToleranceFactor> factors(const ToleranceStudy& study) {
   std::vector<ToleranceFactor> result;
   const std::vector<std::size_t> together = correlated(study);
   if (!together.empty()) result.push_back({study.covariance_name, together});
+  const auto groups = linked(study);
   for (std::size_t k = 0; k < study.parameters.size(); ++k) {
-    if (!study.parameters[k].correlated) result.push_back({study.parameters[k].parameter.key, {k}});
+    if (study.parameters[k].correlated) continue;
+    ToleranceFactor factor{study.parameters[k].parameter.key, {k}};
+    const auto own = std::find_if(groups.begin(), groups.end(), [k](const auto& group) {
+      return std::find(group.begin(), group.end(), k) != group.end();
+    });
+    if (own != groups.end()) {
+      if (own->front() != k) continue;
+      factor.parameters = *own;
+      for (std::size_t n = 1; n < own->size(); ++n) factor.name += " + " + study.parameters[(*own)[n]].parameter.key;
+    }
+    result.push_back(std::move(factor));
   }
   return result;
+}
+
+bool is_correlated(const ToleranceStudy& study, std::size_t parameter) {
+  return study.parameters[parameter].correlated ||
+         std::any_of(study.correlations.begin(), study.correlations.end(),
+                     [&](const Correlation& c) { return c.first == parameter || c.second == parameter; });
 }
 
 std::vector<std::vector<double>> parameter_covariance(const ToleranceStudy& study) {
@@ -79,6 +129,15 @@ std::vector<std::vector<double>> parameter_covariance(const ToleranceStudy& stud
   const std::vector<std::size_t> together = correlated(study);
   for (std::size_t i = 0; i < together.size(); ++i) {
     for (std::size_t j = 0; j < together.size(); ++j) c[together[i]][together[j]] = study.covariance[i][j];
+  }
+  for (const Correlation& pair : study.correlations) {
+    const Distribution &a = study.parameters[pair.first].distribution, &b = study.parameters[pair.second].distribution;
+    const bool log_a = a.kind == DistributionKind::lognormal, log_b = b.kind == DistributionKind::lognormal;
+    const double spreads = pair.value * a.spread * b.spread;
+    // Moments of the joint (log)normal distribution.
+    c[pair.first][pair.second] = c[pair.second][pair.first] =
+        log_a && log_b ? a.mean() * b.mean() * std::expm1(spreads)
+                       : spreads * (log_a ? a.mean() : 1.0) * (log_b ? b.mean() : 1.0);
   }
   return c;
 }
@@ -94,6 +153,9 @@ Sweep tolerance_sweep(const ToleranceStudy& study) {
   const std::vector<std::size_t> together = correlated(study);
   Eigen::MatrixXd root;
   if (!together.empty()) root = root_of(study.covariance);
+  const auto groups = linked(study);
+  std::vector<Eigen::MatrixXd> roots;
+  for (const auto& group : groups) roots.push_back(root_of(correlation_of(study, group)));
   const std::vector<ToleranceFactor> inputs = factors(study);
   const std::uint64_t blocks = study.indices ? 2 + inputs.size() : 1;
 
@@ -119,6 +181,18 @@ Sweep tolerance_sweep(const ToleranceStudy& study) {
         const double u = uniform(n, s * d + k);
         if (study.parameters[k].correlated) z[Eigen::Index(c++)] = normal_quantile(u);
         else axis.quantities[k].values[s * study.count + n] = study.parameters[k].distribution.quantile(u);
+      }
+      for (std::size_t g = 0; g < groups.size(); ++g) {
+        Eigen::VectorXd scores(Eigen::Index(groups[g].size()));
+        for (std::size_t i = 0; i < groups[g].size(); ++i) {
+          scores[Eigen::Index(i)] = normal_quantile(uniform(n, s * d + groups[g][i]));
+        }
+        scores = roots[g] * scores;
+        for (std::size_t i = 0; i < groups[g].size(); ++i) {
+          const Distribution& of = study.parameters[groups[g][i]].distribution;
+          axis.quantities[groups[g][i]].values[s * study.count + n] =
+              of.quantile(normal_probability(scores[Eigen::Index(i)]));
+        }
       }
       if (together.empty()) continue;
       const Eigen::VectorXd shift = root * z;

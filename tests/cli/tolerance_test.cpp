@@ -84,6 +84,38 @@ TEST_F(Tolerance, CovarianceOfAFit) {
             "wingbeat: study.toml:4:1: fit.covariance: there is no file none.toml\n");
 }
 
+TEST_F(Tolerance, CorrelationsOfParameters) {
+  const std::string resistance = "[[parameter]]\nkey = \"motor.armature_resistance\"\ndistribution = \"lognormal\"\n"
+                                 "geometric_deviation = 1.1\n";
+  const std::string radius = "[[parameter]]\nkey = \"friction.radius\"\ndistribution = \"normal\"\n"
+                             "relative_deviation = 0.1\n";
+  const auto with = [](const std::string& key, const std::string& value) {
+    return "correlation = { with = \"" + key + "\", value = " + value + " }\n";
+  };
+  const std::string few = "[samples]\ncount = 64\n";
+  const Outcome text = run({"tolerance", study(few + radius + with("motor.armature_resistance", "-0.7") + resistance)});
+  ASSERT_EQ(text.status, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("correlation -0.7 of friction.radius with motor.armature_resistance"));
+  EXPECT_THAT(text.out, HasSubstr("friction.radius + motor.armature_resistance"));
+
+  EXPECT_EQ(complaint(radius + with("motor.inertia", "0.5") + resistance),
+            "wingbeat: study.toml:7:17: parameter.correlation.with: \"motor.inertia\" is no uncertain parameter of this "
+            "study\n");
+  EXPECT_EQ(complaint(radius + with("friction.radius", "0.5")),
+            "wingbeat: study.toml:7:17: parameter.correlation.with: names the parameter itself\n");
+  EXPECT_THAT(complaint(radius + with("motor.armature_resistance", "1.5") + resistance),
+              HasSubstr("parameter.correlation.value: must lie between -1 and 1\n"));
+  EXPECT_THAT(complaint(radius + "lower = 0\n" + with("motor.armature_resistance", "0.5") + resistance),
+              HasSubstr("friction.radius must be normal or lognormal without bounds to be correlated\n"));
+  EXPECT_THAT(complaint(radius + with("motor.armature_resistance", "0.5") + resistance + with("friction.radius", "0.5")),
+              HasSubstr("the correlation of motor.armature_resistance with friction.radius is given already\n"));
+  const std::string constant = "[[parameter]]\nkey = \"motor.torque_constant\"\ndistribution = \"normal\"\n"
+                               "relative_deviation = 0.02\n";
+  EXPECT_THAT(complaint(radius + with("motor.armature_resistance", "0.9") + resistance +
+                        with("motor.torque_constant", "0.9") + constant + with("friction.radius", "-0.9")),
+              HasSubstr("no parameters can have all the correlations given: their matrix is not positive definite\n"));
+}
+
 TEST_F(Tolerance, BadStudiesAreRefusedWithTheirPlace) {
   EXPECT_EQ(complaint(""),
             "wingbeat: study.toml:1:2: study: nothing is uncertain; give [[parameter]] sections or [fit]\n");

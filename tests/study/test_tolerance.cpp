@@ -306,6 +306,44 @@ TEST(Tolerance, CorrelatedParametersFollowTheirCovariance) {
   EXPECT_DOUBLE_EQ(covariance[0][1], 0.0);
 }
 
+TEST(Tolerance, CorrelationsNamedPairByPair) {
+  ToleranceStudy study = study_of(5.0, 0.05);
+  study.parameters.resize(4);
+  Distribution& logarithmic = study.parameters[2].distribution;
+  logarithmic.kind = DistributionKind::lognormal;
+  logarithmic.spread = 0.3;
+  study.correlations = {{0, 2, 0.6}, {3, 2, -0.5}};
+  study.count = 4096;
+  const auto inputs = factors(study);
+  ASSERT_EQ(inputs.size(), 2U);
+  EXPECT_EQ(inputs[0].parameters, (std::vector<std::size_t>{0, 2, 3}));
+  EXPECT_EQ(inputs[1].parameters, (std::vector<std::size_t>{1}));
+  EXPECT_TRUE(is_correlated(study, 2));
+  EXPECT_FALSE(is_correlated(study, 1));
+
+  // Samples have the covariance that the linear prediction takes, and 0 for the pair that is not named.
+  const Sweep sweep = tolerance_sweep(study);
+  const auto covariance = parameter_covariance(study);
+  const auto sampled = [&](std::size_t i, std::size_t j) {
+    const auto &x = sweep.axes[0].quantities[i].values, &y = sweep.axes[0].quantities[j].values;
+    double sum = 0.0;
+    for (std::size_t n = 0; n < 8192; ++n) {
+      sum += (x[n] - study.parameters[i].distribution.mean()) * (y[n] - study.parameters[j].distribution.mean());
+    }
+    return sum / 8192.0;
+  };
+  for (const auto& [i, j] : {std::pair(0, 2), std::pair(2, 3), std::pair(0, 3), std::pair(0, 1), std::pair(2, 2)}) {
+    const double scale = std::sqrt(covariance[i][i] * covariance[j][j]);
+    EXPECT_NEAR(sampled(i, j), covariance[i][j], 0.01 * scale) << i << j;
+  }
+  EXPECT_EQ(covariance[0][3], 0.0);
+  const double s0 = study.parameters[0].distribution.spread;
+  EXPECT_NEAR(covariance[0][2], 0.6 * s0 * 0.3 * logarithmic.mean(), 1e-12 * covariance[2][2]);
+
+  study.correlations = {{0, 2, 0.9}, {2, 3, 0.9}, {0, 3, -0.9}};
+  EXPECT_THROW(tolerance_sweep(study), ParameterError);
+}
+
 TEST(Tolerance, IntervalsOfProbabilities) {
   const Probability none = probability_of(0, 100);
   EXPECT_DOUBLE_EQ(none.lower, 0.0);

@@ -20,6 +20,13 @@ struct UncertainParameter {
   bool correlated = false;  ///< one of those that share ToleranceStudy::covariance; `distribution` is its marginal
 };
 
+/// Correlation of two parameters, by their places, neither of them one of a covariance: of a lognormal parameter that of
+/// its logarithm. Both without bounds.
+struct Correlation {
+  std::size_t first = 0, second = 1;
+  double value = 0.0;  ///< -1 to 1, exclusive
+};
+
 enum class ToleranceMethod {
   sobol,       ///< scrambled Sobol sequence
   monte_carlo  ///< pseudo-random
@@ -34,6 +41,7 @@ struct ToleranceStudy {
   std::vector<UncertainParameter> parameters;
   std::vector<std::vector<double>> covariance;  ///< of the correlated parameters, in their order [SI]; or empty
   std::string covariance_name;                  ///< what they are called together
+  std::vector<Correlation> correlations;        ///< of others, pair by pair; 0 for pairs that are not named
   ToleranceMethod method = ToleranceMethod::sobol;
   std::uint64_t count = 1024;  ///< N: rows of one sample
   std::uint64_t seed = 1;
@@ -47,6 +55,9 @@ struct ToleranceFactor {
   std::vector<std::size_t> parameters;
 };
 std::vector<ToleranceFactor> factors(const ToleranceStudy& study);
+
+/// True for a parameter that does not vary independently of all others.
+bool is_correlated(const ToleranceStudy& study, std::size_t parameter);
 
 /// The covariance matrix of all parameters [SI].
 std::vector<std::vector<double>> parameter_covariance(const ToleranceStudy& study);
