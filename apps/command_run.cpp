@@ -25,7 +25,7 @@ constexpr int waveform_rows = 361;
 struct Arguments {
   std::string vehicle;
   std::vector<std::string> overrides;
-  std::string voltage, frequency;
+  std::string voltage, frequency, lift, lift_to_weight;
   std::string condition = "air";
   std::string method = "orbit";
   std::string tolerance = "1e-6";
@@ -121,6 +121,11 @@ int run(const Arguments& arguments) {
     if (!(*options.frequency > 0.0)) throw InputError("--frequency", 0, 0, "", "must be > 0 Hz");
   }
 
+  if (!arguments.lift.empty()) {
+    options.lift = quantity("--lift", arguments.lift, "N");
+    if (!(*options.lift > 0.0)) throw InputError("--lift", 0, 0, "", "must be > 0 N");
+  }
+
   bool waveforms_csv_wanted = false;
   if (!arguments.waveforms.empty()) {
     const std::string extension = std::filesystem::path(arguments.waveforms).extension().string();
@@ -136,6 +141,12 @@ int run(const Arguments& arguments) {
   }
 
   Design<double> design = read_design(arguments.vehicle, arguments.overrides);
+  if (!arguments.lift_to_weight.empty()) {
+    const double ratio = quantity("--lift-to-weight", arguments.lift_to_weight, "1");
+    if (!(ratio > 0.0)) throw InputError("--lift-to-weight", 0, 0, "", "must be > 0");
+    if (!design.mass) throw InputError("--lift-to-weight", 0, 0, "", "needs vehicle.mass, which the vehicle does not give");
+    options.lift = ratio * *design.mass * standard_gravity;
+  }
   if (!arguments.voltage.empty()) apply_voltage(design.supply, arguments.voltage);
   Output waveforms("--waveforms", arguments.waveforms, arguments.vehicle);
   Output cycle_plot("--plot", arguments.plot, arguments.vehicle);
@@ -145,8 +156,11 @@ int run(const Arguments& arguments) {
   const RunResult result = run_design(design, options);
   if (result.search && result.search->outcome != FrequencyOutcome::reached &&
       result.status == FlappingStatus::flapping) {
-    // It flaps, only not at this frequency: no design that fails, but a request that cannot be met.
-    throw InputError("--frequency " + arguments.frequency, 0, 0, "", result.search->detail);
+    // It flaps, only not so: no design that fails, but a request that cannot be met.
+    const std::string asked = !arguments.frequency.empty() ? "--frequency " + arguments.frequency
+                              : !arguments.lift.empty()    ? "--lift " + arguments.lift
+                                                           : "--lift-to-weight " + arguments.lift_to_weight;
+    throw InputError(asked, 0, 0, "", result.search->detail);
   }
   const bool flaps = result.status == FlappingStatus::flapping;
   const bool has_metrics = std::isfinite(result.metrics[Metric::frequency]);
@@ -202,10 +216,16 @@ void add_run(CLI::App& program, Action& action) {
   CLI::Option* voltage =
       command->add_option("--voltage", a->voltage, "Supply voltage (pwm: while switched on), as \"3 V\"")
           ->type_name("QUANTITY");
-  command
-      ->add_option("--frequency", a->frequency, "Find the voltage that gives this flapping frequency, as \"22 Hz\"")
-      ->type_name("QUANTITY")
-      ->excludes(voltage);
+  CLI::Option* frequency = command->add_option("--frequency", a->frequency, "Find the voltage that gives this flapping frequency, as \"22 Hz\"");
+  frequency->type_name("QUANTITY")->excludes(voltage);
+  CLI::Option* lift =
+      command->add_option("--lift", a->lift, "Find the voltage (pwm: the duty) that gives this mean lift, as \"20 mN\"");
+  lift->type_name("QUANTITY")->excludes(voltage)->excludes(frequency);
+  command->add_option("--lift-to-weight", a->lift_to_weight, "The same for lift over weight; 1: hover")
+      ->type_name("NUMBER")
+      ->excludes(voltage)
+      ->excludes(frequency)
+      ->excludes(lift);
   command->add_option("--condition", a->condition, "air (default), vacuum or wingless")->type_name("CONDITION");
   command->add_option("--method", a->method, "orbit (default), or transient: simulated from rest")
       ->type_name("METHOD");
@@ -220,11 +240,12 @@ void add_run(CLI::App& program, Action& action) {
       "Example:\n"
       "  wingbeat run data/designs/friction2022.toml --frequency \"22 Hz\" \\\n"
       "    --set friction.radius=\"2 mm\" --plot cycle.svg\n\n"
-      "--frequency searches up to {:g} times the voltage that turns the unloaded motor that fast. With a pwm supply\n"
-      "the orbit and the search see the mean voltage; a sine supply needs --method transient, which also reports\n"
-      "the start-up.\n\n"
+      "--frequency searches up to {:g} times the voltage that turns the unloaded motor that fast, --lift up to {:g}\n"
+      "times supply.voltage. With a pwm supply the orbit and the searches see the mean voltage; --frequency changes\n"
+      "its voltage, --lift its duty. The charge of a battery gives its voltage, so neither is for batteries. A sine\n"
+      "supply needs --method transient, which also reports the start-up.\n\n"
       "Exit status: 0 steady flapping, 2 bad input or usage, 3 the vehicle does not flap, 1 anything else.",
-      frequency_search_span));
+      frequency_search_span, frequency_search_span * lift_search_start));
   command->callback([a, &action] { action = [a] { return run(*a); }; });
 }
 

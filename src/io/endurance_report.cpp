@@ -214,7 +214,7 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
     lift_most = std::max(lift_most, r.metrics[Metric::lift_mean]);
     power_most = std::max(power_most, r.metrics[Metric::power_electrical]);
   }
-  const bool lift_in_newton = lift_most >= 1.0, power_in_watt = power_most >= 10.0;
+  const bool lift_in_newton = lift_most >= 1.0, power_in_watt = power_most >= 1.0;
   const double lift_scale = lift_in_newton ? 1.0 : 1e3, power_scale = power_in_watt ? 1.0 : 1e3;
 
   Figure figure(format, 3.5, 5.6);
@@ -251,7 +251,7 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
   panel(0, fmt::format("lift ({})", lift_in_newton ? "N" : "mN"), lift_scale * lift_most);
   figure.key_entry(left, key_height, blue_solid, "mean lift");
   if (design.mass) {
-    figure.key_entry(left + 0.205, key_height, vermillion_dashed,
+    figure.key_entry(left + 0.22, key_height, vermillion_dashed,
                      fmt::format("weight, {:.4g} {}", lift_scale * weight, lift_in_newton ? "N" : "mN"));
     if (result.hover_lost) figure.key_entry(left + 0.56, key_height, "dt (3,3) lw 0.8 lc rgb '#404040'", "hover lost");
   }
@@ -261,12 +261,12 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
 
   panel(1, power_in_watt ? "power (W)" : "power (mW)", power_scale * power_most);
   figure.key_entry(left, key_height, blue_solid, "electrical");
-  figure.key_entry(left + 0.205, key_height, vermillion_dashed, "aerodynamic");
+  figure.key_entry(left + 0.22, key_height, vermillion_dashed, "aerodynamic");
   figure.add("plot $flight using 1:3 with lines {}, '' using 1:4 with lines {}\n", blue_solid, vermillion_dashed);
 
   panel(2, "voltage (V)", rows.front().open_circuit_voltage);
   figure.key_entry(left, key_height, blue_solid, "terminals");
-  figure.key_entry(left + 0.205, key_height, vermillion_dashed, "open circuit");
+  figure.key_entry(left + 0.22, key_height, vermillion_dashed, "open circuit");
   figure.add("plot $flight using 1:5 with lines {}, '' using 1:6 with lines {}\n", blue_solid, vermillion_dashed);
 
   panel(3, "charge (%)", 100.0);

@@ -44,6 +44,7 @@ Json start_up_json(const TransientResult& s) {
           {"laps", s.laps},
           {"averaged_laps", s.averaged_laps},
           {"lap_scatter", number_or_null(s.lap_scatter)},
+          {"current_ripple_a", s.current_ripple ? Json(*s.current_ripple) : Json(nullptr)},
           {"events", events}};
 }
 
@@ -116,6 +117,9 @@ void start_up_group(Table& table, const TransientResult& s, bool flapping) {
   if (s.averaged_laps > 1) {
     table.line("averaged", fmt::format("{} laps", s.averaged_laps),
                fmt::format("durations within {:.2g} % of their mean", 100.0 * s.lap_scatter));
+  }
+  if (s.current_ripple) {
+    table.line("ripple of the current", readable(*s.current_ripple, "A"), "peak to peak within a switching period");
   }
   table.line("changes of the rod force's sign", fmt::format("{}", counts[Kind::force_sign_change]));
   table.line("standstills", fmt::format("{}", counts[Kind::standstill]));
@@ -191,6 +195,7 @@ std::string json_report(const RunResult& result) {
   json["status_detail"] = result.detail;
   const auto& table = metric_table();
   for (std::size_t m = 0; m < table.size(); ++m) json[table[m].key] = number_or_null(result.metrics.values[m]);
+  if (result.design.supply.type == SupplyType::pwm) json["supply_duty"] = result.design.supply.duty;
   if (result.start_up) json["start_up"] = start_up_json(*result.start_up);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -215,6 +220,10 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
 
   table.group("Operating point");
   table.metric("voltage", Metric::voltage, "V");
+  if (result.design.supply.type == SupplyType::pwm) {
+    table.line("duty", fmt::format("{:.4g}", result.design.supply.duty),
+               fmt::format("of {}", readable(result.design.supply.voltage, "V")));
+  }
   table.metric("flapping frequency", Metric::frequency, "Hz");
   table.metric("mean current", Metric::current_mean, "A");
   table.metric("peak current", Metric::current_peak, "A");

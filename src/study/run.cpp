@@ -95,18 +95,28 @@ void last_lap(const Vehicle<double>& vehicle, const Supply<double>& supply, Tran
 }
 
 /// Refuses a supply whose voltage cannot be chosen: `wanted` depends on it.
-void require_choice_of_voltage(const Supply<double>& supply, const char* wanted) {
+void require_choice_of_voltage(const Supply<double>& supply, const char* wanted, bool lift) {
   const char* why = nullptr;
   if (supply.type == SupplyType::sine) why = "a sine supply has no voltage that sets the %s";
   if (supply.type == SupplyType::battery) why = "the charge of a battery gives its voltage, so none can be chosen for the %s";
   if (why) throw ParameterError("supply.type", format(why, wanted));
-  if (supply.type == SupplyType::pwm && !(supply.duty > 0.0)) {
+  if (supply.type == SupplyType::pwm && !(supply.duty > 0.0) && !lift) {
     throw ParameterError("supply.duty", format("is 0: no voltage reaches the motor, so none sets the %s", wanted));
   }
 }
 
 void set_voltage(Supply<double>& supply, double voltage) {
   supply.voltage = supply.type == SupplyType::pwm ? voltage / supply.duty : voltage;
+}
+
+void set_duty(Supply<double>& supply, double mean, double lift) {
+  const double duty = mean / supply.voltage;
+  if (!(duty <= 1.0)) {
+    throw ParameterError("supply.voltage", format("%.5g N of lift takes %.4g V on the average, more than the %.4g V that "
+                                                  "the supply gives at a duty of 1",
+                                                  lift, mean, supply.voltage));
+  }
+  supply.duty = duty;
 }
 
 void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunResult& result) {
@@ -120,6 +130,7 @@ void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunRes
   result.orbit = found.summary;
   if (result.design.supply.type == SupplyType::pwm) {
     result.detail += format("; the orbit sees the mean voltage of the pwm supply, %.4g V", vehicle.voltage);
+    if (options.lift) result.detail += format(", at a duty of %.6g", result.design.supply.duty);
   }
   if (options.waveform_rows > 1 && !found.record.empty()) {
     result.cycle = found.record.waveform(options.waveform_rows);
@@ -162,7 +173,10 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
   require(options.tolerance >= 1e-12 && options.tolerance <= 1e-2, "tolerance", "must lie between 1e-12 and 1e-2", "1",
           options.tolerance);
   const Supply<double>& supply = design.supply;
-  if (options.frequency) require_choice_of_voltage(supply, "flapping frequency");
+  require(!(options.frequency && options.lift), "lift", "cannot be asked for beside a frequency", "N",
+          options.lift.value_or(0.0));
+  if (options.frequency) require_choice_of_voltage(supply, "flapping frequency", false);
+  if (options.lift) require_choice_of_voltage(supply, "lift", true);
   if (supply.type == SupplyType::sine && options.method == Method::orbit) {
     throw ParameterError("supply.type", "with a sine supply the crank has no periodic orbit in crank angle; simulate "
                                         "it in time with --method transient");
@@ -171,16 +185,23 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
   result.metrics.values.fill(absent);
   result.design = design;
   Vehicle<double> vehicle = resolve(design, options.condition);
-  if (options.frequency) {
+  if (options.frequency || options.lift) {
     SteadyOptions steady;
     steady.tolerance = options.tolerance;
-    result.search = find_voltage_for_frequency(vehicle, *options.frequency, steady, start_up_in_time());
+    const double nominal = supply.voltage > 0.0 ? supply.voltage : 1.0;
+    result.search =
+        options.lift ? find_voltage_for_lift(vehicle, *options.lift, nominal, steady, start_up_in_time())
+                     : find_voltage_for_frequency(vehicle, *options.frequency, steady, start_up_in_time());
     if (result.search->outcome != FrequencyOutcome::reached) {
       result.status = result.search->status;
       result.detail = result.search->detail;
       return result;
     }
-    set_voltage(result.design.supply, result.search->voltage);
+    if (options.lift && supply.type == SupplyType::pwm) {
+      set_duty(result.design.supply, result.search->voltage, *options.lift);
+    } else {
+      set_voltage(result.design.supply, result.search->voltage);
+    }
     vehicle.voltage = result.search->voltage;
   }
   if (options.method == Method::orbit) {

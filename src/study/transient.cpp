@@ -201,6 +201,8 @@ class StartUp {
   Branch<double> branch_{1.0, 1.0, 1.0, 1.0};
   bool force_branch_known_ = false;
   double switched_voltage_ = 0.0;
+  double ripple_top_ = absent, ripple_bottom_ = absent, ripple_sum_ = 0.0;
+  long ripple_count_ = 0;
   long switches_ = 0;
   double last_force_switch_ = 0.0;
   double next_lap_ = 0.0;
@@ -249,6 +251,7 @@ StartUp::StartUp(const Vehicle<double>& vehicle, const TransientOptions& options
           vehicle_.source_resistance);
   vehicle_.voltage = mean_voltage(supply_);
   const bool steady_pwm = supply_.type == SupplyType::pwm && (supply_.duty <= 0.0 || supply_.duty >= 1.0);
+  if (steady_pwm) result_.current_ripple = 0.0;
   if (steady_pwm || supply_.type == SupplyType::battery) {
     supply_ = {SupplyType::constant, vehicle_.voltage, 0.0, 1.0};
   }
@@ -663,6 +666,16 @@ double StartUp::next_switch() const {
 
 void StartUp::switch_supply() {
   ++switches_;
+  if (switches_ % 2 == 1) {
+    ripple_top_ = i_;
+  } else {
+    if (measuring_ && std::isfinite(ripple_bottom_)) {
+      const double line = ripple_bottom_ + supply_.duty * (i_ - ripple_bottom_);
+      ripple_sum_ += ripple_top_ - line;
+      ++ripple_count_;
+    }
+    ripple_bottom_ = measuring_ ? i_ : absent;
+  }
   switched_voltage_ = switches_ % 2 == 0 ? supply_.voltage : 0.0;
   if (!inductive_) i_ = algebraic_current(vehicle_, switched_voltage_, omega_);
   if (options_.record) {
@@ -1042,6 +1055,9 @@ void StartUp::begin_measuring() {
   if (!measuring_) measured_laps_ = 0;
   measuring_ = true;
   std::fill(std::begin(q_), std::end(q_), 0.0);
+  ripple_sum_ = 0.0;
+  ripple_count_ = 0;
+  ripple_bottom_ = absent;
   extremes_.fill(-infinity);
   variation_ = 0.0;
   energy_mark_ = wing_energy();
@@ -1056,6 +1072,7 @@ void StartUp::take_metrics(int laps) {
   integrals[std::size_t(Integral::reactive_work)] = variation_ / laps;
   result_.metrics = cycle_metrics(vehicle_, integrals, extremes_, absent, options_.reporting);
   result_.averaged_laps = laps;
+  if (ripple_count_ > 0) result_.current_ripple = ripple_sum_ / double(ripple_count_);
 }
 
 void StartUp::flap() {

@@ -265,6 +265,79 @@ TEST(DesignErrors, TheFirstUnknownKeyIsReported) {
   EXPECT_THAT(refusal(with("[motor]", "[motor]\nzzz = 1\naaa = 1")), HasSubstr("v.toml:7:1: motor.zzz: unknown key"));
 }
 
+constexpr const char* battery_supply =
+    "\"battery\"\ncapacity = \"50 mA h\"\ninternal_resistance = \"0.8 ohm\"\n"
+    "discharge_curve = [[0, \"3 V\"], [0.5, 3.7], [1, \"4200 mV\"]]";
+
+TEST(DesignFile, BatteryIsReadAndWrittenBack) {
+  std::string text = with("\"constant\"", battery_supply);
+  text.erase(text.find("voltage = \"3 V\"\n"), 16);
+  const Design<double> d = parse_design(text, "v.toml");
+  const Battery<double>& b = d.supply.battery;
+  EXPECT_EQ(d.supply.type, SupplyType::battery);
+  EXPECT_DOUBLE_EQ(b.capacity, 180.0);
+  EXPECT_EQ(b.cells, 1.0);
+  EXPECT_EQ(b.charge, 1.0);
+  EXPECT_EQ(b.internal_resistance, 0.8);
+  ASSERT_EQ(b.discharge_curve.size(), 3u);
+  EXPECT_EQ(b.discharge_curve[2], std::pair(1.0, 4.2));
+  EXPECT_FALSE(b.cutoff_voltage);
+  const std::string written = write_design(d);
+  EXPECT_EQ(write_design(parse_design(written, "again.toml")), written);
+  const std::string constant[] = {"supply.cell_voltage=\"3.7 V\"", "supply.cells=2"};
+  const Design<double> flat = parse_design(text, "v.toml", constant);
+  EXPECT_TRUE(flat.supply.battery.discharge_curve.empty());
+  EXPECT_EQ(resolve(flat).voltage, 7.4);
+  const std::string file[] = {"supply.discharge_curve=\"cell.csv\""};
+  const Design<double> read = parse_design(text, "v.toml", file, [](const std::string& name) {
+    EXPECT_EQ(name, "cell.csv");
+    return std::string("voltage_mV,charge\n3100,0\n4100,1\n");
+  });
+  EXPECT_DOUBLE_EQ(read.supply.battery.discharge_curve[1].second, 4.1);
+}
+
+TEST(DesignErrors, Batteries) {
+  std::string text = with("\"constant\"", battery_supply);
+  text.erase(text.find("voltage = \"3 V\"\n"), 16);
+  const auto spoiled = [&](const std::string& from, const std::string& to) {
+    std::string s = text;
+    const auto at = s.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return refusal(s.replace(at, from.size(), to));
+  };
+  EXPECT_EQ(spoiled("\"50 mA h\"", "\"50 mV\""),
+            "v.toml:5:1: supply.capacity: expected an electric charge such as \"50 mA h\", got \"50 mV\"");
+  EXPECT_EQ(spoiled("\"50 mA h\"", "0"), "v.toml:5:1: supply.capacity: must be > 0 [C], got 0");
+  EXPECT_EQ(spoiled("\"0.8 ohm\"", "-1"), "v.toml:6:1: supply.internal_resistance: must be >= 0 [ohm], got -1");
+  EXPECT_EQ(spoiled("capacity", "charge = 1.5\ncapacity"),
+            "v.toml:5:1: supply.charge: must lie between 0 and 1 [1], got 1.5");
+  EXPECT_EQ(spoiled("capacity", "cells = 0\ncapacity"),
+            "v.toml:5:1: supply.cells: must be a whole number >= 1 [1], got 0");
+  EXPECT_EQ(spoiled("capacity", "cutoff_voltage = -3\ncapacity"),
+            "v.toml:5:1: supply.cutoff_voltage: must be >= 0 [V], got -3");
+  EXPECT_EQ(spoiled("capacity", "cell_voltage = 3.7\ncapacity"),
+            "v.toml:8:1: supply.discharge_curve: give cell_voltage or discharge_curve, not both");
+  EXPECT_EQ(spoiled("capacity", "voltage = 3\ncapacity"),
+            "v.toml:5:1: supply.voltage: belongs to supply.type = constant or pwm, but supply.type is \"battery\"");
+  EXPECT_EQ(spoiled("[0.5, 3.7]", "[0.5]"), "v.toml:7:1: supply.discharge_curve: row 2 must hold 2 values");
+  EXPECT_EQ(spoiled("[0.5, 3.7]", "[0.5, 2.9]"),
+            "v.toml:7:1: supply.discharge_curve: row 2 of the discharge curve must not have a lower voltage than the "
+            "row before it");
+  EXPECT_EQ(spoiled("[0, \"3 V\"]", "[0.1, \"3 V\"]"),
+            "v.toml:7:1: supply.discharge_curve: the states of charge must run from 0 to 1");
+  EXPECT_EQ(spoiled("[[0, \"3 V\"], [0.5, 3.7], [1, \"4200 mV\"]]", "[]"),
+            "v.toml:7:1: supply.discharge_curve: has no rows");
+  EXPECT_EQ(spoiled("discharge_curve = [[0, \"3 V\"], [0.5, 3.7], [1, \"4200 mV\"]]", "cell_voltage = 0"),
+            "v.toml:7:1: supply.cell_voltage: must be > 0 [V], got 0");
+  EXPECT_EQ(spoiled("discharge_curve = [[0, \"3 V\"], [0.5, 3.7], [1, \"4200 mV\"]]", ""),
+            "v.toml:3:2: supply.cell_voltage: missing in [supply]; expected a voltage such as \"3 V\", or "
+            "discharge_curve instead");
+  EXPECT_EQ(spoiled("capacity = \"50 mA h\"\n", ""),
+            "v.toml:3:2: supply.capacity: missing in [supply]; expected an electric charge such as \"50 mA h\"");
+  EXPECT_EQ(refusal(with("\"3 V\"", "\"3 V\"\ncapacity = 3")),
+            "v.toml:6:1: supply.capacity: belongs to supply.type = battery, but supply.type is \"constant\"");
+}
+
 TEST(DesignErrors, MissingKeyOrSection) {
   EXPECT_EQ(refusal(without_line("inertia = \"1.5e-7 kg m2\"")),
             "v.toml:6:2: motor.inertia: missing in [motor]; expected a moment of inertia such as \"1.5e-7 kg m2\"");

@@ -1,4 +1,4 @@
-// The voltage at which a vehicle flaps at a wanted frequency.
+// The voltage at which a vehicle flaps at a wanted frequency, or with a wanted lift.
 #pragma once
 
 #include <string>
@@ -7,6 +7,7 @@
 
 namespace wingbeat {
 
+/// What came of the search for a frequency; "faster" and "slower" stand for more and less lift where that is sought.
 enum class FrequencyOutcome {
   reached,
   never_flaps,  ///< at no voltage searched
@@ -33,5 +34,14 @@ inline constexpr double frequency_search_span = 100.0;
 /// Throws ParameterError unless frequency > 0.
 FrequencySearch find_voltage_for_frequency(const Vehicle<double>& vehicle, double frequency,
                                            const SteadyOptions& options = {}, const StartUp& start_up = {});
+
+/// The search for a lift starts at this fraction of the nominal voltage.
+inline constexpr double lift_search_start = 0.1;
+
+/// The same for a mean lift [N]. `nominal` [V] is the size of voltage to look at first: the search runs upwards from a
+/// tenth of it, so that where lift peaks over the voltage, the lower of two voltages is found.
+/// Throws ParameterError unless lift and nominal > 0.
+FrequencySearch find_voltage_for_lift(const Vehicle<double>& vehicle, double lift, double nominal,
+                                      const SteadyOptions& options = {}, const StartUp& start_up = {});
 
 }  // namespace wingbeat

@@ -20,7 +20,9 @@ struct RunOptions {
   Condition condition = Condition::air;
   Method method = Method::orbit;
   double tolerance = 1e-6;          ///< wanted relative accuracy of every metric, 1e-12 to 1e-2
-  std::optional<double> frequency;  ///< [Hz]; given: the supply's voltage is replaced by the one that yields it
+  std::optional<double> frequency = {};  ///< [Hz]; given: the supply's voltage is replaced by the one that yields it
+  /// [N]; given instead of the frequency: the same for the mean lift, which a pwm supply reaches by its duty.
+  std::optional<double> lift = {};
   int waveform_rows = 0;            ///< instants of one cycle to return, both ends included; 0: none
 };
 
@@ -33,15 +35,16 @@ struct RunResult {
   std::vector<double> cycle_voltage;       ///< terminal voltage of each row [V]
   solve::PeriodicSummary orbit;            ///< of Method::orbit
   std::optional<TransientResult> start_up; ///< of Method::transient
-  std::optional<FrequencySearch> search;   ///< where a frequency was asked for
-  Design<double> design;                   ///< as computed: with the voltage that was found
+  std::optional<FrequencySearch> search;   ///< where a frequency or a lift was asked for
+  Design<double> design;                   ///< as computed: with the voltage or duty that was found
 };
 
 /// What a vehicle does from rest, by simulate_start_up: the judge that find_steady_flapping asks in doubt.
 StartUp start_up_in_time(double tolerance = 1e-6);
 
-/// Computes one validated design. Throws ParameterError for a sine supply where Method::orbit or a frequency is asked
-/// for (it has no periodic orbit in crank angle), and for options out of range.
+/// Computes one validated design. Throws ParameterError for a sine supply where Method::orbit, a frequency or a lift is
+/// asked for (it has no periodic orbit in crank angle), for a battery where a frequency or a lift is, for a duty above 1
+/// and for options out of range.
 RunResult run_design(const Design<double>& design, const RunOptions& options = {});
 
 }  // namespace wingbeat

@@ -71,6 +71,10 @@ struct TransientResult {
   std::optional<Metrics<double>> metrics;  ///< of the last lap; floquet_multiplier_max is `absent`
   CycleIntegrals<double> integrals{};      ///< behind the metrics, per lap
   int averaged_laps = 0;     ///< laps behind the metrics: 1, or several where the supply has no period in common
+  /// Ripple of the current at the switching frequency of a pwm supply, peak to peak, averaged over the switching periods
+  /// behind the metrics [A]: how far the current at a switching off lies above the straight line between the currents at
+  /// the switchings on before and after it, which leaves the swing within a flapping cycle out.
+  std::optional<double> current_ripple = {};
   double lap_scatter = 0.0;  ///< largest relative deviation of a lap's duration from their mean, over those laps
 
   std::vector<TransientEvent> events;

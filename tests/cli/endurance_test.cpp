@@ -1,0 +1,122 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "program.hpp"
+#include "wingbeat/io/netcdf.hpp"
+
+namespace {
+
+using namespace cli;
+using testing::HasSubstr;
+
+const std::string battery = data + "/designs/friction2022-battery.toml";
+
+class Endurance : public Program {};
+
+TEST_F(Endurance, ReportJsonFigureAndDataSet) {
+  const Outcome report = run({"endurance", battery, "--set", "supply.cells=2", "--set", "vehicle.mass=\"5 g\"", "-o",
+                              path("flight.nc"), "--plot", path("flight.svg")});
+  EXPECT_EQ(report.status, 0) << report.err;
+  EXPECT_THAT(report.out, HasSubstr("empty: the battery is empty after"));
+  EXPECT_THAT(report.out, HasSubstr("hover lost after"));
+  EXPECT_THAT(report.out, HasSubstr("lost inside the battery"));
+  for (const char* name : {"mean lift", "weight, 49.03 mN", "electrical", "open circuit", "state of charge"}) {
+    EXPECT_THAT(read(path("flight.svg")), HasSubstr(name));
+  }
+
+  const Json json = run({"endurance", battery, "--set", "supply.cells=2", "--set", "vehicle.mass=5e-3", "--json"}).json();
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : json.items()) keys.push_back(key);
+  EXPECT_THAT(keys, testing::ElementsAre("status", "status_detail", "end", "endurance_s", "hover", "hover_lost",
+                                         "charge_initial", "charge_final", "charge_drawn_c", "energy_chemical_j",
+                                         "energy_electrical_j", "energy_internal_j", "energy_aerodynamic_j",
+                                         "current_mean_a", "power_electrical_w", "power_aerodynamic_w", "lift_mean_n",
+                                         "efficiency_system", "initial", "final", "history"));
+  EXPECT_EQ(json["hover"], "lost");
+  EXPECT_NEAR(json["hover_lost"]["lift_to_weight"].get<double>(), 1.0, 1e-9);
+  EXPECT_EQ(json["charge_drawn_c"], 108.0);
+  const auto& history = json["history"];
+  EXPECT_EQ(history["time_s"].back(), json["endurance_s"]);
+  EXPECT_EQ(history["time_s"].size(), history["lift_mean_n"].size());
+
+  const wingbeat::NetcdfReader file(path("flight.nc"));
+  EXPECT_EQ(file.read("time").back(), json["endurance_s"].get<double>());
+  EXPECT_EQ(file.read("charge").front(), 1.0);
+  EXPECT_EQ(file.read("lift_to_weight").size(), history["time_s"].size());
+  EXPECT_EQ(file.attribute("hover"), "lost");
+  EXPECT_THAT(*file.attribute("end_detail"), HasSubstr("is empty after"));
+
+  // The vehicle at that moment, computed by itself.
+  const double charge = json["hover_lost"]["charge"].get<double>();
+  const Json there = run({"run", battery, "--set", "supply.cells=2", "--set", "vehicle.mass=5e-3", "--set",
+                          "supply.charge=" + Json(charge).dump(), "--tolerance", "1e-10", "--json"}).json();
+  EXPECT_NEAR(there["lift_to_weight"].get<double>(), 1.0, 1e-9);
+  EXPECT_NEAR(there["voltage_v"].get<double>(), json["hover_lost"]["voltage_v"].get<double>(), 1e-9);
+}
+
+TEST_F(Endurance, ABatteryThatCannotStartTheVehicle) {
+  const Outcome outcome = run({"endurance", battery, "--set", "supply.internal_resistance=\"800 ohm\"", "--set",
+                               "motor.friction_torque=\"1 mN m\"", "--json", "--plot", path("flight.svg")});
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_EQ(outcome.json()["end"], "never starts");
+  EXPECT_EQ(outcome.json()["endurance_s"], 0.0);
+  EXPECT_THAT(outcome.json()["status_detail"].get<std::string>(),
+              HasSubstr("the battery cannot start the vehicle at a charge of 1 (4.2 V without load)"));
+  EXPECT_THAT(outcome.err, HasSubstr("no file was written"));
+  EXPECT_FALSE(fs::exists(path("flight.svg")));
+}
+
+TEST_F(Endurance, AVehicleThatNeverHoversSaysSo) {
+  const Outcome outcome = run({"endurance", battery});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("lift is below the weight from the start"));
+}
+
+TEST_F(Endurance, BadInput) {
+  EXPECT_THAT(run({"endurance", plain}).err, HasSubstr("supply.type: only a battery runs down; expected battery"));
+  EXPECT_EQ(run({"endurance", plain}).status, 2);
+  EXPECT_THAT(run({"endurance", battery, "--plot", "flight.gif"}).err,
+              HasSubstr("--plot flight.gif: the name must end in .svg, .pdf or .png"));
+  EXPECT_THAT(run({"endurance", battery, "-o", "flight.csv"}).err,
+              HasSubstr("-o flight.csv: the name must end in .nc"));
+  EXPECT_THAT(run({"endurance", battery, "--set", "supply.charge=2"}).err,
+              HasSubstr("supply.charge: must lie between 0 and 1 [1], got 2"));
+}
+
+TEST_F(Endurance, RunOnABattery) {
+  const Json json = run({"run", battery, "--json"}).json();
+  const double sag = 4.2 - 0.5 * json["current_mean_a"].get<double>();
+  EXPECT_NEAR(json["voltage_v"].get<double>(), sag, 1e-12);
+  EXPECT_THAT(run({"run", battery, "--voltage", "3 V"}).err,
+              HasSubstr("--voltage: the supply is a battery, whose charge gives its voltage; use --set supply.charge=0.5"));
+  EXPECT_THAT(run({"run", battery, "--frequency", "22 Hz"}).err,
+              HasSubstr("supply.type: the charge of a battery gives its voltage, so none can be chosen for the flapping "
+                        "frequency"));
+  EXPECT_THAT(run({"run", battery, "--lift", "20 mN"}).err, HasSubstr("so none can be chosen for the lift"));
+}
+
+TEST_F(Endurance, DutyForALift) {
+  const std::vector<std::string> pwm = {"run", plain, "--set", "supply.type=pwm", "--set", "supply.voltage=7", "--set",
+                                        "supply.frequency=20000", "--set", "supply.duty=0.5"};
+  const auto with = [&](std::vector<std::string> more) {
+    std::vector<std::string> all = pwm;
+    all.insert(all.end(), more.begin(), more.end());
+    return run(all);
+  };
+  const Json json = with({"--lift", "20 mN", "--json"}).json();
+  EXPECT_NEAR(json["lift_mean_n"].get<double>(), 0.02, 1e-7);
+  EXPECT_NEAR(json["supply_duty"].get<double>(), json["voltage_v"].get<double>() / 7.0, 1e-12);
+  const Json hover = with({"--lift-to-weight", "1", "--json"}).json();
+  EXPECT_NEAR(hover["lift_to_weight"].get<double>(), 1.0, 1e-6);
+  EXPECT_THAT(with({"--lift", "50 mN"}).err, HasSubstr("more than the 7 V that the supply gives at a duty of 1"));
+  EXPECT_EQ(with({"--lift", "50 mN"}).status, 2);
+  EXPECT_THAT(with({"--lift", "2 N"}).err, HasSubstr("--lift 2 N: 2 N cannot be reached"));
+  EXPECT_THAT(with({"--lift", "0"}).err, HasSubstr("--lift: must be > 0 N"));
+  EXPECT_THAT(with({"--lift", "2 V"}).err, HasSubstr("--lift: "));
+  EXPECT_EQ(with({"--lift", "20 mN", "--frequency", "20 Hz"}).status, 2);
+  const Json ripple = with({"--method", "transient", "--json"}).json();
+  EXPECT_NEAR(ripple["start_up"]["current_ripple_a"].get<double>(), 7.0 * 0.25 / (29e-3 * 20e3), 1e-6);
+}
+
+}  // namespace
