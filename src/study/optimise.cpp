@@ -529,7 +529,7 @@ OptimiseResult optimise(const OptimiseStudy& study, const StartUp& start_up, con
   for (Eigen::Index k = 0; k < problem.size(); ++k) result.parameters.push_back(problem.value(k, best->end[k]));
   result.design = problem.design(best->end);
   result.point = problem.evaluate(best->end).point;
-  if (study.options.frequency) {
+  if (study.options.frequency && !set_drive_frequency(result.design, *study.options.frequency)) {
     const double duty = result.design.supply.type == SupplyType::pwm ? result.design.supply.duty : 1.0;
     result.design.supply.voltage = result.point.metrics[Metric::voltage] / duty;
   }

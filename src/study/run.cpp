@@ -20,7 +20,9 @@ std::string format(const char* pattern, Args... args) {
 Motion<double> motion_of(const Vehicle<double>& vehicle, double crank_angle, double omega, double i, double v) {
   const double s = std::sin(crank_angle), c = std::cos(crank_angle);
   Branch<double> branch{c * omega >= 0.0 ? 1.0 : -1.0, 1.0, omega >= 0.0 ? 1.0 : -1.0, 1.0};
-  const Motion<double> m = motion_at(vehicle, s, c, omega, i, v, branch);
+  Motion<double> m = motion_at(vehicle, s, c, omega, i, v, branch);
+  branch.pitching = sign_of(pitch_margin(vehicle.wings, std::abs(m.stroke_velocity)));
+  if (branch.pitching < 0.0) m = motion_at(vehicle, s, c, omega, i, v, branch);
   if (m.force_switch >= 0.0) return m;
   branch.force = -1.0;
   return motion_at(vehicle, s, c, omega, i, v, branch);
@@ -93,6 +95,14 @@ void last_lap(const Vehicle<double>& vehicle, const Supply<double>& supply, Tran
   }
 }
 
+/// Terminal voltage at each row of an orbit's cycle [V].
+std::vector<double> terminal_voltages(const Vehicle<double>& vehicle, const std::vector<WaveformRow>& cycle) {
+  std::vector<double> v(cycle.size(), vehicle.voltage);
+  if (vehicle.transmission != TransmissionType::direct) return v;
+  for (std::size_t n = 0; n < v.size(); ++n) v[n] *= std::sin(two_pi * vehicle.drive_frequency * cycle[n].time);
+  return v;
+}
+
 void set_voltage(Supply<double>& supply, double voltage) {
   supply.voltage = supply.type == SupplyType::pwm ? voltage / supply.duty : voltage;
 }
@@ -111,7 +121,7 @@ void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunRes
   }
   if (options.waveform_rows > 1 && !found.record.empty()) {
     result.cycle = found.record.waveform(options.waveform_rows);
-    result.cycle_voltage.assign(result.cycle.size(), vehicle.voltage);
+    result.cycle_voltage = terminal_voltages(vehicle, result.cycle);
   }
 }
 
@@ -119,7 +129,9 @@ void run_transient(const Vehicle<double>& vehicle, const RunOptions& options, Ru
   TransientOptions transient;
   transient.tolerance = std::max(options.tolerance, transient_tightest);
   transient.reporting = reporting_of(result.design);
-  transient.supply = result.design.supply;
+  const bool direct = vehicle.transmission == TransmissionType::direct;
+  if (!direct) transient.supply = result.design.supply;
+  transient.cycle_rows = direct && options.waveform_rows > 1 ? options.waveform_rows : 0;
   result.start_up = simulate_start_up(vehicle, transient);
   const TransientResult& found = *result.start_up;
   result.status = found.status;
@@ -127,7 +139,10 @@ void run_transient(const Vehicle<double>& vehicle, const RunOptions& options, Ru
   result.settled = found.settled;
   if (found.metrics && found.status == FlappingStatus::flapping) {
     result.metrics = *found.metrics;
-    if (options.waveform_rows > 1) {
+    if (direct) {
+      result.cycle = found.cycle;
+      result.cycle_voltage = terminal_voltages(vehicle, result.cycle);
+    } else if (options.waveform_rows > 1) {
       last_lap(vehicle, result.design.supply, transient, options.waveform_rows, result);
     }
   }
@@ -140,7 +155,7 @@ StartUp start_up_in_time(double tolerance) {
     TransientOptions options;
     options.tolerance = std::max(tolerance, transient_tightest);
     const TransientResult r = simulate_start_up(vehicle, options);
-    return StartUpOutcome{r.status, r.settled, r.detail, r.crank_speed, r.current};
+    return StartUpOutcome{r.status, r.settled, r.detail, r.crank_speed, r.current, r.stroke_angle};
   };
 }
 
@@ -148,7 +163,15 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
   require(options.tolerance >= 1e-12 && options.tolerance <= 1e-2, "tolerance", "must lie between 1e-12 and 1e-2", "1",
           options.tolerance);
   const Supply<double>& supply = design.supply;
-  if (supply.type == SupplyType::sine) {
+  RunResult result;
+  result.metrics.values.fill(absent);
+  result.design = design;
+  if (options.frequency) {
+    require(*options.frequency > 0.0 && std::isfinite(*options.frequency), "frequency", "must be > 0 and finite", "Hz",
+            *options.frequency);
+  }
+  const bool driven = options.frequency && set_drive_frequency(result.design, *options.frequency);
+  if (supply.type == SupplyType::sine && design.transmission.type != TransmissionType::direct) {
     if (options.frequency) {
       throw ParameterError("supply.type", "a sine supply has no voltage that sets the flapping frequency");
     }
@@ -157,11 +180,8 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
                                           "it in time with --method transient");
     }
   }
-  RunResult result;
-  result.metrics.values.fill(absent);
-  result.design = design;
-  Vehicle<double> vehicle = resolve(design, options.condition);
-  if (options.frequency) {
+  Vehicle<double> vehicle = resolve(result.design, options.condition);
+  if (options.frequency && !driven) {
     if (supply.type == SupplyType::pwm && !(supply.duty > 0.0)) {
       throw ParameterError("supply.duty", "is 0: no voltage reaches the motor, so none sets the flapping frequency");
     }

@@ -287,8 +287,8 @@ TEST(DesignErrors, WrongType) {
             "v.toml:4:1: supply.type: expected constant, sine or pwm, got \"steady\"");
   EXPECT_EQ(refusal(with("\"constant\"", "\"battery\"")),
             "v.toml:4:1: supply.type: battery is not supported yet; expected constant, sine or pwm");
-  EXPECT_EQ(refusal(with("\"slider-crank\"", "\"direct\"")),
-            "v.toml:13:1: transmission.type: direct is not supported yet; expected slider-crank");
+  EXPECT_EQ(refusal(with("\"slider-crank\"", "\"geared\"")),
+            "v.toml:13:1: transmission.type: expected slider-crank or direct, got \"geared\"");
 }
 
 TEST(DesignErrors, WrongDimensionOrUnit) {
