@@ -217,7 +217,7 @@ void add_run(CLI::App& program, Action& action) {
       "  wingbeat run data/designs/friction2022.toml --frequency \"22 Hz\" \\\n"
       "    --set friction.radius=\"2 mm\" --plot cycle.svg\n\n"
       "--frequency searches up to {:g} times the voltage that turns the unloaded motor that fast. With a pwm supply\n"
-      "the orbit and the search see the mean voltage; a sine supply needs --method transient, which also reports\n"
+      "the orbit and the search see the mean voltage; a crank on a sine needs --method transient, which also reports\n"
       "the start-up.\n\n"
       "Exit status: 0 steady flapping, 2 bad input or usage, 3 the vehicle does not flap, 1 anything else.",
       frequency_search_span));

@@ -280,7 +280,8 @@ OrbitGradient differentiate(const SteadyFlapping& orbit, const RecordedLap<Syste
   extremes.fill(J(absent));
   if (options.peaks) extremes = lap.extremes();
   g.metrics = cycle_metrics(vehicle, lap.integrals(), extremes, J(orbit.metrics[Metric::floquet_multiplier_max]), {});
-  g.metrics[Metric::power_motor_reference] = two_pi * given.bench_torque_constant * g.metrics[Metric::frequency] *
+  const J bench = voltage_varies ? given.bench_torque_constant : J(absent);
+  g.metrics[Metric::power_motor_reference] = two_pi * bench * g.metrics[Metric::frequency] *
                                              g.metrics[Metric::current_mean];
   g.metrics[Metric::lift_to_weight] = g.metrics[Metric::lift_mean] / (given.mass * standard_gravity);
   for (const double theta : options.crank_angles) g.instants.push_back(lap.instant(theta));

@@ -146,7 +146,8 @@ inline Reporting reporting_of(const Design<double>& d) {
 }
 
 /// The metrics of a cycle from its integrals and extremes. `extremes` holds the maxima of extreme_candidates(). A direct
-/// drive has no rod and no speed of rotation: its rod forces and crank speeds are absent, its voltage is the amplitude.
+/// drive has no rod, no speed of rotation and no direct current: rod forces, crank speeds and the bench estimate (17) are
+/// absent; its voltage is the amplitude.
 /// Floquet multiplier: of the orbit, or `absent`.
 template <Scalar S>
 Metrics<S> cycle_metrics(const Vehicle<S>& v, const CycleIntegrals<S>& integrals, const CycleExtremes<S>& extremes,
@@ -180,6 +181,7 @@ Metrics<S> cycle_metrics(const Vehicle<S>& v, const CycleIntegrals<S>& integrals
   m[Metric::rod_force_mean] = f * total(Integral::rod_force);
   if (v.transmission == TransmissionType::direct) {
     m[Metric::rod_force_peak] = m[Metric::rod_force_mean] = S(absent);
+    m[Metric::power_motor_reference] = S(absent);  // an estimate from the mean of a current that alternates
     m[Metric::stroke_amplitude] = S(0.5) * (peak(Extreme::stroke_max) + peak(Extreme::stroke_min));
   } else {
     m[Metric::stroke_amplitude] = stroke_amplitude(v.crank);

@@ -12,7 +12,7 @@
 namespace wingbeat {
 
 enum class Method {
-  orbit,     ///< periodic orbit in crank angle
+  orbit,     ///< periodic orbit in crank angle, or in the phase of a direct drive's supply
   transient  ///< simulated from rest until steady
 };
 
@@ -20,7 +20,8 @@ struct RunOptions {
   Condition condition = Condition::air;
   Method method = Method::orbit;
   double tolerance = 1e-6;          ///< wanted relative accuracy of every metric, 1e-12 to 1e-2
-  std::optional<double> frequency;  ///< [Hz]; given: the supply's voltage is replaced by the one that yields it
+  std::optional<double> frequency;  ///< [Hz]; given: the supply's voltage is replaced by the one that yields it, or a direct drive's
+                                    ///< supply has this frequency
   int waveform_rows = 0;            ///< instants of one cycle to return, both ends included; 0: none
 };
 
@@ -40,7 +41,7 @@ struct RunResult {
 /// What a vehicle does from rest, by simulate_start_up: the judge that find_steady_flapping asks in doubt.
 StartUp start_up_in_time(double tolerance = 1e-6);
 
-/// Computes one validated design. Throws ParameterError for a sine supply where Method::orbit or a frequency is asked
+/// Computes one validated design. Throws ParameterError for a crank on a sine supply where Method::orbit or a frequency is asked
 /// for (it has no periodic orbit in crank angle), and for options out of range.
 RunResult run_design(const Design<double>& design, const RunOptions& options = {});
 
