@@ -242,8 +242,9 @@ void add_run(CLI::App& program, Action& action) {
       "    --set friction.radius=\"2 mm\" --plot cycle.svg\n\n"
       "--frequency searches up to {:g} times the voltage that turns the unloaded motor that fast, --lift up to {:g}\n"
       "times supply.voltage. With a pwm supply the orbit and the searches see the mean voltage; --frequency changes\n"
-      "its voltage, --lift its duty. The charge of a battery gives its voltage, so neither is for batteries. A sine\n"
-      "supply needs --method transient, which also reports the start-up.\n\n"
+      "its voltage, --lift its duty. The charge of a battery gives its voltage, so neither is for batteries. A direct\n"
+      "drive takes --frequency as that of its sine; a crank on a sine needs --method transient, which also reports\n"
+      "the start-up.\n\n"
       "Exit status: 0 steady flapping, 2 bad input or usage, 3 the vehicle does not flap, 1 anything else.",
       frequency_search_span, frequency_search_span * lift_search_start));
   command->callback([a, &action] { action = [a] { return run(*a); }; });

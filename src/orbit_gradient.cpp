@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "wingbeat/vehicle/design_cast.hpp"
 
@@ -12,20 +14,22 @@ using J = GradientJet;
 constexpr int slots = gradient_first_slot + gradient_parameters;
 
 /// The recorded lap with its switches where the signs change, and its repetition on dual numbers.
-template <int N>
+template <class System>
 class Repetition {
  public:
-  using System = CrankSystem<double, N>;
-  using Jets = CrankSystem<J, N>;
+  using Jets = decltype(std::declval<System>().template cast<J>());
+  using Along = decltype(std::declval<System>().template cast<Jet<1>>());
   using State = typename System::State;
   using JetState = typename Jets::State;
+  static constexpr int N = int(std::tuple_size_v<State>);
+  static_assert(N <= gradient_first_slot);
 
-  Repetition(const CycleRecord::Recorded<N>& recorded, const Vehicle<J>& vehicle)
-      : system_(recorded.system), lap_(recorded.lap),
-        jets_{vehicle, J(recorded.system.speed_floor), J(recorded.system.current_scale)} {
+  Repetition(const RecordedLap<System>& recorded, const Vehicle<J>& vehicle)
+      : system_(recorded.system), lap_(recorded.lap), jets_(recorded.system.template cast<J>()) {
+    jets_.vehicle = vehicle;
     sharpen();
     for (auto& constant : inductance_slots_) constant = false;
-    if (N == 1) {
+    if (!(recorded.system.vehicle.motor.armature_inductance > 0.0)) {
       for (int k = 0; k < slots; ++k) inductance_slots_[k] = vehicle.motor.armature_inductance.v[k] != 0.0;
     }
   }
@@ -36,9 +40,11 @@ class Repetition {
     for (int n = 0; n < N; ++n) y[n] = J(lap_.steps.front().y[n], n);
     totals_.fill(J(0.0));
     starts_.reserve(lap_.steps.size());
-    for (const auto& step : lap_.steps) {
+    for (std::size_t at = 0; at < lap_.steps.size(); ++at) {
+      const auto& step = lap_.steps[at];
+      solve::carry_over<true>(jets_, lap_.steps, at, y, &totals_);
       starts_.push_back(y);
-      const auto signs = jet_signs(step.signs);
+      const auto signs = solve::signs_of<Jets>(step);
       const auto first = jets_.template rates<true>(J(step.x), y, signs);
       const auto result = solve::take_step<true>(lap_.method, jets_, J(step.x), y, J(step.h), signs, first);
       for (std::size_t q = 0; q < totals_.size(); ++q) totals_[q] += result.dq[q];
@@ -61,11 +67,11 @@ class Repetition {
 
   /// The total derivative: that of the start added, the slots of the states emptied.
   J total(J x) const {
-    for (int k = gradient_voltage_slot; k < slots; ++k) {
+    for (int k = N; k < slots; ++k) {
       for (int n = 0; n < N; ++n) x.v[k] += x.v[n] * start_change_[n][k];
       if (inductance_slots_[k]) x.v[k] = absent;
     }
-    for (int n = 0; n < gradient_voltage_slot; ++n) x.v[n] = 0.0;
+    for (int n = 0; n < N; ++n) x.v[n] = 0.0;
     return x;
   }
 
@@ -77,12 +83,14 @@ class Repetition {
 
   CycleExtremes<J> extremes() const {
     CycleExtremes<J> peaks;
+    peaks.fill(J(absent));
     const std::array<Place, extreme_count> places = locate();
-    for (std::size_t c = 0; c < extreme_count; ++c) {
+    for (const Extreme e : System::extremes) {
+      const auto c = std::size_t(e);
       const JetState y = state_at(places[c].step, places[c].x);
-      const auto signs = jet_signs(lap_.steps[places[c].step].signs);
+      const auto signs = solve::signs_of<Jets>(lap_.steps[places[c].step]);
       const Motion<J> m = jets_.motion(J(places[c].x), y, signs);
-      peaks[c] = total(extreme_candidates(jets_.vehicle, m, y[0], Jets::branch(signs))[c]);
+      peaks[c] = total(jets_.candidates(m, y, signs)[c]);
     }
     return peaks;
   }
@@ -91,14 +99,15 @@ class Repetition {
     std::size_t n = lap_.steps.size() - 1;
     while (n > 0 && lap_.steps[n].x > theta) --n;
     const JetState y = state_at(n, theta);
-    const auto signs = jet_signs(lap_.steps[n].signs);
+    const auto signs = solve::signs_of<Jets>(lap_.steps[n]);
     const Motion<J> m = jets_.motion(J(theta), y, signs);
-    const J stroke_speed = signs[2] * m.stroke_velocity;
-    return {total(y[0]),
+    const Branch<J> branch = Jets::branch(signs);
+    const J stroke_speed = branch.stroke * m.stroke_velocity;
+    return {total(jets_.shaft_speed(y)),
             total(m.current),
             total(m.stroke_velocity),
-            total(lift_force(jets_.vehicle.wings, stroke_speed)),
-            total(m.rod_force),
+            total(lift_force(jets_.vehicle.wings, stroke_speed, branch.pitching)),
+            System::has_rod ? total(m.rod_force) : J(absent),
             total(m.motor_torque)};
   }
 
@@ -112,42 +121,44 @@ class Repetition {
     CycleExtremes<Jet<1>> value;  ///< with the derivative along the solution
   };
 
-  static typename Jets::Signs jet_signs(const typename System::Signs& signs) {
-    return {J(signs[0]), J(signs[1]), J(signs[2])};
-  }
-
   JetState state_at(std::size_t step, double x) const {
     const auto& s = lap_.steps[step];
     if (x == s.x) return starts_[step];
-    const auto signs = jet_signs(s.signs);
+    const auto signs = solve::signs_of<Jets>(s);
     const auto first = jets_.template rates<false>(J(s.x), starts_[step], signs);
     return solve::take_step<false>(lap_.method, jets_, J(s.x), starts_[step], J(x - s.x), signs, first).y;
   }
 
-  /// The motion and its derivative along the solution.
-  Motion<Jet<1>> along(double x, const State& y, const State& dy, const typename System::Signs& signs,
-                       typename CrankSystem<Jet<1>, N>::State& state) const {
+  /// The state with its derivative along the solution.
+  static typename Along::State moving(const State& y, const State& dy) {
+    typename Along::State state;
     for (int n = 0; n < N; ++n) {
       state[n].a = y[n];
       state[n].v[0] = dy[n];
     }
-    return along_.motion(Jet<1>(x, 0), state, {Jet<1>(signs[0]), Jet<1>(signs[1]), Jet<1>(signs[2])});
+    return state;
   }
 
-  /// Moves the step ends at which a sign flips onto the sign change, by Newton from the recorded place.
+  /// Moves the step ends at which a sign flips onto the sign change, by Newton from the recorded place. Not those at
+  /// fixed nodes (dead centres) and at jumps, which are where they belong.
   void sharpen() {
+    constexpr std::size_t switches = std::tuple_size_v<typename System::Switches>;
     for (std::size_t n = 1; n < lap_.steps.size(); ++n) {
       auto& before = lap_.steps[n - 1];
       auto& after = lap_.steps[n];
-      const bool force = before.signs[0] != after.signs[0], stored = before.signs[1] != after.signs[1];
-      if (!force && !stored) continue;
-      typename CrankSystem<Jet<1>, N>::State state;
-      const Motion<Jet<1>> m = along(after.x, after.y, after.first.dy, after.signs, state);
-      const Jet<1> which = force ? m.force_switch : m.stored_moment;
+      std::size_t flipped = switches;
+      bool stays = false;
+      for (std::size_t k = before.signs.size(); k-- > 0;) {
+        if (before.signs[k] == after.signs[k]) continue;
+        flipped = k;
+        stays = stays || k >= switches || solve::jumps(system_, k);
+      }
+      if (flipped == switches || stays) continue;
+      const auto rates = along_.template rates<false>(Jet<1>(after.x, 0), moving(after.y, after.first.dy),
+                                                      solve::signs_of<Along>(after));
+      const Jet<1> which = rates.switches[flipped];
       const double move = -which.a / which.v[0];
       if (!(std::abs(move) < 0.25 * std::min(before.h, after.h))) continue;
-      // At a dead centre the stroke velocity changes sign as well: that node stays.
-      if (before.signs[2] != after.signs[2]) continue;
       before.h += move;
       after.x += move;
       after.h -= move;
@@ -178,7 +189,8 @@ class Repetition {
         const State y = k == 0 ? step.y
                                : solve::detail::hermite<System>(step.y, step.first.dy, y1, dy1, step.h, t);
         sample.value = candidates(n, sample.x, y);
-        for (std::size_t c = 0; c < extreme_count; ++c) {
+        for (const Extreme e : System::extremes) {
+          const auto c = std::size_t(e);
           const Jet<1>& v = sample.value[c];
           if ((k == 0) && v.a > highest[c]) {
             highest[c] = v.a;
@@ -193,7 +205,8 @@ class Repetition {
         before = sample;
       }
     }
-    for (std::size_t c = 0; c < extreme_count; ++c) {
+    for (const Extreme e : System::extremes) {
+      const auto c = std::size_t(e);
       double top = highest[c];
       for (const Bracket& b : brackets[c]) top = std::max(top, b.estimate);
       for (Bracket b : brackets[c]) {
@@ -229,18 +242,15 @@ class Repetition {
   }
 
   CycleExtremes<Jet<1>> candidates(std::size_t n, double x, const State& y) const {
-    const auto& signs = lap_.steps[n].signs;
-    typename CrankSystem<Jet<1>, N>::State state;
-    const State dy = system_.template rates<false>(x, y, signs).dy;
-    const Motion<Jet<1>> m = along(x, y, dy, signs, state);
-    return extreme_candidates(along_.vehicle, m, state[0],
-                              CrankSystem<Jet<1>, N>::branch({Jet<1>(signs[0]), Jet<1>(signs[1]), Jet<1>(signs[2])}));
+    const auto signs = solve::signs_of<Along>(lap_.steps[n]);
+    const auto state = moving(y, system_.template rates<false>(x, y, lap_.steps[n].signs).dy);
+    return along_.candidates(along_.motion(Jet<1>(x, 0), state, signs), state, signs);
   }
 
   System system_;
   solve::Lap<System> lap_;
   Jets jets_;
-  CrankSystem<Jet<1>, N> along_ = system_.template cast<Jet<1>>();
+  Along along_ = system_.template cast<Jet<1>>();
   CycleIntegrals<J> totals_;
   std::vector<JetState> starts_;
   double start_change_[N][slots] = {};
@@ -254,25 +264,29 @@ constexpr Metric peak_metrics[] = {Metric::current_peak,        Metric::lift_pea
 
 void make_absent(J& x) { x.v.setConstant(absent); }
 
-template <int N>
-OrbitGradient differentiate(const SteadyFlapping& orbit, const CycleRecord::Recorded<N>& recorded,
+template <class System>
+OrbitGradient differentiate(const SteadyFlapping& orbit, const RecordedLap<System>& recorded,
                             const GradientVehicle& given, const GradientOptions& options) {
   Vehicle<J> vehicle = given.vehicle;
   vehicle.voltage.a = recorded.system.vehicle.voltage;
-  vehicle.voltage.v[gradient_voltage_slot] = 1.0;
-  Repetition<N> lap(recorded, vehicle);
+  vehicle.drive_frequency.a = recorded.system.vehicle.drive_frequency;
+  // A direct drive's frequency is its supply's: no voltage follows it, and its slot is a third state's.
+  const bool voltage_varies = vehicle.transmission == TransmissionType::slider_crank;
+  if (voltage_varies) vehicle.voltage.v[gradient_voltage_slot] = 1.0;
+  Repetition<System> lap(recorded, vehicle);
   OrbitGradient g;
   g.regular = lap.run();
   CycleExtremes<J> extremes;
   extremes.fill(J(absent));
   if (options.peaks) extremes = lap.extremes();
   g.metrics = cycle_metrics(vehicle, lap.integrals(), extremes, J(orbit.metrics[Metric::floquet_multiplier_max]), {});
-  g.metrics[Metric::power_motor_reference] = two_pi * given.bench_torque_constant * g.metrics[Metric::frequency] *
+  const J bench = voltage_varies ? given.bench_torque_constant : J(absent);
+  g.metrics[Metric::power_motor_reference] = two_pi * bench * g.metrics[Metric::frequency] *
                                              g.metrics[Metric::current_mean];
   g.metrics[Metric::lift_to_weight] = g.metrics[Metric::lift_mean] / (given.mass * standard_gravity);
   for (const double theta : options.crank_angles) g.instants.push_back(lap.instant(theta));
 
-  if (options.held == Held::frequency) {
+  if (options.held == Held::frequency && voltage_varies) {
     const J f = g.metrics[Metric::frequency];
     if (!(std::abs(f.v[gradient_voltage_slot]) > 0.0)) g.regular = false;
     const auto follow = [&](J& x) {
@@ -332,7 +346,8 @@ MetricGradients metric_gradients(const Design<double>& design, Condition conditi
     result.regular = result.regular && g.regular;
     for (std::size_t m = 0; m < metric_count; ++m) {
       const auto& derivative = g.metrics.values[m].v;
-      result.by_voltage[m] = derivative[gradient_voltage_slot];
+      const bool direct = design.transmission.type == TransmissionType::direct;
+      result.by_voltage[m] = direct ? absent : derivative[gradient_voltage_slot];
       for (std::size_t k = 0; k < count; ++k) {
         result.by_parameter[first + k][m] = derivative[gradient_first_slot + Eigen::Index(k)];
       }

@@ -43,12 +43,20 @@ void validate(const Planform<double>& p) {
     return;
   }
   require(p.length > 0.0, "wing.planform.length", "must be > 0", "m", p.length);
-  require(p.root_chord > 0.0, "wing.planform.root_chord", "must be > 0", "m", p.root_chord);
+  if (p.chord_ratio) {
+    require(*p.chord_ratio > 0.0, "wing.planform.chord_ratio", "must be > 0", "1", *p.chord_ratio);
+  } else {
+    require(p.root_chord > 0.0, "wing.planform.root_chord", "must be > 0", "m", p.root_chord);
+  }
 }
 
 void validate(const BladeElement<double>& w) {
   require(w.air_density >= 0.0, "aerodynamics.air_density", "must be >= 0", "kg/m3", w.air_density);
   require(w.pitch_coefficient >= 0.0, "aerodynamics.pitch_coefficient", "must be >= 0", "s", w.pitch_coefficient);
+  if (w.angle_of_attack_min != -std::numeric_limits<double>::infinity()) {
+    require(w.angle_of_attack_min >= 0.0 && w.angle_of_attack_min < pi / 2.0, "aerodynamics.angle_of_attack_min",
+            "must be >= 0 and < pi/2", "rad", w.angle_of_attack_min);
+  }
   require(w.s2 >= 0.0, "wing.planform.s2", "must be >= 0", "m4", w.s2);
   require(w.s3 >= 0.0, "wing.planform.s3", "must be >= 0", "m5", w.s3);
 }

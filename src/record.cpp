@@ -5,24 +5,26 @@
 namespace wingbeat {
 namespace {
 
+/// `pace` receives d theta / dt [rad/s].
 template <class Recorded>
 WaveformRow row_inside(const Recorded& recorded, const solve::Step<decltype(Recorded::system)>& step, double start_time,
-                       double theta) {
+                       double theta, double& pace) {
   const auto& system = recorded.system;
   const auto result = solve::evaluate_inside<true>(system, recorded.lap, step, theta);
   const Motion<double> m = system.motion(theta, result.y, step.signs);
-  const double speed = step.signs[2] * m.stroke_velocity;
+  const double speed = std::abs(m.stroke_velocity);
   WaveformRow row;
   row.time = start_time + result.dq[std::size_t(Integral::time)];
-  row.crank_angle = theta;
-  row.crank_speed = result.y[0];
+  row.crank_angle = system.shaft_angle(theta, result.y);
+  row.crank_speed = system.shaft_speed(result.y);
+  pace = system.pace(result.y);
   row.current = m.current;
-  row.stroke_angle = stroke_angle(m.kinematics);
+  row.stroke_angle = system.stroke_angle(m, result.y);
   row.flapping_velocity = m.stroke_velocity;
   row.angle_of_attack_deg = degrees_per_radian * angle_of_attack(system.vehicle.wings, speed);
   row.lift = lift_force(system.vehicle.wings, speed);
   row.aero_moment = m.aero_moment;
-  row.rod_force = m.rod_force;
+  row.rod_force = system.has_rod ? m.rod_force : absent;
   row.motor_torque = m.motor_torque;
   row.friction_torque = m.friction_torque;
   return row;
@@ -56,7 +58,8 @@ WaveformRow CycleRecord::at(double theta) const {
         for (const auto* before = recorded.lap.steps.data(); before != &step; ++before) {
           time += before->dq[std::size_t(Integral::time)];
         }
-        return row_inside(recorded, step, time, theta);
+        double pace;
+        return row_inside(recorded, step, time, theta, pace);
       },
       laps_);
 }
@@ -76,12 +79,13 @@ std::vector<WaveformRow> CycleRecord::waveform(int count) const {
             start_time += steps[n].dq[std::size_t(Integral::time)];
             ++n;
           }
-          // Newton for the crank angle at this time: d theta / dt = omega.
-          double theta = steps[n].x + std::min(steps[n].h, (time - start_time) * steps[n].y[0]);
-          WaveformRow row = row_inside(recorded, steps[n], start_time, theta);
+          // Newton for the crank angle at this time.
+          double pace = recorded.system.pace(steps[n].y);
+          double theta = steps[n].x + std::min(steps[n].h, (time - start_time) * pace);
+          WaveformRow row = row_inside(recorded, steps[n], start_time, theta, pace);
           for (int iteration = 0; iteration < 20 && std::abs(row.time - time) > 1e-14 * period_time; ++iteration) {
-            theta = std::clamp(theta + (time - row.time) * row.crank_speed, steps[n].x, steps[n].x + steps[n].h);
-            row = row_inside(recorded, steps[n], start_time, theta);
+            theta = std::clamp(theta + (time - row.time) * pace, steps[n].x, steps[n].x + steps[n].h);
+            row = row_inside(recorded, steps[n], start_time, theta, pace);
           }
           rows.push_back(row);
         }

@@ -1,79 +1,37 @@
 #include "wingbeat/cycle/steady_flapping.hpp"
 
 #include <cmath>
-#include <cstdio>
-#include <utility>
 
-#include "wingbeat/cycle/extremes.hpp"
+#include "orbit_search.hpp"
 
 namespace wingbeat {
 namespace {
 
-using solve::PeriodicOptions;
-using solve::PeriodicStatus;
-using solve::PeriodicSummary;
-
-template <class... Args>
-std::string format(const char* pattern, Args... args) {
-  char text[400];
-  std::snprintf(text, sizeof text, pattern, args...);
-  return text;
-}
+using detail::format;
+using detail::OrbitSearch;
 
 double in_degrees(double angle) { return degrees_per_radian * angle; }
 
-/// Searches for a rotating orbit and fills the result from it.
 template <int N>
-class OrbitSearch {
+class CrankSearch : public OrbitSearch<CrankSystem<double, N>> {
  public:
-  OrbitSearch(const Vehicle<double>& vehicle, const SteadyOptions& options)
-      : options_(options),
-        system_{vehicle, 1e-4 * no_load_speed(vehicle),
-                vehicle.voltage / circuit_resistance(vehicle)} {}
+  CrankSearch(const Vehicle<double>& vehicle, const SteadyOptions& options)
+      : OrbitSearch<CrankSystem<double, N>>(
+            {vehicle, 1e-4 * no_load_speed(vehicle), vehicle.voltage / circuit_resistance(vehicle)}, options) {}
 
   /// One search from crank speed omega at crank angle zero; without a current, the quasi-steady one is assumed.
   bool from(double omega, double current = absent) {
-    if (!(omega > system_.speed_floor)) return false;
+    const auto& system = this->system();
+    if (!(omega > system.speed_floor)) return false;
     if constexpr (N == 2) {
-      state_ = {omega, std::isfinite(current) ? current
-                                              : algebraic_current(system_.vehicle, system_.vehicle.voltage, omega)};
+      return this->search({omega, std::isfinite(current)
+                                      ? current
+                                      : algebraic_current(system.vehicle, system.vehicle.voltage, omega)});
     } else {
-      state_ = {omega};
+      return this->search({omega});
     }
-    PeriodicOptions periodic{.tolerance = options_.tolerance, .stability = options_.stability};
-    const int laps_before = summary_.laps;
-    summary_ = solve::solve_periodic(system_, state_, periodic, lap_);
-    if (summary_.status == PeriodicStatus::too_many_steps) {
-      periodic.method = solve::Method::radau;
-      summary_ = solve::solve_periodic(system_, state_, periodic, lap_);
-    }
-    summary_.laps += laps_before;
-    return summary_.status == PeriodicStatus::converged;
   }
-
-  const PeriodicSummary& summary() const { return summary_; }
-  double frequency() const {
-    double period = 0.0;
-    for (const auto& step : lap_.steps) period += step.dq[std::size_t(Integral::time)];
-    return 1.0 / period;
-  }
-  double crank_speed() const { return lap_.steps.front().y[0]; }
-
-  void fill(SteadyFlapping& result) {
-    result.crank_speed = crank_speed();
-    result.current = system_.current(lap_.steps.front().y);
-    const CycleExtremes<double> extremes = lap_extremes(system_, lap_, options_.tolerance);
-    result.record = CycleRecord(CycleRecord::Recorded<N>{system_, std::move(lap_)});
-    result.metrics = cycle_metrics(system_.vehicle, result.record.integrals(), extremes,
-                                   summary_.floquet_multiplier_max, options_.reporting);
-  }
-
- private:
-  const SteadyOptions& options_;
-  CrankSystem<double, N> system_;
-  std::array<double, N> state_{};
-  solve::Lap<CrankSystem<double, N>> lap_;
-  PeriodicSummary summary_;
+  double crank_speed() const { return this->start()[0]; }
 };
 
 std::string stall_detail(const StaticBalance& s) {
@@ -113,7 +71,7 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
     return result;
   }
 
-  OrbitSearch<N> orbit(vehicle, options);
+  CrankSearch<N> orbit(vehicle, options);
   bool found = false, several = false;
   if (!statics.can_jam()) {
     const BalancedSpeed<double> balanced = balanced_speed(vehicle);
@@ -173,6 +131,7 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
 
 SteadyFlapping find_steady_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                     const StartUp& start_up) {
+  if (vehicle.transmission == TransmissionType::direct) return detail::find_direct_flapping(vehicle, options, start_up);
   return vehicle.motor.armature_inductance > 0.0 ? search<2>(vehicle, options, start_up)
                                                  : search<1>(vehicle, options, start_up);
 }

@@ -46,7 +46,7 @@ class Reader {
     require_sections();
     if (const Value* name = document_.find("vehicle.name")) d.name = text_of(*name, "vehicle.name", "a text");
     d.supply.type = choice("supply.type", supply_types);
-    read_transmission_type();
+    d.transmission.type = choice("transmission.type", transmission_types);
     d.transmission.formulation = document_.find("transmission.formulation")
                                      ? choice("transmission.formulation", formulations)
                                      : Formulation::rod_force;
@@ -117,13 +117,6 @@ class Reader {
                                                                  find_key<double>(path)->range));
   }
 
-  void read_transmission_type() const {
-    const std::string_view path = "transmission.type";
-    const std::string& type = required_text(path);
-    if (type == "direct") unsupported(path, type);
-    if (type != "slider-crank") wrong(*document_.find(path), path, find_key<double>(path)->range);
-  }
-
   double number_of(const Value& value, std::string_view path, std::string_view unit) const {
     if (value.kind == Value::Kind::number) {
       if (!std::isfinite(value.number)) wrong(value, path, quantity_example(unit));
@@ -166,14 +159,24 @@ class Reader {
   }
 
   void check_alternatives() const {
-    const bool tabulated = document_.find("wing.planform.shape")->text == "tabulated";
-    const bool battery = document_.find("supply.type")->text == "battery";
-    const std::tuple<std::string_view, std::string_view, bool> pairs[] = {
-        {"transmission.hinge_offset", "transmission.stroke_amplitude", true},
-        {"spring.stiffness", "spring.resonance", document_.has_section("spring")},
-        {"wing.planform.file", "wing.planform.chords", tabulated},
-        {"supply.cell_voltage", "supply.discharge_curve", battery}};
-    for (const auto& [one, other, required] : pairs) {
+    const auto is = [&](std::string_view path, std::string_view text) { return document_.find(path)->text == text; };
+    const bool tabulated = is("wing.planform.shape", "tabulated");
+    const bool outline = is("wing.planform.shape", "semi-ellipse") || is("wing.planform.shape", "rectangle");
+    const bool direct = is("transmission.type", "direct");
+    const bool switching = is("supply.type", "sine") || is("supply.type", "pwm");
+    const bool ratio = document_.find("spring.resonance_ratio");
+    // Alternatives of a direct drive alone are not offered to others.
+    const std::tuple<std::string_view, std::string_view, bool, bool> pairs[] = {
+        {"transmission.hinge_offset", "transmission.stroke_amplitude", !direct, true},
+        {"spring.stiffness", "spring.resonance", document_.has_section("spring") && !ratio, true},
+        {"spring.stiffness", "spring.resonance_ratio", false, true},
+        {"spring.resonance", "spring.resonance_ratio", false, true},
+        {"supply.frequency", "supply.resonance_ratio", switching, direct},
+        {"wing.inertia", "wing.resonance", true, direct},
+        {"wing.planform.root_chord", "wing.planform.chord_ratio", outline, true},
+        {"wing.planform.file", "wing.planform.chords", tabulated, true},
+        {"supply.cell_voltage", "supply.discharge_curve", is("supply.type", "battery"), true}};
+    for (const auto& [one, other, required, offered] : pairs) {
       const Value* first = document_.find(one);
       const Value* second = document_.find(other);
       const auto leaf = [](std::string_view path) { return path.substr(path.rfind('.') + 1); };
@@ -183,7 +186,8 @@ class Reader {
       if (required && !first && !second) {
         const std::string_view unit = find_key<double>(one)->unit;
         missing(one, unit.empty() ? std::string("the name of a CSV file, or chords instead")
-                                  : fmt::format("{}, or {} instead", quantity_example(unit), leaf(other)));
+                     : offered     ? fmt::format("{}, or {} instead", quantity_example(unit), leaf(other))
+                                   : quantity_example(unit));
       }
     }
   }

@@ -37,12 +37,15 @@ void plot_cycle(std::span<const WaveformRow> rows, std::span<const double> volta
   const bool lift_in_newton = lift_most >= 1.0, power_in_watt = power_most >= 10.0;
   const double lift_scale = lift_in_newton ? 1.0 : 1e3, power_scale = power_in_watt ? 1.0 : 1e3;
 
+  // Without a rod its panel shows the current.
+  const bool rod = std::isfinite(rows.front().rod_force);
+
   Figure figure(format, 3.5, 5.6);
   figure.add("$cycle << END\n");
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const WaveformRow& r = rows[k];
     figure.add("{} {} {} {} {} {} {} {}\n", time_scale * (r.time - rows.front().time),
-               degrees_per_radian * r.stroke_angle, r.flapping_velocity, lift_scale * r.lift, r.rod_force,
+               degrees_per_radian * r.stroke_angle, r.flapping_velocity, lift_scale * r.lift, rod ? r.rod_force : 1e3 * r.current,
                power_scale * voltage[k] * r.current, power_scale * r.motor_torque * r.crank_speed,
                power_scale * r.aero_moment * r.flapping_velocity);
   }
@@ -81,8 +84,8 @@ void plot_cycle(std::span<const WaveformRow> rows, std::span<const double> volta
   figure.add("plot $cycle using 1:4 with lines {}, {} with lines {}\n", blue_solid, lift_scale * lift_mean,
              vermillion_dashed);
 
-  panel(2, "rod force (N)");
-  figure.key_entry(left, key_height, blue_solid, "rod force, positive as it pushes the slider up");
+  panel(2, rod ? "rod force (N)" : "current (mA)");
+  figure.key_entry(left, key_height, blue_solid, rod ? "rod force, positive as it pushes the slider up" : "current");
   figure.add("plot $cycle using 1:5 with lines {}\n", blue_solid);
 
   panel(3, power_in_watt ? "power (W)" : "power (mW)");

@@ -113,7 +113,7 @@ class StudyReader : public detail::StudySections {
       q.kind = SweptQuantity::Kind::choice;
       q.meaning = std::string(key->meaning);
     }
-    if (q.key == "supply.voltage" && held_voltage_) refuse(node, where, "study.hold holds the voltage already");
+    if ((q.key == "supply.voltage" || q.key == "supply.amplitude") && held_voltage_) refuse(node, where, "study.hold holds the voltage already");
     origins_[q.key] = place_of(node);
     return q;
   }
@@ -495,7 +495,8 @@ class StudyReader : public detail::StudySections {
     };
     const bool frequency = held_frequency_ || frequency_axis_;
     for (const SweepVariant& v : sweep_->variants) {
-      if (v.design.supply.type == SupplyType::sine) {
+      const bool direct = v.design.transmission.type == TransmissionType::direct;
+      if (v.design.supply.type == SupplyType::sine && !direct) {
         refuse(at("supply.type"), "supply.type", "a sine supply gives no steady flapping in crank angle; expected constant or pwm");
       }
       if (frequency && v.design.supply.type == SupplyType::battery) {
@@ -504,6 +505,9 @@ class StudyReader : public detail::StudySections {
       if (frequency && v.design.supply.type == SupplyType::pwm && !(v.design.supply.duty > 0.0)) {
         refuse(at("supply.duty"), "supply.duty", "is 0: no voltage sets the flapping frequency");
       }
+    }
+    for (const char* key : {"supply.frequency", "supply.resonance_ratio"}) {
+      if (frequency && origins_.contains(key)) refuse(at(key), key, "has no effect where the frequency is held");
     }
     for (const char* key : {"supply.voltage", "supply.duty"}) {
       if (frequency && origins_.contains(key)) {

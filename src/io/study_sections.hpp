@@ -88,7 +88,7 @@ class StudySections {
 
   /// The vehicle file with [set] and a held voltage, complete in itself.
   std::string vehicle_text(const std::filesystem::path& file) const {
-    read_design(file);  // its own errors come first, at its own lines
+    const Design<double> alone = read_design(file);  // its own errors come first, at its own lines
     std::vector<std::string> overrides;
     std::vector<std::pair<Place, std::string>> origins;
     const auto add = [&](const std::string& key, const TomlNode& value, const std::string& shown) {
@@ -96,7 +96,8 @@ class StudySections {
       origins.emplace_back(place_of(value), shown);
     };
     for (const auto& [key, value] : set_) add(key, *value, "set." + key);
-    if (held_voltage_) add("supply.voltage", *held_voltage_, "study.hold.voltage");
+    const char* voltage = alone.supply.type == SupplyType::sine ? "supply.amplitude" : "supply.voltage";
+    if (held_voltage_) add(voltage, *held_voltage_, "study.hold.voltage");
     try {
       return write_design(read_design(file, overrides));
     } catch (const InputError& error) {
@@ -220,7 +221,10 @@ class StudySections {
     if (held_voltage_ && !(quantity(*held_voltage_, "study.hold.voltage", "V") >= 0.0)) {
       refuse(*held_voltage_, "study.hold.voltage", "must be >= 0 V");
     }
-    if (set_.contains("supply.voltage")) refuse(*hold, "study.hold", "[set] gives supply.voltage already");
+    for (const char* key : {"supply.voltage", "supply.amplitude"}) {
+      const bool held = held_voltage_ || std::string_view(key) == "supply.voltage";
+      if (held && set_.contains(key)) refuse(*hold, "study.hold", fmt::format("[set] gives {} already", key));
+    }
   }
 
   void flatten(const TomlNode& table, const std::string& path) {
@@ -310,7 +314,8 @@ class StudySections {
 
   /// The frequency held, if any. A vehicle whose supply cannot hold one, or that has no steady flapping, is refused.
   std::optional<double> read_frequency(const Design<double>& design) const {
-    if (design.supply.type == SupplyType::sine) {
+    const bool direct = design.transmission.type == TransmissionType::direct;
+    if (design.supply.type == SupplyType::sine && !direct) {
       const auto given = set_.find("supply.type");
       refuse(given == set_.end() ? need(*study_, "study", "vehicle", "") : *given->second, "supply.type",
              "a sine supply gives no steady flapping in crank angle; expected constant or pwm");
@@ -334,9 +339,12 @@ class StudySections {
     if (key == "wing.count" || key == "supply.cells") {
       refuse(node, where, fmt::format("{} is a whole number and has no derivative", key));
     }
-    const bool supply = key == "supply.voltage" || key == "supply.duty";
-    if (supply && held_voltage_) refuse(node, where, "study.hold holds the voltage already");
-    if (supply && held_frequency_) {
+    const bool voltage = key == "supply.voltage" || key == "supply.duty" || key == "supply.amplitude";
+    if (voltage && held_voltage_) refuse(node, where, "study.hold holds the voltage already");
+    // A direct drive takes its frequency from the supply, a crank from the voltage.
+    const bool direct = design.transmission.type == TransmissionType::direct;
+    const bool sets_frequency = direct ? key == "supply.frequency" || key == "supply.resonance_ratio" : voltage;
+    if (sets_frequency && held_frequency_) {
       refuse(node, where, fmt::format("{} has no effect where the frequency is held", key));
     }
     if (!parameter.value(design)) {

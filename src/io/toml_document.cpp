@@ -25,6 +25,11 @@ constexpr int deepest_nesting = 16;
 constexpr std::pair<std::string_view, std::string_view> alternatives[] = {
     {"transmission.hinge_offset", "transmission.stroke_amplitude"},
     {"spring.stiffness", "spring.resonance"},
+    {"spring.stiffness", "spring.resonance_ratio"},
+    {"spring.resonance", "spring.resonance_ratio"},
+    {"supply.frequency", "supply.resonance_ratio"},
+    {"wing.inertia", "wing.resonance"},
+    {"wing.planform.root_chord", "wing.planform.chord_ratio"},
     {"wing.planform.file", "wing.planform.chords"},
     {"supply.cell_voltage", "supply.discharge_curve"},
     {"aerodynamics.coefficients.table", "aerodynamics.coefficients.lift"},

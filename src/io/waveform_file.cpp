@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <iterator>
 #include <vector>
 
@@ -34,7 +35,8 @@ std::string waveforms_csv(std::span<const WaveformRow> rows) {
   text += '\n';
   for (const WaveformRow& row : rows) {
     for (const WaveformColumn& c : columns) {
-      fmt::format_to(out, "{}{}", &c == columns.data() ? "" : ",", row.*c.value);
+      if (&c != columns.data()) text += ',';
+      if (const double x = row.*c.value; std::isfinite(x)) fmt::format_to(out, "{}", x);
     }
     text += '\n';
   }

@@ -211,6 +211,10 @@ class Bench {
 
   SteadyFlapping orbit_at_frequency(std::size_t n, Vehicle<double>& vehicle, const Reporting& reporting) {
     const double wanted = points_[n].value;
+    if (vehicle.transmission == TransmissionType::direct) {
+      vehicle.drive_frequency = wanted;
+      return orbit(vehicle, vehicle.voltage, reporting);
+    }
     const double close = std::max(3.0 * fit_.tolerance, 1e-6);
     double& start = voltages_[n];
     double& slope = frequency_slopes_[n];
@@ -262,6 +266,9 @@ class Bench {
     GradientVehicle vehicle = gradient_vehicle(seeded, point.condition);
     // The bench sets the voltage (or the frequency): a free supply voltage plays no part.
     vehicle.vehicle.voltage = GradientJet(vehicle.vehicle.voltage.a);
+    if (point.given == Given::frequency) {
+      vehicle.vehicle.drive_frequency = GradientJet(vehicle.vehicle.drive_frequency.a);
+    }
     const OrbitGradient g =
         orbit_gradient(orbits_[n], vehicle,
                        {.held = point.given == Given::voltage ? Held::voltage : Held::frequency,
@@ -542,7 +549,7 @@ void check(const BenchFit& fit) {
       throw ParameterError(p.parameter.key, "another free parameter takes its place in the vehicle");
     }
   }
-  if (fit.design.supply.type != SupplyType::constant) {
+  if (fit.design.supply.type != SupplyType::constant && fit.design.transmission.type != TransmissionType::direct) {
     throw ParameterError("supply.type", "bench data are fitted with a constant supply");
   }
   for (const BenchLog& log : fit.logs) {

@@ -1,10 +1,11 @@
 #include "wingbeat/study/design_point.hpp"
 
-
 namespace wingbeat {
 
-DesignPoint design_point(const Design<double>& design, const DesignPointOptions& options,
+DesignPoint design_point(const Design<double>& given, const DesignPointOptions& options,
                          std::span<const DesignParameter> parameters, const StartUp& start_up) {
+  Design<double> design = given;
+  const bool driven = options.frequency && set_drive_frequency(design, *options.frequency);
   DesignPoint point;
   point.metrics.values.fill(absent);
   std::array<double, metric_count> nothing;
@@ -18,7 +19,7 @@ DesignPoint design_point(const Design<double>& design, const DesignPointOptions&
   }
   Vehicle<double> vehicle = resolve(design, options.condition);
   const SteadyOptions steady{options.tolerance, false, reporting_of(design)};
-  if (options.frequency) {
+  if (options.frequency && !driven) {
     const FrequencySearch search = find_voltage_for_frequency(vehicle, *options.frequency, steady, start_up);
     if (search.outcome != FrequencyOutcome::reached) {
       const bool flaps = search.status == FlappingStatus::flapping;

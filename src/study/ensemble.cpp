@@ -96,7 +96,8 @@ class EnsembleRun {
     std::array<std::vector<std::size_t>, kinds> by_kind;
     for (std::size_t n = 0; n < members_.size(); ++n) {
       const Vehicle<double>& v = members_[n].vehicle;
-      if (options_.scalar_only || v.wings.coefficients.table) {
+      if (options_.scalar_only || v.wings.coefficients.table || has_pitch_stop(v.wings) ||
+          v.transmission == TransmissionType::direct) {
         solve_by_scalar(n);
       } else if (stall_torque(v) <= breakaway_torque(v)) {
         settle(n, FlappingStatus::stalled);

@@ -78,10 +78,18 @@ void solve_ensemble_at_frequency(std::span<EnsembleMember> members, std::span<co
   const double closeness = std::max(0.1 * options.tolerance, 1e-13);
 
   std::vector<Search> searches;
-  for (std::size_t n = 0; n < members.size(); ++n) searches.push_back(begin(members[n].vehicle, n, frequencies[n]));
-  std::vector<EnsembleMember> trials(searches.size());
-  std::vector<EnsembleOutcome> results(searches.size());
   std::vector<std::size_t> settled, left;
+  for (std::size_t n = 0; n < members.size(); ++n) {
+    Vehicle<double>& vehicle = members[n].vehicle;
+    if (vehicle.transmission == TransmissionType::direct) {
+      vehicle.drive_frequency = frequencies[n];
+      settled.push_back(n);
+    } else {
+      searches.push_back(begin(vehicle, n, frequencies[n]));
+    }
+  }
+  std::vector<EnsembleMember> trials(members.size());
+  std::vector<EnsembleOutcome> results(members.size());
   for (int round = 0; round < most_rounds && !searches.empty(); ++round) {
     const std::size_t active = searches.size();
     for (std::size_t k = 0; k < active; ++k) {

@@ -53,10 +53,10 @@ class Problem {
     return d;
   }
 
-  /// The design with what was found; where the frequency is held, with its voltage.
+  /// The design with what was found; where the frequency is held, with it or the voltage that holds it.
   Design<double> found(const Vector& u, const DesignPoint& point) const {
     Design<double> d = design(u);
-    if (study_.options.frequency) {
+    if (study_.options.frequency && !set_drive_frequency(d, *study_.options.frequency)) {
       const double duty = d.supply.type == SupplyType::pwm ? d.supply.duty : 1.0;
       d.supply.voltage = point.metrics[Metric::voltage] / duty;
     }

@@ -21,7 +21,9 @@ Motion<double> motion_of(const Vehicle<double>& vehicle, double crank_angle, dou
   const double v_t = terminal_voltage(vehicle, v, i);
   const double s = std::sin(crank_angle), c = std::cos(crank_angle);
   Branch<double> branch{c * omega >= 0.0 ? 1.0 : -1.0, 1.0, omega >= 0.0 ? 1.0 : -1.0, 1.0};
-  const Motion<double> m = motion_at(vehicle, s, c, omega, i, v_t, branch);
+  Motion<double> m = motion_at(vehicle, s, c, omega, i, v_t, branch);
+  branch.pitching = sign_of(pitch_margin(vehicle.wings, std::abs(m.stroke_velocity)));
+  if (branch.pitching < 0.0) m = motion_at(vehicle, s, c, omega, i, v_t, branch);
   if (m.force_switch >= 0.0) return m;
   branch.force = -1.0;
   return motion_at(vehicle, s, c, omega, i, v_t, branch);
@@ -105,6 +107,18 @@ void require_choice_of_voltage(const Supply<double>& supply, const char* wanted,
   }
 }
 
+/// Terminal voltage at each row of an orbit's cycle [V].
+std::vector<double> terminal_voltages(const Vehicle<double>& vehicle, const std::vector<WaveformRow>& cycle) {
+  std::vector<double> v;
+  for (const WaveformRow& row : cycle) {
+    const double phase = two_pi * vehicle.drive_frequency * row.time;
+    const double supplied =
+        vehicle.transmission == TransmissionType::direct ? vehicle.voltage * std::sin(phase) : vehicle.voltage;
+    v.push_back(terminal_voltage(vehicle, supplied, row.current));
+  }
+  return v;
+}
+
 void set_voltage(Supply<double>& supply, double voltage) {
   supply.voltage = supply.type == SupplyType::pwm ? voltage / supply.duty : voltage;
 }
@@ -134,9 +148,7 @@ void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunRes
   }
   if (options.waveform_rows > 1 && !found.record.empty()) {
     result.cycle = found.record.waveform(options.waveform_rows);
-    for (const WaveformRow& row : result.cycle) {
-      result.cycle_voltage.push_back(terminal_voltage(vehicle, vehicle.voltage, row.current));
-    }
+    result.cycle_voltage = terminal_voltages(vehicle, result.cycle);
   }
 }
 
@@ -144,7 +156,9 @@ void run_transient(const Vehicle<double>& vehicle, const RunOptions& options, Ru
   TransientOptions transient;
   transient.tolerance = std::max(options.tolerance, transient_tightest);
   transient.reporting = reporting_of(result.design);
-  transient.supply = result.design.supply;
+  const bool direct = vehicle.transmission == TransmissionType::direct;
+  if (!direct) transient.supply = result.design.supply;
+  transient.cycle_rows = direct && options.waveform_rows > 1 ? options.waveform_rows : 0;
   result.start_up = simulate_start_up(vehicle, transient);
   const TransientResult& found = *result.start_up;
   result.status = found.status;
@@ -152,7 +166,10 @@ void run_transient(const Vehicle<double>& vehicle, const RunOptions& options, Ru
   result.settled = found.settled;
   if (found.metrics && found.status == FlappingStatus::flapping) {
     result.metrics = *found.metrics;
-    if (options.waveform_rows > 1) {
+    if (direct) {
+      result.cycle = found.cycle;
+      result.cycle_voltage = terminal_voltages(vehicle, result.cycle);
+    } else if (options.waveform_rows > 1) {
       last_lap(vehicle, result.design.supply, transient, options.waveform_rows, result);
     }
   }
@@ -165,7 +182,7 @@ StartUp start_up_in_time(double tolerance) {
     TransientOptions options;
     options.tolerance = std::max(tolerance, transient_tightest);
     const TransientResult r = simulate_start_up(vehicle, options);
-    return StartUpOutcome{r.status, r.settled, r.detail, r.crank_speed, r.current};
+    return StartUpOutcome{r.status, r.settled, r.detail, r.crank_speed, r.current, r.stroke_angle};
   };
 }
 
@@ -173,19 +190,25 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
   require(options.tolerance >= 1e-12 && options.tolerance <= 1e-2, "tolerance", "must lie between 1e-12 and 1e-2", "1",
           options.tolerance);
   const Supply<double>& supply = design.supply;
+  const bool direct = design.transmission.type == TransmissionType::direct;
   require(!(options.frequency && options.lift), "lift", "cannot be asked for beside a frequency", "N",
           options.lift.value_or(0.0));
-  if (options.frequency) require_choice_of_voltage(supply, "flapping frequency", false);
-  if (options.lift) require_choice_of_voltage(supply, "lift", true);
-  if (supply.type == SupplyType::sine && options.method == Method::orbit) {
+  if (options.frequency) {
+    require(*options.frequency > 0.0 && std::isfinite(*options.frequency), "frequency", "must be > 0 and finite", "Hz",
+            *options.frequency);
+  }
+  if (options.frequency && !direct) require_choice_of_voltage(supply, "flapping frequency", false);
+  if (options.lift && !direct) require_choice_of_voltage(supply, "lift", true);
+  if (supply.type == SupplyType::sine && !direct && options.method == Method::orbit) {
     throw ParameterError("supply.type", "with a sine supply the crank has no periodic orbit in crank angle; simulate "
                                         "it in time with --method transient");
   }
   RunResult result;
   result.metrics.values.fill(absent);
   result.design = design;
-  Vehicle<double> vehicle = resolve(design, options.condition);
-  if (options.frequency || options.lift) {
+  const bool driven = options.frequency && set_drive_frequency(result.design, *options.frequency);
+  Vehicle<double> vehicle = resolve(result.design, options.condition);
+  if ((options.frequency && !driven) || options.lift) {
     SteadyOptions steady;
     steady.tolerance = options.tolerance;
     const double nominal = supply.voltage > 0.0 ? supply.voltage : 1.0;

@@ -21,6 +21,7 @@ double set_numbers(const Sweep& sweep, std::span<const std::uint64_t> place, Swe
     }
   }
   if (!variant.springs) variant.design.spring = {};
+  if (!std::isnan(frequency)) set_drive_frequency(variant.design, frequency);
   return frequency;
 }
 

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <limits>
 #include <memory>
 #include <utility>
 
+#include "direct_transient.hpp"
 #include "sundials_cvode.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
+#include "transient_tools.hpp"
 
 namespace wingbeat {
 
@@ -53,64 +53,7 @@ constexpr double same_swing = 1e-4;            // [rad] swings with a varying su
 constexpr int averaged_laps_pwm = 8;
 constexpr double lap_spread_settled = 1e-2;
 
-[[gnu::format(printf, 1, 2)]] std::string text(const char* format, ...) {
-  char buffer[512];
-  std::va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(buffer, sizeof buffer, format, arguments);
-  va_end(arguments);
-  return buffer;
-}
-
-/// Argument in [a, b] at which f is largest, by parabolas safeguarded with golden sections (Brent 1973).
-template <class F>
-std::pair<double, double> maximum(const F& f, double a, double b) {
-  constexpr double golden = 0.3819660112501051;
-  double x = a + golden * (b - a), w = x, v = x;
-  double fx = -f(x), fw = fx, fv = fx;
-  double d = 0.0, e = 0.0;
-  const double resolved = 1e-7 * (b - a);
-  for (int k = 0; k < 60; ++k) {
-    const double mid = 0.5 * (a + b);
-    const double tol = resolved + 1e-16 * std::abs(x);
-    if (std::abs(x - mid) <= 2.0 * tol - 0.5 * (b - a)) break;
-    bool parabola = false;
-    if (std::abs(e) > tol) {
-      const double r = (x - w) * (fx - fv);
-      double q = (x - v) * (fx - fw);
-      double p = (x - v) * q - (x - w) * r;
-      q = 2.0 * (q - r);
-      if (q > 0.0) p = -p;
-      q = std::abs(q);
-      const double before = e;
-      e = d;
-      if (std::abs(p) < std::abs(0.5 * q * before) && p > q * (a - x) && p < q * (b - x)) {
-        d = p / q;
-        const double u = x + d;
-        if (u - a < 2.0 * tol || b - u < 2.0 * tol) d = x < mid ? tol : -tol;
-        parabola = true;
-      }
-    }
-    if (!parabola) {
-      e = x < mid ? b - x : a - x;
-      d = golden * e;
-    }
-    const double u = std::abs(d) >= tol ? x + d : x + (d > 0.0 ? tol : -tol);
-    const double fu = -f(u);
-    if (fu <= fx) {
-      (u < x ? b : a) = x;
-      v = w, fv = fw, w = x, fw = fx, x = u, fx = fu;
-    } else {
-      (u < x ? a : b) = u;
-      if (fu <= fw || w == x) {
-        v = w, fv = fw, w = u, fw = fu;
-      } else if (fu <= fv || v == x || v == w) {
-        v = u, fv = fu;
-      }
-    }
-  }
-  return {x, -fx};
-}
+using detail::maximum, detail::raise_extremes, detail::text;
 
 class StartUp {
  public:
@@ -262,9 +205,12 @@ Motion<double> StartUp::motion(double t, const double* y, Branch<double>* used) 
   const double cos_theta = std::cos(y[0]);
   Branch<double> branch = branch_;
   branch.stroke = sign_of(cos_theta * y[1]);  // B1 has the sign of cos theta as long as the rod outreaches the crank
+  const double i = current_of(t, y), v_t = terminal_voltage(vehicle_, voltage(t), i);
+  Motion<double> m = motion_at(vehicle_, sin_theta, cos_theta, y[1], i, v_t, branch);
+  branch.pitching = sign_of(pitch_margin(vehicle_.wings, std::abs(m.stroke_velocity)));
+  if (branch.pitching < 0.0) m = motion_at(vehicle_, sin_theta, cos_theta, y[1], i, v_t, branch);
   if (used) *used = branch;
-  const double i = current_of(t, y);
-  return motion_at(vehicle_, sin_theta, cos_theta, y[1], i, terminal_voltage(vehicle_, voltage(t), i), branch);
+  return m;
 }
 
 bool StartUp::rates(double t, const double* y, double* dy, bool quadrature) const {
@@ -841,35 +787,14 @@ void StartUp::track_inrush(detail::Cvode& cvode, double from) {
 
 /// Raises the extremes of the lap to what they reach within the last step, on the integrator's own interpolant.
 void StartUp::track_extremes(detail::Cvode& cvode, double from) {
-  constexpr int intervals = 4;
-  const double spacing = (t_ - from) / intervals;
-  if (!(spacing > 0.0)) return;
-  const auto candidates = [&](double t) {
-    const double* y = cvode.dense(t);
-    Branch<double> branch;
-    const Motion<double> m = motion(t, y, &branch);
-    return extreme_candidates(vehicle_, m, y[1], branch);
-  };
-  CycleExtremes<double> at[intervals + 1];
-  for (int k = 0; k <= intervals; ++k) at[k] = candidates(k == intervals ? t_ : from + k * spacing);
-  for (std::size_t e = 0; e < extreme_count; ++e) {
-    double& best = extremes_[e];
-    int top = 0;
-    for (int k = 0; k <= intervals; ++k) {
-      if (at[k][e] > at[top][e]) top = k;
-    }
-    const int middle = std::clamp(top, 1, intervals - 1);
-    const double a = at[middle - 1][e], b = at[middle][e], c = at[middle + 1][e];
-    const double bend = a - 2.0 * b + c;
-    best = std::max(best, at[top][e]);
-    if (bend >= 0.0) continue;
-    const double vertex = 0.5 * (a - c) / bend;  // in spacings from the middle
-    const double height = b - 0.125 * square(a - c) / bend;
-    if (std::abs(vertex) > 1.5 || height < best - 0.1 * std::abs(bend)) continue;
-    const auto value = [&](double t) { return candidates(t)[e]; };
-    const double centre = from + middle * spacing;
-    best = std::max(best, maximum(value, centre - spacing, std::min(centre + spacing, t_)).second);
-  }
+  raise_extremes(
+      [&](double t) {
+        const double* y = cvode.dense(t);
+        Branch<double> branch;
+        const Motion<double> m = motion(t, y, &branch);
+        return extreme_candidates(vehicle_, m, y[1], branch);
+      },
+      from, t_, extremes_);
 }
 
 void StartUp::add_variation() {
@@ -1163,6 +1088,7 @@ void StartUp::give_up(const std::string& why) {
 }  // namespace
 
 TransientResult simulate_start_up(const Vehicle<double>& vehicle, const TransientOptions& options) {
+  if (vehicle.transmission == TransmissionType::direct) return detail::simulate_direct_start_up(vehicle, options);
   return StartUp(vehicle, options).run();
 }
 

@@ -374,8 +374,8 @@ TEST(DesignErrors, WrongType) {
             "v.toml:6:3: motor: expected a section [motor], got a list of tables");
   EXPECT_EQ(refusal(with("\"constant\"", "\"steady\"")),
             "v.toml:4:1: supply.type: expected constant, sine, pwm or battery, got \"steady\"");
-  EXPECT_EQ(refusal(with("\"slider-crank\"", "\"direct\"")),
-            "v.toml:13:1: transmission.type: direct is not supported yet; expected slider-crank");
+  EXPECT_EQ(refusal(with("\"slider-crank\"", "\"geared\"")),
+            "v.toml:13:1: transmission.type: expected slider-crank or direct, got \"geared\"");
 }
 
 TEST(DesignErrors, WrongDimensionOrUnit) {

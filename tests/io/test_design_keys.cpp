@@ -53,6 +53,8 @@ TEST(DesignKeys, WhatIsSetIsRead) {
       d.supply.type = supply;
       if (key.set(d, 0.25)) break;
     }
+    if (!key.get(d)) d.transmission.type = TransmissionType::direct;
+    if (!key.get(d)) key.set(d, 0.25);
     if (!key.get(d)) d.motor.gear_ratio = 4.0;
     if (!key.get(d) && key.only_with == "vehicle.mass") {
       d.mass = 1e-3;
@@ -62,6 +64,7 @@ TEST(DesignKeys, WhatIsSetIsRead) {
     for (const auto& [name, shape] : planform_shapes) {
       if (key.get(d)) break;
       d.wing.planform.shape = shape;
+      if (key.set(d, 0.25)) break;
     }
     ASSERT_TRUE(key.set(d, 0.25)) << key.path;
     EXPECT_EQ(key.get(d), std::optional(0.25)) << key.path;
@@ -81,6 +84,23 @@ TEST(DesignKeys, AlternativesReplaceEachOther) {
   EXPECT_EQ(find_key<double>("supply.cell_voltage")->get(d), std::nullopt);
   set_parameter(d, "supply.cell_voltage", 3.7);
   EXPECT_TRUE(d.supply.battery.discharge_curve.empty());
+  d.transmission.type = TransmissionType::direct;
+  set_parameter(d, "spring.resonance_ratio", 1.0);
+  EXPECT_FALSE(d.spring.resonance);
+  d.supply.type = SupplyType::sine;
+  set_parameter(d, "supply.resonance_ratio", 1.0);
+  EXPECT_FALSE(find_key<double>("supply.frequency")->get(d));
+  set_parameter(d, "supply.frequency", 22.0);
+  EXPECT_FALSE(d.supply_resonance_ratio);
+  set_parameter(d, "wing.resonance", 22.0);
+  EXPECT_FALSE(find_key<double>("wing.inertia")->get(d));
+  set_parameter(d, "wing.inertia", 1e-7);
+  EXPECT_FALSE(d.wing.resonance);
+  d.wing.planform.shape = PlanformShape::rectangle;
+  set_parameter(d, "wing.planform.chord_ratio", 0.3);
+  EXPECT_FALSE(find_key<double>("wing.planform.root_chord")->get(d));
+  set_parameter(d, "wing.planform.root_chord", 0.02);
+  EXPECT_FALSE(d.wing.planform.chord_ratio);
   set_parameter(d, "friction.damping", 1e-6);
   EXPECT_EQ(d.friction.law, FrictionLaw::viscous);
   EXPECT_EQ(find_key<double>("friction.radius")->get(d), std::nullopt);
@@ -118,7 +138,8 @@ TEST(DesignKeys, NearestKey) {
   EXPECT_EQ(unknown_key_message("motor.torque_constan"), "unknown key; did you mean motor.torque_constant?");
   EXPECT_EQ(unknown_key_message("motr"), "unknown key; did you mean [motor]?");
   EXPECT_EQ(unknown_key_message("voltage"), "unknown key; did you mean supply.voltage?");
-  EXPECT_EQ(unknown_key_message("spring.damper"), "unknown key; [spring] knows stiffness, resonance, mass");
+  EXPECT_EQ(unknown_key_message("spring.damper"),
+            "unknown key; [spring] knows stiffness, resonance, resonance_ratio, mass");
   EXPECT_EQ(unknown_key_message("battery"),
             "unknown key; the sections are [vehicle], [supply], [motor], [transmission], [friction], [spring], [wing], "
             "[aerodynamics], [bench]");

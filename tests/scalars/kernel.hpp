@@ -57,25 +57,25 @@ inline constexpr std::size_t motor_work_at = 21 + std::size_t(Integral::motor_wo
 
 inline constexpr int step_size = 2 + integral_count;
 
-template <int N, Scalar S>
-std::array<S, step_size> crank_step_of(const Vehicle<S>& v, const S& theta, const std::array<S, N>& state, const S& h,
-                                       const std::array<S, 3>& signs) {
-  const CrankSystem<S, N> system{v, S(0.0), S(1.0)};
-  const auto first = system.template rates<true>(theta, state, signs);
-  const auto result = solve::explicit_step<true>(system, theta, state, h, signs, first);
-  std::array<S, step_size> out;
-  out[0] = result.y[0];
-  out[1] = system.current(result.y);
-  for (std::size_t n = 0; n < result.dq.size(); ++n) out[2 + n] = result.dq[n];
-  return out;
-}
-
-/// One explicit step of the crank, integrals included, on a given smooth branch. Lanes are alike in having an inductance.
+/// One explicit step of the crank, integrals included, on a given smooth branch. Without inductance the current is none of
+/// the states; `out` holds zero for it.
 template <Scalar S>
 std::array<S, step_size> crank_step(const Vehicle<S>& v, const S& theta, const std::array<S, 2>& state, const S& h,
-                                    const std::array<S, 3>& signs) {
-  if (any<S>(v.motor.armature_inductance > S(0.0))) return crank_step_of<2, S>(v, theta, state, h, signs);
-  return crank_step_of<1, S>(v, theta, {state[0]}, h, signs);
+                                    const std::array<S, 4>& signs) {
+  std::array<S, step_size> out;
+  const auto take = [&](const auto& system, const auto& start) {
+    const auto first = system.template rates<true>(theta, start, signs);
+    const auto result = solve::explicit_step<true>(system, theta, start, h, signs, first);
+    out[1] = S(0.0);
+    for (std::size_t n = 0; n < start.size(); ++n) out[n] = result.y[n];
+    for (std::size_t n = 0; n < result.dq.size(); ++n) out[2 + n] = result.dq[n];
+  };
+  if (value_of(v.motor.armature_inductance) > 0.0) {
+    take(CrankSystem<S, 2>{v, S(0.0), S(1.0)}, state);
+  } else {
+    take(CrankSystem<S, 1>{v, S(0.0), S(1.0)}, std::array<S, 1>{state[0]});
+  }
+  return out;
 }
 
 }  // namespace wingbeat

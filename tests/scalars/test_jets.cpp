@@ -22,6 +22,8 @@ Vehicle<double> generic_vehicle(Formulation formulation) {
   v.friction = {1.5e-3, 3e-6, 2e-8, 1e-4};
   v.spring.stiffness = 1.1e-3;
   v.source_resistance = 1.7;
+  v.wings.angle_of_attack_min = 0.2;
+  v.drive_frequency = 22.0;
   return v;
 }
 
@@ -123,7 +125,7 @@ struct StepOf {
   template <Scalar S>
   std::array<S, step_size> operator()(const Inputs<S>& in) const {
     const std::array<S, 2> state = {in.omega, in.current};
-    const std::array<S, 3> signs = {S(1.0), S(1.0), S(1.0)};
+    const std::array<S, 4> signs = {S(1.0), S(1.0), S(1.0), S(1.0)};
     if (!implicit) return crank_step<S>(in.vehicle, in.theta, state, S(0.3), signs);
     const CrankSystem<S, 2> system{in.vehicle, S(0.0), S(1.0)};
     const auto first = system.template rates<true>(in.theta, state, signs);

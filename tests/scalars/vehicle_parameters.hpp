@@ -8,11 +8,12 @@
 
 namespace wingbeat {
 
-inline constexpr int parameter_count = 31;
+inline constexpr int parameter_count = 33;
 
-// Thirty-one numbers, the formulation and the pointer to the coefficient table: a new parameter must be listed below.
+// The numbers, transmission and formulation and the pointer to the coefficient table: a new parameter must be listed
+// below.
 static_assert(sizeof(Vehicle<double>) ==
-              parameter_count * sizeof(double) + sizeof(double) + sizeof(std::shared_ptr<const CoefficientTable>));
+              parameter_count * sizeof(double) + 2 * sizeof(double) + sizeof(std::shared_ptr<const CoefficientTable>));
 
 template <Scalar S>
 std::array<std::pair<const char*, S*>, parameter_count> parameters(Vehicle<S>& v) {
@@ -48,7 +49,9 @@ std::array<std::pair<const char*, S*>, parameter_count> parameters(Vehicle<S>& v
            {"drag.amplitude", &drag.amplitude},
            {"drag.rate", &drag.rate},
            {"drag.phase", &drag.phase},
-           {"source_resistance", &v.source_resistance}}};
+           {"source_resistance", &v.source_resistance},
+           {"angle_of_attack_min", &v.wings.angle_of_attack_min},
+           {"drive_frequency", &v.drive_frequency}}};
 }
 
 }  // namespace wingbeat

@@ -64,4 +64,42 @@ inline Design<double> box_design(std::mt19937_64& random) {
   return d;
 }
 
+/// A direct drive whose every parameter is drawn: quality factors from about a half to 20, electrical time constants from
+/// nothing to a fifth of a period, drive frequencies up to 60 % off resonance, half with a pitch stop. With
+/// `constant_friction` the friction reaches up to what the drive can just overcome.
+inline Design<double> random_direct_design(std::mt19937_64& random, bool constant_friction) {
+  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  const auto around = [&](double value, double factor) {
+    return value * std::exp(uniform(-std::log(factor), std::log(factor)));
+  };
+  Design<double> d = reference_design();
+  d.transmission = {};
+  d.transmission.type = TransmissionType::direct;
+  d.supply = {SupplyType::sine, uniform(1.0, 6.0), around(22.0, 2.0), 1.0};
+  Motor<double>& m = d.motor.constants;
+  m.armature_resistance = around(9.0, 2.0);
+  m.armature_inductance = uniform(0.0, 1.0) < 0.25 ? 0.0 : around(3e-3, 30.0);
+  m.torque_constant = around(0.01, 2.0);
+  m.inertia = around(1.5e-7, 4.0);
+  m.viscous_damping = around(3.6e-6, 3.0);
+  switch (std::uniform_int_distribution<int>(0, 2)(random)) {
+    case 0: d.friction = {FrictionLaw::none, 0.0}; break;
+    case 1: d.friction = {FrictionLaw::viscous, around(3e-6, 3.0)}; break;
+    default: d.friction = {FrictionLaw::quadratic, around(2e-8, 3.0)};
+  }
+  if (constant_friction) {
+    const double drive = m.torque_constant * d.supply.voltage /
+                         std::hypot(m.armature_resistance, two_pi * d.supply.frequency * m.armature_inductance);
+    (uniform(0.0, 1.0) < 0.5 ? d.friction.coefficient : m.friction_torque) = uniform(0.0, 0.95) * drive;
+    if (m.friction_torque == 0.0) d.friction.law = FrictionLaw::constant;
+  }
+  d.spring.resonance = d.supply.frequency * around(1.0, 1.6);
+  d.wing.inertia = around(d.wing.inertia, 4.0);
+  d.wing.planform.s2 = around(d.wing.planform.s2, 10.0);
+  d.wing.planform.s3 = around(d.wing.planform.s3, 10.0);
+  d.aerodynamics.pitch_coefficient = around(5e-3, 2.0);
+  if (uniform(0.0, 1.0) < 0.5) d.aerodynamics.angle_of_attack_min = uniform(0.3, 1.2);
+  return d;
+}
+
 }  // namespace wingbeat

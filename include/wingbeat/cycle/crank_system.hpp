@@ -18,13 +18,19 @@ struct CrankSystem {
   using Real = S;
   using State = std::array<S, N>;
   using Quadrature = CycleIntegrals<S>;
-  using Switches = std::array<S, 2>;  ///< force_switch, stored_moment
-  static constexpr int state_switches = 1;  ///< of these, only the force bends the solution
+  /// Signs, those of switches first: rod force, pitching, stored moment; stroke velocity.
+  enum Sign { force, pitching, stored, stroke };
+  using Switches = std::array<S, 3>;
+  static constexpr int state_switches = 2;  ///< the stored moment does not bend the solution
   /// Integrals whose error limits the steps. Not those that may vanish up to rounding.
   static constexpr std::array<std::size_t, 5> controlled_integrals = {
       std::size_t(Integral::time), std::size_t(Integral::friction_work), std::size_t(Integral::aero_work),
       std::size_t(Integral::reactive_work), std::size_t(Integral::lift)};
-  using Signs = std::array<S, 3>;     ///< of the rod force, of the stored moment, of the stroke velocity
+  using Signs = std::array<S, 4>;
+  static constexpr bool has_rod = true;
+  /// What has an extreme that is a metric.
+  static constexpr std::array extremes = {Extreme::current,           Extreme::lift,            Extreme::rod_force,
+                                          Extreme::flapping_velocity, Extreme::crank_speed_min, Extreme::crank_speed_max};
 
   Vehicle<S> vehicle;
   S speed_floor = S(0.0);    ///< below this crank speed [rad/s] the crank counts as stopped
@@ -39,10 +45,10 @@ struct CrankSystem {
 
   /// beta' changes sign where dy/dtheta = 0: at the dead centres.
   static const std::array<solve::FixedNode, 2>& fixed_nodes() {
-    static constexpr std::array<solve::FixedNode, 2> nodes = {{{0.5 * pi, 2}, {1.5 * pi, 2}}};
+    static constexpr std::array<solve::FixedNode, 2> nodes = {{{0.5 * pi, stroke}, {1.5 * pi, stroke}}};
     return nodes;
   }
-  static Signs start_signs() { return {S(1.0), S(1.0), S(1.0)}; }
+  static Signs start_signs() { return {S(1.0), S(1.0), S(1.0), S(1.0)}; }
 
   bool admissible(const State& y) const { return all<S>(y[0] > speed_floor); }
 
@@ -56,7 +62,7 @@ struct CrankSystem {
     return scale;
   }
 
-  S current(const State& y) const {
+  S current(const S&, const State& y) const {
     if constexpr (N == 2) {
       return y[1];
     } else {
@@ -64,15 +70,26 @@ struct CrankSystem {
     }
   }
 
-  static Branch<S> branch(const Signs& signs) { return {signs[2], signs[0], S(1.0), signs[1] * signs[2]}; }
+  static Branch<S> branch(const Signs& signs) {
+    return {signs[stroke], signs[force], S(1.0), signs[stored] * signs[stroke], signs[pitching]};
+  }
+  static const S& shaft_speed(const State& y) { return y[0]; }
+  /// d theta / dt [rad/s].
+  static const S& pace(const State& y) { return y[0]; }
 
   Motion<S> motion(const S& theta, const State& y, const Signs& signs) const {
     using std::cos;
     using std::sin;
-    const S i = current(y);
+    const S i = current(theta, y);
     const S v_t = terminal_voltage(vehicle, vehicle.voltage, i);
     return motion_at(vehicle, S(sin(theta)), S(cos(theta)), y[0], i, v_t, branch(signs));
   }
+
+  CycleExtremes<S> candidates(const Motion<S>& m, const State& y, const Signs& signs) const {
+    return extreme_candidates(vehicle, m, y[0], branch(signs));
+  }
+  static S stroke_angle(const Motion<S>& m, const State&) { return wingbeat::stroke_angle(m.kinematics); }
+  static S shaft_angle(const S& theta, const State&) { return theta; }
 
   template <bool quadratures>
   solve::Rates<CrankSystem> rates(const S& theta, const State& y, const Signs& signs) const {
@@ -81,7 +98,7 @@ struct CrankSystem {
     solve::Rates<CrankSystem> r;
     r.dy[0] = m.crank_acceleration * per_omega;
     if constexpr (N == 2) r.dy[1] = m.voltage_reserve / vehicle.motor.armature_inductance * per_omega;
-    r.switches = {m.force_switch, m.stored_moment};
+    r.switches = {m.force_switch, pitch_margin(vehicle.wings, S(signs[stroke] * m.stroke_velocity)), m.stored_moment};
     if constexpr (quadratures) {
       const CycleIntegrals<S> in_time = integrands(vehicle, m, y[0], branch(signs));
       for (std::size_t q = 0; q < in_time.size(); ++q) r.dq[q] = in_time[q] * per_omega;

@@ -5,35 +5,38 @@
 #include <vector>
 
 #include "wingbeat/core/jet.hpp"
-#include "wingbeat/cycle/crank_system.hpp"
+#include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/solve/lap.hpp"
 
 namespace wingbeat {
 
-/// Maxima over the lap of extreme_candidates(), to the relative accuracy `tolerance`.
-template <int N>
-CycleExtremes<double> lap_extremes(const CrankSystem<double, N>& system,
-                                   const solve::Lap<CrankSystem<double, N>>& lap, double tolerance) {
+/// Maxima over the lap of extreme_candidates(), to the relative accuracy `tolerance`; absent those that the system has
+/// not.
+template <class System>
+CycleExtremes<double> lap_extremes(const System& system, const solve::Lap<System>& lap, double tolerance) {
   using Derivative = Jet<1>;
-  using Along = CrankSystem<Derivative, N>;
+  using State = typename System::State;
   using Candidates = CycleExtremes<Derivative>;
-  const Along along = system.template cast<Derivative>();
+  const auto along = system.template cast<Derivative>();
+  using Along = std::remove_const_t<decltype(along)>;
 
-  // Candidates and their derivatives along the solution at crank angle x.
-  const auto candidates = [&](double x, const std::array<double, N>& y, const std::array<double, N>& dy,
-                              const std::array<double, 3>& s) -> Candidates {
+  // Candidates and their derivatives along the solution at x.
+  const auto candidates = [&](double x, const State& y, const State& dy,
+                              const typename System::Signs& s) -> Candidates {
     typename Along::State state;
-    for (std::size_t n = 0; n < N; ++n) {
+    for (std::size_t n = 0; n < state.size(); ++n) {
       state[n].a = y[n];
       state[n].v[0] = dy[n];
     }
-    const typename Along::Signs signs = {Derivative(s[0]), Derivative(s[1]), Derivative(s[2])};
+    typename Along::Signs signs;
+    for (std::size_t k = 0; k < signs.size(); ++k) signs[k] = Derivative(s[k]);
     const Motion<Derivative> m = along.motion(Derivative(x, 0), state, signs);
-    return extreme_candidates(along.vehicle, m, state[0], Along::branch(signs));
+    return along.candidates(m, state, signs);
   };
 
   // A piece of a step on which the slope falls from d0 > 0 to d1 < 0.
   struct Bracket {
-    const solve::Step<CrankSystem<double, N>>* step;
+    const solve::Step<System>* step;
     double x0, v0, d0, x1, v1, d1;
     double x, estimate;  // of the maximum
   };
@@ -57,7 +60,8 @@ CycleExtremes<double> lap_extremes(const CrankSystem<double, N>& system,
   };
 
   CycleExtremes<double> best;
-  best.fill(-std::numeric_limits<double>::infinity());
+  best.fill(absent);
+  for (const Extreme e : System::extremes) best[std::size_t(e)] = -std::numeric_limits<double>::infinity();
   std::array<std::vector<Bracket>, extreme_count> brackets;
   Candidates at;
   for (std::size_t n = 0; n < lap.steps.size(); ++n) {
@@ -66,16 +70,20 @@ CycleExtremes<double> lap_extremes(const CrankSystem<double, N>& system,
     const bool same_branch = n > 0 && step.signs == lap.steps[n - 1].signs;
     if (!same_branch) at = candidates(step.x, step.y, step.first.dy, step.signs);
     const auto& y1 = last ? lap.end : lap.steps[n + 1].y;
-    const auto& dy1 = last ? lap.steps.front().first.dy : lap.steps[n + 1].first.dy;
     const double x1 = step.x + step.h;
+    // Where the rates may jump, those of the next step do not belong to this one's end.
+    const State dy1 = solve::jumps(system, 0) ? system.template rates<false>(x1, y1, step.signs).dy
+                      : last                  ? lap.steps.front().first.dy
+                                              : lap.steps[n + 1].first.dy;
     const Candidates end = candidates(x1, y1, dy1, step.signs);
-    for (std::size_t c = 0; c < extreme_count; ++c) {
+    for (const Extreme e : System::extremes) {
+      const auto c = std::size_t(e);
       best[c] = std::max({best[c], at[c].a, end[c].a});
       Bracket bracket{&step, step.x, at[c].a, at[c].v[0], x1, end[c].a, end[c].v[0], 0.0, 0.0};
       if (!(bracket.d0 > 0.0 && bracket.d1 < 0.0)) {
         const double t = between_turns(step.h, bracket.v0, bracket.d0, bracket.v1, bracket.d1);
         if (t == 0.0) continue;
-        const auto y = solve::detail::hermite<CrankSystem<double, N>>(step.y, step.first.dy, y1, dy1, step.h, t);
+        const auto y = solve::detail::hermite<System>(step.y, step.first.dy, y1, dy1, step.h, t);
         const double x = step.x + t * step.h;
         const auto dy = system.template rates<false>(x, y, step.signs).dy;
         const Derivative middle = candidates(x, y, dy, step.signs)[c];
@@ -92,7 +100,8 @@ CycleExtremes<double> lap_extremes(const CrankSystem<double, N>& system,
     at = end;
   }
 
-  for (std::size_t c = 0; c < extreme_count; ++c) {
+  for (const Extreme e : System::extremes) {
+    const auto c = std::size_t(e);
     double highest = best[c], lowest_candidate = std::numeric_limits<double>::infinity();
     for (const Bracket& b : brackets[c]) highest = std::max(highest, b.estimate);
     for (const Bracket& b : brackets[c]) lowest_candidate = std::min({lowest_candidate, b.v0, b.v1});

@@ -103,23 +103,34 @@ CycleIntegrals<S> integrands(const Vehicle<S>& v, const Motion<S>& m, const S& o
           m.aero_moment * m.stroke_velocity,
           branch.stored_power * m.stored_moment * m.stroke_velocity,
           m.rod_force * (m.kinematics.crank_lever * omega - m.kinematics.wing_lever * m.stroke_velocity),
-          lift_force(v.wings, stroke_speed),
+          lift_force(v.wings, stroke_speed, branch.pitching),
           branch.force * m.rod_force};
 }
 
 /// Quantities of which a cycle's extreme value is a metric.
-enum class Extreme { current, lift, rod_force, flapping_velocity, crank_speed_min, crank_speed_max };
-inline constexpr int extreme_count = int(Extreme::crank_speed_max) + 1;
+enum class Extreme {
+  current,
+  lift,
+  rod_force,
+  flapping_velocity,
+  crank_speed_min,
+  crank_speed_max,
+  stroke_max,  ///< of a direct drive: a crank's stroke is fixed by its geometry
+  stroke_min
+};
+inline constexpr int extreme_count = int(Extreme::stroke_min) + 1;
 
 template <Scalar S>
 using CycleExtremes = std::array<S, extreme_count>;
 
-/// The value whose maximum over the cycle is sought for each Extreme (the crank speed's minimum with its sign turned):
-/// i [A], lift [N], |F| [N], |beta'| [rad/s], -omega and omega [rad/s].
+/// The value whose maximum over the cycle is sought for each Extreme (minima with their sign turned): i [A], lift [N],
+/// |F| [N], |beta'| [rad/s], -omega and omega [rad/s], beta and -beta [rad].
 template <Scalar S>
-CycleExtremes<S> extreme_candidates(const Vehicle<S>& v, const Motion<S>& m, const S& omega, const Branch<S>& branch) {
+CycleExtremes<S> extreme_candidates(const Vehicle<S>& v, const Motion<S>& m, const S& omega, const Branch<S>& branch,
+                                    const S& beta = S(0.0)) {
   const S stroke_speed = branch.stroke * m.stroke_velocity;
-  return {m.current, lift_force(v.wings, stroke_speed), branch.force * m.rod_force, stroke_speed, -omega, omega};
+  return {m.current, lift_force(v.wings, stroke_speed, branch.pitching), branch.force * m.rod_force, stroke_speed,
+          -omega,    omega, beta, -beta};
 }
 
 /// What metrics need beside the motion itself.
@@ -134,7 +145,9 @@ inline Reporting reporting_of(const Design<double>& d) {
   return {total_mass(d).value_or(absent), d.bench_torque_constant.value_or(absent)};
 }
 
-/// The metrics of a cycle from its integrals and extremes. `extremes` holds the maxima of extreme_candidates().
+/// The metrics of a cycle from its integrals and extremes. `extremes` holds the maxima of extreme_candidates(). A direct
+/// drive has no rod, no speed of rotation and no direct current: rod forces, crank speeds and the bench estimate (17) are
+/// absent; its voltage is the amplitude.
 /// Floquet multiplier: of the orbit, or `absent`.
 template <Scalar S>
 Metrics<S> cycle_metrics(const Vehicle<S>& v, const CycleIntegrals<S>& integrals, const CycleExtremes<S>& extremes,
@@ -166,12 +179,19 @@ Metrics<S> cycle_metrics(const Vehicle<S>& v, const CycleIntegrals<S>& integrals
   m[Metric::lift_peak] = peak(Extreme::lift);
   m[Metric::rod_force_peak] = peak(Extreme::rod_force);
   m[Metric::rod_force_mean] = f * total(Integral::rod_force);
-  m[Metric::stroke_amplitude] = stroke_amplitude(v.crank);
+  if (v.transmission == TransmissionType::direct) {
+    m[Metric::rod_force_peak] = m[Metric::rod_force_mean] = S(absent);
+    m[Metric::power_motor_reference] = S(absent);  // an estimate from the mean of a current that alternates
+    m[Metric::stroke_amplitude] = S(0.5) * (peak(Extreme::stroke_max) + peak(Extreme::stroke_min));
+  } else {
+    m[Metric::stroke_amplitude] = stroke_amplitude(v.crank);
+  }
   m[Metric::flapping_velocity_peak] = peak(Extreme::flapping_velocity);
   m[Metric::angle_of_attack_min] =
       S(degrees_per_radian) * angle_of_attack(v.wings, peak(Extreme::flapping_velocity));
   m[Metric::crank_speed_min] = -peak(Extreme::crank_speed_min);
   m[Metric::crank_speed_max] = peak(Extreme::crank_speed_max);
+  if (v.transmission == TransmissionType::direct) m[Metric::crank_speed_min] = m[Metric::crank_speed_max] = S(absent);
   m[Metric::efficiency_system] = ratio(m[Metric::power_aerodynamic], m[Metric::power_electrical]);
   m[Metric::efficiency_motor] = ratio(m[Metric::power_motor], m[Metric::power_electrical]);
   m[Metric::efficiency_mechanism] = ratio(m[Metric::power_aerodynamic], m[Metric::power_motor]);

@@ -1,17 +1,18 @@
-// One recorded flapping cycle: the orbit at any crank angle, and waveforms from it.
+// One recorded flapping cycle: the orbit at any crank angle (of a direct drive: phase of the supply), and waveforms.
 #pragma once
 
 #include <variant>
 #include <vector>
 
 #include "wingbeat/cycle/crank_system.hpp"
+#include "wingbeat/cycle/direct_system.hpp"
 
 namespace wingbeat {
 
 /// One instant of a flapping cycle, in the order of a waveform file (all SI, angle of attack in degrees).
 struct WaveformRow {
-  double time;                 ///< since crank angle 0 [s]
-  double crank_angle;          ///< theta [rad]
+  double time;                 ///< since crank angle 0; direct drive: since the supply's phase 0 [s]
+  double crank_angle;          ///< theta; direct drive: of the shaft, which is the stroke angle [rad]
   double crank_speed;          ///< omega [rad/s]
   double current;              ///< i [A]
   double stroke_angle;         ///< beta [rad]
@@ -19,20 +20,25 @@ struct WaveformRow {
   double angle_of_attack_deg;  ///< alpha [deg]
   double lift;                 ///< [N]
   double aero_moment;          ///< M_aero [N m]
-  double rod_force;            ///< F [N]
+  double rod_force;            ///< F [N]; absent where there is no rod
   double motor_torque;         ///< T_m [N m]
   double friction_torque;      ///< T_f [N m]
 };
 
-/// A lap of the crank, with (second alternative) or without inductance.
+/// A system and its lap.
+template <class System>
+struct RecordedLap {
+  System system;
+  solve::Lap<System> lap;
+};
+
+/// A lap of the crank or of a direct drive, each with or without inductance.
 class CycleRecord {
  public:
   template <int N>
-  struct Recorded {
-    CrankSystem<double, N> system;
-    solve::Lap<CrankSystem<double, N>> lap;
-  };
-  using Laps = std::variant<Recorded<1>, Recorded<2>>;
+  using Recorded = RecordedLap<CrankSystem<double, N>>;
+  using Laps = std::variant<Recorded<1>, Recorded<2>, RecordedLap<DirectSystem<double, 2>>,
+                            RecordedLap<DirectSystem<double, 3>>>;
 
   CycleRecord() = default;
   explicit CycleRecord(Laps laps) : laps_(std::move(laps)) {}
@@ -42,7 +48,7 @@ class CycleRecord {
   double period() const;
   /// Integrals over the cycle.
   CycleIntegrals<double> integrals() const;
-  /// The cycle at crank angle theta [rad], 0 to 2 pi, to the accuracy of the orbit.
+  /// The cycle at a crank angle (direct drive: phase of the supply) [rad], 0 to 2 pi, to the accuracy of the orbit.
   WaveformRow at(double theta) const;
   /// The cycle at `count` instants equally spaced in time, both ends included; count >= 2.
   std::vector<WaveformRow> waveform(int count) const;

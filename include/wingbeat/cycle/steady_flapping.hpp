@@ -1,4 +1,5 @@
-// The steady flapping of one vehicle, found as a periodic orbit in crank angle, or the reason why it does not flap.
+// The steady flapping of one vehicle, found as a periodic orbit in crank angle or in the phase of the supply, or the
+// reason why it does not flap.
 #pragma once
 
 #include <functional>
@@ -17,8 +18,9 @@ struct StartUpOutcome {
   FlappingStatus status = FlappingStatus::flapping;
   bool settled = false;      ///< false: undecided within the solver's limits
   std::string detail;        ///< the evidence, one sentence
-  double crank_speed = 0.0;  ///< flapping: omega at crank angle 0 [rad/s]
-  double current = 0.0;      ///< flapping: i at crank angle 0 [A]
+  double crank_speed = 0.0;  ///< flapping: omega at crank angle 0 (direct drive: phase 0 of the supply) [rad/s]
+  double current = 0.0;      ///< flapping: i there [A]
+  double stroke_angle = 0.0; ///< flapping, direct drive: beta there [rad]
 };
 using StartUp = std::function<StartUpOutcome(const Vehicle<double>&)>;
 
@@ -35,8 +37,8 @@ struct SteadyFlapping {
   StaticBalance balance{};
   Metrics<double> metrics;  ///< all absent unless flapping
   CycleRecord record;       ///< the orbit's cycle; empty unless flapping
-  double crank_speed = absent;  ///< flapping: omega at crank angle 0 [rad/s]
-  double current = absent;      ///< flapping: i at crank angle 0 [A]
+  double crank_speed = absent;  ///< flapping: omega at crank angle 0 (direct drive: phase 0 of the supply) [rad/s]
+  double current = absent;      ///< flapping: i there [A]
 };
 
 /// Finds the steady flapping of a validated vehicle. Never throws on account of the vehicle, never hangs, never returns

@@ -42,6 +42,8 @@ struct Key : KeyText {
 inline constexpr std::pair<std::string_view, SupplyType> supply_types[] = {
     {"constant", SupplyType::constant}, {"sine", SupplyType::sine}, {"pwm", SupplyType::pwm},
     {"battery", SupplyType::battery}};
+inline constexpr std::pair<std::string_view, TransmissionType> transmission_types[] = {
+    {"slider-crank", TransmissionType::slider_crank}, {"direct", TransmissionType::direct}};
 inline constexpr std::pair<std::string_view, Formulation> formulations[] = {
     {"rod-force", Formulation::rod_force}, {"virtual-work", Formulation::virtual_work}};
 inline constexpr std::pair<std::string_view, FrictionLaw> friction_laws[] = {
@@ -83,16 +85,33 @@ constexpr Key<S> number(KeyText text, Access, Applies = {}) {
           }};
 }
 
-/// One of two optional numbers that exclude each other.
-template <Scalar S, class Access, class Other>
-constexpr Key<S> alternative(KeyText text, Access, Other) {
+/// One of several optional numbers that exclude each other, with a place where `applies(design)`.
+template <Scalar S, class Applies, class Access, class... Others>
+constexpr Key<S> alternative(KeyText text, Applies, Access, Others...) {
   return {text,
           [](Design<S>& d, const S& x) {
+            if (!Applies{}(d)) return false;
+            (Others{}(d).reset(), ...);
+            Access{}(d) = x;
+            return true;
+          },
+          [](const Design<S>& d) -> std::optional<S> { return Access{}(d); }};
+}
+
+/// A plain number with a place where `applies(design)`, unless an optional one replaces it.
+template <Scalar S, class Applies, class Access, class Other>
+constexpr Key<S> replaceable(KeyText text, Applies, Access, Other) {
+  return {text,
+          [](Design<S>& d, const S& x) {
+            if (!Applies{}(d)) return false;
             Access{}(d) = x;
             Other{}(d).reset();
             return true;
           },
-          [](const Design<S>& d) -> std::optional<S> { return Access{}(d); }};
+          [](const Design<S>& d) -> std::optional<S> {
+            if (!Applies{}(d) || Other{}(d)) return std::nullopt;
+            return Access{}(d);
+          }};
 }
 
 /// A battery's voltage at any charge, in place of its discharge curve.
@@ -152,10 +171,11 @@ constexpr Key<S> text(KeyText text, std::string (*read)(const Design<S>&)) {
 template <Scalar S>
 std::span<const Key<S>> vehicle_keys() {
   using D = Design<S>;
-  using detail::alternative, detail::battery_voltage, detail::choice_name, detail::friction_number, detail::number,
-      detail::text, detail::wave_number;
+  using detail::alternative, detail::always, detail::battery_voltage, detail::choice_name, detail::friction_number,
+      detail::number, detail::replaceable, detail::text, detail::wave_number;
+  constexpr std::string_view of_crank = "transmission.type = slider-crank";
   constexpr auto sine = [](const auto& d) { return d.supply.type == SupplyType::sine; };
-  constexpr auto direct = [](const auto& d) {
+  constexpr auto with_voltage = [](const auto& d) {
     return d.supply.type == SupplyType::constant || d.supply.type == SupplyType::pwm;
   };
   constexpr auto periodic = [](const auto& d) {
@@ -165,9 +185,14 @@ std::span<const Key<S>> vehicle_keys() {
   constexpr auto battery = [](const auto& d) { return d.supply.type == SupplyType::battery; };
   constexpr auto weighed = [](const auto& d) { return d.mass.has_value(); };
   constexpr auto weighed_springs = [](const auto& d) {
-    return d.mass.has_value() && (d.spring.stiffness.has_value() || d.spring.resonance.has_value());
+    return d.mass.has_value() && has_springs(d);
   };
   constexpr auto geared = [](const auto& d) { return d.motor.gear_ratio.has_value(); };
+  constexpr auto weighed_rod = [](const auto& d) {
+    return d.mass.has_value() && d.transmission.type == TransmissionType::slider_crank;
+  };
+  constexpr auto crank = [](const auto& d) { return d.transmission.type == TransmissionType::slider_crank; };
+  constexpr auto direct = [](const auto& d) { return d.transmission.type == TransmissionType::direct; };
   constexpr auto outline = [](const auto& d) {
     return d.wing.planform.shape == PlanformShape::semi_ellipse || d.wing.planform.shape == PlanformShape::rectangle;
   };
@@ -177,6 +202,10 @@ std::span<const Key<S>> vehicle_keys() {
   constexpr auto stroke_amplitude = [](auto& d) -> auto& { return d.transmission.stroke_amplitude; };
   constexpr auto stiffness = [](auto& d) -> auto& { return d.spring.stiffness; };
   constexpr auto resonance = [](auto& d) -> auto& { return d.spring.resonance; };
+  constexpr auto spring_ratio = [](auto& d) -> auto& { return d.spring.resonance_ratio; };
+  constexpr auto drive_ratio = [](auto& d) -> auto& { return d.supply_resonance_ratio; };
+  constexpr auto wing_resonance = [](auto& d) -> auto& { return d.wing.resonance; };
+  constexpr auto chord_ratio = [](auto& d) -> auto& { return d.wing.planform.chord_ratio; };
 
   static constexpr Key<S> keys[] = {
       text<S>({"vehicle.name", "", "any text", "no name", "name of the vehicle, for reports"},
@@ -189,12 +218,17 @@ std::span<const Key<S>> vehicle_keys() {
               [](const D& d) { return choice_name(supply_types, d.supply.type); }),
       number<S>({"supply.voltage", "V", ">= 0", "required", "v, terminal voltage; pwm: while switched on",
                  "supply.type = constant|pwm"},
-                [](auto& d) -> auto& { return d.supply.voltage; }, direct),
+                [](auto& d) -> auto& { return d.supply.voltage; }, with_voltage),
       number<S>({"supply.amplitude", "V", ">= 0", "required", "amplitude of the sine", "supply.type = sine"},
                 [](auto& d) -> auto& { return d.supply.voltage; }, sine),
-      number<S>({"supply.frequency", "Hz", "> 0", "required", "drive frequency (sine) or switching frequency (pwm)",
-                 "supply.type = sine|pwm"},
-                [](auto& d) -> auto& { return d.supply.frequency; }, periodic),
+      replaceable<S>({"supply.frequency", "Hz", "> 0", "required or resonance_ratio",
+                      "drive frequency (sine) or switching frequency (pwm)", "supply.type = sine|pwm"},
+                     periodic, [](auto& d) -> auto& { return d.supply.frequency; }, drive_ratio),
+      alternative<S>({"supply.resonance_ratio", "1", "> 0", "required or frequency",
+                      "drive frequency over the frequency at which rotor and wings resonate on the springs; 1 drives a "
+                      "direct drive at resonance",
+                      "transmission.type = direct"},
+                     direct, drive_ratio),
       number<S>({"supply.duty", "1", "0 to 1", "required", "fraction of a period switched on", "supply.type = pwm"},
                 [](auto& d) -> auto& { return d.supply.duty; }, pwm),
       number<S>({"supply.cells", "1", "whole number >= 1", "1", "cells in series", "supply.type = battery"},
@@ -253,32 +287,38 @@ std::span<const Key<S>> vehicle_keys() {
                  "mass of the motor with its gearbox, in addition to vehicle.mass", "vehicle.mass"},
                 [](auto& d) -> auto& { return d.masses.motor; }, weighed),
 
-      text<S>({"transmission.type", "", "slider-crank", "required", "kind of mechanism between motor and wings"},
-              [](const D&) { return std::string("slider-crank"); }),
-      number<S>({"transmission.crank_radius", "m", "> 0, < rod_length", "required", "r_c, crank radius"},
-                [](auto& d) -> auto& { return d.transmission.crank_radius; }),
-      number<S>({"transmission.rod_length", "m", "> crank_radius", "required", "l, rod length"},
-                [](auto& d) -> auto& { return d.transmission.rod_length; }),
+      text<S>({"transmission.type", "", "slider-crank or direct", "required",
+               "kind of mechanism between motor and wings; direct: the motor shaft is the wing hinge"},
+              [](const D& d) { return choice_name(transmission_types, d.transmission.type); }),
+      number<S>({"transmission.crank_radius", "m", "> 0, < rod_length", "required", "r_c, crank radius", of_crank},
+                [](auto& d) -> auto& { return d.transmission.crank_radius; }, crank),
+      number<S>({"transmission.rod_length", "m", "> crank_radius", "required", "l, rod length", of_crank},
+                [](auto& d) -> auto& { return d.transmission.rod_length; }, crank),
       alternative<S>({"transmission.hinge_offset", "m", "> 0", "required or stroke_amplitude",
-                      "H, horizontal distance from slider to wing hinge"},
-                     hinge_offset, stroke_amplitude),
+                      "H, horizontal distance from slider to wing hinge", of_crank},
+                     crank, hinge_offset, stroke_amplitude),
       alternative<S>({"transmission.stroke_amplitude", "rad", "> 0, < pi/2", "required or hinge_offset",
                       "half the peak-to-peak stroke angle; fixes H = r_c / tan(stroke_amplitude); "
-                      "not with mid_stroke_height"},
-                     stroke_amplitude, hinge_offset),
+                      "not with mid_stroke_height",
+                      of_crank},
+                     crank, stroke_amplitude, hinge_offset),
       number<S>({"transmission.mid_stroke_height", "m", "any", "rod_length",
-                 "y_0, slider height over the crank axis at stroke angle zero"},
-                [](auto& d) -> auto& { return d.transmission.mid_stroke_height; }),
+                 "y_0, slider height over the crank axis at stroke angle zero", of_crank},
+                [](auto& d) -> auto& { return d.transmission.mid_stroke_height; }, crank),
       number<S>({"transmission.rod_linear_density", "kg/m", ">= 0", "none: in vehicle.mass",
                  "mass of the rod over its length: rod_length times this, in addition to vehicle.mass",
                  "vehicle.mass"},
-                [](auto& d) -> auto& { return d.masses.rod_linear_density; }, weighed),
+                [](auto& d) -> auto& { return d.masses.rod_linear_density; }, weighed_rod),
       text<S>({"transmission.formulation", "", "rod-force or virtual-work", "rod-force",
-               "how the rod force turns the wings: the paper's eq (1), or conserving power exactly"},
-              [](const D& d) { return choice_name(formulations, d.transmission.formulation); }),
+               "how the rod force turns the wings: the paper's eq (1), or conserving power exactly", of_crank},
+              [](const D& d) {
+                return d.transmission.type == TransmissionType::direct
+                           ? std::string()
+                           : choice_name(formulations, d.transmission.formulation);
+              }),
 
       text<S>({"friction.type", "", "none, load-proportional, viscous, quadratic or constant", "required",
-               "law of the transmission's friction torque T_f on the crank"},
+               "law of the transmission's friction torque T_f on the crank or shaft; load-proportional needs a rod"},
               [](const D& d) { return choice_name(friction_laws, d.friction.law); }),
       friction_number<S, FrictionLaw::load_proportional>(
           {"friction.radius", "m", ">= 0", "required", "mu r_e, effective friction radius: T_f = mu r_e abs(F)",
@@ -292,27 +332,42 @@ std::span<const Key<S>> vehicle_keys() {
 
       alternative<S>({"spring.stiffness", "N m/rad", ">= 0", "required or resonance",
                       "k, stiffness of one hinge spring, at rest at stroke angle zero"},
-                     stiffness, resonance),
+                     always, stiffness, resonance, spring_ratio),
       alternative<S>({"spring.resonance", "Hz", ">= 0", "required or stiffness",
-                      "f_s, resonance of one wing on its spring: k = J_w (2 pi f_s)^2"},
-                     resonance, stiffness),
+                      "f_s, resonance of one wing on its spring, k = J_w (2 pi f_s)^2; direct drive: of rotor and wings "
+                      "on all springs, N_w k = (J + N_w J_w) (2 pi f_s)^2"},
+                     always, resonance, stiffness, spring_ratio),
+      alternative<S>({"spring.resonance_ratio", "1", "> 0", "required or stiffness",
+                      "frequency at which rotor and wings resonate on the springs, over the drive frequency; 1 tunes the "
+                      "springs to the supply",
+                      "transmission.type = direct"},
+                     direct, spring_ratio, stiffness, resonance),
       number<S>({"spring.mass", "kg", ">= 0", "none: in vehicle.mass",
                  "mass of one hinge spring, in addition to vehicle.mass; one for each wing", "vehicle.mass"},
                 [](auto& d) -> auto& { return d.masses.spring; }, weighed_springs),
 
       number<S>({"wing.count", "1", "whole number >= 1", "2", "N_w, number of wings"},
                 [](auto& d) -> auto& { return d.wing.count; }),
-      number<S>({"wing.inertia", "kg m2", "> 0", "required", "J_w, inertia of one wing about its hinge"},
-                [](auto& d) -> auto& { return d.wing.inertia; }),
+      replaceable<S>({"wing.inertia", "kg m2", "> 0", "required or resonance", "J_w, inertia of one wing about its hinge"},
+                     always, [](auto& d) -> auto& { return d.wing.inertia; }, wing_resonance),
+      alternative<S>({"wing.resonance", "Hz", "> 0", "required or inertia",
+                      "frequency at which rotor and wings resonate on springs of a given stiffness: the inertia follows, "
+                      "J + N_w J_w = N_w k / (2 pi f)^2",
+                      "transmission.type = direct"},
+                     direct, wing_resonance),
       text<S>({"wing.planform.shape", "", "semi-ellipse, rectangle, tabulated or moments", "required",
                "how the wing's outline is given"},
               [](const D& d) { return choice_name(planform_shapes, d.wing.planform.shape); }),
       number<S>({"wing.planform.length", "m", "> 0", "required", "R, wing root to tip",
                  "wing.planform.shape = semi-ellipse|rectangle"},
                 [](auto& d) -> auto& { return d.wing.planform.length; }, outline),
-      number<S>({"wing.planform.root_chord", "m", "> 0", "required", "c_0, chord at the root",
-                 "wing.planform.shape = semi-ellipse|rectangle"},
-                [](auto& d) -> auto& { return d.wing.planform.root_chord; }, outline),
+      replaceable<S>({"wing.planform.root_chord", "m", "> 0", "required or chord_ratio", "c_0, chord at the root",
+                      "wing.planform.shape = semi-ellipse|rectangle"},
+                     outline, [](auto& d) -> auto& { return d.wing.planform.root_chord; }, chord_ratio),
+      alternative<S>({"wing.planform.chord_ratio", "1", "> 0", "required or root_chord",
+                      "c_0 / R, chord at the root over the length: it follows when the length changes",
+                      "wing.planform.shape = semi-ellipse|rectangle"},
+                     outline, chord_ratio),
       number<S>({"wing.planform.hub_offset", "m", ">= 0", "0 m", "distance from the hinge to the wing root",
                  "wing.planform.shape = semi-ellipse|rectangle|tabulated"},
                 [](auto& d) -> auto& { return d.wing.planform.hub_offset; }, not_moments),
@@ -336,6 +391,9 @@ std::span<const Key<S>> vehicle_keys() {
       number<S>({"aerodynamics.pitch_coefficient", "s", ">= 0", "required",
                  "C_alpha, passive pitching: alpha = pi/2 - C_alpha abs(beta')"},
                 [](auto& d) -> auto& { return d.aerodynamics.pitch_coefficient; }),
+      number<S>({"aerodynamics.angle_of_attack_min", "rad", ">= 0, < pi/2", "none",
+                 "stop of the passive pitching: alpha falls no lower"},
+                [](auto& d) -> auto& { return d.aerodynamics.angle_of_attack_min; }),
       text<S>({"aerodynamics.coefficients", "", "translational-2022, or a table of the keys below",
                "translational-2022", "lift and drag coefficient against angle of attack, eqs (12, 13)"},
               [](const D& d) {

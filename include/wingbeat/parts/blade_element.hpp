@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <type_traits>
 #include <vector>
@@ -81,10 +82,13 @@ struct BladeElement {
   S s2;                 ///< S_2 of all wings [m4], >= 0
   S s3;                 ///< S_3 of all wings [m5], >= 0
   ForceCoefficients<S> coefficients;
+  /// Stop of the passive pitching: alpha never falls below it [rad], 0 to pi/2; minus infinity where there is none.
+  S angle_of_attack_min = S(-std::numeric_limits<double>::infinity());
 
   template <Scalar T>
   BladeElement<T> cast() const {
-    return {T(air_density), T(pitch_coefficient), T(s2), T(s3), coefficients.template cast<T>()};
+    return {T(air_density), T(pitch_coefficient),           T(s2),
+            T(s3),          coefficients.template cast<T>(), T(angle_of_attack_min)};
   }
 };
 
@@ -122,25 +126,59 @@ S drag_coefficient(const ForceCoefficients<S>& c, const S& alpha) {
   return c.drag.offset + c.drag.amplitude * cos(c.drag.rate * alpha + c.drag.phase);
 }
 
-/// Geometric angle of attack alpha [rad] at stroke speed |beta'| [rad/s]: passive pitching (eq 14).
+template <Scalar S>
+bool has_pitch_stop(const BladeElement<S>& w) {
+  return std::isfinite(value_of(w.angle_of_attack_min));
+}
+
+/// How far the passive pitching is from its stop at stroke speed |beta'| [rad/s]: alpha - alpha_min [rad], 1 where there
+/// is no stop. Its sign says which branch of angle_of_attack() holds.
+template <Scalar S>
+S pitch_margin(const BladeElement<S>& w, const S& stroke_speed) {
+  if constexpr (ScalarTraits<S>::reads_tables) {
+    if (has_pitch_stop(w)) return S(pi / 2.0) - w.pitch_coefficient * stroke_speed - w.angle_of_attack_min;
+  }
+  return S(1.0);
+}
+
+/// Geometric angle of attack alpha [rad] at stroke speed |beta'| [rad/s]: passive pitching (eq 14). `pitching` is the
+/// branch: +1 free, -1 at the stop. As with tables, batches do not know the stop.
+template <Scalar S>
+S angle_of_attack(const BladeElement<S>& w, const S& stroke_speed, const S& pitching) {
+  const S free = S(pi / 2.0) - w.pitch_coefficient * stroke_speed;
+  if constexpr (ScalarTraits<S>::reads_tables) {
+    return select(pitching >= S(0.0), free, w.angle_of_attack_min);
+  } else {
+    return free;
+  }
+}
+/// On the branch that holds.
 template <Scalar S>
 S angle_of_attack(const BladeElement<S>& w, const S& stroke_speed) {
-  return S(pi / 2.0) - w.pitch_coefficient * stroke_speed;
+  return angle_of_attack(w, stroke_speed, pitch_margin(w, stroke_speed));
 }
 
-/// Lift [N] of all wings, normal to the stroke plane (eq 2), at stroke speed |beta'| [rad/s].
+/// Lift [N] of all wings, normal to the stroke plane (eq 2), at stroke speed |beta'| [rad/s] on a branch of the pitching.
 template <Scalar S>
-S lift_force(const BladeElement<S>& w, const S& stroke_speed) {
-  const S C_L = lift_coefficient(w.coefficients, angle_of_attack(w, stroke_speed));
+S lift_force(const BladeElement<S>& w, const S& stroke_speed, const S& pitching) {
+  const S C_L = lift_coefficient(w.coefficients, angle_of_attack(w, stroke_speed, pitching));
   return S(0.5) * w.air_density * C_L * square(stroke_speed) * w.s2;
 }
+template <Scalar S>
+S lift_force(const BladeElement<S>& w, const S& stroke_speed) {
+  return lift_force(w, stroke_speed, pitch_margin(w, stroke_speed));
+}
 
-/// Magnitude of the aerodynamic moment [N m] of all wings about the hinges (eq 3), at stroke speed |beta'| [rad/s];
-/// it opposes the stroke velocity.
+/// Magnitude of the aerodynamic moment [N m] of all wings about the hinges (eq 3), at stroke speed |beta'| [rad/s] on a
+/// branch of the pitching; it opposes the stroke velocity.
+template <Scalar S>
+S drag_moment(const BladeElement<S>& w, const S& stroke_speed, const S& pitching) {
+  const S C_D = drag_coefficient(w.coefficients, angle_of_attack(w, stroke_speed, pitching));
+  return S(0.5) * w.air_density * C_D * square(stroke_speed) * w.s3;
+}
 template <Scalar S>
 S drag_moment(const BladeElement<S>& w, const S& stroke_speed) {
-  const S C_D = drag_coefficient(w.coefficients, angle_of_attack(w, stroke_speed));
-  return S(0.5) * w.air_density * C_D * square(stroke_speed) * w.s3;
+  return drag_moment(w, stroke_speed, pitch_margin(w, stroke_speed));
 }
 
 }  // namespace wingbeat

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct Planform {
   std::vector<std::pair<double, double>> chord_table = {};
   S s2 = S(0);  ///< moments given outright: S_2 of all wings [m4], >= 0
   S s3 = S(0);  ///< moments given outright: S_3 of all wings [m5], >= 0
+  std::optional<S> chord_ratio = {};  ///< c_0 / R [1], > 0; given, root_chord follows from the length
 };
 
 /// S_2 = N_w integral c r^2 dr [m4] and S_3 = N_w integral c r^3 dr [m5], r measured from the hinge.
@@ -50,7 +52,7 @@ ChordMoments<S> shift_moments(const S& m0, const S& m1, const S& m2, const S& m3
 template <Scalar S>
 ChordMoments<S> one_wing_moments(const Planform<S>& p) {
   const S R = p.length;
-  const S c_0 = p.root_chord;
+  const S c_0 = p.chord_ratio ? *p.chord_ratio * p.length : p.root_chord;
   const S d = p.hub_offset;
   if (p.shape == PlanformShape::semi_ellipse) {
     return detail::shift_moments<S>(pi / 4.0 * c_0 * R, c_0 * R * R / 3.0, pi / 16.0 * c_0 * R * R * R,

@@ -1,6 +1,8 @@
 // Torsional spring at each wing hinge, at rest at stroke angle zero; model.md eqs (21, 22).
 #pragma once
 
+#include <cmath>
+
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/core/status.hpp"
@@ -32,10 +34,18 @@ SpringLoads<S> spring_loads(const HingeSpring<S>& s, const S& beta) {
   return {s.stiffness * beta, S(0.5) * s.stiffness * square(beta)};
 }
 
-/// Stiffness k = J_w (2 pi f_s)^2 [N m/rad] that makes a wing of inertia J_w [kg m2] resonate at f_s [Hz] (eq 22).
+/// Stiffness k = J_w (2 pi f_s)^2 [N m/rad] that makes a wing of inertia J_w [kg m2] resonate at f_s [Hz] (eq 22). A
+/// direct drive swings its rotor too: there the inertia on one spring is J/N_w + J_w.
 template <Scalar S>
 S stiffness_for_resonance(const S& wing_inertia, const S& resonance) {
   return wing_inertia * square(S(two_pi) * resonance);
+}
+
+/// The frequency [Hz] at which an inertia [kg m2] resonates on a spring [N m/rad].
+template <Scalar S>
+S resonance_of(const S& inertia, const S& stiffness) {
+  using std::sqrt;
+  return sqrt(stiffness / inertia) / S(two_pi);
 }
 
 }  // namespace wingbeat

@@ -3,6 +3,10 @@
 // A lap is a list of steps, each on one smooth branch. Branches end at fixed nodes, known in advance, and at switches:
 // functions of the solution whose sign changes are found. The right-hand side is continuous there, so an error e in the
 // position of a switch costs O(e^2) in everything: positions are needed to the square root of the tolerance only.
+//
+// A system may have switches at which its right-hand side jumps, as with dry friction. It says so by jumps(k), and their
+// positions are found to the tolerance itself. Its cross() chooses the new branch, and its carry_over() takes a solution
+// next to the recorded one over a recorded jump, to first order (the saltation matrix).
 #pragma once
 
 #include <algorithm>
@@ -76,6 +80,16 @@ StepResult<System> take_step(Method method, const System& system, const typename
                              const typename System::Signs& branch, const Rates<System>& first) {
   return method == Method::explicit_pair ? explicit_step<quadratures>(system, x, y, h, branch, first)
                                          : implicit_step<quadratures>(system, x, y, h, branch, first);
+}
+
+/// True if the right-hand side jumps at switch k.
+template <class System>
+bool jumps(const System& system, std::size_t k) {
+  if constexpr (requires { system.jumps(k); }) {
+    return system.jumps(k);
+  } else {
+    return false;
+  }
 }
 
 namespace detail {
@@ -228,9 +242,14 @@ class LapDriver {
     lap_.steps.reserve(64);
     x_ = 0.0;
     y_ = start;
-    signs_ = system_.start_signs();
+    if constexpr (requires { system_.start_signs(start); }) {
+      signs_ = system_.start_signs(start);
+    } else {
+      signs_ = system_.start_signs();
+    }
     // A switch may depend on the signs of those before it.
     for (std::size_t k = 0; k < switch_count; ++k) {
+      if (jumps(system_, k)) continue;
       const Rates<System> rates = system_.template rates<quadratures>(x_, y_, signs_);
       signs_[k] = rates.switches[k] >= 0.0 ? 1.0 : -1.0;
     }
@@ -252,19 +271,26 @@ class LapDriver {
     }
   }
 
+  /// How closely the position of switch k must be known.
+  double position_tolerance(std::size_t k) const {
+    return jumps(system_, k) ? std::max(0.01 * options_.tolerance, 1e-14) : position_tolerance_;
+  }
+
   /// Moves the end of a step onto the expected switch there; false if that is not near, or beyond the next node.
   bool end_on_expected(double node, double& step, StepResult<System>& result, Rates<System>& last) {
     const std::size_t k = plan_[expected_].sign;
     const double near_end = 0.95;
     const State before = hermite<System>(y_, first_.dy, result.y, last.dy, step, near_end);
-    const double slope = (last.switches[k] -
-                          system_.template rates<false>(x_ + near_end * step, before, signs_).switches[k]) /
-                         ((1.0 - near_end) * step);
+    double slope = (last.switches[k] -
+                    system_.template rates<false>(x_ + near_end * step, before, signs_).switches[k]) /
+                   ((1.0 - near_end) * step);
     if (slope * signs_[k] >= 0.0) return false;
     double moved = step;
-    for (int correction = 0; correction < 3; ++correction) {
+    const int corrections = jumps(system_, k) ? 8 : 3;
+    for (int correction = 0; correction < corrections; ++correction) {
       const double off = last.switches[k] / slope;
-      if (std::abs(off) <= position_tolerance_) return true;
+      if (std::abs(off) <= position_tolerance(k)) return true;
+      const double value = last.switches[k];
       moved -= off;
       if (!(moved > 0.7 * step && moved < 1.3 * step && x_ + moved < node)) return false;
       const StepResult<System> again = take_step<quadratures>(options_.method, system_, x_, y_, moved, signs_, first_);
@@ -272,6 +298,7 @@ class LapDriver {
       result = again;
       step = moved;
       last = system_.template rates<quadratures>(x_ + step, result.y, signs_);
+      if (corrections > 3) slope = (value - last.switches[k]) / off;
     }
     return false;
   }
@@ -366,13 +393,21 @@ class LapDriver {
     }
     if (at < 1e-3 * position_tolerance_) return false;
     // The Hermite state is of lower order than the step: correct with steps that end at the switch.
-    for (int correction = 0; correction < 4; ++correction) {
+    const int corrections = jumps(system_, k) ? 12 : 4;
+    double value_before = 0.0, moved = 0.0;
+    for (int correction = 0; correction < corrections; ++correction) {
       step = at;
       result = take_step<quadratures>(options_.method, system_, x_, y_, step, signs_, first_);
       last = system_.template rates<quadratures>(x_ + step, result.y, signs_);
-      const double off = slope != 0.0 ? last.switches[k] * signs_[k] / slope : 0.0;
-      if (std::abs(off) <= position_tolerance_ || at - off <= 0.0) break;
+      const double signed_value = last.switches[k] * signs_[k];
+      if (corrections > 4 && moved != 0.0 && signed_value != value_before) {
+        slope = (value_before - signed_value) / moved;
+      }
+      const double off = slope != 0.0 ? signed_value / slope : 0.0;
+      if (std::abs(off) <= position_tolerance(k) || at - off <= 0.0) break;
       at -= off;
+      moved = off;
+      value_before = signed_value;
     }
     return true;
   }
@@ -416,7 +451,11 @@ class LapDriver {
 
   /// Flips a located sign at the present position.
   void flip_here(std::size_t k) {
-    signs_[k] = -signs_[k];
+    if constexpr (requires { system_.cross(k, x_, y_, signs_); }) {
+      system_.cross(k, x_, y_, signs_);
+    } else {
+      signs_[k] = -signs_[k];
+    }
     ++flips_here_;
     lap_.switches.push_back({x_, k});
     first_ = system_.template rates<quadratures>(x_, y_, signs_);
@@ -458,6 +497,26 @@ void run_lap(const System& system, const typename System::State& start, const La
   detail::LapDriver<quadratures, System>(system, options, lap).run(start);
 }
 
+/// The signs of a recorded step on the scalar of a system.
+template <class System, class Recorded>
+typename System::Signs signs_of(const Step<Recorded>& step) {
+  typename System::Signs signs;
+  for (std::size_t k = 0; k < signs.size(); ++k) signs[k] = typename System::Real(step.signs[k]);
+  return signs;
+}
+
+/// Takes a state that lies next to the recorded one onto the branch of step n; what the integrals gain by it is added to
+/// `*totals`.
+template <bool quadratures, class System, class Recorded>
+void carry_over(const System& system, const std::vector<Step<Recorded>>& steps, std::size_t n,
+                typename System::State& y, typename System::Quadrature* totals) {
+  if constexpr (requires { &System::template carry_over<quadratures>; }) {
+    system.template carry_over<quadratures>(typename System::Real(steps[n].x), y,
+                                            signs_of<System>(steps[n > 0 ? n - 1 : 0]), signs_of<System>(steps[n]),
+                                            totals);
+  }
+}
+
 /// Repeats the steps of a lap, mesh and branches frozen, from `start`; the scalar of `system` may differ from the lap's
 /// (derivatives). Returns the state at the end; the integrals are added to `*totals` where given.
 template <bool quadratures, class System, class Recorded>
@@ -465,9 +524,10 @@ typename System::State repeat_lap(const System& system, const typename System::S
                                   const Lap<Recorded>& lap, typename System::Quadrature* totals = nullptr) {
   using Real = typename System::Real;
   typename System::State y = start;
-  for (const Step<Recorded>& step : lap.steps) {
-    typename System::Signs signs;
-    for (std::size_t k = 0; k < signs.size(); ++k) signs[k] = Real(step.signs[k]);
+  for (std::size_t n = 0; n < lap.steps.size(); ++n) {
+    const Step<Recorded>& step = lap.steps[n];
+    const typename System::Signs signs = signs_of<System>(step);
+    carry_over<quadratures>(system, lap.steps, n, y, totals);
     const Rates<System> first = system.template rates<quadratures>(Real(step.x), y, signs);
     const StepResult<System> result =
         take_step<quadratures>(lap.method, system, Real(step.x), y, Real(step.h), signs, first);

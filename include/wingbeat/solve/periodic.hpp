@@ -75,6 +75,11 @@ double merge_lap(const System& system, Lap<System>& lap, double tolerance) {
   double apart = scaled_distance(system, y, lap.steps.front().y);
   for (std::size_t n = 0; n < lap.steps.size() && apart > tolerance; ++n) {
     Step<System>& step = lap.steps[n];
+    typename System::Quadrature gained{};
+    carry_over<true>(system, lap.steps, n, y, &gained);
+    if (n > 0) {
+      for (std::size_t q = 0; q < gained.size(); ++q) lap.steps[n - 1].dq[q] += gained[q];
+    }
     step.y = y;
     step.first = system.template rates<true>(step.x, y, step.signs);
     const StepResult<System> result = take_step<true>(lap.method, system, step.x, y, step.h, step.signs, step.first);
@@ -86,6 +91,16 @@ double merge_lap(const System& system, Lap<System>& lap, double tolerance) {
     if (last) lap.end = y;
   }
   return apart;
+}
+
+/// True of systems whose laps contract too slowly to be merged by repeating them alone.
+template <class System>
+constexpr bool contracts_slowly() {
+  if constexpr (requires { System::contracts_slowly; }) {
+    return System::contracts_slowly;
+  } else {
+    return false;
+  }
 }
 
 /// Moves y, the end of a lap, to the fixed point of the linearised lap map. False, y unchanged, where that is not
@@ -157,9 +172,13 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
     y = lap.end;
 
     // A fine lap closes by merging if its start was close enough for its switches to stay where they are.
-    if (is_fine && residual < 0.1 * std::sqrt(options.tolerance)) {
+    constexpr double near = detail::contracts_slowly<System>() ? 3e-3 : 0.1;
+    if (is_fine && residual < near * std::sqrt(options.tolerance)) {
       for (double previous = 1.0; residual > closed && residual < 0.5 * previous;) {
         previous = residual;
+        if constexpr (detail::contracts_slowly<System>()) {
+          if (detail::newton_step(system, system.template cast<Jet<int(n)>>(), lap, lap.end)) ++summary.newton_steps;
+        }
         residual = detail::merge_lap(system, lap, closed);
         ++summary.laps;
       }

@@ -12,7 +12,7 @@
 namespace wingbeat {
 
 enum class Method {
-  orbit,     ///< periodic orbit in crank angle
+  orbit,     ///< periodic orbit in crank angle, or in the phase of a direct drive's supply
   transient  ///< simulated from rest until steady
 };
 
@@ -20,7 +20,8 @@ struct RunOptions {
   Condition condition = Condition::air;
   Method method = Method::orbit;
   double tolerance = 1e-6;          ///< wanted relative accuracy of every metric, 1e-12 to 1e-2
-  std::optional<double> frequency = {};  ///< [Hz]; given: the supply's voltage is replaced by the one that yields it
+  /// [Hz]; given: the supply's voltage is replaced by the one that yields it, or a direct drive's supply has this frequency
+  std::optional<double> frequency = {};
   /// [N]; given instead of the frequency: the same for the mean lift, which a pwm supply reaches by its duty.
   std::optional<double> lift = {};
   int waveform_rows = 0;            ///< instants of one cycle to return, both ends included; 0: none
@@ -42,9 +43,9 @@ struct RunResult {
 /// What a vehicle does from rest, by simulate_start_up: the judge that find_steady_flapping asks in doubt.
 StartUp start_up_in_time(double tolerance = 1e-6);
 
-/// Computes one validated design. Throws ParameterError for a sine supply where Method::orbit, a frequency or a lift is
-/// asked for (it has no periodic orbit in crank angle), for a battery where a frequency or a lift is, for a duty above 1
-/// and for options out of range.
+/// Computes one validated design. Throws ParameterError for a crank on a sine supply where Method::orbit, a frequency or a
+/// lift is asked for (it has no periodic orbit in crank angle), for a battery where a frequency or a lift is, for a duty
+/// above 1 and for options out of range.
 RunResult run_design(const Design<double>& design, const RunOptions& options = {});
 
 }  // namespace wingbeat

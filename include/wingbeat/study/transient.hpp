@@ -1,5 +1,6 @@
 // Start-up in the time domain by SUNDIALS CVODE: from rest (or any state) to steady flapping, standstill or jam;
-// model.md section 2, 'Not flapping'. Independent of the periodic-orbit solver, so that each can check the other.
+// model.md sections 2, 'Not flapping', and 6. Of a direct drive, read shaft for crank: its angle is the stroke angle, and
+// a lap is a period of the supply. Independent of the periodic-orbit solver, so that each can check the other.
 #pragma once
 
 #include <functional>
@@ -9,6 +10,7 @@
 
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/cycle/record.hpp"
 #include "wingbeat/parts/supply.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
@@ -27,12 +29,14 @@ struct TransientOptions {
   bool record = false;           ///< keep samples (and events of supply switching)
   double record_interval = 0.0;  ///< time between samples [s]; 0: every step of the integrator
 
-  std::optional<Supply<double>> supply;  ///< replaces the constant vehicle.voltage
+  std::optional<Supply<double>> supply;  ///< replaces the constant vehicle.voltage; not for a direct drive
+  int cycle_rows = 0;  ///< direct drive: instants of the last period to return, both ends included; 0: none
   Reporting reporting;
   std::function<bool()> cancel;  ///< polled now and then; true ends the computation unsettled
 };
 
 struct TransientEvent {
+  /// revolution: of a direct drive, the end of a period of the supply.
   enum class Kind { force_sign_change, standstill, breakaway, revolution, jam, supply_switch };
   double time;         ///< [s]
   double crank_angle;  ///< theta, not wrapped [rad]
@@ -68,6 +72,7 @@ struct TransientResult {
 
   double crank_speed = 0.0;  ///< omega at theta = 0 (mod 2 pi) at the end of the last lap [rad/s]
   double current = 0.0;      ///< i there [A]: with crank_speed the state of the periodic orbit
+  double stroke_angle = 0.0; ///< direct drive: beta there [rad]
   std::optional<Metrics<double>> metrics;  ///< of the last lap; floquet_multiplier_max is `absent`
   CycleIntegrals<double> integrals{};      ///< behind the metrics, per lap
   int averaged_laps = 0;     ///< laps behind the metrics: 1, or several where the supply has no period in common
@@ -79,6 +84,7 @@ struct TransientResult {
 
   std::vector<TransientEvent> events;
   std::vector<TransientSample> samples;
+  std::vector<WaveformRow> cycle;  ///< see TransientOptions::cycle_rows
 
   long steps = 0;             ///< integration steps
   long rate_evaluations = 0;  ///< evaluations of the equations of motion

@@ -31,7 +31,13 @@ struct MotorDesign {
   S gear_damping = S(0);  ///< b_G [N m s/rad], only with gear_ratio
 };
 
-/// [transmission] of type slider-crank. Exactly one of hinge offset and stroke amplitude is given.
+enum class TransmissionType {
+  slider_crank,
+  direct  ///< the motor shaft is the wing hinge: its angle is the stroke angle
+};
+
+/// [transmission]. Of a slider-crank exactly one of hinge offset and stroke amplitude is given; of a direct drive nothing
+/// but the type.
 template <Scalar S>
 struct TransmissionDesign {
   S crank_radius = S(0);                ///< r_c [m]
@@ -40,6 +46,7 @@ struct TransmissionDesign {
   std::optional<S> stroke_amplitude;    ///< half peak to peak [rad], 0 to pi/2; fixes H for the given crank
   std::optional<S> mid_stroke_height;   ///< y_0 [m]; l unless given
   Formulation formulation = Formulation::rod_force;
+  TransmissionType type = TransmissionType::slider_crank;
 };
 
 /// [friction]: one law and its coefficient.
@@ -49,11 +56,13 @@ struct FrictionDesign {
   S coefficient = S(0);  ///< radius [m], damping [N m s/rad], coefficient [N m s2/rad2] or torque [N m] by law
 };
 
-/// [spring]: at most one of the two; neither means no spring.
+/// [spring]: at most one of the three; none means no spring.
 template <Scalar S>
 struct SpringDesign {
   std::optional<S> stiffness;  ///< k of one hinge spring [N m/rad]
-  std::optional<S> resonance;  ///< f_s [Hz]; k = J_w (2 pi f_s)^2
+  /// f_s [Hz]: k = J_w (2 pi f_s)^2 (eq 22); of a direct drive, whose rotor swings along, k = (J/N_w + J_w) (2 pi f_s)^2
+  std::optional<S> resonance;
+  std::optional<S> resonance_ratio;  ///< direct: resonance over drive frequency [1]
 };
 
 /// [wing]
@@ -62,6 +71,8 @@ struct WingDesign {
   S count = S(2);    ///< N_w
   S inertia = S(0);  ///< J_w of ONE wing about its hinge [kg m2]
   Planform<S> planform;
+  /// Direct: resonance of rotor and wings on their springs [Hz]; given, the inertia follows: J_w = k/(2 pi f)^2 - J/N_w
+  std::optional<S> resonance;
 };
 
 /// [aerodynamics]
@@ -71,6 +82,7 @@ struct AerodynamicsDesign {
   S pitch_coefficient = S(0);  ///< C_alpha [s]
   std::string coefficients_name = "translational-2022";  ///< the named set, or "custom" or "table"
   ForceCoefficients<S> coefficients;
+  std::optional<S> angle_of_attack_min;  ///< stop of the passive pitching [rad]; none unless given
 };
 
 /// Masses that are stated for themselves. What is not counts in Design::mass.
@@ -89,6 +101,7 @@ struct Design {
   ItemMasses<S> masses;
   std::optional<S> bench_torque_constant;  ///< K_ref of eq (17) [N m/A]
   Supply<S> supply;
+  std::optional<S> supply_resonance_ratio;  ///< direct: drive frequency over resonance [1]; replaces supply.frequency
   MotorDesign<S> motor;
   TransmissionDesign<S> transmission;
   FrictionDesign<S> friction;
@@ -97,18 +110,33 @@ struct Design {
   AerodynamicsDesign<S> aerodynamics;
 };
 
+/// True where hinge springs are stated.
+template <Scalar S>
+bool has_springs(const Design<S>& design) {
+  return design.spring.stiffness || design.spring.resonance || design.spring.resonance_ratio;
+}
+
 /// Mass of the whole vehicle [kg]: vehicle.mass and every mass stated for itself; empty where vehicle.mass is not known.
 template <Scalar S>
 std::optional<S> total_mass(const Design<S>& design) {
   if (!design.mass) return std::nullopt;
   const ItemMasses<S>& items = design.masses;
+  const bool rod = design.transmission.type == TransmissionType::slider_crank;
   S mass = *design.mass;
   if (items.supply) mass = mass + *items.supply;
   if (items.motor) mass = mass + *items.motor;
-  if (items.rod_linear_density) mass = mass + *items.rod_linear_density * design.transmission.rod_length;
-  const bool springs = design.spring.stiffness || design.spring.resonance;
-  if (items.spring && springs) mass = mass + design.wing.count * *items.spring;
+  if (items.rod_linear_density && rod) mass = mass + *items.rod_linear_density * design.transmission.rod_length;
+  if (items.spring && has_springs(design)) mass = mass + design.wing.count * *items.spring;
   return mass;
+}
+
+/// Holds the flapping frequency of a design whose supply sets it; false where the voltage does, as with a crank.
+template <Scalar S>
+bool set_drive_frequency(Design<S>& design, const S& frequency) {
+  if (design.transmission.type != TransmissionType::direct) return false;
+  design.supply.frequency = frequency;
+  design.supply_resonance_ratio.reset();
+  return true;
 }
 
 /// Throws ParameterError, naming the vehicle-file key, for the first parameter out of its physical range.

@@ -19,6 +19,7 @@ Design<T> cast_design(const Design<double>& d) {
               optional(d.masses.spring)};
   r.bench_torque_constant = optional(d.bench_torque_constant);
   r.supply = d.supply.template cast<T>();
+  r.supply_resonance_ratio = optional(d.supply_resonance_ratio);
   r.motor = {optional(d.motor.gear_ratio), d.motor.constants.template cast<T>(), T(d.motor.gear_inertia),
              T(d.motor.gear_damping)};
   r.transmission = {T(d.transmission.crank_radius),
@@ -26,14 +27,18 @@ Design<T> cast_design(const Design<double>& d) {
                     optional(d.transmission.hinge_offset),
                     optional(d.transmission.stroke_amplitude),
                     optional(d.transmission.mid_stroke_height),
-                    d.transmission.formulation};
+                    d.transmission.formulation,
+                    d.transmission.type};
   r.friction = {d.friction.law, T(d.friction.coefficient)};
-  r.spring = {optional(d.spring.stiffness), optional(d.spring.resonance)};
+  r.spring = {optional(d.spring.stiffness), optional(d.spring.resonance), optional(d.spring.resonance_ratio)};
   r.wing = {T(d.wing.count),
             T(d.wing.inertia),
-            {p.shape, T(p.length), T(p.root_chord), T(p.hub_offset), p.chord_table, T(p.s2), T(p.s3)}};
+            {p.shape, T(p.length), T(p.root_chord), T(p.hub_offset), p.chord_table, T(p.s2), T(p.s3),
+             optional(p.chord_ratio)},
+            optional(d.wing.resonance)};
   r.aerodynamics = {T(d.aerodynamics.air_density), T(d.aerodynamics.pitch_coefficient),
-                    d.aerodynamics.coefficients_name, d.aerodynamics.coefficients.template cast<T>()};
+                    d.aerodynamics.coefficients_name, d.aerodynamics.coefficients.template cast<T>(),
+                    optional(d.aerodynamics.angle_of_attack_min)};
   return r;
 }
 

@@ -19,13 +19,15 @@ template <Scalar S>
 struct Vehicle {
   S voltage;  ///< v that steady flapping sees [V], at the motor terminals where there is no source resistance
   Motor<S> motor;
-  SliderCrank<S> crank;
+  SliderCrank<S> crank;  ///< of a slider-crank
   Friction<S> friction;
   HingeSpring<S> spring;
   S wing_count;    ///< N_w
   S wing_inertia;  ///< J_w of one wing [kg m2]; 0 when wingless
   BladeElement<S> wings;
   S source_resistance = S(0);  ///< R_i inside the supply [ohm], >= 0: the terminals see v - R_i i
+  TransmissionType transmission = TransmissionType::slider_crank;
+  S drive_frequency = S(0);  ///< of a sine supply, whose amplitude is `voltage` [Hz]; else 0
 
   template <Scalar T>
   Vehicle<T> cast() const {
@@ -37,7 +39,9 @@ struct Vehicle {
             T(wing_count),
             T(wing_inertia),
             wings.template cast<T>(),
-            T(source_resistance)};
+            T(source_resistance),
+            transmission,
+            T(drive_frequency)};
   }
 };
 
@@ -52,12 +56,17 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
                          : m.constants;
 
   const TransmissionDesign<S>& t = design.transmission;
-  v.crank.crank_radius = t.crank_radius;
-  v.crank.rod_length = t.rod_length;
-  v.crank.hinge_offset =
-      t.hinge_offset ? *t.hinge_offset : hinge_offset_for<S>(*t.stroke_amplitude, t.crank_radius);
-  v.crank.mid_stroke_height = t.mid_stroke_height ? *t.mid_stroke_height : t.rod_length;
-  v.crank.formulation = t.formulation;
+  const bool direct = t.type == TransmissionType::direct;
+  v.transmission = t.type;
+  v.crank = {};
+  if (!direct) {
+    v.crank.crank_radius = t.crank_radius;
+    v.crank.rod_length = t.rod_length;
+    v.crank.hinge_offset =
+        t.hinge_offset ? *t.hinge_offset : hinge_offset_for<S>(*t.stroke_amplitude, t.crank_radius);
+    v.crank.mid_stroke_height = t.mid_stroke_height ? *t.mid_stroke_height : t.rod_length;
+    v.crank.formulation = t.formulation;
+  }
 
   const S& coefficient = design.friction.coefficient;
   switch (design.friction.law) {
@@ -70,11 +79,23 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
 
   const bool wings = condition != Condition::wingless;
   v.wing_count = design.wing.count;
-  v.wing_inertia = wings ? design.wing.inertia : S(0.0);
-  if (wings && design.spring.stiffness) v.spring.stiffness = *design.spring.stiffness;
-  if (wings && design.spring.resonance) {
-    v.spring.stiffness = stiffness_for_resonance(design.wing.inertia, *design.spring.resonance);
+  // Inertia on one spring, spring and drive frequency: of a direct drive any of them may follow from the others.
+  const S rotor_share = direct ? v.motor.inertia / v.wing_count : S(0.0);
+  S wing_inertia = design.wing.inertia;
+  S stiffness = design.spring.stiffness ? *design.spring.stiffness : S(0.0);
+  if (design.wing.resonance) wing_inertia = stiffness / square(S(two_pi) * *design.wing.resonance) - rotor_share;
+  const S inertia = rotor_share + wing_inertia;
+  const bool sine = design.supply.type == SupplyType::sine;
+  v.drive_frequency = sine ? design.supply.frequency : S(0.0);
+  if (design.spring.resonance) stiffness = stiffness_for_resonance(inertia, *design.spring.resonance);
+  if (design.spring.resonance_ratio) {
+    stiffness = stiffness_for_resonance<S>(inertia, *design.spring.resonance_ratio * design.supply.frequency);
   }
+  if (design.supply_resonance_ratio) {
+    v.drive_frequency = *design.supply_resonance_ratio * resonance_of(inertia, stiffness);
+  }
+  v.wing_inertia = wings ? wing_inertia : S(0.0);
+  v.spring.stiffness = wings ? stiffness : S(0.0);
 
   const bool air = condition == Condition::air;
   const ChordMoments<S> moments = chord_moments(design.wing.planform, design.wing.count);
@@ -83,11 +104,12 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
   v.wings.s2 = wings ? moments.s2 : S(0.0);
   v.wings.s3 = wings ? moments.s3 : S(0.0);
   v.wings.coefficients = design.aerodynamics.coefficients;
+  if (design.aerodynamics.angle_of_attack_min) v.wings.angle_of_attack_min = *design.aerodynamics.angle_of_attack_min;
   return v;
 }
 
 /// Calls visit(number, place) for every number of a vehicle, place(other) being where the same number stands in another
-/// one. Not for the formulation and the coefficient table, which are no numbers.
+/// one. Not for the transmission, the formulation and the coefficient table, which are no numbers.
 template <Scalar S, class Visit>
 void for_each_number(Vehicle<S>& v, const Visit& visit) {
 #define WINGBEAT_NUMBER(name) visit(v.name, [](auto& of) -> auto& { return of.name; })
@@ -122,6 +144,8 @@ void for_each_number(Vehicle<S>& v, const Visit& visit) {
   WINGBEAT_NUMBER(wings.coefficients.drag.rate);
   WINGBEAT_NUMBER(wings.coefficients.drag.phase);
   WINGBEAT_NUMBER(source_resistance);
+  WINGBEAT_NUMBER(wings.angle_of_attack_min);
+  WINGBEAT_NUMBER(drive_frequency);
 #undef WINGBEAT_NUMBER
 }
 
@@ -132,6 +156,7 @@ struct Branch {
   S force;          ///< sign of the rod force F
   S direction;      ///< sign of omega; +1 in steady flapping
   S stored_power;   ///< sign of (N_w J_w beta'' + N_w k beta) beta', for the reactive power (eq 23) alone
+  S pitching = S(1.0);  ///< -1 where the angle of attack is at its lower bound
 };
 
 /// Everything that acts at one instant.
@@ -185,17 +210,18 @@ struct Instant {
 };
 
 /// The instant at crank speed omega [rad/s] and current i [A] under the terminal voltage v_t [V], N_k_beta being the
-/// spring_moment() there; `stroke` and `direction` are the signs of beta' and omega (model.md section 2).
+/// spring_moment() there; `stroke` and `direction` are the signs of beta' and omega (model.md section 2), `pitching` as in
+/// Branch.
 template <Scalar S>
 Instant<S> instant_at(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& N_k_beta, const S& omega, const S& i,
-                      const S& v_t, const S& stroke, const S& direction) {
+                      const S& v_t, const S& stroke, const S& direction, const S& pitching = S(1.0)) {
   Instant<S> at;
   at.kinematics = k;
   at.omega = omega;
   at.motor = motor_loads(v.motor, v_t, i, omega);
   at.stroke_velocity = k.stroke_slope * omega;
   const S stroke_speed = stroke * at.stroke_velocity;
-  at.aero_moment = stroke * drag_moment(v.wings, stroke_speed);
+  at.aero_moment = stroke * drag_moment(v.wings, stroke_speed, pitching);
   at.spring_moment = N_k_beta;
   at.load_free = load_free_friction(v.friction, omega, direction) + direction * v.motor.friction_torque;
   at.drive = at.motor.torque - at.motor.drag_torque - at.load_free;
@@ -237,6 +263,13 @@ Motion<S> motion_on(const Vehicle<S>& v, const Instant<S>& at, const S& i, const
   return m;
 }
 
+/// The levers of a direct drive, whose shaft angle is the stroke angle itself: B1 = g = h = 1, B2 = 0. The "rod force" is
+/// then the torque passed on to the wings [N m]. It holds no position: that is the stroke angle of the state.
+template <Scalar S>
+CrankKinematics<S> direct_kinematics() {
+  return {S(0.0), S(0.0), S(1.0), S(0.0), S(1.0), S(1.0)};
+}
+
 /// Rod force and accelerations at crank angle theta (given by sine and cosine), crank speed omega [rad/s] and current
 /// i [A] under the terminal voltage v_t [V], on a given branch.
 template <Scalar S>
@@ -244,7 +277,8 @@ Motion<S> motion_at(const Vehicle<S>& v, const S& sin_theta, const S& cos_theta,
                     const S& v_t, const Branch<S>& branch) {
   const CrankKinematics<S> k = crank_kinematics(v.crank, sin_theta, cos_theta);
   const S N_k_beta = spring_moment(v, k);
-  return motion_on(v, instant_at(v, k, N_k_beta, omega, i, v_t, branch.stroke, branch.direction), i, v_t, branch);
+  const Instant<S> at = instant_at(v, k, N_k_beta, omega, i, v_t, branch.stroke, branch.direction, branch.pitching);
+  return motion_on(v, at, i, v_t, branch);
 }
 
 /// Voltage at the motor terminals [V] under the current i [A], where the supply drives `voltage` [V].

@@ -1,0 +1,33 @@
+// What a direct drive can do, from its statics and from the first harmonic alone; model.md section 6.
+#pragma once
+
+#include <complex>
+#include <vector>
+
+#include "wingbeat/vehicle/vehicle.hpp"
+
+namespace wingbeat {
+
+/// Amplitudes of a response at the drive frequency w to v = V sin(w t): each quantity is the imaginary part of its
+/// amplitude times exp(j w t).
+struct HarmonicResponse {
+  std::complex<double> stroke;   ///< of beta [rad]
+  std::complex<double> speed;    ///< of beta' [rad/s]
+  std::complex<double> current;  ///< of i [A]
+};
+
+struct DirectBalance {
+  double drive_torque;      ///< K V / |R_a + j w L_a|: amplitude of the torque on a shaft that stands still [N m]
+  double breakaway_torque;  ///< T_c, the constant friction that holds the shaft [N m]
+  /// Responses in which drag and friction are replaced by the viscous damping that takes the same power from a harmonic
+  /// motion (harmonic balance), slowest first: first guesses for periodic orbits. More than one hints at several orbits.
+  /// None: constant friction is too strong for a nearly harmonic motion.
+  std::vector<HarmonicResponse> responses;
+
+  /// No motion outlasts the start: the drive's torque does not exceed the friction.
+  bool stalled() const { return drive_torque <= breakaway_torque; }
+};
+
+DirectBalance direct_balance(const Vehicle<double>& vehicle);
+
+}  // namespace wingbeat

@@ -1,0 +1,86 @@
+// How the steady flapping of a direct drive is found: docs/direct-drive.md.
+#include <cmath>
+
+#include "orbit_search.hpp"
+#include "wingbeat/cycle/direct_balance.hpp"
+
+namespace wingbeat::detail {
+namespace {
+
+template <int N>
+SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& options, const StartUp& start_up) {
+  using System = DirectSystem<double, N>;
+  using State = typename System::State;
+  SteadyFlapping result;
+  result.metrics.values.fill(absent);
+  const DirectBalance balance = direct_balance(vehicle);
+  result.balance.stall_torque = balance.drive_torque;
+  result.balance.breakaway_torque = balance.breakaway_torque;
+  if (balance.stalled()) {
+    result.status = FlappingStatus::stalled;
+    result.detail = format("the motor never breaks away: at %.4g Hz the supply gives it a torque of %.4g N m at most, "
+                           "which does not exceed the constant friction %.4g N m",
+                           vehicle.drive_frequency, balance.drive_torque, balance.breakaway_torque);
+    return result;
+  }
+
+  const auto state = [](double stroke, double speed, double current) {
+    State y{};
+    y[0] = stroke;
+    y[1] = speed;
+    if constexpr (N == 3) y[2] = current;
+    return y;
+  };
+  // Constant friction that a harmonic motion cannot overcome leaves short slips: their size, from what is left of the
+  // drive.
+  const double w = two_pi * vehicle.drive_frequency;
+  const double inertia = vehicle.motor.inertia + vehicle.wing_count * vehicle.wing_inertia;
+  const double slip_speed = (balance.drive_torque - balance.breakaway_torque) / (inertia * w);
+  const double speed = balance.responses.empty() ? slip_speed : std::abs(balance.responses.back().speed);
+  const double current = balance.drive_torque / vehicle.motor.torque_constant;
+  OrbitSearch<System> orbit(System(vehicle, state(speed / w, speed, current)), options);
+
+  const auto from_rest = [&] { return orbit.search(state(0.0, 0.0, 0.0)); };
+  const auto from_harmonic = [&](const HarmonicResponse& r) {
+    return orbit.search(state(r.stroke.imag(), r.speed.imag(), r.current.imag()));
+  };
+  bool found = balance.responses.empty() ? from_rest() : from_harmonic(balance.responses.front());
+  if (!found && !balance.responses.empty()) found = from_rest();
+  if ((balance.responses.size() > 1 || !found) && start_up) {
+    const StartUpOutcome outcome = start_up(vehicle);
+    if (outcome.status != FlappingStatus::flapping) {
+      result.status = outcome.status;
+      result.detail = outcome.detail;
+      result.summary = orbit.summary();
+      return result;
+    }
+    if (outcome.settled) found = orbit.search(state(outcome.stroke_angle, outcome.crank_speed, outcome.current));
+  }
+  result.summary = orbit.summary();
+  if (!found) {
+    result.status = FlappingStatus::locked;
+    result.detail = format("no periodic response to the supply was found: %s", orbit.summary().message.c_str());
+    return result;
+  }
+  // Nothing returns a shaft without springs to any angle: a multiplier of 1 that says nothing.
+  orbit.fill(result);
+  if (!(vehicle.spring.stiffness > 0.0)) result.metrics[Metric::floquet_multiplier_max] = absent;
+  result.status = FlappingStatus::flapping;
+  result.detail = format("steady flapping at the supply's %.4g Hz", vehicle.drive_frequency);
+  const double amplitude = result.metrics[Metric::stroke_amplitude];
+  if (amplitude > 0.5 * pi) {
+    result.detail += format("; a stroke of +-%.0f deg passes the quarter turn that wings have room for",
+                            degrees_per_radian * amplitude);
+  }
+  return result;
+}
+
+}  // namespace
+
+SteadyFlapping find_direct_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
+                                    const StartUp& start_up) {
+  return vehicle.motor.armature_inductance > 0.0 ? search<3>(vehicle, options, start_up)
+                                                 : search<2>(vehicle, options, start_up);
+}
+
+}  // namespace wingbeat::detail

@@ -1,0 +1,70 @@
+// The search for one vehicle's orbit, and what is reported of it: the same for every system.
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <utility>
+
+#include "wingbeat/cycle/extremes.hpp"
+#include "wingbeat/cycle/steady_flapping.hpp"
+
+namespace wingbeat::detail {
+
+template <class... Args>
+std::string format(const char* pattern, Args... args) {
+  char text[400];
+  std::snprintf(text, sizeof text, pattern, args...);
+  return text;
+}
+
+/// The steady flapping of a direct drive; see find_steady_flapping.
+SteadyFlapping find_direct_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
+                                    const StartUp& start_up);
+
+/// Searches for a periodic orbit and fills the result from it.
+template <class System>
+class OrbitSearch {
+ public:
+  using State = typename System::State;
+
+  OrbitSearch(const System& system, const SteadyOptions& options) : options_(options), system_(system) {}
+
+  /// One search from a state at the start of a lap.
+  bool search(const State& guess) {
+    solve::PeriodicOptions periodic{.tolerance = options_.tolerance, .stability = options_.stability};
+    const int laps_before = summary_.laps;
+    summary_ = solve::solve_periodic(system_, guess, periodic, lap_);
+    if (summary_.status == solve::PeriodicStatus::too_many_steps) {
+      periodic.method = solve::Method::radau;
+      summary_ = solve::solve_periodic(system_, guess, periodic, lap_);
+    }
+    summary_.laps += laps_before;
+    return summary_.status == solve::PeriodicStatus::converged;
+  }
+
+  const System& system() const { return system_; }
+  const solve::PeriodicSummary& summary() const { return summary_; }
+  const State& start() const { return lap_.steps.front().y; }
+  double frequency() const {
+    double period = 0.0;
+    for (const auto& step : lap_.steps) period += step.dq[std::size_t(Integral::time)];
+    return 1.0 / period;
+  }
+
+  void fill(SteadyFlapping& result) {
+    result.crank_speed = system_.shaft_speed(start());
+    result.current = system_.current(0.0, start());
+    const CycleExtremes<double> extremes = lap_extremes(system_, lap_, options_.tolerance);
+    result.record = CycleRecord(RecordedLap<System>{system_, std::move(lap_)});
+    result.metrics = cycle_metrics(system_.vehicle, result.record.integrals(), extremes,
+                                   summary_.floquet_multiplier_max, options_.reporting);
+  }
+
+ private:
+  const SteadyOptions& options_;
+  System system_;
+  solve::Lap<System> lap_;
+  solve::PeriodicSummary summary_;
+};
+
+}  // namespace wingbeat::detail
