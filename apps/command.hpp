@@ -28,5 +28,6 @@ void add_identify_motor(CLI::App& program, Action& action);
 void add_fit(CLI::App& program, Action& action);
 void add_tolerance(CLI::App& program, Action& action);
 void add_optimise(CLI::App& program, Action& action);
+void add_reproduce(CLI::App& program, Action& action);
 
 }  // namespace wingbeat::app
