@@ -210,11 +210,11 @@ Judgement judge(const PublishedFile& file, const ForEach& for_each, const std::f
     }
   }
   if (laws_wanted) {
-    j.laws.resize(2 * std::size(friction_laws));
+    j.laws.resize(2 * std::size(compared_friction_laws));
     for (std::size_t n = 0; n < j.laws.size(); ++n) {
       tasks.push_back([&, n] {
-        j.laws[n] = predict(file, friction_laws[n % std::size(friction_laws)],
-                            both_formulations[n / std::size(friction_laws)]);
+        j.laws[n] = predict(file, compared_friction_laws[n % std::size(compared_friction_laws)],
+                            both_formulations[n / std::size(compared_friction_laws)]);
       });
     }
   }
@@ -263,8 +263,8 @@ Judgement judge(const PublishedFile& file, const ForEach& for_each, const std::f
     settle(c);
     if (t.kind == PublishedTrend::Kind::best_friction_law) {
       for (std::size_t f = 0; f < 2; ++f) {
-        const auto first = j.laws.begin() + long(f * std::size(friction_laws));
-        const auto best = std::min_element(first, first + long(std::size(friction_laws)),
+        const auto first = j.laws.begin() + long(f * std::size(compared_friction_laws));
+        const auto best = std::min_element(first, first + long(std::size(compared_friction_laws)),
                                            [](const LawPrediction& p, const LawPrediction& q) { return p.rms < q.rms; });
         c.ours_text[f] = fmt::format("{} ({:.1f} % rms)", law_name(best->law.law), 100.0 * best->rms);
         c.within[f] = t.published_law == best->law.law;

@@ -49,7 +49,7 @@ struct LawPrediction {
 
 struct Judgement {
   std::vector<Claim> claims;        ///< values, then trends, in the order of the file
-  std::vector<LawPrediction> laws;  ///< rod-force first, each in the order of friction_laws
+  std::vector<LawPrediction> laws;  ///< rod-force first, each in the order of compared_friction_laws
   std::array<Comparison, 2> comparisons;
   int count(Verdict verdict) const;
 };

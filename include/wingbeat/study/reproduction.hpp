@@ -70,7 +70,7 @@ struct Reproduction {
 Reproduction reproduce(const SpringPair& pair, const ReproductionOptions& options, const ForEach& for_each,
                        const std::function<void(double)>& done = {});
 
-inline constexpr FrictionLaw friction_laws[] = {FrictionLaw::none, FrictionLaw::viscous, FrictionLaw::quadratic,
+inline constexpr FrictionLaw compared_friction_laws[] = {FrictionLaw::none, FrictionLaw::viscous, FrictionLaw::quadratic,
                                                 FrictionLaw::constant, FrictionLaw::load_proportional};
 
 /// A friction law with its coefficient chosen so that the vehicle flaps at a frequency.
