@@ -17,7 +17,7 @@ std::string line(const CurveStyle& s) { return fmt::format("dt {} lw {} lc rgb '
 /// Marks at about eight places of a curve.
 std::string with(const CurveStyle& s, std::size_t points) {
   if (s.mark == 0) return fmt::format("with lines {}", line(s));
-  return fmt::format("with linespoints {} pt {} ps 0.38 pi {}", line(s), s.mark, std::max<std::size_t>(1, points / 8));
+  return fmt::format("with linespoints {} pt {} ps 0.6 pi {}", line(s), s.mark, std::max<std::size_t>(1, points / 8));
 }
 
 double nice_step(double span) {
@@ -37,9 +37,21 @@ CurveStyle thin(CurveStyle style) {
 }
 
 void draw(const Chart& chart, PlotFormat format, const std::filesystem::path& file) {
-  const std::size_t columns = std::size_t(chart.key_columns);
-  const double key_rows = std::ceil(double(chart.key.size()) / double(columns));
-  const double head = 0.08 + 0.15 * key_rows, foot = 0.42, gap = 0.3;
+  // Key entries follow each other on lines, as words do.
+  std::vector<std::pair<double, int>> places;
+  double key_x = left - 0.1;
+  int key_line = 0;
+  for (const ChartKey& entry : chart.key) {
+    const double width = 0.1 + 0.015 * double(entry.name.size());
+    if (key_x + width > right + 0.03) {
+      key_x = left - 0.1;
+      ++key_line;
+    }
+    places.push_back({key_x, key_line});
+    key_x += width;
+  }
+  const bool titled = std::any_of(chart.panels.begin(), chart.panels.end(), [](const auto& p) { return !p.title.empty(); });
+  const double head = 0.06 + 0.15 * (key_line + 1), foot = 0.42, gap = titled ? 0.25 : 0.14;
   const double count = double(chart.panels.size());
   const double inches = head + count * (gap + chart.panel_height) + foot;
   Figure figure(format, 3.5, inches);
@@ -68,7 +80,6 @@ void draw(const Chart& chart, PlotFormat format, const std::filesystem::path& fi
   if (!(x_high > x_low)) throw std::runtime_error("no curve to draw");
   figure.add("set multiplot\nset lmargin at screen {}\nset rmargin at screen {}\nset xrange [{}:{}]\n", left, right,
              x_low, x_high);
-  // Whole numbers with the same decimals along one axis.
   for (std::size_t p = 0; p < chart.panels.size(); ++p) {
     const ChartPanel& panel = chart.panels[p];
     const bool last = p + 1 == chart.panels.size();
@@ -93,12 +104,11 @@ void draw(const Chart& chart, PlotFormat format, const std::filesystem::path& fi
     high = std::ceil(high / step - 1e-9) * step;
     figure.add("set yrange [{}:{}]\nset ytics {}\n", low, high, step);
     figure.text(panel.y, 7.5, fmt::format("screen 0.028,{} center rotate by 90", 0.5 * (top + bottom)));
-    if (!panel.title.empty()) figure.text(panel.title, 7.5, fmt::format("screen {},{} left", left, top + 0.1 / inches));
+    if (!panel.title.empty()) figure.text(panel.title, 7.5, fmt::format("screen {},{} left", left, top + 0.09 / inches));
     if (last) figure.text(chart.x, 7.5, fmt::format("screen {},{} center", 0.5 * (left + right), 0.1 / inches));
     if (p == 0) {
       for (std::size_t k = 0; k < chart.key.size(); ++k) {
-        const double y = 1.0 - (0.1 + 0.15 * double(k / columns)) / inches;
-        const double x = left - 0.1 + (right - left + 0.1) / double(columns) * double(k % columns);
+        const double x = places[k].first, y = 1.0 - (0.1 + 0.15 * places[k].second) / inches;
         const ChartKey& entry = chart.key[k];
         if (entry.fill) {
           figure.box(fmt::format("from screen {},{} to screen {},{}", x, y - 0.04 / inches, x + 0.05, y + 0.04 / inches),
@@ -108,7 +118,7 @@ void draw(const Chart& chart, PlotFormat format, const std::filesystem::path& fi
         }
         figure.key_entry(x, y, line(entry.style).c_str(), entry.name);
         if (entry.style.mark > 0) {
-          figure.add("set label {} '' at screen {},{} point pt {} ps 0.38 lc rgb '{}' front\n", 700 + k, x + 0.0285, y,
+          figure.add("set label {} '' at screen {},{} point pt {} ps 0.6 lc rgb '{}' front\n", 700 + k, x + 0.0285, y,
                      entry.style.mark, entry.style.colour);
         }
       }

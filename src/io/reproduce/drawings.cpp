@@ -46,7 +46,6 @@ class Sketch {
     figure_.add("unset border\nunset tics\nunset grid\nset lmargin at screen 0\nset rmargin at screen 1\n"
                 "set tmargin at screen 1\nset bmargin at screen 0\nset xrange [{}:{}]\nset yrange [{}:{}]\n",
                 x_low, x_high, y_low, y_high);
-    width_ = x_high - x_low;
   }
   void line(Point a, Point b, double weight, const char* colour, const char* dash = "1", const char* head = "nohead") {
     figure_.add("set arrow from {:.6g},{:.6g} to {:.6g},{:.6g} {} front dt {} lw {} lc rgb '{}'\n", a.x, a.y, b.x, b.y, head, dash,
@@ -56,8 +55,8 @@ class Sketch {
     for (std::size_t n = 1; n < points.size(); ++n) line(points[n - 1], points[n], weight, colour);
   }
   void disc(Point c, double radius, const char* fill) {
-    figure_.add("set object circle at {:.6g},{:.6g} size {:.6g} front fillcolor rgb '{}' fillstyle solid border lc rgb '#202020' lw 0.8\n",
-                c.x, c.y, radius, fill);
+    figure_.add("set object {} circle at {:.6g},{:.6g} size {:.6g} front fillcolor rgb '{}' fillstyle solid border lc rgb '#202020' lw 0.8\n",
+                ++discs_, c.x, c.y, radius, fill);
   }
   void box(Point a, Point b, const char* fill) { figure_.box(fmt::format("from {:.6g},{:.6g} to {:.6g},{:.6g}", a.x, a.y, b.x, b.y), fill); }
   void text(const std::string& content, Point p, const char* anchor = "center", double size = 7.5) {
@@ -74,7 +73,7 @@ class Sketch {
 
  private:
   Figure figure_;
-  double width_ = 1.0;
+  int discs_ = 200;  ///< numbered beside the figure's own objects
 };
 
 /// A spiral spring around a hinge, wound further by the stroke angle.
@@ -112,7 +111,7 @@ void draw_mechanism(const SliderCrank<double>& crank, bool springs, PlotFormat f
   for (std::size_t side = 0; side < 2; ++side) {
     s.line(p.slider, p.hinge[side], 1.6, "#404040");
     s.line(p.hinge[side], p.tip[side], 3.4, "#404040");
-    if (springs) s.path(spiral(p.hinge[side], 0.42 * H, side == 0 ? -std::numbers::pi / 2 : -std::numbers::pi / 2), 0.9, "#009e73");
+    if (springs) s.path(spiral(p.hinge[side], 0.42 * H, -std::numbers::pi / 2), 0.9, "#009e73");
     s.disc(p.hinge[side], 0.1 * H, "#ffffff");
     const double ground = p.hinge[side].y - 0.62 * H;
     if (springs) s.line({p.hinge[side].x, p.hinge[side].y - 0.42 * H}, {p.hinge[side].x, ground}, 0.9, "#009e73");
@@ -134,7 +133,7 @@ void draw_mechanism(const SliderCrank<double>& crank, bool springs, PlotFormat f
   s.path(arc, 0.7, "#202020");
   s.text("β", {p.hinge[0].x + 2.45 * H * std::cos(0.5 * beta), p.hinge[0].y - 2.45 * H * std::sin(0.5 * beta)});
   // Names and sizes.
-  s.text("motor and crank", {-1.35 * r, -0.25 * H}, "right", 7.0);
+  s.text("crank and motor", {-1.35 * r, -0.25 * H}, "right", 7.0);
   s.text(fmt::format("r_c = {:.4g} mm", r), {-1.35 * r, -0.25 * H - 0.62 * H}, "right", 7.0);
   s.text(fmt::format("rod, l = {:.4g} mm", mm * crank.rod_length),
          {0.5 * (p.pin.x + p.slider.x) + 0.3 * H, 0.5 * (p.pin.y + p.slider.y)}, "left", 7.0);
@@ -150,7 +149,7 @@ void draw_mechanism(const SliderCrank<double>& crank, bool springs, PlotFormat f
   s.text(fmt::format("H = {:.4g} mm", H), {1.15 * H, up}, "left", 7.0);
   s.text("slider on its guide", {-0.35 * H, up}, "right", 7.0);
   s.text(springs ? "hinge with spring k" : "wing hinge", {-1.55 * H, y0 - 0.95 * H - (springs ? 0.1 * H : 0.0)}, "center", 7.0);
-  s.text("wing (cut)", {p.tip[0].x - 0.7 * H, p.tip[0].y - 0.75 * H}, "center", 7.0);
+  s.text("wing (cut)", {p.tip[0].x - 0.9 * H, p.tip[0].y - 0.3 * H}, "center", 7.0);
   s.draw(file);
 }
 

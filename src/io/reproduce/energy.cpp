@@ -53,7 +53,7 @@ struct FlowCase {
 };
 
 void draw_flows(const std::vector<FlowCase>& cases, PlotFormat format, const std::filesystem::path& file) {
-  constexpr double panel = 2.25;
+  constexpr double panel = 2.4;
   const double inches = panel * double(cases.size()) + 0.1;
   Figure figure(format, 3.5, inches);
   figure.add("unset border\nunset tics\nunset grid\nset lmargin at screen 0\nset rmargin at screen 1\nset tmargin at screen 1\n"
@@ -86,8 +86,8 @@ void draw_flows(const std::vector<FlowCase>& cases, PlotFormat format, const std
       }
       const double middle = x + 0.06 + 0.5 * width;
       figure.text(name, 6.5, fmt::format("{:.4f},{:.4f} center textcolor rgb '{}'", middle, floor, colour));
-      figure.text(fmt::format("{} ({})", shown(power), share(power)), 6.0,
-                  fmt::format("{:.4f},{:.4f} center", middle, floor - 0.12));
+      figure.text(shown(power), 6.5, fmt::format("{:.4f},{:.4f} center", middle, floor - 0.13));
+      figure.text(share(power), 6.5, fmt::format("{:.4f},{:.4f} center", middle, floor - 0.26));
       remaining -= width;
     };
     leave(f.motor[0].name, f.motor[0].power, "#d55e00", 0.62, "#a04600");
@@ -192,7 +192,6 @@ std::vector<Sheet> energy_sheets(const Material& m) {
     Chart chart;
     chart.x = "time (ms)";
     chart.panel_height = 2.3;
-    chart.key_columns = 2;
     const CurveStyle supply{"#000000", "(3,3)", 0}, motor{"#d55e00", "(12,6)", 4}, air{"#0072b2", "1", 7};
     chart.key = {{"electrical input", supply}, {"motor output", motor},
                  {"aerodynamic", air},         {"stored in wings and springs", {}, "#b9ddb9"},

@@ -224,7 +224,6 @@ std::vector<Sheet> paper_sheets(const Material& m) {
     Sheet s = sheet(number, std::move(what), conditions ? "conditions" : "springs");
     TrendFigure figure(f, frequency_axis(r), 1.0, frequency_label);
     figure.chart().key = conditions ? condition_key() : springs_key();
-    if (conditions) figure.chart().key_columns = 4;
     figure.chart().panel_height = panels.size() == 1 ? 1.9 : panels.size() == 2 ? 1.5 : 1.15;
     for (const auto& [metric, label, title] : panels) {
       if (conditions) figure.panel(f, metric, label, title, by_condition, condition_style);
@@ -418,9 +417,8 @@ std::vector<Sheet> paper_sheets(const Material& m) {
     TrendFigure figure(r.supply, {"voltage_v", "V", "supply voltage", r.supply.axis}, 1.0, "supply voltage (V)");
     for (std::size_t k = 0; k < r.options.crank_radii.size(); ++k) {
       figure.chart().key.push_back(
-          {fmt::format("{:g} mm crank", 1e3 * r.options.crank_radii[k]), radii[k % std::size(radii)]});
+          {fmt::format("r_c {:g} mm", 1e3 * r.options.crank_radii[k]), radii[k % std::size(radii)]});
     }
-    figure.chart().key_columns = 4;
     figure.chart().panel_height = 1.25;
     const auto radius_style = [&](const TrendCurve& c) {
       const auto n = std::find(r.options.crank_radii.begin(), r.options.crank_radii.end(), c.crank_radius) -

@@ -55,7 +55,6 @@ struct Chart {
   std::vector<ChartPanel> panels;
   std::vector<ChartKey> key;
   double panel_height = 1.45;  ///< [in]
-  int key_columns = 3;
 };
 void draw(const Chart& chart, PlotFormat format, const std::filesystem::path& file);
 
