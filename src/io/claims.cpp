@@ -160,7 +160,8 @@ const std::pair<const char*, std::function<bool(const Claim&)>> groups[] = {
     {"As found: the paper shows it, but no number is at hand", [](const Claim& c) { return c.verdict == Verdict::as_found; }}};
 
 std::string percent(double deviation) {
-  return std::isfinite(deviation) ? fmt::format("{:+.1f} %", 100.0 * deviation) : "";
+  if (!std::isfinite(deviation)) return "";
+  return std::abs(deviation) < 5e-4 ? "0.0 %" : fmt::format("{:+.1f} %", 100.0 * deviation);
 }
 
 std::string verdict_text(const Claim& c) {

@@ -11,6 +11,7 @@
 #include <tuple>
 #include <utility>
 
+#include "wingbeat/io/design_keys.hpp"
 #include "wingbeat/io/design_parameter.hpp"
 #include "wingbeat/io/report.hpp"
 #include "wingbeat/io/units.hpp"
@@ -31,12 +32,6 @@ constexpr std::pair<const char*, PublishedTrend::Kind> kinds[] = {
     {"spring-resonance", PublishedTrend::Kind::spring_resonance},
     {"weight", PublishedTrend::Kind::weight},
     {"best-friction-law", PublishedTrend::Kind::best_friction_law}};
-
-constexpr std::pair<const char*, FrictionLaw> laws[] = {{"none", FrictionLaw::none},
-                                                        {"viscous", FrictionLaw::viscous},
-                                                        {"quadratic", FrictionLaw::quadratic},
-                                                        {"constant", FrictionLaw::constant},
-                                                        {"load-proportional", FrictionLaw::load_proportional}};
 
 class Reader {
  public:
@@ -106,7 +101,7 @@ class Reader {
     trend.basis = choice_at(t, "basis", bases);
     if (trend.kind == Kind::best_friction_law) {
       known_keys(t, {"kind", "statement", "where", "basis", "published_law"});
-      if (t.contains("published_law")) trend.published_law = choice_at(t, "published_law", laws);
+      if (t.contains("published_law")) trend.published_law = choice_at(t, "published_law", friction_laws);
       trend.unit = "1";
       return trend;
     }
@@ -169,8 +164,8 @@ class Reader {
     return {design_in(*pair->get(0), "ratio", file), design_in(*pair->get(1), "ratio", file)};
   }
 
-  template <class E, std::size_t N>
-  E choice_at(const toml::table& t, const char* key, const std::pair<const char*, E> (&choices)[N]) const {
+  template <class Name, class E, std::size_t N>
+  E choice_at(const toml::table& t, const char* key, const std::pair<Name, E> (&choices)[N]) const {
     const std::string text = text_at(t, key);
     std::string names;
     for (const auto& [name, value] : choices) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <map>
 
 #include "sheet.hpp"
 #include "wingbeat/io/report.hpp"
@@ -16,7 +15,7 @@ namespace {
 constexpr const char* style = R"(
 :root { --ink: #1a1a1a; --soft: #595959; --line: #d4d4d4; --accent: #00507c; }
 * { box-sizing: border-box; }
-body { margin: 0 auto; padding: 2rem 1.25rem 4rem; max-width: 62rem; color: var(--ink); background: #fff;
+body { margin: 0 auto; padding: 2rem 1.25rem 4rem; max-width: 68rem; color: var(--ink); background: #fff;
   font: 16px/1.55 Georgia, "Times New Roman", serif; }
 h1 { font-size: 1.9rem; line-height: 1.2; margin: 0 0 .4rem; }
 h2 { font-size: 1.35rem; margin: 2.8rem 0 .6rem; padding-top: .6rem; border-top: 2px solid var(--accent); }
@@ -35,6 +34,9 @@ figcaption b { display: block; }
 table { border-collapse: collapse; font: .82rem/1.4 Arial, Helvetica, sans-serif; margin: .8rem 0 1.2rem; }
 th, td { text-align: left; vertical-align: top; padding: .28rem .6rem; border-bottom: 1px solid var(--line); }
 thead th { border-bottom: 2px solid var(--ink); }
+td:first-child { min-width: 13rem; }
+table.laws { font-size: .78rem; }
+table.laws td.n { white-space: normal; min-width: 5.2rem; }
 th.group { background: #eef3f6; padding-top: .5rem; }
 td.n { text-align: right; white-space: nowrap; }
 .v { white-space: nowrap; }
@@ -81,7 +83,10 @@ std::string inlined(std::string svg, const std::string& id, const std::string& t
   return svg;
 }
 
-std::string deviation(double d) { return std::isfinite(d) ? fmt::format("{:+.1f} %", 100.0 * d) : "-"; }
+std::string deviation(double d) {
+  if (!std::isfinite(d)) return "-";
+  return std::abs(d) < 5e-4 ? "0.0 %" : fmt::format("{:+.1f} %", 100.0 * d);
+}
 
 const char* class_of(Verdict v) {
   return v == Verdict::reproduced ? "yes" : v == Verdict::not_reproduced ? "no" : v == Verdict::as_found ? "" : "part";
@@ -146,7 +151,7 @@ std::string law_table(const Judgement& j, Formulation formulation) {
     if (p.law.formulation == formulation) laws.push_back(&p);
   }
   if (laws.empty()) return "";
-  std::string html = "<div class=\"wide\"><table><thead><tr><th></th><th>published</th>";
+  std::string html = "<div class=\"wide\"><table class=\"laws\"><thead><tr><th></th><th>published</th>";
   for (const LawPrediction* p : laws) html += fmt::format("<th>{}</th>", law_name(p->law.law));
   html += "</tr></thead><tbody>\n<tr><td>coefficient</td><td></td>";
   for (const LawPrediction* p : laws) html += fmt::format("<td class=\"n\">{}</td>", coefficient(p->law));
@@ -208,13 +213,23 @@ const LawPrediction* law_of(const Judgement& j, FrictionLaw law, Formulation for
   return nullptr;
 }
 
-double computed_of(const LawPrediction& p, Metric metric, bool at_frequency) {
+const ComparedValue* ratio_of(const LawPrediction& p, Metric metric, bool at_frequency) {
   for (const ComparedValue& c : p.comparison.values) {
     if (c.published.metric == metric && c.published.relative_to && c.published.frequency.has_value() == at_frequency) {
-      return c.computed;
+      return &c;
     }
   }
-  return absent;
+  return nullptr;
+}
+
+double computed_of(const LawPrediction& p, Metric metric, bool at_frequency) {
+  const ComparedValue* c = ratio_of(p, metric, at_frequency);
+  return c ? c->computed : absent;
+}
+
+double published_of(const LawPrediction& p, Metric metric, bool at_frequency) {
+  const ComparedValue* c = ratio_of(p, metric, at_frequency);
+  return c ? c->published.published : absent;
 }
 
 std::string question(const Material& m) {
@@ -242,14 +257,14 @@ std::string question(const Material& m) {
       "electrical input; load-proportional friction says {:.3f}, the laws without load say {:.3f} to {:.3f}: they see almost no saving. "
       "No friction at all cannot even be calibrated: the vehicle then flaps too fast.{}</p>\n",
       readable(target.published, "Hz"), operating_point(target.voltage, target.frequency), 100.0 * load->rms, 100.0 * least,
-      100.0 * most, m.computed.options.frequency, 0.82, computed_of(*load, Metric::power_electrical, true), power_low, power_high,
+      100.0 * most, m.computed.options.frequency, published_of(*load, Metric::power_electrical, true), computed_of(*load, Metric::power_electrical, true), power_low, power_high,
       load_work ? fmt::format(" In the formulation virtual-work load-proportional friction is ahead too, by less: {:.1f} %, with a radius of {} instead of {}; the chord "
                               "moments were chosen for rod-force and do not suit it.",
                               100.0 * load_work->rms, readable(load_work->law.coefficient, "m"),
                               readable(load->law.coefficient, "m"))
                 : "");
   html +=
-      "<p><b>Why.</b> Springs change neither speed nor stroke much: they take over the force that turns the wings round. A loss that depends on "
+      "<p><b>Why.</b> At a held frequency springs change neither speed nor stroke much: they take over the force that turns the wings round. A loss that depends on "
       "speed alone - viscous, quadratic, constant - has nothing to answer to. A loss that depends on the force inside the mechanism falls "
       "with it. That is all the difference between the laws, and it shows only when the force changes and the speed does not, as when springs are "
       "added. At one operating point any law will do.</p>\n";
@@ -258,7 +273,7 @@ std::string question(const Material& m) {
       "load-proportional friction; that this law brings them back best shows that the program computes what the paper computed, not that joints "
       "in the world behave so. Four things a bench would have to show: (1) input power at one held frequency with springs of several stiffnesses: "
       "the curves below separate the laws, by more than a tenth of the input; (2) the same in vacuum, where load-proportional friction stays "
-      "large and nothing else takes power; (3) the rod force itself, measured, beside the loss; (4) wings of several inertias on the same "
+      "large and the air takes nothing; (3) the rod force itself, measured, beside the loss; (4) wings of several inertias on the same "
       "mechanism. <code>wingbeat fit --compare-friction</code> takes such logs and ranks the laws.</p>\n";
   html += "<h3>rod-force</h3>\n" + law_table(j, Formulation::rod_force);
   html += "<h3>virtual-work</h3>\n" + law_table(j, Formulation::virtual_work);
@@ -322,8 +337,6 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
       {"question", "Should friction losses be included?"},
       {"energy", "Where the energy goes"},
       {"how", "How each number was computed"}};
-  std::map<std::string, int> number;
-  for (const auto& [id, name] : sections) number.emplace(id, int(number.size()) + 1);
   const auto begin = [&](const char* id) {
     for (std::size_t n = 0; n < std::size(sections); ++n) {
       if (sections[n].first == std::string_view(id)) {

@@ -66,7 +66,8 @@ const KnownPaper& known_paper(std::string_view name) {
     if (paper.name == name) return paper;
     names += fmt::format("{}{}", names.empty() ? "" : ", ", paper.name);
   }
-  throw InputError("", 0, 0, "", fmt::format("there is no paper {} to reproduce; known: {}", in_quotes(name), names));
+  throw InputError(fmt::format("reproduce {}", one_line(name)), 0, 0, "",
+                   fmt::format("the program knows no such paper; it knows {}", names));
 }
 
 void prepare_reproduction_folder(const fs::path& folder, std::string_view paper) {
