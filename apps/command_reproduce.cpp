@@ -41,9 +41,9 @@ int run(const Arguments& arguments) {
   if (arguments.json) {
     print(json_claims(result.file, result.judgement));
   } else {
-    print(text_claims(result.file, result.judgement) +
-          fmt::format("{} figures written to {}; open {}\n", result.figures, arguments.output,
-                      (options.output / "report.html").string()));
+    print(text_claims(result.file, result.judgement) + fmt::format("{} figures written to {}; open {}\n",
+                                                                   result.figures, arguments.output,
+                                                                   (options.output / "report.html").string()));
   }
   return done;
 }

@@ -31,7 +31,7 @@ PublishedFile with_formulation(PublishedFile file, Formulation formulation) {
   return file;
 }
 
-/// A number for reading; lengths in millimetres, which is how mechanisms are drawn.
+/// A number for reading.
 std::string shown(double x, const std::string& unit) {
   if (!std::isfinite(x)) return "-";
   if (unit == "1") return fmt::format("{:#.4g}", x);
@@ -82,12 +82,13 @@ Answer along(const PublishedFile& file, const PublishedTrend& t) {
     answer.remark = fmt::format("at {}", readable(peak.at, unit));
   } else {
     const MetricInfo& info = metric_table()[std::size_t(t.metric)];
-    answer.remark = t.metric == Metric::lift_mean ? readable(peak.value, info.unit)
-                                                  : fmt::format("{:.2f} %", 100.0 * peak.value);
+    answer.remark =
+        t.metric == Metric::lift_mean ? readable(peak.value, info.unit) : fmt::format("{:.2f} %", 100.0 * peak.value);
   }
   if (!peak.inside) {
     const double end = std::abs(peak.at - t.to) < std::abs(peak.at - t.from) ? t.to : t.from;
-    answer.remark += std::abs(peak.at - end) < 1e-3 * (t.to - t.from) ? ", end of the range" : ", at the edge of flapping";
+    answer.remark +=
+        std::abs(peak.at - end) < 1e-3 * (t.to - t.from) ? ", end of the range" : ", at the edge of flapping";
   }
   return answer;
 }
@@ -99,10 +100,14 @@ Answer answer_to(const PublishedFile& file, const PublishedTrend& t) {
   const Design<double>& design = file.designs.at(t.design);
   const Vehicle<double> vehicle = resolve(design);
   switch (t.kind) {
-    case Kind::constant_load_efficiency: return {best_constant_load_efficiency(vehicle.motor, *t.voltage), ""};
-    case Kind::spring_resonance: return {std::sqrt(vehicle.spring.stiffness / vehicle.wing_inertia) / two_pi, ""};
-    case Kind::weight: return {design.mass.value_or(absent) * standard_gravity, ""};
-    default: return {};
+    case Kind::constant_load_efficiency:
+      return {best_constant_load_efficiency(vehicle.motor, *t.voltage), ""};
+    case Kind::spring_resonance:
+      return {std::sqrt(vehicle.spring.stiffness / vehicle.wing_inertia) / two_pi, ""};
+    case Kind::weight:
+      return {design.mass.value_or(absent) * standard_gravity, ""};
+    default:
+      return {};
   }
 }
 
@@ -157,7 +162,8 @@ const std::pair<const char*, std::function<bool(const Claim&)>> groups[] = {
     {"Given: what the published tables say by themselves", [](const Claim& c) { return c.basis == Basis::given; }},
     {"Calibrated: looked at when what is not published was chosen, so no evidence",
      [](const Claim& c) { return c.basis == Basis::calibrated; }},
-    {"As found: the paper shows it, but no number is at hand", [](const Claim& c) { return c.verdict == Verdict::as_found; }}};
+    {"As found: the paper shows it, but no number is at hand",
+     [](const Claim& c) { return c.verdict == Verdict::as_found; }}};
 
 std::string percent(double deviation) {
   if (!std::isfinite(deviation)) return "";
@@ -231,9 +237,9 @@ Judgement judge(const PublishedFile& file, const ForEach& for_each, const std::f
     const PublishedValue& v = file.values[n];
     const MetricInfo& info = metric_table()[std::size_t(v.metric)];
     Claim c;
-    c.statement = fmt::format("{}, {}{} at {}", info.long_name, spaced(v.design),
-                              v.relative_to ? " over " + spaced(*v.relative_to) : "",
-                              operating_point(v.voltage, v.frequency));
+    c.statement =
+        fmt::format("{}, {}{} at {}", info.long_name, spaced(v.design),
+                    v.relative_to ? " over " + spaced(*v.relative_to) : "", operating_point(v.voltage, v.frequency));
     c.where = v.where;
     c.basis = v.basis;
     c.unit = v.relative_to ? "1" : info.unit;
@@ -265,8 +271,9 @@ Judgement judge(const PublishedFile& file, const ForEach& for_each, const std::f
     if (t.kind == PublishedTrend::Kind::best_friction_law) {
       for (std::size_t f = 0; f < 2; ++f) {
         const auto first = j.laws.begin() + long(f * std::size(compared_friction_laws));
-        const auto best = std::min_element(first, first + long(std::size(compared_friction_laws)),
-                                           [](const LawPrediction& p, const LawPrediction& q) { return p.rms < q.rms; });
+        const auto best =
+            std::min_element(first, first + long(std::size(compared_friction_laws)),
+                             [](const LawPrediction& p, const LawPrediction& q) { return p.rms < q.rms; });
         c.ours_text[f] = fmt::format("{} ({:.1f} % rms)", law_name(best->law.law), 100.0 * best->rms);
         c.within[f] = t.published_law == best->law.law;
       }
@@ -310,8 +317,8 @@ std::string json_claims(const PublishedFile& file, const Judgement& judgement) {
   Json json;
   json["title"] = file.title;
   json["source"] = file.source;
-  for (const Verdict v : {Verdict::reproduced, Verdict::not_reproduced, Verdict::depends_on_formulation,
-                          Verdict::as_found}) {
+  for (const Verdict v :
+       {Verdict::reproduced, Verdict::not_reproduced, Verdict::depends_on_formulation, Verdict::as_found}) {
     json["verdicts"][spaced(name_of(v))] = judgement.count(v);
   }
   json["claims"] = Json::array();
@@ -355,8 +362,9 @@ std::string csv_claims(const Judgement& judgement) {
     return out + "\"";
   };
   const auto number = [](double x) { return std::isfinite(x) ? fmt::format("{:.9g}", x) : std::string(); };
-  std::string text = "statement,where,basis,unit,published,tolerance,rod_force,rod_force_text,rod_force_deviation,"
-                     "virtual_work,virtual_work_text,virtual_work_deviation,verdict\n";
+  std::string text =
+      "statement,where,basis,unit,published,tolerance,rod_force,rod_force_text,rod_force_deviation,"
+      "virtual_work,virtual_work_text,virtual_work_deviation,verdict\n";
   for (const Claim& c : judgement.claims) {
     text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", field(c.statement), field(c.where),
                         name_of(c.basis), c.unit, c.published ? number(*c.published) : "", number(c.tolerance),

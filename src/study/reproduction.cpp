@@ -64,9 +64,7 @@ std::vector<Metrics<double>> along(const std::vector<double>& axis, Condition co
   return metrics;
 }
 
-void set_constant(Design<double>& design, double voltage) {
-  design.supply = {SupplyType::constant, voltage, 0.0, 1.0};
-}
+void set_constant(Design<double>& design, double voltage) { design.supply = {SupplyType::constant, voltage, 0.0, 1.0}; }
 
 CycleCase cycle_of(const SpringPair& pair, const FlappingCase& which, std::optional<double> voltage,
                    std::optional<double> frequency, int rows) {
@@ -112,10 +110,9 @@ Reproduction reproduce(const SpringPair& pair, const ReproductionOptions& option
     });
   };
   for (const Formulation formulation : {rod_force, virtual_work}) {
-    for (const FlappingCase& which : {FlappingCase{formulation, false, Condition::air},
-                                      FlappingCase{formulation, true, Condition::air},
-                                      FlappingCase{formulation, false, Condition::vacuum},
-                                      FlappingCase{formulation, false, Condition::wingless}}) {
+    for (const FlappingCase& which :
+         {FlappingCase{formulation, false, Condition::air}, FlappingCase{formulation, true, Condition::air},
+          FlappingCase{formulation, false, Condition::vacuum}, FlappingCase{formulation, false, Condition::wingless}}) {
       // Without wings there is no rod force, and nothing for a formulation to differ in.
       if (which.condition == Condition::wingless && formulation == virtual_work) continue;
       r.frequency.curves.push_back({which, absent, {}});

@@ -25,10 +25,14 @@ std::vector<std::vector<std::string>> csv_rows(const std::string& text) {
   std::vector<std::vector<std::string>> rows(1, {""});
   bool quoted = false;
   for (const char c : text) {
-    if (c == '"') quoted = !quoted;
-    else if (c == ',' && !quoted) rows.back().emplace_back();
-    else if (c == '\n' && !quoted) rows.push_back({""});
-    else rows.back().back() += c;
+    if (c == '"')
+      quoted = !quoted;
+    else if (c == ',' && !quoted)
+      rows.back().emplace_back();
+    else if (c == '\n' && !quoted)
+      rows.push_back({""});
+    else
+      rows.back().back() += c;
   }
   rows.pop_back();
   return rows;
@@ -64,14 +68,15 @@ class Reproduce : public Program {
     const std::string command =
         "timeout 100 chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --no-first-run "
         "--disable-background-networking --disable-component-update --disable-sync --disable-extensions "
-        "--host-resolver-rules='MAP * ~NOTFOUND' --user-data-dir='" + path("profile") + "' --log-net-log='" +
-        path("net.json") + "' --enable-logging=stderr --dump-dom 'file://" + page + "' >'" + path("dom.html") + "' 2>'" +
-        path("log.txt") + "'";
+        "--host-resolver-rules='MAP * ~NOTFOUND' --user-data-dir='" +
+        path("profile") + "' --log-net-log='" + path("net.json") + "' --enable-logging=stderr --dump-dom 'file://" +
+        page + "' >'" + path("dom.html") + "' 2>'" + path("log.txt") + "'";
     const int status = std::system(command.c_str());
     Browsed b{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(path("dom.html")), read(path("log.txt")), {}};
     for (const std::string& url : matches(read(path("net.json")), "\"url\":\"([a-z]+://[^\"]*)\"")) {
       if (url.rfind("file://", 0) == 0 && url.find(page) != std::string::npos) continue;
-      if (!std::regex_search(url, std::regex("^https?://[a-z0-9.]*(google|googleapis|gvt1)\\.com/"))) b.requests.push_back(url);
+      if (!std::regex_search(url, std::regex("^https?://[a-z0-9.]*(google|googleapis|gvt1)\\.com/")))
+        b.requests.push_back(url);
     }
     return b;
   }
@@ -115,8 +120,10 @@ TEST_F(Reproduce, EveryFigureIsThereWithItsData) {
       ASSERT_EQ(values.size() + 1, rows.size()) << name;
       for (std::size_t n = 0; n < values.size(); ++n) {
         double x = NAN;
-        if (is_number(rows[n + 1][column], x)) EXPECT_NEAR(x, values[n], 1e-8 * std::abs(values[n]));
-        else EXPECT_TRUE(std::isnan(values[n]));
+        if (is_number(rows[n + 1][column], x))
+          EXPECT_NEAR(x, values[n], 1e-8 * std::abs(values[n]));
+        else
+          EXPECT_TRUE(std::isnan(values[n]));
       }
     }
   }
@@ -139,8 +146,9 @@ TEST_F(Reproduce, TheClaimsAreThoseCommitted) {
         // The place of a flat maximum is known less well than values are.
         const bool place = ours[n][0].find("crank radius of") == 0 || ours[n][0].find("rod length of") == 0 ||
                            ours[n][0].find("highest near") != std::string::npos;
-        EXPECT_NEAR(x, y, place ? 5e-3 * std::max(std::abs(y), 1.0 * (name.find("deviation") != std::string::npos))
-                                : 1e-6 * std::max(std::abs(y), 1.0 * (name.find("deviation") != std::string::npos)))
+        EXPECT_NEAR(x, y,
+                    place ? 5e-3 * std::max(std::abs(y), 1.0 * (name.find("deviation") != std::string::npos))
+                          : 1e-6 * std::max(std::abs(y), 1.0 * (name.find("deviation") != std::string::npos)))
             << ours[n][0] << ", " << name;
       } else {
         EXPECT_EQ(ours[n][column], expected[n][column]) << ours[n][0] << ", " << name;
@@ -161,7 +169,8 @@ TEST_F(Reproduce, TwoRunsGiveTheSameBytes) {
   for (const auto& entry : fs::directory_iterator(path("again"))) second.insert(entry.path().filename().string());
   EXPECT_EQ(first, second);
   for (const std::string& name : first) {
-    // NetCDF files hold the time at which they were made; EveryFigureIsThereWithItsData compares their content with the CSV.
+    // NetCDF files hold the time at which they were made; EveryFigureIsThereWithItsData compares their content with the
+    // CSV.
     if (name.size() > 3 && name.substr(name.size() - 3) == ".nc") continue;
     EXPECT_TRUE(read(made(name)) == read(path("again/" + name))) << name;
   }
@@ -180,7 +189,8 @@ TEST_F(Reproduce, TheReportStandsByItself) {
   std::map<std::string, int> names;
   for (const std::string& id : matches(html, " id=[\"']([^\"']*)[\"']")) ++names[id];
   for (const auto& [id, times] : names) EXPECT_EQ(times, 1) << id;
-  for (const std::string& target : matches(html, "href=[\"']#([^\"']*)[\"']")) EXPECT_TRUE(names.contains(target)) << target;
+  for (const std::string& target : matches(html, "href=[\"']#([^\"']*)[\"']"))
+    EXPECT_TRUE(names.contains(target)) << target;
   for (const std::string& target : matches(html, "url\\(#([^)\"']*)\\)")) EXPECT_TRUE(names.contains(target)) << target;
   EXPECT_EQ(count_of(html, "<svg"), 28U);
   for (const std::string bad : {"nan", "inf", "not-a-number"}) {
@@ -196,7 +206,8 @@ TEST_F(Reproduce, TheReportsCommandsWorkAsTyped) {
     for (const std::string file : {"cycle.csv", "cycle.svg"}) {
       if (const auto at = command.find(file); at != std::string::npos) command.replace(at, file.size(), path(file));
     }
-    const std::string whole = "cd '" + root + "' && " + WINGBEAT_PROGRAM + " " + command + " >" + path("out.txt") + " 2>&1";
+    const std::string whole =
+        "cd '" + root + "' && " + WINGBEAT_PROGRAM + " " + command + " >" + path("out.txt") + " 2>&1";
     EXPECT_EQ(std::system(whole.c_str()), 0) << command << "\n" << read(path("out.txt"));
   }
 }
@@ -223,7 +234,8 @@ TEST_F(Reproduce, FoldersOfSomethingElseAreLeftAlone) {
   std::ofstream(path("mine/report.html")) << "mine";
   const Outcome foreign = run({"reproduce", "friction2022", "--coarse", "-o", path("mine")});
   EXPECT_EQ(foreign.status, 2);
-  EXPECT_EQ(foreign.err, "wingbeat: -o " + path("mine") + ": holds files of something else; name a new or an empty folder\n");
+  EXPECT_EQ(foreign.err,
+            "wingbeat: -o " + path("mine") + ": holds files of something else; name a new or an empty folder\n");
   EXPECT_EQ(read(path("mine/report.html")), "mine");
 
   fs::create_directory(path("empty"));
@@ -251,7 +263,8 @@ TEST_F(Reproduce, BadInputIsRefusedInOneSentence) {
   std::ofstream(path("file")) << "a file";
   EXPECT_EQ(said({"reproduce", "friction2022", "-o", path("file")}),
             "wingbeat: -o " + path("file") + ": is a file, not a folder\n");
-  EXPECT_THAT(said({"reproduce", "friction2022", "-o", "/proc/wingbeat"}), HasSubstr("-o /proc/wingbeat: cannot be made: "));
+  EXPECT_THAT(said({"reproduce", "friction2022", "-o", "/proc/wingbeat"}),
+              HasSubstr("-o /proc/wingbeat: cannot be made: "));
   EXPECT_FALSE(fs::exists(path("o")));
 }
 

@@ -27,14 +27,14 @@ inline constexpr std::array<Formulation, 2> both_formulations = {Formulation::ro
 struct Claim {
   std::string statement, where;
   Basis basis;
-  std::string unit;                    ///< SI; "1": a ratio or no number at all
-  std::optional<double> published;     ///< SI
-  double tolerance = absent;           ///< accepted relative deviation
+  std::string unit;                 ///< SI; "1": a ratio or no number at all
+  std::optional<double> published;  ///< SI
+  double tolerance = absent;        ///< accepted relative deviation
   std::array<double, 2> ours{absent, absent};
   std::array<double, 2> deviation{absent, absent};  ///< ours / published - 1
   std::array<bool, 2> within{};
-  std::string published_text;                ///< for reading
-  std::array<std::string, 2> ours_text;      ///< for reading, with what is to be said about it
+  std::string published_text;            ///< for reading
+  std::array<std::string, 2> ours_text;  ///< for reading, with what is to be said about it
   Verdict verdict = Verdict::as_found;
 };
 
@@ -54,8 +54,8 @@ struct Judgement {
   int count(Verdict verdict) const;
 };
 
-/// Computes every statement in both formulations; the result does not depend on for_each. `done` is called now and then,
-/// by one thread at a time, with the share that is done.
+/// Computes every statement in both formulations; the result does not depend on for_each. `done` is called now and
+/// then, by one thread at a time, with the share that is done.
 Judgement judge(const PublishedFile& file, const ForEach& for_each, const std::function<void(double)>& done = {});
 
 std::string text_claims(const PublishedFile& file, const Judgement& judgement);

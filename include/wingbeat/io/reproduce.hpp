@@ -24,13 +24,13 @@ const KnownPaper& known_paper(std::string_view name);
 struct ReproduceOptions {
   std::filesystem::path output;  ///< the folder
   bool coarse = false;
-  std::string version;           ///< of the program
+  std::string version;  ///< of the program
   ForEach for_each;
   std::function<void(double share, const std::string& what)> progress;  ///< called by one thread at a time
 };
 
-/// A folder that may be written to: new, empty, or one that this command wrote before. Creates it. Throws InputError for
-/// every other, and where it cannot be written.
+/// A folder that may be written to: new, empty, or one that this command wrote before. Creates it. Throws InputError
+/// for every other, and where it cannot be written.
 void prepare_reproduction_folder(const std::filesystem::path& folder, std::string_view paper);
 
 /// Computes and writes everything. Files of the same names from an earlier run are replaced, others in the folder stay.

@@ -1,5 +1,5 @@
-// What the figures of the 2022 friction paper show, computed: scans along the frequency, trends of the mechanism, cycles;
-// and the friction laws, each calibrated to one operating point.
+// What the figures of the 2022 friction paper show, computed: scans along the frequency, trends of the mechanism,
+// cycles; and the friction laws, each calibrated to one operating point.
 #pragma once
 
 #include <array>
@@ -57,11 +57,11 @@ struct ReproductionOptions {
 
 struct Reproduction {
   ReproductionOptions options;
-  TrendSet frequency;           ///< air, vacuum, wingless without springs; air with them
-  TrendSet crank_fixed_hinge;   ///< crank radius at `voltage`, hinge offset held
-  TrendSet crank_fixed_stroke;  ///< stroke amplitude held
-  TrendSet rod;                 ///< rod length at `voltage`
-  TrendSet supply;              ///< voltage, for each of the crank radii, hinge offset held
+  TrendSet frequency;                               ///< air, vacuum, wingless without springs; air with them
+  TrendSet crank_fixed_hinge;                       ///< crank radius at `voltage`, hinge offset held
+  TrendSet crank_fixed_stroke;                      ///< stroke amplitude held
+  TrendSet rod;                                     ///< rod length at `voltage`
+  TrendSet supply;                                  ///< voltage, for each of the crank radii, hinge offset held
   std::vector<CycleCase> at_frequency, at_voltage;  ///< both formulations, springs off and on
 };
 
@@ -70,8 +70,9 @@ struct Reproduction {
 Reproduction reproduce(const SpringPair& pair, const ReproductionOptions& options, const ForEach& for_each,
                        const std::function<void(double)>& done = {});
 
-inline constexpr FrictionLaw compared_friction_laws[] = {FrictionLaw::none, FrictionLaw::viscous, FrictionLaw::quadratic,
-                                                FrictionLaw::constant, FrictionLaw::load_proportional};
+inline constexpr FrictionLaw compared_friction_laws[] = {FrictionLaw::none, FrictionLaw::viscous,
+                                                         FrictionLaw::quadratic, FrictionLaw::constant,
+                                                         FrictionLaw::load_proportional};
 
 /// A friction law with its coefficient chosen so that the vehicle flaps at a frequency.
 struct CalibratedLaw {
@@ -87,8 +88,8 @@ CalibratedLaw calibrate_friction(Design<double> design, FrictionLaw law, double 
 
 /// The loss along a spring of growing stiffness, the frequency held: how a law answers to the force in the mechanism.
 struct LossCurve {
-  std::vector<double> stiffness;           ///< of each hinge [N m/rad]
-  std::vector<Metrics<double>> metrics;    ///< absent where the frequency cannot be held
+  std::vector<double> stiffness;         ///< of each hinge [N m/rad]
+  std::vector<Metrics<double>> metrics;  ///< absent where the frequency cannot be held
 };
 LossCurve loss_along_stiffness(const Design<double>& design, double frequency, double most_stiffness, int points);
 

@@ -50,7 +50,8 @@ void draw(const Chart& chart, PlotFormat format, const std::filesystem::path& fi
     places.push_back({key_x, key_line});
     key_x += width;
   }
-  const bool titled = std::any_of(chart.panels.begin(), chart.panels.end(), [](const auto& p) { return !p.title.empty(); });
+  const bool titled =
+      std::any_of(chart.panels.begin(), chart.panels.end(), [](const auto& p) { return !p.title.empty(); });
   const double head = 0.06 + 0.15 * (key_line + 1), foot = 0.42, gap = titled ? 0.25 : 0.14;
   const double count = double(chart.panels.size());
   const double inches = head + count * (gap + chart.panel_height) + foot;
@@ -65,8 +66,10 @@ void draw(const Chart& chart, PlotFormat format, const std::filesystem::path& fi
       for (std::size_t n = 0; n < curve.x.size(); ++n) {
         x_low = std::min(x_low, curve.x[n]);
         x_high = std::max(x_high, curve.x[n]);
-        if (std::isfinite(curve.y[n])) figure.add("{:.8g} {:.8g}\n", curve.x[n], curve.y[n]);
-        else figure.add("\n");
+        if (std::isfinite(curve.y[n]))
+          figure.add("{:.8g} {:.8g}\n", curve.x[n], curve.y[n]);
+        else
+          figure.add("\n");
       }
       figure.add("END\n");
     }
@@ -104,15 +107,17 @@ void draw(const Chart& chart, PlotFormat format, const std::filesystem::path& fi
     high = std::ceil(high / step - 1e-9) * step;
     figure.add("set yrange [{}:{}]\nset ytics {}\n", low, high, step);
     figure.text(panel.y, 7.5, fmt::format("screen 0.028,{} center rotate by 90", 0.5 * (top + bottom)));
-    if (!panel.title.empty()) figure.text(panel.title, 7.5, fmt::format("screen {},{} left", left, top + 0.09 / inches));
+    if (!panel.title.empty())
+      figure.text(panel.title, 7.5, fmt::format("screen {},{} left", left, top + 0.09 / inches));
     if (last) figure.text(chart.x, 7.5, fmt::format("screen {},{} center", 0.5 * (left + right), 0.1 / inches));
     if (p == 0) {
       for (std::size_t k = 0; k < chart.key.size(); ++k) {
         const double x = places[k].first, y = 1.0 - (0.1 + 0.15 * places[k].second) / inches;
         const ChartKey& entry = chart.key[k];
         if (entry.fill) {
-          figure.box(fmt::format("from screen {},{} to screen {},{}", x, y - 0.04 / inches, x + 0.05, y + 0.04 / inches),
-                     entry.fill);
+          figure.box(
+              fmt::format("from screen {},{} to screen {},{}", x, y - 0.04 / inches, x + 0.05, y + 0.04 / inches),
+              entry.fill);
           figure.text(entry.name, 7.0, fmt::format("screen {},{} left", x + 0.065, y));
           continue;
         }
@@ -129,9 +134,10 @@ void draw(const Chart& chart, PlotFormat format, const std::filesystem::path& fi
     std::string plots;
     for (std::size_t a = 0; a < panel.areas.size(); ++a) {
       const ChartArea& area = panel.areas[a];
-      plots += fmt::format("$a{0}_{1} using 1:($2 > 0 ? $2 : 0) with filledcurves y=0 fs solid lc rgb '{2}', "
-                           "'' using 1:($2 < 0 ? $2 : 0) with filledcurves y=0 fs solid lc rgb '{3}', ",
-                           p, a, area.above, area.below);
+      plots += fmt::format(
+          "$a{0}_{1} using 1:($2 > 0 ? $2 : 0) with filledcurves y=0 fs solid lc rgb '{2}', "
+          "'' using 1:($2 < 0 ? $2 : 0) with filledcurves y=0 fs solid lc rgb '{3}', ",
+          p, a, area.above, area.below);
     }
     plots += low < 0.0 ? "0 with lines dt 1 lw 0.5 lc rgb '#404040'" : "NaN";
     for (const ChartLevel& level : panel.levels) {

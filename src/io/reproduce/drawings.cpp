@@ -11,7 +11,7 @@
 namespace wingbeat::reproduction {
 namespace {
 
-constexpr double wing_shown = 3.4;         ///< length of a wing as drawn, in hinge offsets
+constexpr double wing_shown = 3.4;            ///< length of a wing as drawn, in hinge offsets
 constexpr double drawn_angle = two_pi / 9.0;  ///< crank angle of the figures
 
 struct Point {
@@ -43,22 +43,27 @@ class Sketch {
  public:
   Sketch(PlotFormat format, double x_low, double x_high, double y_low, double y_high)
       : figure_(format, 3.5, 3.5 * (y_high - y_low) / (x_high - x_low)) {
-    figure_.add("unset border\nunset tics\nunset grid\nset lmargin at screen 0\nset rmargin at screen 1\n"
-                "set tmargin at screen 1\nset bmargin at screen 0\nset xrange [{}:{}]\nset yrange [{}:{}]\n",
-                x_low, x_high, y_low, y_high);
+    figure_.add(
+        "unset border\nunset tics\nunset grid\nset lmargin at screen 0\nset rmargin at screen 1\n"
+        "set tmargin at screen 1\nset bmargin at screen 0\nset xrange [{}:{}]\nset yrange [{}:{}]\n",
+        x_low, x_high, y_low, y_high);
   }
   void line(Point a, Point b, double weight, const char* colour, const char* dash = "1", const char* head = "nohead") {
-    figure_.add("set arrow from {:.6g},{:.6g} to {:.6g},{:.6g} {} front dt {} lw {} lc rgb '{}'\n", a.x, a.y, b.x, b.y, head, dash,
-                weight, colour);
+    figure_.add("set arrow from {:.6g},{:.6g} to {:.6g},{:.6g} {} front dt {} lw {} lc rgb '{}'\n", a.x, a.y, b.x, b.y,
+                head, dash, weight, colour);
   }
   void path(const std::vector<Point>& points, double weight, const char* colour) {
     for (std::size_t n = 1; n < points.size(); ++n) line(points[n - 1], points[n], weight, colour);
   }
   void disc(Point c, double radius, const char* fill) {
-    figure_.add("set object {} circle at {:.6g},{:.6g} size {:.6g} front fillcolor rgb '{}' fillstyle solid border lc rgb '#202020' lw 0.8\n",
-                ++discs_, c.x, c.y, radius, fill);
+    figure_.add(
+        "set object {} circle at {:.6g},{:.6g} size {:.6g} front fillcolor rgb '{}' fillstyle solid border lc rgb "
+        "'#202020' lw 0.8\n",
+        ++discs_, c.x, c.y, radius, fill);
   }
-  void box(Point a, Point b, const char* fill) { figure_.box(fmt::format("from {:.6g},{:.6g} to {:.6g},{:.6g}", a.x, a.y, b.x, b.y), fill); }
+  void box(Point a, Point b, const char* fill) {
+    figure_.box(fmt::format("from {:.6g},{:.6g} to {:.6g},{:.6g}", a.x, a.y, b.x, b.y), fill);
+  }
   void text(const std::string& content, Point p, const char* anchor = "center", double size = 7.5) {
     figure_.text(content, size, fmt::format("{:.6g},{:.6g} {}", p.x, p.y, anchor));
   }
@@ -122,7 +127,8 @@ void draw_mechanism(const SliderCrank<double>& crank, bool springs, PlotFormat f
   s.disc(p.pin, 0.11 * H, "#ffffff");
   // Angles.
   std::vector<Point> arc;
-  for (int n = 0; n <= 20; ++n) arc.push_back({0.75 * r * std::cos(theta * n / 20), 0.75 * r * std::sin(theta * n / 20)});
+  for (int n = 0; n <= 20; ++n)
+    arc.push_back({0.75 * r * std::cos(theta * n / 20), 0.75 * r * std::sin(theta * n / 20)});
   s.path(arc, 0.7, "#202020");
   s.text("θ", {0.95 * r * std::cos(0.45 * theta), 0.95 * r * std::sin(0.45 * theta)});
   const double beta = stroke_angle(crank_kinematics(crank, std::sin(theta), std::cos(theta)));
@@ -148,7 +154,8 @@ void draw_mechanism(const SliderCrank<double>& crank, bool springs, PlotFormat f
   s.dimension({0, up}, {H, up}, "", {0, 0});
   s.text(fmt::format("H = {:.4g} mm", H), {1.15 * H, up}, "left", 7.0);
   s.text("slider on its guide", {-0.35 * H, up}, "right", 7.0);
-  s.text(springs ? "hinge with spring k" : "wing hinge", {-1.55 * H, y0 - 0.95 * H - (springs ? 0.1 * H : 0.0)}, "center", 7.0);
+  s.text(springs ? "hinge with spring k" : "wing hinge", {-1.55 * H, y0 - 0.95 * H - (springs ? 0.1 * H : 0.0)},
+         "center", 7.0);
   s.text("wing (cut)", {p.tip[0].x - 0.9 * H, p.tip[0].y - 0.3 * H}, "center", 7.0);
   s.draw(file);
 }
@@ -162,27 +169,33 @@ std::string moving(const SliderCrank<double>& crank, const CycleCase& cycle, con
   constexpr double slowed = 40.0;
   const double seconds = slowed * (rows.back().time - rows.front().time);
   std::vector<Pose> poses;
-  for (std::size_t n = 0; n <= frames; ++n) poses.push_back(pose_of(crank, rows[n * (rows.size() - 1) / frames].crank_angle));
+  for (std::size_t n = 0; n <= frames; ++n)
+    poses.push_back(pose_of(crank, rows[n * (rows.size() - 1) / frames].crank_angle));
   const auto animated = [&](const char* attribute, const auto& of) {
     std::string values;
     for (const Pose& p : poses) values += fmt::format("{}{:.2f}", values.empty() ? "" : ";", of(p));
-    return fmt::format("<animate attributeName=\"{}\" dur=\"{:.3f}s\" repeatCount=\"indefinite\" values=\"{}\"/>", attribute,
-                       seconds, values);
+    return fmt::format("<animate attributeName=\"{}\" dur=\"{:.3f}s\" repeatCount=\"indefinite\" values=\"{}\"/>",
+                       attribute, seconds, values);
   };
   const auto line = [&](const char* colour, double width, const auto& a, const auto& b) {
-    return fmt::format("<line stroke=\"{}\" stroke-width=\"{}\" stroke-linecap=\"round\" x1=\"{:.2f}\" y1=\"{:.2f}\" x2=\"{:.2f}\" y2=\"{:.2f}\">",
-                       colour, width, a(poses[0]).x, -a(poses[0]).y, b(poses[0]).x, -b(poses[0]).y) +
-           animated("x1", [&](const Pose& p) { return a(p).x; }) + animated("y1", [&](const Pose& p) { return -a(p).y; }) +
-           animated("x2", [&](const Pose& p) { return b(p).x; }) + animated("y2", [&](const Pose& p) { return -b(p).y; }) +
-           "</line>\n";
+    return fmt::format(
+               "<line stroke=\"{}\" stroke-width=\"{}\" stroke-linecap=\"round\" x1=\"{:.2f}\" y1=\"{:.2f}\" "
+               "x2=\"{:.2f}\" y2=\"{:.2f}\">",
+               colour, width, a(poses[0]).x, -a(poses[0]).y, b(poses[0]).x, -b(poses[0]).y) +
+           animated("x1", [&](const Pose& p) { return a(p).x; }) +
+           animated("y1", [&](const Pose& p) { return -a(p).y; }) +
+           animated("x2", [&](const Pose& p) { return b(p).x; }) +
+           animated("y2", [&](const Pose& p) { return -b(p).y; }) + "</line>\n";
   };
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"{:.2f} {:.2f} {:.2f} {:.2f}\" width=\"672\" role=\"img\" "
       "font-family=\"sans-serif\" font-size=\"2.1\">\n<title>{}</title>\n"
       "<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"#ffffff\"/>\n",
       -half, -high, 2.0 * half, high - low, label, -half, -high, 2.0 * half, high - low);
-  svg += fmt::format("<path d=\"M0 {:.2f}V{:.2f}M{:.2f} {:.2f}H{:.2f}\" stroke=\"#b0b0b0\" stroke-width=\"0.15\" stroke-dasharray=\"1 0.6\" fill=\"none\"/>\n",
-                     -low - 0.4 * H, -high + 0.5 * H, -half, -y0, half);
+  svg += fmt::format(
+      "<path d=\"M0 {:.2f}V{:.2f}M{:.2f} {:.2f}H{:.2f}\" stroke=\"#b0b0b0\" stroke-width=\"0.15\" stroke-dasharray=\"1 "
+      "0.6\" fill=\"none\"/>\n",
+      -low - 0.4 * H, -high + 0.5 * H, -half, -y0, half);
   svg += fmt::format("<circle r=\"{:.2f}\" fill=\"none\" stroke=\"#b0b0b0\" stroke-width=\"0.15\"/>\n", r);
   const auto origin = [](const Pose&) { return Point{0.0, 0.0}; };
   const auto pin = [](const Pose& p) { return p.pin; };
@@ -191,8 +204,9 @@ std::string moving(const SliderCrank<double>& crank, const CycleCase& cycle, con
     const auto hinge = [side](const Pose& p) { return p.hinge[side]; };
     const auto tip = [side](const Pose& p) { return p.tip[side]; };
     svg += line("#404040", 0.5, slider, hinge) + line("#404040", 1.1, hinge, tip);
-    svg += fmt::format("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{:.2f}\" fill=\"#ffffff\" stroke=\"#202020\" stroke-width=\"0.2\"/>\n",
-                       poses[0].hinge[side].x, -poses[0].hinge[side].y, 0.11 * H);
+    svg += fmt::format(
+        "<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{:.2f}\" fill=\"#ffffff\" stroke=\"#202020\" stroke-width=\"0.2\"/>\n",
+        poses[0].hinge[side].x, -poses[0].hinge[side].y, 0.11 * H);
     if (cycle.of.springs) {
       std::string path;
       for (const Point& q : spiral(poses[0].hinge[side], 0.42 * H, -std::numbers::pi / 2)) {
@@ -220,22 +234,26 @@ std::vector<Sheet> mechanism_sheets(const Material& m) {
     s.id = springs ? "figure-08" : "figure-01";
     s.heading = springs ? "Figure 8. The mechanism with hinge springs" : "Figure 1. The mechanism";
     s.section = "vehicle";
-    s.caption = springs
-                    ? fmt::format("Each hinge has a spring of {:.4g} mN m/rad, relaxed in mid-stroke: with a wing of {:.4g} g mm2 it "
-                                  "resonates at {:.4g} Hz. Drawn by the program at a crank angle of {:.0f} deg.",
-                                  1e3 * vehicle.spring.stiffness, 1e9 * vehicle.wing_inertia,
-                                  std::sqrt(vehicle.spring.stiffness / vehicle.wing_inertia) / two_pi,
-                                  degrees_per_radian * drawn_angle)
-                    : fmt::format("To scale but for the wings, drawn by the program from the vehicle file at a crank angle of {:.0f} deg. "
-                                  "The motor turns the crank; rod and slider swing the wings about their hinges by {:.1f} deg to "
-                                  "either side. The rod force F presses on the joints: their friction torque is mu r_e |F| with "
-                                  "mu r_e = {:.4g} mm.",
-                                  degrees_per_radian * drawn_angle, degrees_per_radian * stroke_amplitude(crank),
-                                  1e3 * design.friction.coefficient);
+    s.caption =
+        springs
+            ? fmt::format(
+                  "Each hinge has a spring of {:.4g} mN m/rad, relaxed in mid-stroke: with a wing of {:.4g} g mm2 it "
+                  "resonates at {:.4g} Hz. Drawn by the program at a crank angle of {:.0f} deg.",
+                  1e3 * vehicle.spring.stiffness, 1e9 * vehicle.wing_inertia,
+                  std::sqrt(vehicle.spring.stiffness / vehicle.wing_inertia) / two_pi, degrees_per_radian * drawn_angle)
+            : fmt::format(
+                  "To scale but for the wings, drawn by the program from the vehicle file at a crank angle of {:.0f} "
+                  "deg. "
+                  "The motor turns the crank; rod and slider swing the wings about their hinges by {:.1f} deg to "
+                  "either side. The rod force F presses on the joints: their friction torque is mu r_e |F| with "
+                  "mu r_e = {:.4g} mm.",
+                  degrees_per_radian * drawn_angle, degrees_per_radian * stroke_amplitude(crank),
+                  1e3 * design.friction.coefficient);
     const CycleCase* cycle = cycle_of(m.computed.at_frequency, Formulation::rod_force, springs);
     if (cycle) {
-      s.animation = moving(crank, *cycle,
-                           fmt::format("one cycle at {:g} Hz, springs {}", m.computed.options.frequency, springs ? "on" : "off"));
+      s.animation =
+          moving(crank, *cycle,
+                 fmt::format("one cycle at {:g} Hz, springs {}", m.computed.options.frequency, springs ? "on" : "off"));
     }
     Table& t = s.table;
     std::vector<double> angle, height, stroke, wing_lever, crank_lever;

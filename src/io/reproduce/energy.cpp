@@ -56,9 +56,11 @@ void draw_flows(const std::vector<FlowCase>& cases, PlotFormat format, const std
   constexpr double panel = 2.4;
   const double inches = panel * double(cases.size()) + 0.1;
   Figure figure(format, 3.5, inches);
-  figure.add("unset border\nunset tics\nunset grid\nset lmargin at screen 0\nset rmargin at screen 1\nset tmargin at screen 1\n"
-             "set bmargin at screen 0\nset xrange [0:3.5]\nset yrange [0:{}]\n",
-             inches);
+  figure.add(
+      "unset border\nunset tics\nunset grid\nset lmargin at screen 0\nset rmargin at screen 1\nset tmargin at screen "
+      "1\n"
+      "set bmargin at screen 0\nset xrange [0:3.5]\nset yrange [0:{}]\n",
+      inches);
   double most = 0.0;
   for (const FlowCase& c : cases) most = std::max(most, c.flow.supply);
   const double per_watt = 1.0 / most;  // inches of band
@@ -70,9 +72,11 @@ void draw_flows(const std::vector<FlowCase>& cases, PlotFormat format, const std
     figure.text(cases[n].title, 8.0, fmt::format("0.05,{} left", top + 0.3));
     const auto share = [&](double power) { return fmt::format("{:.1f} %", 100.0 * power / f.supply); };
     const auto band = [&](double x0, double x1, double y_top, double width, const char* fill) {
-      figure.add("set object {} polygon from {:.5f},{:.5f} to {:.5f},{:.5f} to {:.5f},{:.5f} to {:.5f},{:.5f} to {:.5f},{:.5f} front "
-                 "fillcolor rgb '{}' fillstyle solid noborder\n",
-                 ++object, x0, y_top, x1, y_top, x1, y_top - width, x0, y_top - width, x0, y_top, fill);
+      figure.add(
+          "set object {} polygon from {:.5f},{:.5f} to {:.5f},{:.5f} to {:.5f},{:.5f} to {:.5f},{:.5f} to "
+          "{:.5f},{:.5f} front "
+          "fillcolor rgb '{}' fillstyle solid noborder\n",
+          ++object, x0, y_top, x1, y_top, x1, y_top - width, x0, y_top - width, x0, y_top, fill);
     };
     double remaining = f.supply * per_watt, x = 0.05;
     const auto leave = [&](const std::string& name, double power, const char* fill, double at, const char* colour) {
@@ -98,10 +102,12 @@ void draw_flows(const std::vector<FlowCase>& cases, PlotFormat format, const std
     }
     const double tip = 3.08;
     band(x, tip - 0.1, top, remaining, "#9fb8cc");
-    figure.add("set object {} polygon from {:.5f},{:.5f} to {:.5f},{:.5f} to {:.5f},{:.5f} to {:.5f},{:.5f} front fillcolor rgb '#00507c' "
-               "fillstyle solid noborder\n",
-               ++object, tip - 0.1, top + 0.03, tip + 0.02, top - 0.5 * remaining, tip - 0.1, top - remaining - 0.03,
-               tip - 0.1, top + 0.03);
+    figure.add(
+        "set object {} polygon from {:.5f},{:.5f} to {:.5f},{:.5f} to {:.5f},{:.5f} to {:.5f},{:.5f} front fillcolor "
+        "rgb '#00507c' "
+        "fillstyle solid noborder\n",
+        ++object, tip - 0.1, top + 0.03, tip + 0.02, top - 0.5 * remaining, tip - 0.1, top - remaining - 0.03,
+        tip - 0.1, top + 0.03);
     figure.text("supply", 7.0, fmt::format("0.09,{:.4f} left", top - 0.1));
     figure.text(shown(f.supply), 7.0, fmt::format("0.09,{:.4f} left", top - 0.23));
     figure.text("motor output", 6.5, fmt::format("1.86,{:.4f} center", top + 0.16));
@@ -144,13 +150,14 @@ std::vector<Sheet> energy_sheets(const Material& m) {
     }
     const EnergyFlow &off = cases[0].flow, &on = cases[1].flow;
     s.caption = fmt::format(
-        "Mean powers of a cycle, bands to the same scale. Springs save {:.1f} mW of input: {:.1f} mW less copper loss, {:.1f} mW less "
+        "Mean powers of a cycle, bands to the same scale. Springs save {:.1f} mW of input: {:.1f} mW less copper loss, "
+        "{:.1f} mW less "
         "friction. The air gets {:.1f} mW without springs and {:.1f} mW with them. {}",
         1e3 * (off.supply - on.supply), 1e3 * (off.motor[0].power - on.motor[0].power),
         1e3 * (off.transmission[0].power - on.transmission[0].power), 1e3 * off.air, 1e3 * on.air,
-        formulation == Formulation::rod_force
-            ? "The residual is what the paper's equation (1) as printed fails to conserve: it appears in no part of the vehicle."
-            : "Nothing is left over: this formulation conserves power.");
+        formulation == Formulation::rod_force ? "The residual is what the paper's equation (1) as printed fails to "
+                                                "conserve: it appears in no part of the vehicle."
+                                              : "Nothing is left over: this formulation conserves power.");
     s.draw = [cases](PlotFormat format, const std::filesystem::path& file) { draw_flows(cases, format, file); };
     sheets.push_back(std::move(s));
   }
@@ -183,9 +190,11 @@ std::vector<Sheet> energy_sheets(const Material& m) {
     s.table.add("power_electrical_w", "W", "electrical input power", electrical);
     s.table.add("power_motor_w", "W", "motor output power", output);
     s.table.add("power_aerodynamic_w", "W", "aerodynamic power", aero);
-    s.table.add("power_stored_w", "W", "power into the inertia of the wings and their springs; negative: returned", stored);
+    s.table.add("power_stored_w", "W", "power into the inertia of the wings and their springs; negative: returned",
+                stored);
     s.caption = fmt::format(
-        "Shaded: power that goes into wings and springs ({:.2f} mJ in each cycle) and comes back from them ({:.2f} mJ). {}",
+        "Shaded: power that goes into wings and springs ({:.2f} mJ in each cycle) and comes back from them ({:.2f} "
+        "mJ). {}",
         1e3 * stored_sum, -1e3 * returned_sum,
         on ? "With springs less of it passes through rod and joints, whose friction grows with the force."
            : "Without springs all of it passes through the rod, twice, and friction takes its part each time.");
@@ -193,8 +202,10 @@ std::vector<Sheet> energy_sheets(const Material& m) {
     chart.x = "time (ms)";
     chart.panel_height = 2.3;
     const CurveStyle supply{"#000000", "(3,3)", 0}, motor{"#d55e00", "(12,6)", 4}, air{"#0072b2", "1", 7};
-    chart.key = {{"electrical input", supply}, {"motor output", motor},
-                 {"aerodynamic", air},         {"stored in wings and springs", {}, "#b9ddb9"},
+    chart.key = {{"electrical input", supply},
+                 {"motor output", motor},
+                 {"aerodynamic", air},
+                 {"stored in wings and springs", {}, "#b9ddb9"},
                  {"returned", {}, "#f3c9a5"}};
     ChartPanel panel;
     panel.y = "power (mW)";

@@ -73,9 +73,12 @@ std::vector<Sheet> friction_sheets(const Material& m) {
   }
   chart.panels = {force, loss, input};
   s.caption =
-      "Each law was calibrated to the same operating point without springs (rod-force; virtual-work in the data). Adding springs at a "
-      "held frequency takes force off the rod whatever the law - the motion is the same - but only a loss that depends on the force "
-      "follows it down. Viscous, quadratic and constant friction see the speed alone, whose mean does not change, and so predict "
+      "Each law was calibrated to the same operating point without springs (rod-force; virtual-work in the data). "
+      "Adding springs at a "
+      "held frequency takes force off the rod whatever the law - the motion is the same - but only a loss that depends "
+      "on the force "
+      "follows it down. Viscous, quadratic and constant friction see the speed alone, whose mean does not change, and "
+      "so predict "
       "almost no saving of friction.";
   s.draw = [chart](PlotFormat format, const std::filesystem::path& file) { reproduction::draw(chart, format, file); };
   sheets.push_back(std::move(s));

@@ -24,7 +24,8 @@ p, ul, ol { max-width: 46rem; }
 .lead { color: var(--soft); }
 nav ol { columns: 2; padding-left: 1.4rem; }
 a { color: var(--accent); }
-.figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 26rem), 1fr)); gap: 1.6rem 2rem; align-items: start; }
+.figures { display: grid;
+  grid-template-columns: repeat(auto-fill, minmax(min(100%, 26rem), 1fr)); gap: 1.6rem 2rem; align-items: start; }
 figure { margin: 0; }
 figure svg { width: 100%; height: auto; display: block; border: 1px solid var(--line); }
 figcaption { font-size: .87rem; line-height: 1.45; margin-top: .45rem; }
@@ -45,26 +46,41 @@ td.n { text-align: right; white-space: nowrap; }
 .part::before { content: "\25D0  "; color: #7a5c00; }
 pre { background: #f5f5f5; border: 1px solid var(--line); padding: .7rem .9rem; overflow-x: auto; font-size: .85rem; line-height: 1.4; }
 code { font-size: .9em; }
-@media print { body { max-width: none; padding: 0; font-size: 10pt; } h2 { break-after: avoid; } figure, tr { break-inside: avoid; }
-  .figures { grid-template-columns: 1fr 1fr; } nav { display: none; } pre { white-space: pre-wrap; } }
+@media print { body { max-width: none; padding: 0; font-size: 10pt; } h2 { break-after: avoid; }
+  figure, tr { break-inside: avoid; }
+  .figures { grid-template-columns: 1fr 1fr; }
+  nav { display: none; }
+  .wide { overflow: visible; } table, table.laws { width: 100%; font-size: 6.6pt; }
+  th, td { padding: .2rem .3rem; } td:first-child { min-width: 9rem; }
+  td.n, table.laws td.n, .v { white-space: normal; min-width: 0; } pre { white-space: pre-wrap; } }
 )";
 
 std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {
     switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += c;
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
     }
   }
   return out;
 }
 
 void replace_all(std::string& text, std::string_view from, std::string_view to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) text.replace(at, from.size(), to);
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
 }
 
 /// A drawing as part of the page: without prologue, with names of its own.
@@ -101,14 +117,17 @@ std::string verdict_cell(const Claim& c) {
 }
 
 std::string claims_table(const Judgement& j) {
-  std::string html = "<div class=\"wide\"><table><thead><tr><th>statement</th><th>where</th><th>published</th><th>rod-force</th>"
-                     "<th></th><th>virtual-work</th><th></th><th>accepted</th><th>verdict</th></tr></thead><tbody>\n";
+  std::string html =
+      "<div class=\"wide\"><table><thead><tr><th>statement</th><th>where</th><th>published</th><th>rod-force</th>"
+      "<th></th><th>virtual-work</th><th></th><th>accepted</th><th>verdict</th></tr></thead><tbody>\n";
   const std::pair<const char*, bool (*)(const Claim&)> groups[] = {
-      {"Predicted: nothing was adjusted to these", [](const Claim& c) { return c.basis == Basis::predicted && c.verdict != Verdict::as_found; }},
+      {"Predicted: nothing was adjusted to these",
+       [](const Claim& c) { return c.basis == Basis::predicted && c.verdict != Verdict::as_found; }},
       {"Given: what the published tables say by themselves", [](const Claim& c) { return c.basis == Basis::given; }},
       {"Calibrated: looked at when S_2 and S_3 were chosen, and so no evidence for the model",
        [](const Claim& c) { return c.basis == Basis::calibrated; }},
-      {"As found: the paper shows it in a figure, no number is at hand", [](const Claim& c) { return c.verdict == Verdict::as_found; }}};
+      {"As found: the paper shows it in a figure, no number is at hand",
+       [](const Claim& c) { return c.verdict == Verdict::as_found; }}};
   for (const auto& [name, belongs] : groups) {
     html += fmt::format("<tr><th class=\"group\" colspan=\"9\">{}</th></tr>\n", name);
     for (const Claim& c : j.claims) {
@@ -129,11 +148,16 @@ std::string claims_table(const Judgement& j) {
 
 const char* coefficient_unit(FrictionLaw law) {
   switch (law) {
-    case FrictionLaw::viscous: return "N m s/rad";
-    case FrictionLaw::quadratic: return "N m s2/rad2";
-    case FrictionLaw::constant: return "N m";
-    case FrictionLaw::load_proportional: return "m";
-    case FrictionLaw::none: break;
+    case FrictionLaw::viscous:
+      return "N m s/rad";
+    case FrictionLaw::quadratic:
+      return "N m s2/rad2";
+    case FrictionLaw::constant:
+      return "N m";
+    case FrictionLaw::load_proportional:
+      return "m";
+    case FrictionLaw::none:
+      break;
   }
   return "";
 }
@@ -159,9 +183,12 @@ std::string law_table(const Judgement& j, Formulation formulation) {
   html += fmt::format("</tr>\n<tr><td>flapping frequency at {}, springs off (calibrated)</td><td class=\"n\">{}</td>",
                       operating_point(first.voltage, first.frequency), readable(first.published, "Hz"));
   for (const LawPrediction* p : laws) {
-    html += fmt::format("<td class=\"n\">{}{}</td>", readable(p->law.frequency, "Hz"), p->law.calibrated ? "" : " (not met)");
+    html += fmt::format("<td class=\"n\">{}{}</td>", readable(p->law.frequency, "Hz"),
+                        p->law.calibrated ? "" : " (not met)");
   }
-  html += "</tr>\n<tr><th class=\"group\" colspan=\"7\">Published values with springs, and how far each law is off</th></tr>\n";
+  html +=
+      "</tr>\n<tr><th class=\"group\" colspan=\"7\">Published values with springs, and how far each law is "
+      "off</th></tr>\n";
   for (const std::size_t n : laws[0]->tests) {
     const PublishedValue& v = laws[0]->comparison.values[n].published;
     const MetricInfo& info = metric_table()[std::size_t(v.metric)];
@@ -177,7 +204,9 @@ std::string law_table(const Judgement& j, Formulation formulation) {
   }
   html += "<tr><td><b>all of these, root mean square</b></td><td></td>";
   for (const LawPrediction* p : laws) html += fmt::format("<td class=\"n\"><b>{:.1f} %</b></td>", 100.0 * p->rms);
-  html += "</tr>\n<tr><th class=\"group\" colspan=\"7\">What else each law predicts, springs off and on (no published numbers)</th></tr>\n";
+  html +=
+      "</tr>\n<tr><th class=\"group\" colspan=\"7\">What else each law predicts, springs off and on (no published "
+      "numbers)</th></tr>\n";
   const std::pair<Metric, const char*> more[] = {{Metric::power_electrical, "electrical input"},
                                                  {Metric::power_friction, "friction loss"},
                                                  {Metric::power_loss, "all losses"},
@@ -249,31 +278,46 @@ std::string question(const Material& m) {
   const LawPrediction* load_work = law_of(j, FrictionLaw::load_proportional, Formulation::virtual_work);
   const PublishedValue& target = calibration_value(m.file);
   std::string html = fmt::format(
-      "<p>\"Should friction losses be included?\" As numbers: each friction law gets one coefficient, chosen so that the vehicle <em>without"
-      "</em> springs flaps at the published {} at {}. Then the springs go on, nothing else is changed, and the law has to say what "
+      "<p>\"Should friction losses be included?\" As numbers: each friction law gets one coefficient, chosen so that "
+      "the vehicle <em>without"
+      "</em> springs flaps at the published {} at {}. Then the springs go on, nothing else is changed, and the law has "
+      "to say what "
       "happens.</p>\n"
-      "<p><b>Answer.</b> With load-proportional friction the published values with springs come back within {:.1f} % (root mean square, formulation "
-      "rod-force); with every other law they are off by {:.1f} to {:.1f} %. At {:g} Hz the paper's springs leave {} of the "
-      "electrical input; load-proportional friction says {:.3f}, the laws without load say {:.3f} to {:.3f}: they see almost no saving. "
+      "<p><b>Answer.</b> With load-proportional friction the published values with springs come back within {:.1f} % "
+      "(root mean square, formulation "
+      "rod-force); with every other law they are off by {:.1f} to {:.1f} %. At {:g} Hz the paper's springs leave {} of "
+      "the "
+      "electrical input; load-proportional friction says {:.3f}, the laws without load say {:.3f} to {:.3f}: they see "
+      "almost no saving. "
       "No friction at all cannot even be calibrated: the vehicle then flaps too fast.{}</p>\n",
-      readable(target.published, "Hz"), operating_point(target.voltage, target.frequency), 100.0 * load->rms, 100.0 * least,
-      100.0 * most, m.computed.options.frequency, published_of(*load, Metric::power_electrical, true), computed_of(*load, Metric::power_electrical, true), power_low, power_high,
-      load_work ? fmt::format(" In the formulation virtual-work load-proportional friction is ahead too, by less: {:.1f} %, with a radius of {} instead of {}; the chord "
+      readable(target.published, "Hz"), operating_point(target.voltage, target.frequency), 100.0 * load->rms,
+      100.0 * least, 100.0 * most, m.computed.options.frequency, published_of(*load, Metric::power_electrical, true),
+      computed_of(*load, Metric::power_electrical, true), power_low, power_high,
+      load_work ? fmt::format(" In the formulation virtual-work load-proportional friction is ahead too, by less: "
+                              "{:.1f} %, with a radius of {} instead of {}; the chord "
                               "moments were chosen for rod-force and do not suit it.",
                               100.0 * load_work->rms, readable(load_work->law.coefficient, "m"),
                               readable(load->law.coefficient, "m"))
                 : "");
   html +=
-      "<p><b>Why.</b> At a held frequency springs change neither speed nor stroke much: they take over the force that turns the wings round. A loss that depends on "
-      "speed alone - viscous, quadratic, constant - has nothing to answer to. A loss that depends on the force inside the mechanism falls "
-      "with it. That is all the difference between the laws, and it shows only when the force changes and the speed does not, as when springs are "
+      "<p><b>Why.</b> At a held frequency springs change neither speed nor stroke much: they take over the force that "
+      "turns the wings round. A loss that depends on "
+      "speed alone - viscous, quadratic, constant - has nothing to answer to. A loss that depends on the force inside "
+      "the mechanism falls "
+      "with it. That is all the difference between the laws, and it shows only when the force changes and the speed "
+      "does not, as when springs are "
       "added. At one operating point any law will do.</p>\n";
   html +=
-      "<p><b>What this does not show.</b> The published values are themselves the paper's simulation of a vehicle fitted with "
-      "load-proportional friction; that this law brings them back best shows that the program computes what the paper computed, not that joints "
-      "in the world behave so. Four things a bench would have to show: (1) input power at one held frequency with springs of several stiffnesses: "
-      "the curves below separate the laws, by more than a tenth of the input; (2) the same in vacuum, where load-proportional friction stays "
-      "large and the air takes nothing; (3) the rod force itself, measured, beside the loss; (4) wings of several inertias on the same "
+      "<p><b>What this does not show.</b> The published values are themselves the paper's simulation of a vehicle "
+      "fitted with "
+      "load-proportional friction; that this law brings them back best shows that the program computes what the paper "
+      "computed, not that joints "
+      "in the world behave so. Four things a bench would have to show: (1) input power at one held frequency with "
+      "springs of several stiffnesses: "
+      "the curves below separate the laws, by more than a tenth of the input; (2) the same in vacuum, where "
+      "load-proportional friction stays "
+      "large and the air takes nothing; (3) the rod force itself, measured, beside the loss; (4) wings of several "
+      "inertias on the same "
       "mechanism. <code>wingbeat fit --compare-friction</code> takes such logs and ranks the laws.</p>\n";
   html += "<h3>rod-force</h3>\n" + law_table(j, Formulation::rod_force);
   html += "<h3>virtual-work</h3>\n" + law_table(j, Formulation::virtual_work);
@@ -283,7 +327,8 @@ std::string question(const Material& m) {
 std::string parameters(const Material& m) {
   const Design<double>& d = m.pair[1];
   const Vehicle<double> v = resolve(d);
-  std::string html = "<div class=\"wide\"><table><thead><tr><th>parameter</th><th>value</th><th>from</th></tr></thead><tbody>\n";
+  std::string html =
+      "<div class=\"wide\"><table><thead><tr><th>parameter</th><th>value</th><th>from</th></tr></thead><tbody>\n";
   const auto row = [&](const char* name, const std::string& value, const char* from) {
     html += fmt::format("<tr><td>{}</td><td class=\"n\">{}</td><td>{}</td></tr>\n", name, value, from);
   };
@@ -316,27 +361,30 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
     html += "<div class=\"figures\">\n";
     for (const Sheet& s : sheets) {
       if (s.section != section) continue;
-      fmt::format_to(out, "<figure id=\"{0}\">{1}<figcaption><b>{2}</b> {3} <span class=\"files\">Files: {0} .svg .pdf .csv .nc</span></figcaption></figure>\n",
+      fmt::format_to(out,
+                     "<figure id=\"{0}\">{1}<figcaption><b>{2}</b> {3} <span class=\"files\">Files: {0} .svg .pdf .csv "
+                     ".nc</span></figcaption></figure>\n",
                      s.id, inlined(svg_of(s), s.id + "-drawing", s.heading), escaped(s.heading), escaped(s.caption));
       if (!s.animation.empty()) {
-        fmt::format_to(out, "<figure>{}<figcaption><b>The same, moving.</b> One computed cycle, repeated: the crank does not turn evenly. "
-                            "<span class=\"files\">File: {}-moving.svg</span></figcaption></figure>\n",
+        fmt::format_to(out,
+                       "<figure>{}<figcaption><b>The same, moving.</b> One computed cycle, repeated: the crank does "
+                       "not turn evenly. "
+                       "<span class=\"files\">File: {}-moving.svg</span></figcaption></figure>\n",
                        inlined(s.animation, s.id + "-moving", s.heading), s.id);
       }
     }
     html += "</div>\n";
   };
-  const std::pair<const char*, const char*> sections[] = {
-      {"summary", "Verdicts in short"},
-      {"vehicle", "The vehicle"},
-      {"conditions", "Air, vacuum, no wings (figures 4 to 7)"},
-      {"springs", "With and without springs (figures 9 to 13)"},
-      {"cycles", "Over a cycle (figures 14 to 19)"},
-      {"section5", "Crank, rod and voltage (figures 20 to 22)"},
-      {"claims", "Every statement, judged"},
-      {"question", "Should friction losses be included?"},
-      {"energy", "Where the energy goes"},
-      {"how", "How each number was computed"}};
+  const std::pair<const char*, const char*> sections[] = {{"summary", "Verdicts in short"},
+                                                          {"vehicle", "The vehicle"},
+                                                          {"conditions", "Air, vacuum, no wings (figures 4 to 7)"},
+                                                          {"springs", "With and without springs (figures 9 to 13)"},
+                                                          {"cycles", "Over a cycle (figures 14 to 19)"},
+                                                          {"section5", "Crank, rod and voltage (figures 20 to 22)"},
+                                                          {"claims", "Every statement, judged"},
+                                                          {"question", "Should friction losses be included?"},
+                                                          {"energy", "Where the energy goes"},
+                                                          {"how", "How each number was computed"}};
   const auto begin = [&](const char* id) {
     for (std::size_t n = 0; n < std::size(sections); ++n) {
       if (sections[n].first == std::string_view(id)) {
@@ -346,12 +394,15 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
   };
   const auto end = [&] { html += "</section>\n"; };
 
-  fmt::format_to(out,
-                 "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-                 "<title>The 2022 friction paper, reproduced</title>\n<link rel=\"icon\" href=\"data:,\">\n<style>{}</style></head>\n<body>\n<header>\n"
-                 "<h1>The 2022 friction paper, reproduced and judged</h1>\n<p class=\"lead\">{}. Made by wingbeat {} with "
-                 "<code>wingbeat reproduce friction2022</code>{}.</p>\n</header>\n<nav><ol>\n",
-                 style, escaped(m.file.source), version, m.computed.options.coarse ? ", coarse setting" : "");
+  fmt::format_to(
+      out,
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\">\n"
+      "<title>The 2022 friction paper, reproduced</title>\n<link rel=\"icon\" "
+      "href=\"data:,\">\n<style>{}</style></head>\n<body>\n<header>\n"
+      "<h1>The 2022 friction paper, reproduced and judged</h1>\n<p class=\"lead\">{}. Made by wingbeat {} with "
+      "<code>wingbeat reproduce friction2022</code>{}.</p>\n</header>\n<nav><ol>\n",
+      style, escaped(m.file.source), version, m.computed.options.coarse ? ", coarse setting" : "");
   for (const auto& [id, name] : sections) fmt::format_to(out, "<li><a href=\"#{}\">{}</a></li>\n", id, name);
   html += "</ol></nav>\n<main>\n";
 
@@ -367,14 +418,19 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
     }));
   };
   fmt::format_to(out,
-                 "<p>Of {} statements that can be checked, <b>{} are met by the paper's own formulation</b> (rod-force, its equation (1) as "
-                 "printed) and {} by the one that conserves power (virtual-work). Counted over both: {} reproduced, {} depend on the "
-                 "formulation, {} not reproduced. {} more concern figures of which no number is at hand; they are reported as found.</p>\n",
+                 "<p>Of {} statements that can be checked, <b>{} are met by the paper's own formulation</b> "
+                 "(rod-force, its equation (1) as "
+                 "printed) and {} by the one that conserves power (virtual-work). Counted over both: {} reproduced, {} "
+                 "depend on the "
+                 "formulation, {} not reproduced. {} more concern figures of which no number is at hand; they are "
+                 "reported as found.</p>\n",
                  all, within(0), within(1), j.count(Verdict::reproduced), j.count(Verdict::depends_on_formulation),
                  j.count(Verdict::not_reproduced), open);
   fmt::format_to(out,
-                 "<p>Nothing was tuned here. Two numbers that the paper does not publish, the chord moments S_2 and S_3 of the wing, come from the "
-                 "vehicle file, where they were chosen with rod-force; the values that were looked at then are counted, but listed apart. Of the {} "
+                 "<p>Nothing was tuned here. Two numbers that the paper does not publish, the chord moments S_2 and "
+                 "S_3 of the wing, come from the "
+                 "vehicle file, where they were chosen with rod-force; the values that were looked at then are "
+                 "counted, but listed apart. Of the {} "
                  "statements that were <em>not</em> looked at, rod-force meets {} and virtual-work {}.</p>\n<ul>\n",
                  predicted(0, false), predicted(0, true), predicted(1, true));
   for (const Claim& c : j.claims) {
@@ -383,55 +439,79 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
                      escaped(c.published_text), escaped(c.ours_text[0]), escaped(c.ours_text[1]));
     }
   }
-  html += "<li><b>The formulation decides most of the rest.</b> The same vehicle in a formulation that conserves power flaps faster and "
-          "gains less from springs. That speaks for the paper's numbers having been computed with equation (1) as printed, whose "
-          "imbalance acts like friction of its own (<a href=\"#energy\">the residual</a>).</li>\n"
-          "<li><b>Friction has to follow the load.</b> Only load-proportional friction predicts what springs do "
-          "(<a href=\"#question\">the title question</a>).</li>\n</ul>\n";
+  html +=
+      "<li><b>The formulation decides most of the rest.</b> The same vehicle in a formulation that conserves power "
+      "flaps faster and "
+      "gains less from springs. That speaks for the paper's numbers having been computed with equation (1) as printed, "
+      "whose "
+      "imbalance acts like friction of its own (<a href=\"#energy\">the residual</a>).</li>\n"
+      "<li><b>Friction has to follow the load.</b> Only load-proportional friction predicts what springs do "
+      "(<a href=\"#question\">the title question</a>).</li>\n</ul>\n";
   end();
 
   begin("vehicle");
-  html += "<p>A geared DC motor turns a crank; a rod moves a slider up and down its guide; the slider swings two wings about fixed hinges. "
-          "Springs in the hinges, where fitted, store energy at the ends of the stroke.</p>\n" + parameters(m);
+  html +=
+      "<p>A geared DC motor turns a crank; a rod moves a slider up and down its guide; the slider swings two wings "
+      "about fixed hinges. "
+      "Springs in the hinges, where fitted, store energy at the ends of the stroke.</p>\n" +
+      parameters(m);
   figures("vehicle");
   end();
   begin("conditions");
-  html += "<p>The frequency is held by the voltage. Thick curves with marks are rod-force, the paper's formulation; thin curves without marks of the same "
-          "colour and dash are virtual-work. Springs are off.</p>\n";
+  html +=
+      "<p>The frequency is held by the voltage. Thick curves with marks are rod-force, the paper's formulation; thin "
+      "curves without marks of the same "
+      "colour and dash are virtual-work. Springs are off.</p>\n";
   figures("conditions");
   end();
   begin("springs");
-  html += "<p>In air, the frequency held. Springs cost power where they are too stiff for the frequency, and save where they suit it.</p>\n";
+  html +=
+      "<p>In air, the frequency held. Springs cost power where they are too stiff for the frequency, and save where "
+      "they suit it.</p>\n";
   figures("springs");
   end();
   begin("cycles");
-  fmt::format_to(out, "<p>Each cycle begins at crank angle zero, the slider in mid-stroke and rising. First at the same frequency, {:g} Hz, which the springs reach "
-                      "at a lower voltage; then at the same voltage, {:g} V, which makes the vehicle with springs faster.</p>\n",
-                 m.computed.options.frequency, m.computed.options.voltage);
+  fmt::format_to(
+      out,
+      "<p>Each cycle begins at crank angle zero, the slider in mid-stroke and rising. First at the same frequency, "
+      "{:g} Hz, which the springs reach "
+      "at a lower voltage; then at the same voltage, {:g} V, which makes the vehicle with springs faster.</p>\n",
+      m.computed.options.frequency, m.computed.options.voltage);
   figures("cycles");
   end();
   begin("section5");
-  html += "<p>Section 5 of the paper varies the mechanism. Its optima stand in figures; here is what comes out, without a published number to hold it "
-          "against. On the 5 V question - can the motor's highest voltage lift the vehicle's own weight? - see figure 22 and the last rows of "
-          "<a href=\"#claims\">the table</a>.</p>\n";
+  html +=
+      "<p>Section 5 of the paper varies the mechanism. Its optima stand in figures; here is what comes out, without a "
+      "published number to hold it "
+      "against. On the 5 V question - can the motor's highest voltage lift the vehicle's own weight? - see figure 22 "
+      "and the last rows of "
+      "<a href=\"#claims\">the table</a>.</p>\n";
   figures("section5");
   end();
   begin("claims");
-  html += "<p>The deviation is ours over published minus 1; \"accepted\" is this project's tolerance, not the paper's. ● met in both formulations, "
-          "◐ in one, ○ in neither. Also as claims.csv and claims.json.</p>\n" + claims_table(j);
+  html +=
+      "<p>The deviation is ours over published minus 1; \"accepted\" is this project's tolerance, not the paper's. ● "
+      "met in both formulations, "
+      "◐ in one, ○ in neither. Also as claims.csv and claims.json.</p>\n" +
+      claims_table(j);
   end();
   begin("question");
   html += question(m);
   figures("question");
   end();
   begin("energy");
-  html += "<p>What the supply delivers over a cycle leaves as heat in the armature, drag of the rotor, friction and air - and, with the paper's "
-          "equation (1) as printed, as a residual that no part of the vehicle receives. The sums close to the solver's accuracy.</p>\n";
+  html +=
+      "<p>What the supply delivers over a cycle leaves as heat in the armature, drag of the rotor, friction and air - "
+      "and, with the paper's "
+      "equation (1) as printed, as a residual that no part of the vehicle receives. The sums close to the solver's "
+      "accuracy.</p>\n";
   figures("energy");
   end();
   begin("how");
-  html += R"(<p>All of it: the steady cycle is a periodic orbit in crank angle, found to a relative tolerance of 1e-7 or better; peaks and crossings of the table are
-searched for on the orbits themselves, not read off the curves, so that they do not depend on the number of points drawn. The commands below run in a checkout, where
+  html +=
+      R"(<p>All of it: the steady cycle is a periodic orbit in crank angle, found to a relative tolerance of 1e-7 or
+better; peaks and crossings of the table are searched for on the orbits themselves, not read off the curves,
+so that they do not depend on the number of points drawn. The commands below run in a checkout, where
 <code>scripts/test</code> or <code>scripts/demo</code> has built the program.</p>
 <h3>This report</h3>
 <pre>build/release/wingbeat reproduce friction2022 -o out/friction2022</pre>
@@ -452,8 +532,11 @@ build/release/wingbeat sweep data/studies/trend-voltage.toml -o voltage.nc</pre>
 <pre>build/release/wingbeat run data/designs/friction2022-springs.toml --frequency "22 Hz" --set friction.type=constant )";
   const LawPrediction* constant = law_of(j, FrictionLaw::constant, Formulation::rod_force);
   fmt::format_to(out, "--set friction.torque=\"{:.6g} N m\"</pre>\n", constant ? constant->law.coefficient : 7e-4);
-  html += "<p>Published values, their tolerances and where they stand: <code>data/published/friction2022.toml</code>. The vehicles: "
-          "<code>data/designs/friction2022.toml</code> and <code>friction2022-springs.toml</code>. Both are carried in the program itself.</p>\n";
+  html +=
+      "<p>Published values, their tolerances and where they stand: <code>data/published/friction2022.toml</code>. The "
+      "vehicles: "
+      "<code>data/designs/friction2022.toml</code> and <code>friction2022-springs.toml</code>. Both are carried in the "
+      "program itself.</p>\n";
   end();
   html += "</main>\n</body></html>\n";
   return html;

@@ -19,9 +19,7 @@ namespace {
 
 constexpr const char* notice = "README.txt";
 
-std::string first_line(std::string_view paper) {
-  return fmt::format("Written by: wingbeat reproduce {}\n", paper);
-}
+std::string first_line(std::string_view paper) { return fmt::format("Written by: wingbeat reproduce {}\n", paper); }
 
 PublishedFile friction2022() {
   return parse_published(embedded::text_of("published/friction2022.toml"), "data/published/friction2022.toml",
@@ -39,7 +37,8 @@ void remove_date(const fs::path& file) {
   const std::string key = "/CreationDate (D:";
   const auto at = text.find(key);
   if (at == std::string::npos) return;
-  for (std::size_t n = 0; n < 14 && at + key.size() + n < text.size(); ++n) text[at + key.size() + n] = "20220101000000"[n];
+  for (std::size_t n = 0; n < 14 && at + key.size() + n < text.size(); ++n)
+    text[at + key.size() + n] = "20220101000000"[n];
   std::FILE* out = std::fopen(file.c_str(), "wb");
   const bool written = out && std::fwrite(text.data(), 1, text.size(), out) == text.size();
   if (!out || std::fclose(out) != 0 || !written) {
@@ -146,8 +145,10 @@ ReproduceResult reproduce_paper(const KnownPaper& paper, const ReproduceOptions&
     for (const auto& [format, extension] : {std::pair(PlotFormat::svg, ".svg"), std::pair(PlotFormat::pdf, ".pdf")}) {
       OutputFile file("-o", folder / (s.id + extension));
       s.draw(format, file.temporary());
-      if (format == PlotFormat::pdf) remove_date(file.temporary());
-      else drawings[n] = read_text_file(file.temporary());
+      if (format == PlotFormat::pdf)
+        remove_date(file.temporary());
+      else
+        drawings[n] = read_text_file(file.temporary());
       file.commit();
     }
     const std::lock_guard<std::mutex> lock(mutex);
