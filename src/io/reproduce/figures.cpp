@@ -321,10 +321,8 @@ std::vector<Sheet> paper_sheets(const Material& m) {
           f.axis[n]);
       break;
     }
-    frequency_sheet(
-        10, "Mean absolute reactive power with and without springs", false,
-        two(Metric::power_reactive) + "." + said,
-        {{Metric::power_reactive, "reactive power (mW)", ""}});
+    frequency_sheet(10, "Mean absolute reactive power with and without springs", false,
+                    two(Metric::power_reactive) + "." + said, {{Metric::power_reactive, "reactive power (mW)", ""}});
   }
   frequency_sheet(
       11, "Losses with and without springs", false,

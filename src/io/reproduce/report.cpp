@@ -324,6 +324,30 @@ std::string question(const Material& m) {
   return html;
 }
 
+/// Whether the vehicle lifts itself at the motor's highest voltage, from the statements on it.
+std::string hover_answer(const Material& m) {
+  std::string html = "<p><b>Does it hover at 5 V?</b> With the best crank between 3 and 14 mm, its radius in "
+                     "brackets:</p>\n<ul>\n";
+  const double weight = m.pair[0].mass.value_or(absent) * standard_gravity;
+  for (std::size_t f = 0; f < 2; ++f) {
+    std::string yes, no;
+    for (const Claim& c : m.judgement.claims) {
+      if (c.verdict != Verdict::as_found || c.unit != "N") continue;
+      std::string& list = c.ours[f] >= weight ? yes : no;
+      const bool springs = c.statement.find("with springs") != std::string::npos;
+      const bool stroke = c.statement.find("stroke held") != std::string::npos;
+      list += fmt::format("{}{} springs, {} held ({:.2f} of its weight: {})", list.empty() ? "" : "; ",
+                          springs ? "with" : "without", stroke ? "stroke" : "hinge offset", c.ours[f] / weight,
+                          escaped(c.ours_text[f]));
+    }
+    html += fmt::format("<li>{}: ", name_of(both_formulations[f]));
+    if (!yes.empty()) html += fmt::format("<b>yes</b> {}. ", yes);
+    if (!no.empty()) html += fmt::format("<b>No</b> {}.", no);
+    html += "</li>\n";
+  }
+  return html + "</ul>\n";
+}
+
 std::string parameters(const Material& m) {
   const Design<double>& d = m.pair[1];
   const Vehicle<double> v = resolve(d);
@@ -486,6 +510,7 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
       "against. On the 5 V question - can the motor's highest voltage lift the vehicle's own weight? - see figure 22 "
       "and the last rows of "
       "<a href=\"#claims\">the table</a>.</p>\n";
+  html += hover_answer(m);
   figures("section5");
   end();
   begin("claims");
