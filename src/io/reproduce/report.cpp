@@ -336,7 +336,7 @@ std::string hover_answer(const Material& m) {
       std::string& list = c.ours[f] >= weight ? yes : no;
       const bool springs = c.statement.find("with springs") != std::string::npos;
       const bool stroke = c.statement.find("stroke held") != std::string::npos;
-      list += fmt::format("{}{} springs, {} held ({:.2f} of its weight: {})", list.empty() ? "" : "; ",
+      list += fmt::format("{}{} springs, {} held: {:.2f} of its weight, {}", list.empty() ? "" : "; ",
                           springs ? "with" : "without", stroke ? "stroke" : "hinge offset", c.ours[f] / weight,
                           escaped(c.ours_text[f]));
     }
