@@ -29,5 +29,6 @@ void add_fit(CLI::App& program, Action& action);
 void add_tolerance(CLI::App& program, Action& action);
 void add_optimise(CLI::App& program, Action& action);
 void add_endurance(CLI::App& program, Action& action);
+void add_reproduce(CLI::App& program, Action& action);
 
 }  // namespace wingbeat::app

@@ -60,6 +60,7 @@ int run(int argc, char** argv) {
   add_tolerance(program, action);
   add_optimise(program, action);
   add_endurance(program, action);
+  add_reproduce(program, action);
   const auto named = [&](const CLI::App* command) { return command->get_name() == argv[1]; };
   if (argc > 1 && argv[1][0] != '-' && program.get_subcommands([&](CLI::App* c) { return named(c); }).empty()) {
     complain(fmt::format("there is no command {}; see wingbeat --help", in_quotes(argv[1])));

@@ -8,36 +8,54 @@
 #include <initializer_list>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <tuple>
 #include <utility>
 
+#include "wingbeat/io/design_keys.hpp"
+#include "wingbeat/io/design_parameter.hpp"
 #include "wingbeat/io/report.hpp"
 #include "wingbeat/io/units.hpp"
 
 namespace wingbeat {
 namespace {
 
+const MetricInfo& info(Metric metric) { return metric_table()[std::size_t(metric)]; }
+
+constexpr std::pair<const char*, Basis> bases[] = {
+    {"calibrated", Basis::calibrated}, {"predicted", Basis::predicted}, {"given", Basis::given}};
+
+constexpr std::pair<const char*, PublishedTrend::Kind> kinds[] = {
+    {"crossing", PublishedTrend::Kind::crossing},
+    {"peak-at", PublishedTrend::Kind::peak_at},
+    {"peak", PublishedTrend::Kind::peak},
+    {"constant-load-efficiency", PublishedTrend::Kind::constant_load_efficiency},
+    {"spring-resonance", PublishedTrend::Kind::spring_resonance},
+    {"weight", PublishedTrend::Kind::weight},
+    {"best-friction-law", PublishedTrend::Kind::best_friction_law}};
+
 class Reader {
  public:
-  explicit Reader(const std::filesystem::path& file) : path_(file), name_(file.string()) {}
+  Reader(std::string_view text, std::string_view name,
+         const std::function<Design<double>(const std::string&)>& design_named)
+      : text_(text), name_(name), design_named_(design_named) {}
 
   PublishedFile read() {
-    const std::string text = read_text_file(path_);
     toml::table root;
     try {
-      root = toml::parse(text, name_);
+      root = toml::parse(text_, name_);
     } catch (const toml::parse_error& e) {
       throw InputError(name_, int(e.source().begin.line), int(e.source().begin.column), "",
                        fmt::format("not TOML: {}", e.description()));
     }
     PublishedFile file;
-    known_keys(root, {"title", "source", "designs", "value"});
+    known_keys(root, {"title", "source", "designs", "value", "trend"});
     file.title = text_at(root, "title");
     file.source = text_at(root, "source");
     const toml::table* designs = need(root, "designs", "a table of vehicle files").as_table();
     if (!designs) refuse(*root.get("designs"), "designs", "expected a table of vehicle files");
     for (const auto& [key, node] : *designs) {
       const std::string name(key.str());
-      file.designs[name] = read_design(path_.parent_path() / text_of(node, "designs." + name));
+      file.designs[name] = design_named_(text_of(node, "designs." + name));
     }
     const toml::array* values = need(root, "value", "[[value]] tables").as_array();
     if (!values) refuse(*root.get("value"), "value", "expected [[value]] tables");
@@ -45,36 +63,116 @@ class Reader {
       if (!node.is_table()) refuse(node, "value", "expected [[value]] tables");
       file.values.push_back(read_value(*node.as_table(), file));
     }
+    if (const toml::node* node = root.get("trend")) {
+      const toml::array* trends = node->as_array();
+      if (!trends) refuse(*node, "trend", "expected [[trend]] tables");
+      for (const toml::node& trend : *trends) {
+        if (!trend.is_table()) refuse(trend, "trend", "expected [[trend]] tables");
+        file.trends.push_back(read_trend(*trend.as_table(), file));
+      }
+    }
     return file;
   }
 
  private:
   PublishedValue read_value(const toml::table& t, const PublishedFile& file) {
-    known_keys(t, {"voltage", "frequency", "metric", "design", "ratio", "published", "tolerance"});
+    known_keys(t, {"voltage", "frequency", "metric", "design", "ratio", "published", "tolerance", "where", "basis"});
     PublishedValue v{};
     if (t.contains("voltage") == t.contains("frequency")) refuse(t, "value", "give one of voltage and frequency");
     if (t.contains("voltage")) v.voltage = quantity_at(t, "voltage", "V");
     if (t.contains("frequency")) v.frequency = quantity_at(t, "frequency", "Hz");
+    v.metric = metric_at(t);
+    std::tie(v.design, v.relative_to) = designs_at(t, file);
+    v.published = number_at(t, "published");
+    v.tolerance = number_at(t, "tolerance");
+    if (v.published == 0.0) refuse(*t.get("published"), "published", "0 allows no relative deviation");
+    if (!(v.tolerance > 0.0)) refuse(*t.get("tolerance"), "tolerance", "must be > 0");
+    if (t.contains("where")) v.where = text_at(t, "where");
+    if (t.contains("basis")) v.basis = choice_at(t, "basis", bases);
+    return v;
+  }
+
+  PublishedTrend read_trend(const toml::table& t, const PublishedFile& file) {
+    using Kind = PublishedTrend::Kind;
+    PublishedTrend trend{};
+    trend.kind = choice_at(t, "kind", kinds);
+    trend.statement = text_at(t, "statement");
+    trend.where = text_at(t, "where");
+    trend.basis = choice_at(t, "basis", bases);
+    if (trend.kind == Kind::best_friction_law) {
+      known_keys(t, {"kind", "statement", "where", "basis", "published_law"});
+      if (t.contains("published_law")) trend.published_law = choice_at(t, "published_law", friction_laws);
+      trend.unit = "1";
+      return trend;
+    }
+    const bool along = trend.kind == Kind::crossing || trend.kind == Kind::peak_at || trend.kind == Kind::peak;
+    if (along) {
+      known_keys(t, {"kind", "statement", "where", "basis", "published", "tolerance", "metric", "design", "ratio",
+                     "over", "from", "to", "voltage", "hold_stroke"});
+      trend.metric = metric_at(t);
+      std::string unit = "Hz";
+      if (t.contains("over")) {
+        trend.over = text_at(t, "over");
+        try {
+          unit = design_parameter(trend.over).unit;
+        } catch (const ParameterError& e) {
+          refuse(*t.get("over"), "over", e.what());
+        }
+        trend.voltage = quantity_at(t, "voltage", "V");
+      }
+      trend.from = quantity_at(t, "from", unit.c_str());
+      trend.to = quantity_at(t, "to", unit.c_str());
+      if (!(trend.to > trend.from)) refuse(*t.get("to"), "to", "must be above from");
+      if (const toml::node* hold = t.get("hold_stroke")) {
+        const auto held = hold->value_exact<bool>();
+        if (!held) refuse(*hold, "hold_stroke", "expected true or false");
+        trend.hold_stroke = *held;
+      }
+      trend.unit = trend.kind == Kind::peak ? info(trend.metric).unit : unit;
+    } else {
+      known_keys(t, {"kind", "statement", "where", "basis", "published", "tolerance", "design", "voltage"});
+      if (trend.kind == Kind::constant_load_efficiency) trend.voltage = quantity_at(t, "voltage", "V");
+      trend.unit = trend.kind == Kind::weight ? "N" : trend.kind == Kind::spring_resonance ? "Hz" : "1";
+    }
+    std::tie(trend.design, trend.relative_to) = designs_at(t, file);
+    if (trend.relative_to.has_value() != (trend.kind == Kind::crossing)) {
+      refuse(t, "ratio", "a crossing needs a ratio, everything else a design");
+    }
+    if (t.contains("published") != t.contains("tolerance")) refuse(t, "tolerance", "belongs to published");
+    if (t.contains("published")) {
+      trend.published = quantity_at(t, "published", trend.unit.c_str());
+      trend.tolerance = number_at(t, "tolerance");
+      if (!(trend.tolerance > 0.0)) refuse(*t.get("tolerance"), "tolerance", "must be > 0");
+    }
+    return trend;
+  }
+
+  Metric metric_at(const toml::table& t) const {
     const std::string metric = text_at(t, "metric");
     const int index = metric_index(metric);
     if (index == metric_count) {
       refuse(*t.get("metric"), "metric", fmt::format("{} is no metric of wingbeat run --json", in_quotes(metric)));
     }
-    v.metric = Metric(index);
+    return Metric(index);
+  }
+
+  std::pair<std::string, std::optional<std::string>> designs_at(const toml::table& t, const PublishedFile& file) const {
     if (t.contains("design") == t.contains("ratio")) refuse(t, "value", "give one of design and ratio");
-    if (t.contains("design")) {
-      v.design = design_in(*t.get("design"), "design", file);
-    } else {
-      const toml::array* pair = t.get("ratio")->as_array();
-      if (!pair || pair->size() != 2) refuse(*t.get("ratio"), "ratio", "expected two names of designs");
-      v.design = design_in(*pair->get(0), "ratio", file);
-      v.relative_to = design_in(*pair->get(1), "ratio", file);
+    if (t.contains("design")) return {design_in(*t.get("design"), "design", file), std::nullopt};
+    const toml::array* pair = t.get("ratio")->as_array();
+    if (!pair || pair->size() != 2) refuse(*t.get("ratio"), "ratio", "expected two names of designs");
+    return {design_in(*pair->get(0), "ratio", file), design_in(*pair->get(1), "ratio", file)};
+  }
+
+  template <class Name, class E, std::size_t N>
+  E choice_at(const toml::table& t, const char* key, const std::pair<Name, E> (&choices)[N]) const {
+    const std::string text = text_at(t, key);
+    std::string names;
+    for (const auto& [name, value] : choices) {
+      if (text == name) return value;
+      names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
     }
-    v.published = number_at(t, "published");
-    v.tolerance = number_at(t, "tolerance");
-    if (v.published == 0.0) refuse(*t.get("published"), "published", "0 allows no relative deviation");
-    if (!(v.tolerance > 0.0)) refuse(*t.get("tolerance"), "tolerance", "must be > 0");
-    return v;
+    refuse(*t.get(key), key, fmt::format("must be one of {}, got {}", names, in_quotes(text)));
   }
 
   [[noreturn]] void refuse(const toml::node& node, const std::string& key, const std::string& message) const {
@@ -107,7 +205,7 @@ class Reader {
     return *number;
   }
   double quantity_at(const toml::table& t, const std::string& key, const char* unit) const {
-    const toml::node& node = *t.get(key);
+    const toml::node& node = need(t, key, quantity_example(unit));
     double x = 0.0;
     if (const auto text = node.value_exact<std::string>()) {
       try {
@@ -127,8 +225,9 @@ class Reader {
     return name;
   }
 
-  std::filesystem::path path_;
+  std::string_view text_;
   std::string name_;
+  const std::function<Design<double>(const std::string&)>& design_named_;
 };
 
 std::string spaced(std::string text) {
@@ -136,11 +235,20 @@ std::string spaced(std::string text) {
   return text;
 }
 
-const MetricInfo& info(Metric metric) { return metric_table()[std::size_t(metric)]; }
-
 }  // namespace
 
-PublishedFile read_published(const std::filesystem::path& file) { return Reader(file).read(); }
+PublishedFile parse_published(std::string_view text, std::string_view name,
+                              const std::function<Design<double>(const std::string& file)>& design_named) {
+  return Reader(text, name, design_named).read();
+}
+
+PublishedFile read_published(const std::filesystem::path& file) {
+  const std::string text = read_text_file(file);
+  return parse_published(text, file.string(),
+                         [&](const std::string& design) { return read_design(file.parent_path() / design); });
+}
+
+const char* name_of(Basis basis) { return bases[std::size_t(basis)].first; }
 
 int Comparison::outside() const {
   return int(std::count_if(values.begin(), values.end(), [](const ComparedValue& v) { return !v.within; }));

@@ -2,15 +2,25 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "wingbeat/io/design_file.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {
+
+/// How far a number could have been otherwise.
+enum class Basis {
+  calibrated,  ///< it was looked at when parameters that are not published were chosen
+  predicted,   ///< it was not
+  given        ///< it follows from the published tables
+};
+const char* name_of(Basis basis);
 
 /// One published number: a metric of a design, or its ratio to the same metric of another.
 struct PublishedValue {
@@ -21,6 +31,35 @@ struct PublishedValue {
   std::optional<std::string> relative_to;  ///< the ratio's second design
   double published;  ///< in the metric's SI unit, or a ratio
   double tolerance;  ///< accepted relative deviation [1]
+  std::string where;  ///< in the paper; may be empty
+  Basis basis = Basis::predicted;
+};
+
+/// What metrics do along a quantity, or what follows from the tables alone.
+struct PublishedTrend {
+  enum class Kind {
+    crossing,                  ///< frequency at which the metric is the same for both designs [Hz]
+    peak_at,                   ///< where the metric is highest, in the unit of what varies
+    peak,                      ///< the highest value of the metric, in its unit
+    constant_load_efficiency,  ///< most efficient constant load of the motor at `voltage` [1]
+    spring_resonance,          ///< frequency at which the wings resonate with their springs [Hz]
+    weight,                    ///< [N]
+    best_friction_law          ///< the law that predicts the published values of the other designs best
+  };
+  std::string statement, where;
+  Kind kind;
+  Basis basis = Basis::predicted;
+  Metric metric = Metric::frequency;
+  std::string design;
+  std::optional<std::string> relative_to;  ///< of a crossing
+  std::string over;                        ///< what varies: a key of the vehicle file; empty: the flapping frequency
+  double from = 0.0, to = 0.0;             ///< range of it [SI]
+  bool hold_stroke = false;                ///< the stroke amplitude stays, not the hinge offset
+  std::optional<double> voltage;           ///< [V]
+  std::optional<double> published;         ///< SI; empty: reported as found
+  std::optional<FrictionLaw> published_law;
+  double tolerance = 0.0;                  ///< accepted relative deviation [1]
+  std::string unit;                        ///< SI, of the published and the computed number; "1" without one
 };
 
 struct PublishedFile {
@@ -28,10 +67,14 @@ struct PublishedFile {
   std::string source;
   std::map<std::string, Design<double>> designs;  ///< by the names that the values use
   std::vector<PublishedValue> values;
+  std::vector<PublishedTrend> trends;
 };
 
 /// Reads the file and the vehicle files it names, which are sought beside it. Throws InputError.
 PublishedFile read_published(const std::filesystem::path& file);
+/// The same from text; `design_named` gives the design of a vehicle file that it names.
+PublishedFile parse_published(std::string_view text, std::string_view name,
+                              const std::function<Design<double>(const std::string& file)>& design_named);
 
 struct ComparedValue {
   PublishedValue published;

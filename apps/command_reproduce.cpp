@@ -1,0 +1,74 @@
+// wingbeat reproduce PAPER: a paper's figures and statements, remade and judged.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <memory>
+
+#include "command.hpp"
+#include "wingbeat/io/claims.hpp"
+#include "wingbeat/io/optimise_file.hpp"
+#include "wingbeat/io/reproduce.hpp"
+
+namespace wingbeat::app {
+namespace {
+
+struct Arguments {
+  std::string paper, output;
+  bool coarse = false, json = false;
+  int threads = 0;
+};
+
+void show(double share, const std::string& what) {
+  constexpr int width = 24;
+  std::string bar(std::size_t(share * width), '#');
+  bar.resize(width, '.');
+  fmt::print(stderr, "\r{:<78}", fmt::format("[{}] {:5.1f} %  {} ", bar, 100.0 * share, what));
+}
+
+int run(const Arguments& arguments) {
+  const KnownPaper& paper = known_paper(arguments.paper);
+  ReproduceOptions options;
+  options.output = arguments.output;
+  options.coarse = arguments.coarse;
+  options.version = version;
+  options.for_each = [&](std::size_t count, const std::function<void(std::size_t)>& act) {
+    for_each_in_parallel(count, act, arguments.threads);
+  };
+  const bool terminal = ::isatty(STDERR_FILENO) == 1;
+  if (terminal) options.progress = show;
+  const ReproduceResult result = reproduce_paper(paper, options);
+  if (terminal) fmt::print(stderr, "\r{:<78}\r", "");
+  if (arguments.json) {
+    print(json_claims(result.file, result.judgement));
+  } else {
+    print(text_claims(result.file, result.judgement) + fmt::format("{} figures written to {}; open {}\n",
+                                                                   result.figures, arguments.output,
+                                                                   (options.output / "report.html").string()));
+  }
+  return done;
+}
+
+}  // namespace
+
+void add_reproduce(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("reproduce", "Remake a paper's figures and judge its statements");
+  const auto a = std::make_shared<Arguments>();
+  command->add_option("paper", a->paper, "Which paper: friction2022")->required()->type_name("PAPER");
+  command->add_option("-o,--output", a->output, "Folder to be written: new, empty, or of an earlier reproduction")
+      ->required()
+      ->type_name("DIR");
+  command->add_flag("--coarse", a->coarse, "Few points on each curve: a check in seconds; the judgement is the same");
+  command->add_flag("--json", a->json, "Print the judgement as one JSON object instead of a table");
+  command->add_option("--threads", a->threads, "Use at most so many threads (default: one for each core)")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  command->footer(
+      "Example:\n"
+      "  wingbeat reproduce friction2022 -o friction2022-reproduced\n\n"
+      "Writes every figure as SVG and PDF, its data as CSV and NetCDF, the judged statements as CSV and JSON, and\n"
+      "report.html, which shows and explains all of it (docs/reproduce.md).\n\n"
+      "Exit status: 0 done, whatever the verdicts, 2 bad input or usage, 1 anything else.");
+  command->callback([a, &action] { action = [a] { return run(*a); }; });
+}
+
+}  // namespace wingbeat::app

@@ -1,0 +1,275 @@
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <regex>
+#include <set>
+
+#include "program.hpp"
+#include "wingbeat/io/netcdf.hpp"
+
+namespace cli {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+const char* const expected_claims = WINGBEAT_DATA "/../tests/cli/data/friction2022-claims.csv";
+
+std::vector<std::vector<std::string>> csv_rows(const std::string& text) {
+  std::vector<std::vector<std::string>> rows(1, {""});
+  bool quoted = false;
+  for (const char c : text) {
+    if (c == '"')
+      quoted = !quoted;
+    else if (c == ',' && !quoted)
+      rows.back().emplace_back();
+    else if (c == '\n' && !quoted)
+      rows.push_back({""});
+    else
+      rows.back().back() += c;
+  }
+  rows.pop_back();
+  return rows;
+}
+
+bool is_number(const std::string& text, double& x) {
+  char* end = nullptr;
+  x = std::strtod(text.c_str(), &end);
+  return !text.empty() && *end == '\0';
+}
+
+std::vector<std::string> matches(const std::string& text, const std::string& pattern) {
+  const std::regex wanted(pattern);
+  std::vector<std::string> found;
+  for (std::sregex_iterator at(text.begin(), text.end(), wanted), none; at != none; ++at) found.push_back((*at)[1]);
+  return found;
+}
+
+/// One coarse run, at its first use, serves the tests that only look at what it wrote.
+class Reproduce : public Program {
+ protected:
+  static void TearDownTestSuite() { the_made().reset(); }
+  static std::string made(const std::string& name) { return the_run().at(name); }
+  static const Outcome& outcome() { return the_run().outcome; }
+  static std::string report() { return read(made("report.html")); }
+
+  struct Browsed {
+    int status;
+    std::string dom, log;
+    std::vector<std::string> requests;  ///< of the page: the browser's own questions to its maker are left out
+  };
+  Browsed browse(const std::string& page) const {
+    const std::string command =
+        "timeout 100 chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --no-first-run "
+        "--disable-background-networking --disable-component-update --disable-sync --disable-extensions "
+        "--host-resolver-rules='MAP * ~NOTFOUND' --user-data-dir='" +
+        path("profile") + "' --log-net-log='" + path("net.json") + "' --enable-logging=stderr --dump-dom 'file://" +
+        page + "' >'" + path("dom.html") + "' 2>'" + path("log.txt") + "'";
+    const int status = std::system(command.c_str());
+    Browsed b{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(path("dom.html")), read(path("log.txt")), {}};
+    for (const std::string& url : matches(read(path("net.json")), "\"url\":\"([a-z]+://[^\"]*)\"")) {
+      if (url.rfind("file://", 0) == 0 && url.find(page) != std::string::npos) continue;
+      if (!std::regex_search(url, std::regex("^https?://[a-z0-9.]*(google|googleapis|gvt1)\\.com/")))
+        b.requests.push_back(url);
+    }
+    return b;
+  }
+
+ private:
+  struct Made : Program {
+    Made() { outcome = run({"reproduce", "friction2022", "--coarse", "-o", path("made")}); }
+    void TestBody() override {}
+    std::string at(const std::string& name) const { return path("made/" + name); }
+    Outcome outcome;
+  };
+  static std::unique_ptr<Made>& the_made() {
+    static std::unique_ptr<Made> made;
+    return made;
+  }
+  static const Made& the_run() {
+    if (!the_made()) the_made() = std::make_unique<Made>();
+    return *the_made();
+  }
+};
+
+TEST_F(Reproduce, EveryFigureIsThereWithItsData) {
+  ASSERT_EQ(outcome().status, 0) << outcome().err;
+  EXPECT_THAT(outcome().err, IsEmpty());
+  std::vector<std::string> names;
+  for (const int n : {1, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22}) {
+    names.push_back((n < 10 ? "figure-0" : "figure-") + std::to_string(n));
+  }
+  for (const char* more : {"figure-22-virtual-work", "friction-laws", "energy-flow", "energy-flow-virtual-work",
+                           "power-cycle-springs-off", "power-cycle-springs-on"}) {
+    names.emplace_back(more);
+  }
+  for (const std::string& name : names) {
+    EXPECT_THAT(read(made(name + ".svg")), HasSubstr("<svg")) << name;
+    EXPECT_THAT(read(made(name + ".pdf")), StartsWith("%PDF")) << name;
+    const auto rows = csv_rows(read(made(name + ".csv")));
+    ASSERT_GE(rows.size(), 3U) << name;
+    const wingbeat::NetcdfReader data(made(name + ".nc"));
+    for (std::size_t column = 0; column < rows[0].size(); ++column) {
+      const auto values = data.read(rows[0][column]);
+      ASSERT_EQ(values.size() + 1, rows.size()) << name;
+      for (std::size_t n = 0; n < values.size(); ++n) {
+        double x = NAN;
+        if (is_number(rows[n + 1][column], x))
+          EXPECT_NEAR(x, values[n], 1e-8 * std::abs(values[n]));
+        else
+          EXPECT_TRUE(std::isnan(values[n]));
+      }
+    }
+  }
+  for (const char* name : {"figure-01-moving.svg", "figure-08-moving.svg"}) {
+    EXPECT_THAT(read(made(name)), HasSubstr("repeatCount=\"indefinite\"")) << name;
+  }
+  EXPECT_THAT(outcome().out, HasSubstr("26 figures written to "));
+}
+
+TEST_F(Reproduce, TheClaimsAreThoseCommitted) {
+  const auto ours = csv_rows(read(made("claims.csv"))), expected = csv_rows(read(expected_claims));
+  ASSERT_EQ(ours.size(), expected.size());
+  for (std::size_t n = 0; n < ours.size(); ++n) {
+    ASSERT_EQ(ours[n].size(), expected[n].size()) << ours[n][0];
+    for (std::size_t column = 0; column < ours[n].size(); ++column) {
+      const std::string& name = expected[0][column];
+      if (name.size() > 5 && name.substr(name.size() - 5) == "_text") continue;  // the numbers once more
+      double x = 0.0, y = 0.0;
+      if (is_number(ours[n][column], x) && is_number(expected[n][column], y)) {
+        // The place of a flat maximum is known less well than values are.
+        const bool place = ours[n][0].find("crank radius of") == 0 || ours[n][0].find("rod length of") == 0 ||
+                           ours[n][0].find("highest near") != std::string::npos;
+        EXPECT_NEAR(x, y,
+                    place ? 5e-3 * std::max(std::abs(y), 1.0 * (name.find("deviation") != std::string::npos))
+                          : 1e-6 * std::max(std::abs(y), 1.0 * (name.find("deviation") != std::string::npos)))
+            << ours[n][0] << ", " << name;
+      } else {
+        EXPECT_EQ(ours[n][column], expected[n][column]) << ours[n][0] << ", " << name;
+      }
+    }
+  }
+  const Json json = Json::parse(read(made("claims.json")));
+  EXPECT_EQ(json["claims"].size() + 1, ours.size());
+  EXPECT_EQ(json["friction_laws"].size(), 10U);
+}
+
+TEST_F(Reproduce, TwoRunsGiveTheSameBytes) {
+  const Outcome again = run({"reproduce", "friction2022", "--coarse", "--threads", "1", "--json", "-o", path("again")});
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(again.out, read(made("claims.json")));
+  std::set<std::string> first, second;
+  for (const auto& entry : fs::directory_iterator(made(""))) first.insert(entry.path().filename().string());
+  for (const auto& entry : fs::directory_iterator(path("again"))) second.insert(entry.path().filename().string());
+  EXPECT_EQ(first, second);
+  for (const std::string& name : first) {
+    EXPECT_TRUE(read(made(name)) == read(path("again/" + name))) << name;
+  }
+}
+
+TEST_F(Reproduce, TheReportStandsByItself) {
+  const std::string html = report();
+  EXPECT_THAT(html, StartsWith("<!DOCTYPE html>"));
+  for (const char* foreign : {"<script", "<img", "<iframe", "@import", " src=", "<object"}) {
+    EXPECT_EQ(count_of(html, foreign), 0U) << foreign;
+  }
+  for (const std::string& target : matches(html, "href=[\"']([^\"']*)[\"']")) {
+    EXPECT_TRUE(target[0] == '#' || target == "data:,") << target;
+  }
+  // Every name is given once, and every reference finds its name.
+  std::map<std::string, int> names;
+  for (const std::string& id : matches(html, " id=[\"']([^\"']*)[\"']")) ++names[id];
+  for (const auto& [id, times] : names) EXPECT_EQ(times, 1) << id;
+  for (const std::string& target : matches(html, "href=[\"']#([^\"']*)[\"']"))
+    EXPECT_TRUE(names.contains(target)) << target;
+  for (const std::string& target : matches(html, "url\\(#([^)\"']*)\\)")) EXPECT_TRUE(names.contains(target)) << target;
+  EXPECT_EQ(count_of(html, "<svg"), 28U);
+  for (const std::string bad : {"nan", "inf", "not-a-number"}) {
+    EXPECT_EQ(matches(html, "[>\" ](-?" + bad + ")[<\" ,;]").size(), 0U) << bad;
+  }
+}
+
+TEST_F(Reproduce, TheReportsCommandsWorkAsTyped) {
+  const std::string root = fs::path(data).parent_path().string(), html = report();
+  const auto commands = matches(html, "(?:<pre>|\n)build/release/wingbeat ((?:run|compare)[^\n<]*)");
+  ASSERT_GE(commands.size(), 6U);
+  for (std::string command : commands) {
+    for (const std::string file : {"cycle.csv", "cycle.svg"}) {
+      if (const auto at = command.find(file); at != std::string::npos) command.replace(at, file.size(), path(file));
+    }
+    const std::string whole =
+        "cd '" + root + "' && " + WINGBEAT_PROGRAM + " " + command + " >" + path("out.txt") + " 2>&1";
+    EXPECT_EQ(std::system(whole.c_str()), 0) << command << "\n" << read(path("out.txt"));
+  }
+}
+
+TEST_F(Reproduce, ABrowserShowsTheReportWithoutAskingForAnything) {
+  const Browsed b = browse(made("report.html"));
+  ASSERT_EQ(b.status, 0) << "chromium (scripts/install-dependencies installs it): " << b.log;
+  EXPECT_THAT(b.dom, HasSubstr("Every statement, judged"));
+  EXPECT_EQ(count_of(b.dom, "<svg"), 28U);
+  EXPECT_THAT(b.requests, IsEmpty());
+  EXPECT_EQ(count_of(b.log, ":CONSOLE"), 0U) << b.log;
+}
+
+TEST_F(Reproduce, TheBrowserWouldHaveNoticed) {
+  std::ofstream(path("bad.html")) << "<!DOCTYPE html><body><img src=\"http://figures.example/missing.png\">"
+                                     "<script>no_such_function();</script></body>";
+  const Browsed b = browse(path("bad.html"));
+  EXPECT_THAT(b.requests, Contains(HasSubstr("figures.example")));
+  EXPECT_GE(count_of(b.log, ":CONSOLE"), 1U) << b.log;
+}
+
+TEST_F(Reproduce, FoldersOfSomethingElseAreLeftAlone) {
+  fs::create_directory(path("mine"));
+  std::ofstream(path("mine/report.html")) << "mine";
+  const Outcome foreign = run({"reproduce", "friction2022", "--coarse", "-o", path("mine")});
+  EXPECT_EQ(foreign.status, 2);
+  EXPECT_EQ(foreign.err,
+            "wingbeat: -o " + path("mine") + ": holds files of something else; name a new or an empty folder\n");
+  EXPECT_EQ(read(path("mine/report.html")), "mine");
+
+  fs::create_directory(path("empty"));
+  ASSERT_EQ(run({"reproduce", "friction2022", "--coarse", "-o", path("empty")}).status, 0);
+  std::ofstream(path("empty/notes.txt")) << "my notes";
+  const std::string before = read(path("empty/figure-04.csv"));
+  std::ofstream(path("empty/figure-04.csv")) << "spoilt";
+  ASSERT_EQ(run({"reproduce", "friction2022", "--coarse", "-o", path("empty")}).status, 0);
+  EXPECT_EQ(read(path("empty/notes.txt")), "my notes");
+  EXPECT_EQ(read(path("empty/figure-04.csv")), before);
+}
+
+TEST_F(Reproduce, BadInputIsRefusedInOneSentence) {
+  const auto said = [&](std::vector<std::string> arguments) {
+    const Outcome o = run(std::move(arguments));
+    EXPECT_EQ(o.status, 2);
+    EXPECT_THAT(o.out, IsEmpty());
+    return o.err;
+  };
+  EXPECT_EQ(said({"reproduce", "friction2021", "-o", path("o")}),
+            "wingbeat: reproduce friction2021: the program knows no such paper; it knows friction2022\n");
+  EXPECT_THAT(said({"reproduce", "friction2022"}), HasSubstr("--output is required"));
+  EXPECT_EQ(said({"reproduce", "friction2022", "-o", path("a/b")}),
+            "wingbeat: -o " + path("a/b") + ": there is no folder " + path("a") + "\n");
+  std::ofstream(path("file")) << "a file";
+  EXPECT_EQ(said({"reproduce", "friction2022", "-o", path("file")}),
+            "wingbeat: -o " + path("file") + ": is a file, not a folder\n");
+  EXPECT_THAT(said({"reproduce", "friction2022", "-o", "/proc/wingbeat"}),
+              HasSubstr("-o /proc/wingbeat: cannot be made: "));
+  EXPECT_FALSE(fs::exists(path("o")));
+}
+
+TEST_F(Reproduce, WithoutGnuplotItSaysWhatToDo) {
+  const Outcome o = run({"reproduce", "friction2022", "--coarse", "-o", path("o")}, "/nowhere");
+  EXPECT_EQ(o.status, 1);
+  EXPECT_THAT(o.err, HasSubstr("plots need gnuplot"));
+}
+
+}  // namespace
+}  // namespace cli

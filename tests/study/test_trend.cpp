@@ -1,0 +1,46 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "wingbeat/study/trend.hpp"
+
+namespace wingbeat {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+TEST(Trend, AMaximumInsideIsFoundBetweenTheSamples) {
+  const TrendPeak peak = highest_along([](double x) { return 3.0 - (x - 1.234) * (x - 1.234); }, 0.0, 4.0);
+  EXPECT_TRUE(peak.inside);
+  EXPECT_NEAR(peak.at, 1.234, 2e-4);
+  EXPECT_NEAR(peak.value, 3.0, 1e-7);
+}
+
+TEST(Trend, AMaximumAtAnEndSaysSo) {
+  const TrendPeak last = highest_along([](double x) { return x; }, 1.0, 2.0);
+  EXPECT_FALSE(last.inside);
+  EXPECT_DOUBLE_EQ(last.at, 2.0);
+  const TrendPeak first = highest_along([](double x) { return -x; }, 1.0, 2.0);
+  EXPECT_FALSE(first.inside);
+  EXPECT_DOUBLE_EQ(first.at, 1.0);
+}
+
+TEST(Trend, PlacesWithoutAValueAreNoMaximum) {
+  const TrendPeak edge = highest_along([](double x) { return x > 1.5 ? none : x; }, 1.0, 2.0);
+  EXPECT_FALSE(edge.inside);
+  EXPECT_NEAR(edge.at, 1.5, 1e-9);
+  const TrendPeak nowhere = highest_along([](double) { return none; }, 1.0, 2.0);
+  EXPECT_TRUE(std::isnan(nowhere.at));
+  EXPECT_FALSE(nowhere.inside);
+}
+
+TEST(Trend, ACrossingIsFoundFromAbove) {
+  // cos passes zero at pi/2 and 3 pi/2: the upper one counts.
+  const double at = crossing_along([](double x) { return std::cos(x); }, 0.0, 0.0, 6.0);
+  EXPECT_NEAR(at, 4.71238898038469, 1e-5);
+  EXPECT_TRUE(std::isnan(crossing_along([](double x) { return x; }, -1.0, 0.0, 1.0)));
+  EXPECT_TRUE(std::isnan(crossing_along([](double) { return none; }, 0.0, 0.0, 1.0)));
+}
+
+}  // namespace
+}  // namespace wingbeat
