@@ -316,8 +316,10 @@ class StudySections {
     }
     if (!parameter.value(design)) {
       const std::string_view only_with = find_key<double>(key)->only_with;
-      refuse(node, where, only_with.empty() ? fmt::format("{} is not in the vehicle; give it in [set] first", key)
-                                            : fmt::format("{}: only with {}", key, only_with));
+      Design<double> trial = design;
+      const bool has_place = parameter.set(trial, 1.0);
+      refuse(node, where, has_place ? fmt::format("{} is not in the vehicle; give it in [set] first", key)
+                                    : fmt::format("{}: only with {}", key, only_with));
     }
     return parameter;
   }
