@@ -23,8 +23,8 @@ void validate_direct(const Design<double>& d) {
   positive(d.spring.resonance_ratio, "spring.resonance_ratio", "1");
   positive(d.wing.resonance, "wing.resonance", "Hz");
   if (d.supply_resonance_ratio && d.spring.resonance_ratio) {
-    throw ParameterError("supply.resonance_ratio", "ties the frequency to the springs, which spring.resonance_ratio ties "
-                                                   "to the frequency; give one of them");
+    throw ParameterError("supply.resonance_ratio", "ties the frequency to the springs, which spring.resonance_ratio "
+                                                   "ties to the frequency; give one of them");
   }
   if (d.wing.resonance && !d.spring.stiffness) {
     throw ParameterError("wing.resonance", "gives the inertia that resonates on a known spring; give spring.stiffness");
@@ -101,8 +101,8 @@ void validate(const Design<double>& d) {
     throw ParameterError("supply.resonance_ratio", "the springs' stiffness is 0: nothing resonates");
   }
   if (d.wing.resonance) {
-    require(v.wing_inertia > 0.0, "wing.resonance", "leaves the wings no inertia beside the rotor's: must be lower", "Hz",
-            *d.wing.resonance);
+    require(v.wing_inertia > 0.0, "wing.resonance", "leaves the wings no inertia beside the rotor's: must be lower",
+            "Hz", *d.wing.resonance);
   }
 }
 

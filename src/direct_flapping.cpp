@@ -1,8 +1,8 @@
 // How the steady flapping of a direct drive is found: docs/direct-drive.md.
 #include <cmath>
 
-#include "orbit_search.hpp"
 #include "wingbeat/cycle/direct_balance.hpp"
+#include "wingbeat/cycle/orbit_search.hpp"
 
 namespace wingbeat::detail {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "orbit_search.hpp"
+#include "wingbeat/cycle/orbit_search.hpp"
 
 namespace wingbeat {
 namespace {

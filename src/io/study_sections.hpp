@@ -348,10 +348,11 @@ class StudySections {
       refuse(node, where, fmt::format("{} has no effect where the frequency is held", key));
     }
     if (!parameter.value(design)) {
+      const std::string_view only_with = find_key<double>(key)->only_with;
       Design<double> trial = design;
-      refuse(node, where, parameter.set(trial, 1.0)
-                              ? fmt::format("{} is not in the vehicle; give it in [set] first", key)
-                              : fmt::format("{}: only with {}", key, find_key<double>(key)->only_with));
+      const bool has_place = parameter.set(trial, 1.0);
+      refuse(node, where, has_place ? fmt::format("{} is not in the vehicle; give it in [set] first", key)
+                                    : fmt::format("{}: only with {}", key, only_with));
     }
     return parameter;
   }

@@ -50,7 +50,8 @@ class DirectStartUp {
   void root_values(double t, const double* y, double* values, bool measuring) const;
   std::unique_ptr<Cvode> integrator(bool measuring);
   double wing_energy() const {
-    return 0.5 * vehicle_.wing_count * (vehicle_.wing_inertia * square(y_[1]) + vehicle_.spring.stiffness * square(y_[0]));
+    return 0.5 * vehicle_.wing_count *
+           (vehicle_.wing_inertia * square(y_[1]) + vehicle_.spring.stiffness * square(y_[0]));
   }
 
   void advance(double until);
@@ -384,8 +385,9 @@ bool DirectStartUp::rests_for_good() {
   result_.time_to_steady = t_;
   result_.lock_angle = y_[0];
   result_.torque_margin = stuck_ ? holding_torque_ - held : 0.0;
-  result_.detail = stuck_ ? text("rests at stroke angle %.4f deg: the constant friction %.4g N m holds %.4g N m, all that "
-                                 "supply and springs apply at most", y_[0] * degrees_per_radian, holding_torque_, held)
+  result_.detail = stuck_ ? text("rests at stroke angle %.4f deg: the constant friction %.4g N m holds %.4g N m, all "
+                                 "that supply and springs apply at most",
+                                 y_[0] * degrees_per_radian, holding_torque_, held)
                           : std::string("no voltage: nothing moves the wings");
   return true;
 }
@@ -429,8 +431,8 @@ void DirectStartUp::period_done() {
       result_.crank_speed = y_[1];
       result_.current = current_of(t_, y_);
       result_.stroke_angle = y_[0];
-      result_.detail = text("flaps steadily at the supply's %.6g Hz from %.4g s on; after %d periods they repeat to %.1g",
-                            vehicle_.drive_frequency, result_.time_to_steady, result_.laps, change);
+      result_.detail = text("flaps steadily at the supply's %.6g Hz from %.4g s on; after %d periods they repeat to "
+                            "%.1g", vehicle_.drive_frequency, result_.time_to_steady, result_.laps, change);
       return;
     }
   }

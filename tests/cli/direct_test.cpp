@@ -101,7 +101,7 @@ TEST_F(Direct, FitReturnsWhatTheLogWasMadeWith) {
   const std::string bench =
       file("bench.toml", "[bench]\nvehicle = \"vehicle.toml\"\n[[parameter]]\nkey = \"motor.viscous_damping\"\n"
                          "lower = 0\nupper = 2e-5\nstart = 8e-6\n[deviation]\ndefault = { relative = 0.01 }\n"
-                         "[[log]]\nfile = \"log.csv\"\ngiven = \"voltage\"\n");
+                         "[[log]]\nfile = \"log.csv\"\ncondition = \"air\"\nsprings = true\ngiven = \"voltage\"\n");
   const Outcome o = run({"fit", bench, "--json", "--no-profiles"});
   ASSERT_EQ(o.status, 0) << o.err;
   EXPECT_NEAR(o.json()["parameters"][0]["value"].get<double>() / 3.6e-6, 1.0, 1e-3);

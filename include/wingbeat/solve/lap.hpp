@@ -459,6 +459,13 @@ class LapDriver {
     ++flips_here_;
     lap_.switches.push_back({x_, k});
     first_ = system_.template rates<quadratures>(x_, y_, signs_);
+    if (jumps(system_, k)) {
+      // The other switches may have jumped over their zeros with the rates.
+      for (std::size_t other = 0; other < switch_count; ++other) {
+        if (!jumps(system_, other)) signs_[other] = first_.switches[other] >= 0.0 ? 1.0 : -1.0;
+      }
+      first_ = system_.template rates<quadratures>(x_, y_, signs_);
+    }
   }
 
   void pass_fixed_nodes() {

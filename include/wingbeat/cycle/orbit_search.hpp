@@ -38,6 +38,12 @@ class OrbitSearch {
       periodic.method = solve::Method::radau;
       summary_ = solve::solve_periodic(system_, guess, periodic, lap_);
     }
+    if (summary_.status == solve::PeriodicStatus::too_many_steps && !System::has_rod) {
+      // Not stiff then, but hard: a shaft that hardly breaks away.
+      periodic.method = solve::Method::explicit_pair;
+      periodic.max_steps *= 20;
+      summary_ = solve::solve_periodic(system_, guess, periodic, lap_);
+    }
     summary_.laps += laps_before;
     return summary_.status == solve::PeriodicStatus::converged;
   }
