@@ -22,6 +22,9 @@ void validate_direct(const Design<double>& d) {
   positive(d.supply_resonance_ratio, "supply.resonance_ratio", "1");
   positive(d.spring.resonance_ratio, "spring.resonance_ratio", "1");
   positive(d.wing.resonance, "wing.resonance", "Hz");
+  if (d.masses.rod_linear_density) {
+    throw ParameterError("transmission.rod_linear_density", "a direct drive has no rod");
+  }
   if (d.supply_resonance_ratio && d.spring.resonance_ratio) {
     throw ParameterError("supply.resonance_ratio", "ties the frequency to the springs, which spring.resonance_ratio "
                                                    "ties to the frequency; give one of them");

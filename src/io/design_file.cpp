@@ -151,7 +151,8 @@ class Reader {
     for (const auto& key : vehicle_keys<double>()) {
       if (!belongs(key) || !key.set) continue;
       if (const Value* value = document_.find(key.path)) {
-        key.set(d, number_of(*value, key.path, key.unit));
+        const double number = number_of(*value, key.path, key.unit);
+        if (!key.set(d, number)) value->origin.refuse(std::string(key.path), "has no place in this vehicle");
       } else if (key.fallback == "required") {
         missing(key.path, quantity_example(key.unit));
       }

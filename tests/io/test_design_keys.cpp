@@ -57,6 +57,7 @@ TEST(DesignKeys, WhatIsSetIsRead) {
     if (!key.get(d)) key.set(d, 0.25);
     if (!key.get(d)) d.motor.gear_ratio = 4.0;
     if (!key.get(d) && key.only_with == "vehicle.mass") {
+      d.transmission.type = TransmissionType::slider_crank;
       d.mass = 1e-3;
       d.spring.stiffness = 1e-3;
       key.set(d, 0.25);

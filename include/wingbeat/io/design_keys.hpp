@@ -188,9 +188,6 @@ std::span<const Key<S>> vehicle_keys() {
     return d.mass.has_value() && has_springs(d);
   };
   constexpr auto geared = [](const auto& d) { return d.motor.gear_ratio.has_value(); };
-  constexpr auto weighed_rod = [](const auto& d) {
-    return d.mass.has_value() && d.transmission.type == TransmissionType::slider_crank;
-  };
   constexpr auto crank = [](const auto& d) { return d.transmission.type == TransmissionType::slider_crank; };
   constexpr auto direct = [](const auto& d) { return d.transmission.type == TransmissionType::direct; };
   constexpr auto outline = [](const auto& d) {
@@ -308,7 +305,7 @@ std::span<const Key<S>> vehicle_keys() {
       number<S>({"transmission.rod_linear_density", "kg/m", ">= 0", "none: in vehicle.mass",
                  "mass of the rod over its length: rod_length times this, in addition to vehicle.mass",
                  "vehicle.mass"},
-                [](auto& d) -> auto& { return d.masses.rod_linear_density; }, weighed_rod),
+                [](auto& d) -> auto& { return d.masses.rod_linear_density; }, weighed),
       text<S>({"transmission.formulation", "", "rod-force or virtual-work", "rod-force",
                "how the rod force turns the wings: the paper's eq (1), or conserving power exactly", of_crank},
               [](const D& d) {
