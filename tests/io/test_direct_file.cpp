@@ -85,7 +85,7 @@ TEST(DirectFile, RefusesWithPlaceAndKey) {
   EXPECT_EQ(refusal(direct_file), "accepted");
   EXPECT_EQ(refusal("[vehicle]\nmass = \"3 g\"\n" +
                     with("type = \"direct\"", "type = \"direct\"\nrod_linear_density = \"1 g/m\"")),
-            "v.toml:16:1: transmission.rod_linear_density: a direct drive has no rod");
+            "v.toml:15:1: transmission.rod_linear_density: a direct drive has no rod");
   EXPECT_EQ(refusal(with("type = \"constant\"\ntorque = \"1e-4 N m\"", "type = \"load-proportional\"\nradius = 0.002")),
             "v.toml:14:1: friction.type: load-proportional friction follows the rod force, and a direct drive has no rod; "
             "expected none, viscous, quadratic or constant");
