@@ -41,8 +41,8 @@ class DirectStartUp {
   double springs_of(double beta) const { return vehicle_.wing_count * vehicle_.spring.stiffness * beta; }
   /// K i - N_w k beta [N m] at rest.
   double pull(double t, const double* y) const {
-    const double at_rest[3] = {y[0], 0.0, y[2]};
-    return vehicle_.motor.torque_constant * current_of(t, at_rest) - springs_of(y[0]);
+    const double i = inductive_ ? y[2] : algebraic_current(vehicle_, voltage(t), 0.0);
+    return vehicle_.motor.torque_constant * i - springs_of(y[0]);
   }
   Branch<double> branch_at(const double* y) const;
   Motion<double> motion(double t, const double* y) const;
