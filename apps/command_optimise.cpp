@@ -37,7 +37,7 @@ void write_designs(const std::string& folder, const Arguments& arguments, const 
     std::string head = fmt::format("# {} of the front found by wingbeat {} optimise {}:\n#", name, version,
                                    std::filesystem::path(arguments.study).filename().string());
     for (const ParetoObjective& o : study.objectives) {
-      head += fmt::format(" {} = {:.6g}", metric_table()[std::size_t(o.metric)].key, design.metrics[o.metric]);
+      head += fmt::format(" {} = {:.6g}", metric_info(o.metric).key, design.metrics[o.metric]);
     }
     if (study.vehicles.size() > 1) head += fmt::format("\n# Motor: {}", study.vehicles[design.vehicle].name);
     OutputFile file("--designs", std::filesystem::path(folder) / (name + ".toml"));
@@ -129,7 +129,7 @@ int run(const Arguments& arguments) {
   } else if (output && best) {
     std::string head = fmt::format("# Found by wingbeat {} optimise {}: {} = {:.6g}\n", version,
                                    std::filesystem::path(arguments.study).filename().string(),
-                                   metric_table()[std::size_t(file.study.objective)].key,
+                                   metric_info(file.study.objective).key,
                                    best->result.point.metrics[file.study.objective]);
     if (best->motor) head += fmt::format("# Motor: {}\n", best->motor->model);
     output->write(head + "\n" + write_design(best->result.design));

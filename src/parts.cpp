@@ -1,18 +1,16 @@
 // Range checks and the coefficient table: the untemplated half of parts/.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "wingbeat/core/status.hpp"
+#include "wingbeat/core/text.hpp"
 #include "wingbeat/parts/blade_element.hpp"
 #include "wingbeat/parts/planform.hpp"
 
 namespace wingbeat {
 
 std::string range_message(const char* expected, const char* unit, double value) {
-  char text[160];
-  std::snprintf(text, sizeof text, "%s [%s], got %.10g", expected, unit, value);
-  return text;
+  return detail::format("%s [%s], got %.10g", expected, unit, value);
 }
 
 void require(bool condition, const char* key, const char* expected, const char* unit, double value) {

@@ -39,7 +39,7 @@ const std::vector<ColumnName>& metric_columns() {
   static const std::vector<ColumnName> columns = [] {
     std::vector<ColumnName> all;
     for (int m = 0; m < metric_count; ++m) {
-      const MetricInfo& info = metric_table()[std::size_t(m)];
+      const MetricInfo& info = metric_info(Metric(m));
       const Metric metric = Metric(m);
       const bool negative = metric == Metric::lift_mean || metric == Metric::lift_peak ||
                             metric == Metric::power_residual || metric == Metric::angle_of_attack_min ||

@@ -81,7 +81,7 @@ Answer along(const PublishedFile& file, const PublishedTrend& t) {
   if (t.kind == PublishedTrend::Kind::peak) {
     answer.remark = fmt::format("at {}", readable(peak.at, unit));
   } else {
-    const MetricInfo& info = metric_table()[std::size_t(t.metric)];
+    const MetricInfo& info = metric_info(t.metric);
     answer.remark =
         t.metric == Metric::lift_mean ? readable(peak.value, info.unit) : fmt::format("{:.2f} %", 100.0 * peak.value);
   }
@@ -235,7 +235,7 @@ Judgement judge(const PublishedFile& file, const ForEach& for_each, const std::f
 
   for (std::size_t n = 0; n < file.values.size(); ++n) {
     const PublishedValue& v = file.values[n];
-    const MetricInfo& info = metric_table()[std::size_t(v.metric)];
+    const MetricInfo& info = metric_info(v.metric);
     Claim c;
     c.statement =
         fmt::format("{}, {}{} at {}", info.long_name, spaced(v.design),

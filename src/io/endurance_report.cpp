@@ -5,19 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <vector>
 
 #include "figure.hpp"
+#include "report_tools.hpp"
 #include "wingbeat/io/report.hpp"
 
 namespace wingbeat {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json number_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+using detail::Json, detail::number_or_null;
 
 double ratio(double a, double b) { return b > 0.0 ? a / b : absent; }
 
@@ -56,7 +54,7 @@ constexpr Column columns[] = {
 Json metrics_json(const Metrics<double>& metrics) {
   Json json = Json::object();
   for (int m = 0; m < metric_count; ++m) {
-    json[metric_table()[std::size_t(m)].key] = number_or_null(metrics.values[std::size_t(m)]);
+    json[metric_info(Metric(m)).key] = number_or_null(metrics.values[std::size_t(m)]);
   }
   return json;
 }
@@ -128,7 +126,7 @@ std::string json_endurance(const EnduranceResult& result) {
     for (const Metric m : {Metric::voltage, Metric::current_mean, Metric::frequency, Metric::power_electrical,
                            Metric::power_aerodynamic, Metric::lift_mean, Metric::lift_to_weight,
                            Metric::efficiency_system}) {
-      const char* key = metric_table()[std::size_t(m)].key;
+      const char* key = metric_info(m).key;
       for (const EnduranceRow& row : f.rows) history[key].push_back(number_or_null(row.metrics[m]));
     }
     json["history"] = history;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "report_tools.hpp"
 #include "wingbeat/io/bench_file.hpp"
 #include "wingbeat/io/design_file.hpp"
 #include "wingbeat/io/plot_panels.hpp"
@@ -13,9 +13,7 @@
 namespace wingbeat {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+using detail::Json, detail::number_or_null;
 
 std::string row_name(const BenchFit& fit, std::size_t log, std::size_t row) {
   return fmt::format("{}:{}", fit.logs[log].file, fit.logs[log].rows[row].line);
@@ -163,20 +161,20 @@ std::string json_fit(const BenchFit& fit, const FitResult& r, std::span<const Fr
   json["message"] = r.message;
   json["chi_square"] = r.chi_square;
   json["degrees_of_freedom"] = r.degrees_of_freedom;
-  json["aicc"] = number(r.aicc);
+  json["aicc"] = number_or_null(r.aicc);
   json["starts"] = {{"same_least", r.starts_converged}, {"higher", r.starts_elsewhere}};
   json["parameters"] = Json::array();
   for (const FittedParameter& p : r.parameters) {
     Json profile = Json::array();
-    for (const auto& point : p.profile) profile.push_back({point.value, number(point.excess)});
+    for (const auto& point : p.profile) profile.push_back({point.value, number_or_null(point.excess)});
     json["parameters"].push_back({{"key", p.key},
                                   {"unit", p.unit},
                                   {"value", p.value ? Json(*p.value) : Json(nullptr)},
-                                  {"standard_error", p.value ? number(p.standard_error) : Json(nullptr)},
-                                  {"lower_95", number(p.lower_95)},
-                                  {"upper_95", number(p.upper_95)},
-                                  {"profile_lower_95", number(p.profile_lower_95)},
-                                  {"profile_upper_95", number(p.profile_upper_95)},
+                                  {"standard_error", p.value ? number_or_null(p.standard_error) : Json(nullptr)},
+                                  {"lower_95", number_or_null(p.lower_95)},
+                                  {"upper_95", number_or_null(p.upper_95)},
+                                  {"profile_lower_95", number_or_null(p.profile_lower_95)},
+                                  {"profile_upper_95", number_or_null(p.profile_upper_95)},
                                   {"at_bound", p.at_bound},
                                   {"reason", p.reason},
                                   {"profile", profile}});
@@ -185,7 +183,7 @@ std::string json_fit(const BenchFit& fit, const FitResult& r, std::span<const Fr
     Json rows = Json::array();
     for (const auto& row : m) {
       Json line = Json::array();
-      for (const double x : row) line.push_back(number(x));
+      for (const double x : row) line.push_back(number_or_null(x));
       rows.push_back(line);
     }
     return rows;
@@ -194,14 +192,14 @@ std::string json_fit(const BenchFit& fit, const FitResult& r, std::span<const Fr
   json["correlation"] = matrix(r.correlation);
   json["directions"] = Json::array();
   for (const FitDirection& d : r.directions) {
-    json["directions"].push_back({{"components", d.components}, {"relative_error", number(d.relative_error)}});
+    json["directions"].push_back({{"components", d.components}, {"relative_error", number_or_null(d.relative_error)}});
   }
   json["verdict"] = r.verdict;
   json["conditions"] = Json::array();
   for (const ConditionShare& c : r.conditions) {
     Json without = Json::array();
-    for (const double e : c.error_without) without.push_back(number(e));
-    json["conditions"].push_back({{"name", c.name}, {"values", c.points}, {"rms_residual", number(c.rms)},
+    for (const double e : c.error_without) without.push_back(number_or_null(e));
+    json["conditions"].push_back({{"name", c.name}, {"values", c.points}, {"rms_residual", number_or_null(c.rms)},
                                   {"share", c.share}, {"standard_error_without", without}});
   }
   json["unreached"] = Json::array();
@@ -213,23 +211,23 @@ std::string json_fit(const BenchFit& fit, const FitResult& r, std::span<const Fr
   for (const FitPoint& p : r.points) {
     json["points"].push_back({{"row", row_name(fit, p.log, p.row)},
                               {"quantity", name_of(fit.logs[p.log].columns[p.column])},
-                              {"measured", p.measured}, {"fitted", number(p.fitted)}, {"deviation", p.deviation}});
+                              {"measured", p.measured}, {"fitted", number_or_null(p.fitted)}, {"deviation", p.deviation}});
   }
   if (!candidates.empty()) json["friction"] = Json::array();
   for (const FrictionCandidate& c : candidates) {
     Json left = Json::object();
-    for (const auto& [name, rms] : c.left_out) left[name] = number(rms);
+    for (const auto& [name, rms] : c.left_out) left[name] = number_or_null(rms);
     Json parameters = Json::object();
     for (const FittedParameter& p : c.result.parameters) parameters[p.key] = p.value ? Json(*p.value) : Json(nullptr);
     json["friction"].push_back({{"law", law_name(c.law)},
-                                {"aicc", number(c.result.aicc)},
-                                {"aicc_excess", number(c.aicc_excess)},
+                                {"aicc", number_or_null(c.result.aicc)},
+                                {"aicc_excess", number_or_null(c.aicc_excess)},
                                 {"parameters", parameters},
                                 {"left_out", left},
-                                {"prediction_error", number(c.prediction_error)},
-                                {"spring_frequency_hz", number(c.spring_frequency)},
-                                {"power_springs_off_w", number(c.power_springs_off)},
-                                {"power_springs_on_w", number(c.power_springs_on)}});
+                                {"prediction_error", number_or_null(c.prediction_error)},
+                                {"spring_frequency_hz", number_or_null(c.spring_frequency)},
+                                {"power_springs_off_w", number_or_null(c.power_springs_off)},
+                                {"power_springs_on_w", number_or_null(c.power_springs_on)}});
   }
   return json.dump(2) + "\n";
 }
@@ -283,7 +281,7 @@ void plot_residuals(const BenchFit& fit, const FitResult& r, PlotFormat format, 
         std::find_if(panels.begin(), panels.end(), [&](const PointPanel& known) { return known.title == title; });
     if (panel == panels.end()) panel = panels.insert(panels.end(), PointPanel{title, {}});
     const MeasuredQuantity& q = log.columns[p.column];
-    std::string name = q.waveform ? name_of(q.quantity) : metric_table()[std::size_t(q.metric)].long_name;
+    std::string name = q.waveform ? name_of(q.quantity) : metric_info(q.metric).long_name;
     std::replace(name.begin(), name.end(), '_', ' ');
     auto series =
         std::find_if(panel->series.begin(), panel->series.end(), [&](const auto& s) { return s.name == name; });

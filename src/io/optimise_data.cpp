@@ -16,8 +16,6 @@ namespace {
 
 using Outcome = OptimiseResult::Outcome;
 
-const MetricInfo& info(Metric metric) { return metric_table()[std::size_t(metric)]; }
-
 std::string variable_name(const std::string& key) {
   std::string name = key;
   std::replace(name.begin(), name.end(), '.', '_');
@@ -32,7 +30,7 @@ double share(const OptimisedParameter& p, double x) {
 
 /// What the best design's own searches found.
 void write_best(NetcdfFile& data, const OptimiseStudy& study, const OptimiseResult& r) {
-  const MetricInfo& objective = info(study.objective);
+  const MetricInfo& objective = metric_info(study.objective);
   const std::size_t parameters = study.parameters.size();
   const auto each_parameter = [&](const std::string& prefix, const std::string& of,
                                   const std::vector<NetcdfFile::Dimension>& along, std::size_t count,
@@ -45,7 +43,7 @@ void write_best(NetcdfFile& data, const OptimiseStudy& study, const OptimiseResu
     }
   };
   for (int m = 0; m < metric_count; ++m) {
-    const MetricInfo& metric = metric_table()[std::size_t(m)];
+    const MetricInfo& metric = metric_info(Metric(m));
     data.write(data.define_variable(metric.key, {}, metric.unit, metric.long_name + std::string(" of the optimum")),
                std::span(&r.point.metrics.values[std::size_t(m)], 1));
   }
@@ -133,7 +131,7 @@ void write_best(NetcdfFile& data, const OptimiseStudy& study, const OptimiseResu
 void write_optimum(const OptimiseFile& file, std::span<const MotorTrial> trials, const std::string& input,
                    const std::string& version, const std::filesystem::path& output) {
   const OptimiseStudy& study = file.study;
-  const MetricInfo& objective = info(study.objective);
+  const MetricInfo& objective = metric_info(study.objective);
   const MotorTrial* best = best_trial(file, trials);
   NetcdfFile data(output);
   data.set_attribute("Conventions", "CF-1.8");
@@ -179,7 +177,7 @@ void plot_optimum(const OptimiseFile& file, const MotorTrial& trial, PlotFormat 
                   const std::filesystem::path& output) {
   const OptimiseStudy& study = file.study;
   const OptimiseResult& r = trial.result;
-  const MetricInfo& objective = info(study.objective);
+  const MetricInfo& objective = metric_info(study.objective);
   const bool walks = !r.directions.empty(), searches = !r.searches.empty();
   const double rows = 0.2 * double(study.parameters.size()), panel = 1.3;
   const double bounds_top = 0.72 + (searches ? panel + 0.75 : 0.0), walks_top = bounds_top + rows + 0.85;

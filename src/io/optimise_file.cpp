@@ -112,7 +112,7 @@ class OptimiseReader : public detail::StudySections {
       }
       if (const TomlNode* reference = node.find("reference")) {
         objective.reference =
-            quantity(*reference, "objective.reference", metric_table()[std::size_t(objective.metric)].unit);
+            quantity(*reference, "objective.reference", metric_info(objective.metric).unit);
       }
       file.objectives.push_back(objective);
     }
@@ -258,7 +258,7 @@ class OptimiseReader : public detail::StudySections {
       const Metric metric = metric_named(name, "constraint.metric", design);
       const TomlNode *low = node.find("at_least"), *high = node.find("at_most");
       if (!low && !high) refuse(node, "constraint", "give at_least, at_most or both");
-      const std::string_view unit = metric_table()[std::size_t(metric)].unit;
+      const std::string_view unit = metric_info(metric).unit;
       if (low) study.constraints.push_back({metric, true, quantity(*low, "constraint.at_least", unit)});
       if (high) study.constraints.push_back({metric, false, quantity(*high, "constraint.at_most", unit)});
       if (low && high && !(study.constraints.back().limit > study.constraints.rbegin()[1].limit)) {

@@ -3,26 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <nlohmann/json.hpp>
 
+#include "report_tools.hpp"
 #include "wingbeat/io/optimise_file.hpp"
 #include "wingbeat/io/report.hpp"
 
 namespace wingbeat {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using detail::Json, detail::number_or_null, detail::with_unit;
 using Outcome = OptimiseResult::Outcome;
 
 constexpr int width = 100;
-
-Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
-
-const MetricInfo& info(Metric metric) { return metric_table()[std::size_t(metric)]; }
-
-std::string with_unit(double x, std::string_view unit) {
-  return unit == "1" ? fmt::format("{:.5g}", x) : fmt::format("{:.5g} {}", x, unit);
-}
 
 /// What holds an optimum and how flat it is.
 template <class Out>
@@ -59,7 +51,7 @@ Json result_json(const OptimiseFile& file, const OptimiseResult& r) {
   Json json;
   const char* outcomes[] = {"found", "infeasible", "nothing_flaps"};
   json["outcome"] = outcomes[int(r.outcome)];
-  json["objective"] = info(study.objective).key;
+  json["objective"] = metric_info(study.objective).key;
   json["maximise"] = study.maximise;
   for (int s = 0; s < sweep_status_count; ++s) {
     json["screened"][name_of(SweepStatus(s))] = r.screen.status[std::size_t(s)];
@@ -74,15 +66,15 @@ Json result_json(const OptimiseFile& file, const OptimiseResult& r) {
     json["parameters"][study.parameters[k].parameter.key] = r.parameters[k];
   }
   for (int m = 0; m < metric_count; ++m) {
-    json["metrics"][metric_table()[std::size_t(m)].key] = number(r.point.metrics.values[std::size_t(m)]);
+    json["metrics"][metric_info(Metric(m)).key] = number_or_null(r.point.metrics.values[std::size_t(m)]);
   }
   json["active"] = Json::array();
   for (const ActiveLimit& a : r.active) {
-    json["active"].push_back({{"limit", a.name}, {"sensitivity", number(a.sensitivity)}});
+    json["active"].push_back({{"limit", a.name}, {"sensitivity", number_or_null(a.sensitivity)}});
   }
   json["directions"] = Json::array();
   for (const FlatDirection& d : r.directions) {
-    json["directions"].push_back({{"flat", d.flat}, {"width", d.width}, {"curvature", number(d.curvature)},
+    json["directions"].push_back({{"flat", d.flat}, {"width", d.width}, {"curvature", number_or_null(d.curvature)},
                                   {"from", d.from}, {"to", d.to}});
   }
   json["starts"] = {{"all", r.starts}, {"same", r.same}, {"elsewhere", r.elsewhere}, {"failed", r.failed}};
@@ -107,7 +99,7 @@ std::string explanation(const std::string& reason, bool nothing_flaps, std::span
     if (screen.violated[c] == 0) continue;
     text += fmt::format("; {}: {} of {} that flap break it, the best of them reaches {}", name_of(constraints[c]),
                         screen.violated[c], screen.status[0],
-                        with_unit(screen.closest[c], info(constraints[c].metric).unit));
+                        with_unit(screen.closest[c], metric_info(constraints[c].metric).unit));
   }
   return text;
 }
@@ -128,7 +120,7 @@ std::string text_optimum(const OptimiseFile& file, const OptimiseResult& r) {
   std::string text;
   auto out = std::back_inserter(text);
   if (!file.title.empty()) fmt::format_to(out, "{}\n", wrapped(file.title, width, 0));
-  const MetricInfo& objective = info(study.objective);
+  const MetricInfo& objective = metric_info(study.objective);
   fmt::format_to(out, "{} {}", study.maximise ? "maximise" : "minimise", objective.key);
   for (std::size_t c = 0; c < study.constraints.size(); ++c) {
     fmt::format_to(out, "{}{}", c == 0 ? " with " : ", ", name_of(study.constraints[c]));
@@ -159,7 +151,7 @@ std::string text_optimum(const OptimiseFile& file, const OptimiseResult& r) {
                          Metric::power_electrical, Metric::efficiency_system, Metric::current_peak,
                          Metric::stroke_amplitude, Metric::rod_force_peak}) {
     if (!std::isfinite(r.point.metrics[m])) continue;
-    fmt::format_to(out, "  {:<36}{}\n", info(m).key, with_unit(r.point.metrics[m], info(m).unit));
+    fmt::format_to(out, "  {:<36}{}\n", metric_info(m).key, with_unit(r.point.metrics[m], metric_info(m).unit));
   }
   return text;
 }
@@ -177,7 +169,7 @@ std::string text_motors(const OptimiseFile& file, std::span<const MotorTrial> tr
   std::string text;
   auto out = std::back_inserter(text);
   const MotorTrial* best = best_trial(file, trials);
-  fmt::format_to(out, "{:<30}{}\n", file.motors.empty() ? "Choice" : "Motor", info(study.objective).key);
+  fmt::format_to(out, "{:<30}{}\n", file.motors.empty() ? "Choice" : "Motor", metric_info(study.objective).key);
   for (const MotorTrial* t : order) {
     std::string what;
     if (t->refused()) {
@@ -185,7 +177,7 @@ std::string text_motors(const OptimiseFile& file, std::span<const MotorTrial> tr
     } else if (t->result.outcome != Outcome::found) {
       what = explanation(study, t->result);
     } else {
-      what = with_unit(t->result.point.metrics[study.objective], info(study.objective).unit);
+      what = with_unit(t->result.point.metrics[study.objective], metric_info(study.objective).unit);
       for (std::size_t k = 0; k < study.parameters.size(); ++k) {
         const DesignParameter& p = study.parameters[k].parameter;
         what += fmt::format("; {} {}", p.key, with_unit(t->result.parameters[k], p.unit));

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "figure.hpp"
+#include "report_tools.hpp"
 #include "wingbeat/io/design_file.hpp"
 #include "wingbeat/io/design_keys.hpp"
 #include "wingbeat/io/netcdf.hpp"
@@ -15,18 +15,10 @@
 namespace wingbeat {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using detail::Json, detail::number_or_null, detail::with_unit;
 using Outcome = ParetoResult::Outcome;
 
 constexpr int width = 100;
-
-Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
-
-const MetricInfo& info(Metric metric) { return metric_table()[std::size_t(metric)]; }
-
-std::string with_unit(double x, std::string_view unit) {
-  return unit == "1" ? fmt::format("{:.5g}", x) : fmt::format("{:.5g} {}", x, unit);
-}
 
 const char* name_of(EvolutionMethod method) { return method == EvolutionMethod::nsga2 ? "NSGA-II" : "MOEA/D"; }
 
@@ -42,7 +34,7 @@ std::vector<const DesignParameter*> parameters_of(const ParetoStudy& study) {
 std::string hypervolume_unit(const ParetoStudy& study) {
   std::string unit;
   for (const ParetoObjective& o : study.objectives) {
-    const std::string_view of = info(o.metric).unit;
+    const std::string_view of = metric_info(o.metric).unit;
     if (of != "1") unit += fmt::format("{}{}", unit.empty() ? "" : " ", of);
   }
   return unit.empty() ? "1" : unit;
@@ -51,7 +43,7 @@ std::string hypervolume_unit(const ParetoStudy& study) {
 std::string reference_text(const ParetoStudy& study, const ParetoResult& r) {
   std::string text;
   for (std::size_t m = 0; m < study.objectives.size(); ++m) {
-    const MetricInfo& metric = info(study.objectives[m].metric);
+    const MetricInfo& metric = metric_info(study.objectives[m].metric);
     text += fmt::format("{}{} = {}", m == 0 ? "" : ", ", metric.key, with_unit(r.reference[m], metric.unit));
   }
   return text;
@@ -104,7 +96,7 @@ std::vector<std::pair<std::string, std::size_t>> named_picks(const ParetoStudy& 
   std::vector<std::pair<std::string, std::size_t>> picks;
   if (result.front.empty()) return picks;
   for (std::size_t m = 0; m < study.objectives.size(); ++m) {
-    picks.emplace_back(fmt::format("end-{}", info(study.objectives[m].metric).key), result.picks.ends[m]);
+    picks.emplace_back(fmt::format("end-{}", metric_info(study.objectives[m].metric).key), result.picks.ends[m]);
   }
   picks.emplace_back("knee", result.picks.knee);
   for (std::size_t n = 0; n < result.picks.even.size(); ++n) {
@@ -119,7 +111,7 @@ std::string text_front(const OptimiseFile& file, const ParetoStudy& study, const
   if (!file.title.empty()) fmt::format_to(out, "{}\n", wrapped(file.title, width, 0));
   std::string aims;
   for (const ParetoObjective& o : study.objectives) {
-    aims += fmt::format("{}{} {}", aims.empty() ? "" : ", ", o.maximise ? "maximise" : "minimise", info(o.metric).key);
+    aims += fmt::format("{}{} {}", aims.empty() ? "" : ", ", o.maximise ? "maximise" : "minimise", metric_info(o.metric).key);
   }
   for (std::size_t c = 0; c < study.constraints.size(); ++c) {
     aims += (c == 0 ? " with " : ", ") + name_of(study.constraints[c]);
@@ -171,7 +163,7 @@ std::string text_front(const OptimiseFile& file, const ParetoStudy& study, const
       text += "\n";
     };
     const auto metric = [&](Metric m) {
-      row(info(m).key, info(m).unit, [&](const ParetoDesign& d) { return d.metrics[m]; });
+      row(metric_info(m).key, metric_info(m).unit, [&](const ParetoDesign& d) { return d.metrics[m]; });
     };
     for (const ParetoObjective& o : study.objectives) metric(o.metric);
     for (const Metric m : limited_metrics(study)) metric(m);
@@ -195,7 +187,7 @@ std::string json_front(const OptimiseFile& file, const ParetoStudy& study, const
   const char* outcomes[] = {"found", "infeasible", "nothing_flaps"};
   json["outcome"] = outcomes[int(r.outcome)];
   for (const ParetoObjective& o : study.objectives) {
-    json["objectives"].push_back({{"metric", info(o.metric).key}, {"maximise", o.maximise}});
+    json["objectives"].push_back({{"metric", metric_info(o.metric).key}, {"maximise", o.maximise}});
   }
   json["method"] = study.evolution.method == EvolutionMethod::nsga2 ? "nsga2" : "moead";
   json["population"] = study.evolution.population;
@@ -221,7 +213,7 @@ std::string json_front(const OptimiseFile& file, const ParetoStudy& study, const
   }
   json["evaluations"] = r.evaluated.size();
   for (std::size_t m = 0; m < study.objectives.size(); ++m) {
-    json["reference"][info(study.objectives[m].metric).key] = r.reference[m];
+    json["reference"][metric_info(study.objectives[m].metric).key] = r.reference[m];
   }
   json["hypervolume"] = r.hypervolume;
   json["hypervolume_history"] = r.history;
@@ -232,7 +224,7 @@ std::string json_front(const OptimiseFile& file, const ParetoStudy& study, const
     if (!study.vehicles[d.vehicle].name.empty()) entry["motor"] = study.vehicles[d.vehicle].name;
     for (std::size_t k = 0; k < parameters.size(); ++k) entry["parameters"][parameters[k]->key] = d.parameters[k];
     for (int m = 0; m < metric_count; ++m) {
-      entry["metrics"][metric_table()[std::size_t(m)].key] = number(d.metrics.values[std::size_t(m)]);
+      entry["metrics"][metric_info(Metric(m)).key] = number_or_null(d.metrics.values[std::size_t(m)]);
     }
     json["front"].push_back(std::move(entry));
   }
@@ -303,7 +295,7 @@ void write_front(const ParetoStudy& study, const ParetoResult& r, const std::str
   const auto objective = data.define_dimension("objective", study.objectives.size());
   std::vector<std::string> names, senses;
   for (const ParetoObjective& o : study.objectives) {
-    names.push_back(info(o.metric).key);
+    names.push_back(metric_info(o.metric).key);
     senses.push_back(o.maximise ? "maximise" : "minimise");
   }
   data.define_texts("objective", objective, names, "metric");
@@ -371,7 +363,7 @@ void plot_front(const ParetoStudy& study, const ParetoResult& r, const std::stri
   key(0.66, end, "ends");
   key(0.82, knee, "knee");
   const auto label = [&](std::size_t k) {
-    const MetricInfo& metric = info(study.objectives[k].metric);
+    const MetricInfo& metric = metric_info(study.objectives[k].metric);
     return std::string(metric.long_name) + (std::string_view(metric.unit) == "1" ? "" : fmt::format(" ({})", metric.unit));
   };
   const auto range = [&](const char* axis, std::size_t k) {

@@ -19,8 +19,6 @@
 namespace wingbeat {
 namespace {
 
-const MetricInfo& info(Metric metric) { return metric_table()[std::size_t(metric)]; }
-
 constexpr std::pair<const char*, Basis> bases[] = {
     {"calibrated", Basis::calibrated}, {"predicted", Basis::predicted}, {"given", Basis::given}};
 
@@ -128,7 +126,7 @@ class Reader {
         if (!held) refuse(*hold, "hold_stroke", "expected true or false");
         trend.hold_stroke = *held;
       }
-      trend.unit = trend.kind == Kind::peak ? info(trend.metric).unit : unit;
+      trend.unit = trend.kind == Kind::peak ? metric_info(trend.metric).unit : unit;
     } else {
       known_keys(t, {"kind", "statement", "where", "basis", "published", "tolerance", "design", "voltage"});
       if (trend.kind == Kind::constant_load_efficiency) trend.voltage = quantity_at(t, "voltage", "V");
@@ -301,9 +299,9 @@ std::string text_comparison(const PublishedFile& file, const Comparison& compari
     at = here;
     of = which;
     const auto value = [&](double x) {
-      return !p.relative_to ? readable(x, info(p.metric).unit) : std::isfinite(x) ? fmt::format("{:#.4g}", x) : "-";
+      return !p.relative_to ? readable(x, metric_info(p.metric).unit) : std::isfinite(x) ? fmt::format("{:#.4g}", x) : "-";
     };
-    fmt::format_to(out, "    {:<33}{:>11}{:>12}{:>10} %{:>10} %  {}\n", info(p.metric).long_name, value(p.published),
+    fmt::format_to(out, "    {:<33}{:>11}{:>12}{:>10} %{:>10} %  {}\n", metric_info(p.metric).long_name, value(p.published),
                    value(v.computed), std::isfinite(v.deviation) ? fmt::format("{:+.2f}", 100.0 * v.deviation) : "-",
                    fmt::format("{:.3g}", 100.0 * p.tolerance), v.within ? "ok" : "no");
   }
@@ -330,7 +328,7 @@ std::string json_comparison(const PublishedFile& file, const Comparison& compari
     Json entry;
     if (p.voltage) entry["voltage_v"] = *p.voltage;
     if (p.frequency) entry["frequency_hz"] = *p.frequency;
-    entry["metric"] = info(p.metric).key;
+    entry["metric"] = metric_info(p.metric).key;
     if (p.relative_to) {
       entry["ratio"] = {p.design, *p.relative_to};
     } else {

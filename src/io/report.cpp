@@ -5,9 +5,9 @@
 #include <cmath>
 #include <iterator>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <utility>
 
+#include "report_tools.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
 
 namespace wingbeat {
@@ -15,9 +15,7 @@ namespace {
 
 constexpr int table_width = 88;
 
-using Json = nlohmann::ordered_json;
-
-Json number_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+using detail::Json, detail::number_or_null;
 
 std::map<TransientEvent::Kind, int> event_counts(const TransientResult& start_up) {
   std::map<TransientEvent::Kind, int> counts;

@@ -25,8 +25,6 @@ std::vector<Metric> kept_metrics(const Sweep& sweep) {
   return kept;
 }
 
-const MetricInfo& info(Metric metric) { return metric_table()[std::size_t(metric)]; }
-
 /// Counts designs and keeps the best, in the order of their indices.
 class Digester {
  public:
@@ -172,7 +170,7 @@ std::vector<std::uint64_t> prepare_data_set(const fs::path& path, const Study& s
   file.set_flags(columns.back(), std::vector<std::string>{"batch", "scalar"});
   columns.push_back(define("error_estimate", "1", "estimated relative error of the metrics", Storage::real));
   for (const Metric m : kept_metrics(sweep)) {
-    columns.push_back(define(info(m).key, info(m).unit, info(m).long_name, Storage::real));
+    columns.push_back(define(metric_info(m).key, metric_info(m).unit, metric_info(m).long_name, Storage::real));
   }
   if (!study.input.table.empty()) {
     const std::string texts[] = {study.input.table};
@@ -212,7 +210,7 @@ std::vector<std::uint64_t> prepare_data_set(const fs::path& path, const Study& s
   }
   file.close();
   std::vector<std::string> names = {"status", "recomputed", "error_estimate"};
-  for (const Metric m : kept_metrics(sweep)) names.push_back(info(m).key);
+  for (const Metric m : kept_metrics(sweep)) names.push_back(metric_info(m).key);
   return places_in_file(path, names);
 }
 
@@ -230,7 +228,7 @@ SweepDigest digest_of(const fs::path& path, const Study& study) {
     file.read_run("recomputed", columns.first, columns.recomputed);
     for (std::size_t m = 0; m < kept.size(); ++m) {
       const bool wanted = kept[m] == Metric::lift_mean || kept[m] == Metric::efficiency_system;
-      if (wanted) file.read_run(info(kept[m]).key, columns.first, columns.metrics[m]);
+      if (wanted) file.read_run(metric_info(kept[m]).key, columns.first, columns.metrics[m]);
     }
     digester.add(columns);
   }

@@ -22,8 +22,6 @@ constexpr std::uint64_t most_designs_drawn = 4000000;
 constexpr std::uint64_t most_curves = 6;
 constexpr std::size_t most_panels = 4;
 
-const MetricInfo& info(Metric metric) { return metric_table()[std::size_t(metric)]; }
-
 bool is_number(const SweepAxis& axis) {
   return std::none_of(axis.quantities.begin(), axis.quantities.end(),
                       [](const SweptQuantity& q) { return q.kind == SweptQuantity::Kind::choice; });
@@ -110,7 +108,7 @@ std::string title_of(const Study& study) {
   return study.title.empty() ? std::filesystem::path(study.input.study_name).stem().string() : study.title;
 }
 
-bool is_efficiency(Metric m) { return std::string_view(info(m).key).starts_with("efficiency"); }
+bool is_efficiency(Metric m) { return std::string_view(metric_info(m).key).starts_with("efficiency"); }
 
 /// A metric's values with the display that suits them.
 struct Field {
@@ -118,18 +116,18 @@ struct Field {
   std::vector<double> values;  ///< in the displayed unit
   Display display;
 
-  Field(const NetcdfReader& file, Metric m) : metric(m), values(file.read(info(m).key)) {
+  Field(const NetcdfReader& file, Metric m) : metric(m), values(file.read(metric_info(m).key)) {
     double largest = 0.0;
     for (const double x : values) largest = std::isfinite(x) ? std::max(largest, std::abs(x)) : largest;
-    display = display_for(info(m).unit, largest, is_efficiency(m));
+    display = display_for(metric_info(m).unit, largest, is_efficiency(m));
     for (double& x : values) x *= display.factor;
   }
-  std::string label() const { return info(metric).long_name + display.in_brackets(); }
+  std::string label() const { return metric_info(metric).long_name + display.in_brackets(); }
   std::string shown(double value) const {
     return fmt::format("{:.4g}{}{}", value, display.unit.empty() ? "" : " ", display.unit);
   }
   const char* superlative() const {
-    const std::string_view key = info(metric).key;
+    const std::string_view key = metric_info(metric).key;
     return is_efficiency(metric) || key.starts_with("lift") ? "best" : "highest";
   }
 };
@@ -465,7 +463,7 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
   const auto flaps = [&](std::size_t n) { return status[n] == 0.0; };
   const bool has_weight = study.sweep.options.metrics[std::size_t(Metric::lift_to_weight)];
   std::vector<double> weight;
-  if (has_weight) weight = file.read(info(Metric::lift_to_weight).key);
+  if (has_weight) weight = file.read(metric_info(Metric::lift_to_weight).key);
   const bool weighed = has_weight && std::any_of(weight.begin(), weight.end(), [](double w) { return std::isfinite(w); });
   const bool carried = weighed && std::any_of(weight.begin(), weight.end(), [](double w) { return w >= 1.0; });
   const bool all_flap = std::all_of(status.begin(), status.end(), [](double s) { return s == 0.0; });
@@ -586,7 +584,7 @@ std::vector<Metric> metrics_to_plot(const Study& study, std::span<const std::str
     if (index == metric_count || !sweep.options.metrics[std::size_t(index)]) {
       std::vector<std::string_view> kept;
       for (int m = 0; m < metric_count; ++m) {
-        if (sweep.options.metrics[std::size_t(m)]) kept.push_back(info(Metric(m)).key);
+        if (sweep.options.metrics[std::size_t(m)]) kept.push_back(metric_info(Metric(m)).key);
       }
       refuse(fmt::format("{} is not among the study's metrics: {}", in_quotes(name), fmt::join(kept, ", ")));
     }

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "figure.hpp"
+#include "report_tools.hpp"
 #include "wingbeat/io/design_file.hpp"
 #include "wingbeat/io/design_keys.hpp"
 #include "wingbeat/io/netcdf.hpp"
@@ -15,9 +15,7 @@
 namespace wingbeat {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+using detail::Json, detail::number_or_null;
 
 std::string percent(double x) {
   // Never rounded to certainty.
@@ -177,23 +175,28 @@ std::string json_tolerance(const ToleranceStudy& study, const ToleranceResult& r
     json["probability"][name_of(SweepStatus(s))] = probability(result.status[std::size_t(s)]);
   }
   json["probability"]["hover"] = result.hover ? probability(*result.hover) : Json(nullptr);
-  json["probability"]["hover_linear"] = number(result.linear_hover);
+  json["probability"]["hover_linear"] = number_or_null(result.linear_hover);
   const auto inputs = factors(study);
   for (const ToleranceOutput& o : result.outputs) {
     Json& entry = json["outputs"][o.name];
-    entry = {{"mean", number(o.mean)}, {"deviation", number(o.deviation)}, {"least", number(o.least)},
-             {"percentile_2_5", number(o.p025)}, {"median", number(o.median)}, {"percentile_97_5", number(o.p975)},
-             {"most", number(o.most)}, {"linear_mean", number(o.linear_mean)},
-             {"linear_deviation", number(o.linear_deviation)}};
+    entry = {{"mean", number_or_null(o.mean)},
+             {"deviation", number_or_null(o.deviation)},
+             {"least", number_or_null(o.least)},
+             {"percentile_2_5", number_or_null(o.p025)},
+             {"median", number_or_null(o.median)},
+             {"percentile_97_5", number_or_null(o.p975)},
+             {"most", number_or_null(o.most)},
+             {"linear_mean", number_or_null(o.linear_mean)},
+             {"linear_deviation", number_or_null(o.linear_deviation)}};
     for (std::size_t i = 0; i < inputs.size(); ++i) {
       Json factor = {{"name", inputs[i].name}};
-      if (!o.linear_share.empty()) factor["linear_share"] = number(o.linear_share[i]);
+      if (!o.linear_share.empty()) factor["linear_share"] = number_or_null(o.linear_share[i]);
       if (o.indices) {
         const SobolIndex& s = o.indices->inputs[i];
-        factor["first"] = number(s.first);
-        factor["first_95"] = {number(s.first_lower), number(s.first_upper)};
-        factor["total"] = number(s.total);
-        factor["total_95"] = {number(s.total_lower), number(s.total_upper)};
+        factor["first"] = number_or_null(s.first);
+        factor["first_95"] = {number_or_null(s.first_lower), number_or_null(s.first_upper)};
+        factor["total"] = number_or_null(s.total);
+        factor["total_95"] = {number_or_null(s.total_lower), number_or_null(s.total_upper)};
       }
       if (factor.size() > 1) entry["factors"].push_back(factor);
     }
@@ -226,7 +229,7 @@ void write_tolerance(const ToleranceStudy& study, const ToleranceResult& result,
   data.write_run(status, 0, std::span(columns.status).subspan(0, base));
   for (int m = 0; m < metric_count; ++m) {
     if (!study.options.metrics[std::size_t(m)]) continue;
-    const MetricInfo& info = metric_table()[std::size_t(m)];
+    const MetricInfo& info = metric_info(Metric(m));
     const auto variable = data.define_variable(info.key, {sample}, info.unit, info.long_name);
     data.write(variable, samples_of(study, columns, Metric(m)));
   }

@@ -13,6 +13,7 @@
 #include <set>
 
 #include "least_squares.hpp"
+#include "wingbeat/core/text.hpp"
 #include "wingbeat/study/frequency_search.hpp"
 #include "wingbeat/study/run.hpp"
 #include "wingbeat/study/sampling.hpp"
@@ -26,12 +27,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double free_error = 1.0, rough_error = 0.2;
 constexpr double normal_95 = 1.959963984540054;
 
-template <class... Args>
-std::string format(const char* pattern, Args... args) {
-  char text[500];
-  std::snprintf(text, sizeof text, pattern, args...);
-  return text;
-}
+using detail::format;
 
 /// Student's quantile for 95 %, two-sided, by the expansion of Cornish and Fisher.
 double student_95(int freedom) {
@@ -994,10 +990,10 @@ const char* unit_of(WaveformQuantity q) {
 }
 std::string name_of(const MeasuredQuantity& q) {
   if (q.waveform) return std::string("instantaneous ") + name_of(q.quantity);
-  return metric_table()[std::size_t(q.metric)].key;
+  return metric_info(q.metric).key;
 }
 const char* unit_of(const MeasuredQuantity& q) {
-  return q.waveform ? unit_of(q.quantity) : metric_table()[std::size_t(q.metric)].unit;
+  return q.waveform ? unit_of(q.quantity) : metric_info(q.metric).unit;
 }
 
 std::string condition_name(Condition condition, bool springs) {

@@ -15,13 +15,6 @@ namespace {
 using Kind = TransientEvent::Kind;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Integrated as extra unknowns. The reactive work is the total variation of the wings' and springs' energy instead.
-constexpr Integral quadratures[] = {Integral::current,       Integral::current_square, Integral::speed_square,
-                                    Integral::electrical_work, Integral::motor_work,   Integral::friction_work,
-                                    Integral::aero_work,     Integral::residual_work,  Integral::lift,
-                                    Integral::rod_force};
-constexpr int quadrature_count = int(std::size(quadratures));
-
 enum Root { root_motion, root_stored_moment, root_velocity, root_count };  // the last two while measuring
 
 constexpr double stiff_decays_per_period = 500.0;
@@ -260,7 +253,7 @@ void DirectStartUp::advance(double until) {
         relative_tolerance_ = tightest_ = 10.0 * relative_tolerance_;
         return;
       }
-      give_up(text("the integrator failed at t = %.6g s", t_));
+      give_up(format("the integrator failed at t = %.6g s", t_));
       return;
     }
     t_ = cvode.time();
@@ -385,9 +378,9 @@ bool DirectStartUp::rests_for_good() {
   result_.time_to_steady = t_;
   result_.lock_angle = y_[0];
   result_.torque_margin = stuck_ ? holding_torque_ - held : 0.0;
-  result_.detail = stuck_ ? text("rests at stroke angle %.4f deg: the constant friction %.4g N m holds %.4g N m, all "
-                                 "that supply and springs apply at most",
-                                 y_[0] * degrees_per_radian, holding_torque_, held)
+  result_.detail = stuck_ ? format("rests at stroke angle %.4f deg: the constant friction %.4g N m holds %.4g N m, "
+                                   "all that supply and springs apply at most",
+                                   y_[0] * degrees_per_radian, holding_torque_, held)
                           : std::string("no voltage: nothing moves the wings");
   return true;
 }
@@ -431,8 +424,8 @@ void DirectStartUp::period_done() {
       result_.crank_speed = y_[1];
       result_.current = current_of(t_, y_);
       result_.stroke_angle = y_[0];
-      result_.detail = text("flaps steadily at the supply's %.6g Hz from %.4g s on; after %d periods they repeat to "
-                            "%.1g", vehicle_.drive_frequency, result_.time_to_steady, result_.laps, change);
+      result_.detail = format("flaps steadily at the supply's %.6g Hz from %.4g s on; after %d periods they repeat to "
+                              "%.1g", vehicle_.drive_frequency, result_.time_to_steady, result_.laps, change);
       return;
     }
   }
@@ -442,18 +435,18 @@ void DirectStartUp::period_done() {
   }
   if (close || change < noise || measuring_) begin_measuring();
   if (result_.laps >= options_.max_laps) {
-    give_up(text("successive periods still differ by %.2g after %d periods", change, options_.max_laps));
+    give_up(format("successive periods still differ by %.2g after %d periods", change, options_.max_laps));
   }
 }
 
 bool DirectStartUp::out_of_budget() {
   ++result_.steps;
   if (result_.steps > options_.max_steps) {
-    give_up(text("no verdict within %ld integration steps", options_.max_steps));
+    give_up(format("no verdict within %ld integration steps", options_.max_steps));
   } else if (options_.cancel && result_.steps % 512 == 0 && options_.cancel()) {
     give_up("cancelled");
   } else if (options_.max_time > 0.0 && t_ >= options_.max_time) {
-    give_up(text("no verdict within %.6g s", options_.max_time));
+    give_up(format("no verdict within %.6g s", options_.max_time));
   }
   return done_;
 }

@@ -3,20 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
+#include "wingbeat/core/text.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {
 namespace {
 
-template <class... Args>
-std::string format(const char* pattern, Args... args) {
-  char text[600];
-  std::snprintf(text, sizeof text, pattern, args...);
-  return text;
-}
+using detail::format;
 
 /// What is integrated over the charge drawn.
 enum Total { time, electrical, internal, aerodynamic, lift, total_count };

@@ -2,18 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
+
+#include "wingbeat/core/text.hpp"
 
 namespace wingbeat {
 namespace {
 
-template <class... Args>
-std::string format(const char* pattern, Args... args) {
-  char text[600];
-  std::snprintf(text, sizeof text, pattern, args...);
-  return text;
-}
+using detail::format;
 
 /// The metric that is to reach a value, with the words for it.
 struct Goal {

@@ -9,22 +9,17 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
 #include "least_squares.hpp"
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/status.hpp"
+#include "wingbeat/core/text.hpp"
 
 namespace wingbeat {
 namespace {
 
-template <class... Args>
-std::string format(const char* pattern, Args... args) {
-  char text[500];
-  std::snprintf(text, sizeof text, pattern, args...);
-  return text;
-}
+using detail::format;
 
 /// Unknowns of the fit: ln R, ln K, constant friction and damping over their scales; at the sheet's shaft.
 enum Unknown { resistance, constant, friction, damping, unknowns };

@@ -523,7 +523,7 @@ void judge(const Problem& problem, OptimiseResult& result) {
 }  // namespace
 
 std::string name_of(const MetricConstraint& c) {
-  const char* key = metric_table()[std::size_t(c.metric)].key;
+  const char* key = metric_info(c.metric).key;
   return key + std::string(c.at_least ? " >= " : " <= ") + short_number(c.limit);
 }
 

@@ -2,19 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "wingbeat/core/text.hpp"
 
 namespace wingbeat {
 namespace {
 
 constexpr double transient_tightest = 1e-11;
 
-template <class... Args>
-std::string format(const char* pattern, Args... args) {
-  char text[400];
-  std::snprintf(text, sizeof text, pattern, args...);
-  return text;
-}
+using detail::format;
 
 /// Everything that acts at a state where the supply drives v, on the branch that the state itself decides.
 Motion<double> motion_of(const Vehicle<double>& vehicle, double crank_angle, double omega, double i, double v) {

@@ -289,7 +289,7 @@ ToleranceResult assess_tolerance(const ToleranceStudy& study, const SweepColumns
     if (!study.options.metrics[std::size_t(m)]) continue;
     const std::vector<double>& values = columns.metrics[column++];
     ToleranceOutput output;
-    output.name = metric_table()[std::size_t(m)].key;
+    output.name = metric_info(Metric(m)).key;
     output.metric = Metric(m);
     describe(output, std::span(values).subspan(0, base));
     add_linear(output, Metric(m));

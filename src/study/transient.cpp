@@ -30,14 +30,6 @@ namespace {
 using Kind = TransientEvent::Kind;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Integrated as extra unknowns. Time is the difference of two crossings, and the reactive work the total variation of
-/// the wings' and springs' energy, of which its integrand is the magnitude of the rate: both exact without quadrature.
-constexpr Integral quadratures[] = {Integral::current,         Integral::current_square, Integral::speed_square,
-                                    Integral::electrical_work, Integral::motor_work,     Integral::friction_work,
-                                    Integral::aero_work,       Integral::residual_work,  Integral::lift,
-                                    Integral::rod_force};
-constexpr int quadrature_count = int(std::size(quadratures));
-
 enum Root { root_force, root_standstill, root_lap, root_jam, root_plain_count };
 enum { root_stored_moment = root_plain_count, root_dead_centre, root_measuring_count };
 
@@ -53,7 +45,8 @@ constexpr double same_swing = 1e-4;            // [rad] swings with a varying su
 constexpr int averaged_laps_pwm = 8;
 constexpr double lap_spread_settled = 1e-2;
 
-using detail::maximum, detail::raise_extremes, detail::text;
+using detail::format, detail::maximum, detail::raise_extremes;
+using detail::quadrature_count, detail::quadratures;
 
 class StartUp {
  public:
@@ -422,14 +415,14 @@ void StartUp::prepare() {
 bool StartUp::out_of_budget() {
   ++result_.steps;
   if (result_.steps > options_.max_steps) {
-    give_up(text("no verdict within %ld integration steps", options_.max_steps));
+    give_up(format("no verdict within %ld integration steps", options_.max_steps));
   } else if (options_.cancel && result_.steps % 512 == 0 && options_.cancel()) {
     give_up("cancelled");
   } else if (std::abs(omega_) > runaway_speed_) {
-    give_up(text("the crank speeds up without bound (%.3g rad/s): this transmission formulation does not conserve "
-                 "power and feeds it", omega_));
+    give_up(format("the crank speeds up without bound (%.3g rad/s): this transmission formulation does not conserve "
+                   "power and feeds it", omega_));
   } else if (t_ >= end_time_) {
-    give_up(text("no verdict within %.6g s", end_time_));
+    give_up(format("no verdict within %.6g s", end_time_));
   }
   return done_;
 }
@@ -689,8 +682,8 @@ void StartUp::slide() {
         force_branch_known_ = true;
         return;
       }
-      give_up(text("the integrator failed at t = %.6g s, crank angle %.4f deg", t_,
-                   wrap_angle(theta_) * degrees_per_radian));
+      give_up(format("the integrator failed at t = %.6g s, crank angle %.4f deg", t_,
+                     wrap_angle(theta_) * degrees_per_radian));
       return;
     }
     t_ = cvode.time();
@@ -855,8 +848,8 @@ bool StartUp::swings_repeat() {
   result_.status = FlappingStatus::locked;
   result_.time_to_steady = t_;
   if (last_high_ - last_low_ < same_swing) result_.lock_angle = wrap_angle(0.5 * (last_low_ + last_high_));
-  result_.detail = text("does not rotate: the crank moves with the supply between %.4f and %.4f deg",
-                        last_low_ * degrees_per_radian, last_high_ * degrees_per_radian);
+  result_.detail = format("does not rotate: the crank moves with the supply between %.4f and %.4f deg",
+                          last_low_ * degrees_per_radian, last_high_ * degrees_per_radian);
   return true;
 }
 
@@ -867,7 +860,7 @@ bool StartUp::lap_done() {
   next_lap_ += two_pi;
   const bool restart = supply_.type == SupplyType::constant ? lap_done_constant() : lap_done_averaging();
   if (!done_ && int(crossings_.size()) >= options_.max_laps) {
-    give_up(text("successive laps still differ by %.2g of their speed after %d laps", change_, options_.max_laps));
+    give_up(format("successive laps still differ by %.2g of their speed after %d laps", change_, options_.max_laps));
   }
   return restart;
 }
@@ -1009,15 +1002,15 @@ void StartUp::flap() {
   result_.time_to_steady = lap > 0 ? crossings_[lap - 1].time : 0.0;
   if (supply_.type == SupplyType::constant) {
     result_.settled = true;
-    result_.detail = text("flaps steadily at %.6g Hz from %.4g s on; after %d laps they repeat to %.1g%s", 1.0 / period,
-                          result_.time_to_steady, int(crossings_.size()), change_,
-                          jumped_ ? " (slow convergence, extrapolated)" : "");
+    result_.detail = format("flaps steadily at %.6g Hz from %.4g s on; after %d laps they repeat to %.1g%s",
+                            1.0 / period, result_.time_to_steady, int(crossings_.size()), change_,
+                            jumped_ ? " (slow convergence, extrapolated)" : "");
     return;
   }
   result_.settled = result_.lap_scatter < lap_spread_settled;
-  result_.detail = text("flaps at %.6g Hz, averaged over %d laps whose durations differ by up to %.2g %% from their "
-                        "mean%s", 1.0 / period, result_.averaged_laps, 100.0 * result_.lap_scatter,
-                        result_.settled ? "" : "; laps and supply share no period");
+  result_.detail = format("flaps at %.6g Hz, averaged over %d laps whose durations differ by up to %.2g %% from their "
+                          "mean%s", 1.0 / period, result_.averaged_laps, 100.0 * result_.lap_scatter,
+                          result_.settled ? "" : "; laps and supply share no period");
 }
 
 void StartUp::rest(double theta, bool held_by_friction) {
@@ -1036,16 +1029,16 @@ void StartUp::rest(double theta, bool held_by_friction) {
   const double degrees = angle * degrees_per_radian;
   if (stall_torque <= constant_friction_) {
     result_.status = FlappingStatus::stalled;
-    result_.detail = text("the motor cannot turn: stall torque %.4g N m does not exceed the constant friction of "
-                          "%.4g N m (crank at %.4f deg)", stall_torque, constant_friction_, degrees);
+    result_.detail = format("the motor cannot turn: stall torque %.4g N m does not exceed the constant friction of "
+                            "%.4g N m (crank at %.4f deg)", stall_torque, constant_friction_, degrees);
     return;
   }
   result_.status = FlappingStatus::locked;
   result_.detail = held_by_friction
-      ? text("rests at crank angle %.4f deg: friction holds %.4g N m there, %.4g N m more than motor and springs apply",
-             degrees, holding_torque(theta), *result_.torque_margin)
-      : text("rests at crank angle %.4f deg: the springs balance the stall torque of %.4g N m in a stable equilibrium",
-             degrees, stall_torque);
+      ? format("rests at crank angle %.4f deg: friction holds %.4g N m there, %.4g N m more than motor and springs "
+               "apply", degrees, holding_torque(theta), *result_.torque_margin)
+      : format("rests at crank angle %.4f deg: the springs balance the stall torque of %.4g N m in a stable "
+               "equilibrium", degrees, stall_torque);
 }
 
 void StartUp::jam(double theta) {
@@ -1058,13 +1051,13 @@ void StartUp::jam(double theta) {
   const CrankKinematics<double> k = kinematics(theta);
   const double degrees = *result_.jam_angle * degrees_per_radian;
   if (k.wing_lever <= 2.0 * smallest_margin * vehicle_.crank.hinge_offset) {
-    result_.detail = text("jams at crank angle %.4f deg: the rod force loses its lever on the wings (g = %.2g m)",
-                          degrees, k.wing_lever);
+    result_.detail = format("jams at crank angle %.4f deg: the rod force loses its lever on the wings (g = %.2g m)",
+                            degrees, k.wing_lever);
     return;
   }
   const double inertia = std::min(effective_inertia(vehicle_, k, 1.0), effective_inertia(vehicle_, k, -1.0));
-  result_.detail = text("jams at crank angle %.4f deg: rotor inertia and rod-force friction leave no unique "
-                        "acceleration (J + A (h - mu r_e) = %.2g kg m2)", degrees, inertia);
+  result_.detail = format("jams at crank angle %.4f deg: rotor inertia and rod-force friction leave no unique "
+                          "acceleration (J + A (h - mu r_e) = %.2g kg m2)", degrees, inertia);
 }
 
 void StartUp::give_up(const std::string& why) {
@@ -1078,10 +1071,10 @@ void StartUp::give_up(const std::string& why) {
     if (measuring_ && measured_laps_ > 0 && supply_.type != SupplyType::constant) {
       result_.lap_scatter = lap_scatter(std::size_t(measured_laps_));
     }
-    result_.detail = text("%s; it flaps at %.6g Hz then", why.c_str(), 1.0 / lap_time(n - 1));
+    result_.detail = format("%s; it flaps at %.6g Hz then", why.c_str(), 1.0 / lap_time(n - 1));
   } else {
-    result_.detail = text("%s; the crank makes no forward revolutions then, it has been between %.4g and %.4g deg",
-                          why.c_str(), swing_low_ * degrees_per_radian, swing_high_ * degrees_per_radian);
+    result_.detail = format("%s; the crank makes no forward revolutions then, it has been between %.4g and %.4g deg",
+                            why.c_str(), swing_low_ * degrees_per_radian, swing_high_ * degrees_per_radian);
   }
 }
 

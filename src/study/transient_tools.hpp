@@ -3,23 +3,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
-#include <string>
+#include <iterator>
 #include <utility>
 
+#include "wingbeat/core/text.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 
 namespace wingbeat::detail {
 
-[[gnu::format(printf, 1, 2)]] inline std::string text(const char* format, ...) {
-  char buffer[512];
-  std::va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(buffer, sizeof buffer, format, arguments);
-  va_end(arguments);
-  return buffer;
-}
+/// Integrated as extra unknowns. Time is the difference of two crossings, and the reactive work the total variation of
+/// the wings' and springs' energy, of which its integrand is the magnitude of the rate: both exact without quadrature.
+constexpr Integral quadratures[] = {Integral::current,         Integral::current_square, Integral::speed_square,
+                                    Integral::electrical_work, Integral::motor_work,     Integral::friction_work,
+                                    Integral::aero_work,       Integral::residual_work,  Integral::lift,
+                                    Integral::rod_force};
+constexpr int quadrature_count = int(std::size(quadratures));
 
 /// Argument in [a, b] at which f is largest, by parabolas safeguarded with golden sections (Brent 1973).
 template <class F>

@@ -53,6 +53,7 @@ struct MetricInfo {
 
 /// Names, units and descriptions of all metrics, indexed by Metric.
 const std::array<MetricInfo, metric_count>& metric_table();
+inline const MetricInfo& metric_info(Metric metric) { return metric_table()[std::size_t(metric)]; }
 
 /// The metric with that key, or metric_count if there is none.
 int metric_index(std::string_view key);

@@ -1,21 +1,14 @@
 // The search for one vehicle's orbit, and what is reported of it: the same for every system.
 #pragma once
 
-#include <cstdio>
 #include <string>
 #include <utility>
 
+#include "wingbeat/core/text.hpp"
 #include "wingbeat/cycle/extremes.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
 
 namespace wingbeat::detail {
-
-template <class... Args>
-std::string format(const char* pattern, Args... args) {
-  char text[400];
-  std::snprintf(text, sizeof text, pattern, args...);
-  return text;
-}
 
 /// The steady flapping of a direct drive; see find_steady_flapping.
 SteadyFlapping find_direct_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,

@@ -43,7 +43,7 @@ std::vector<double> column(const TrendCurve& curve, Metric metric) {
 }
 
 double scale_of(Metric metric) {
-  const std::string_view unit = metric_table()[std::size_t(metric)].unit;
+  const std::string_view unit = metric_info(metric).unit;
   return unit == "1" ? 100.0 : 1e3;  // per cent, mW and mN
 }
 
@@ -90,7 +90,7 @@ class TrendFigure {
   template <class Wanted, class Style>
   void panel(const TrendSet& set, Metric metric, std::string label, std::string title, const Wanted& wanted,
              const Style& style, const std::string& tag = "") {
-    const MetricInfo& info = metric_table()[std::size_t(metric)];
+    const MetricInfo& info = metric_info(metric);
     ChartPanel panel;
     panel.y = std::move(label);
     panel.title = std::move(title);

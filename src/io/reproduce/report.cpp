@@ -191,7 +191,7 @@ std::string law_table(const Judgement& j, Formulation formulation) {
       "off</th></tr>\n";
   for (const std::size_t n : laws[0]->tests) {
     const PublishedValue& v = laws[0]->comparison.values[n].published;
-    const MetricInfo& info = metric_table()[std::size_t(v.metric)];
+    const MetricInfo& info = metric_info(v.metric);
     const auto shown = [&](double x) { return v.relative_to ? fmt::format("{:#.4g}", x) : readable(x, info.unit); };
     html += fmt::format("<tr><td>{}, {} at {}</td><td class=\"n\">{}</td>", info.long_name,
                         v.relative_to ? "on over off" : "springs on", operating_point(v.voltage, v.frequency),
@@ -226,7 +226,7 @@ std::string law_table(const Judgement& j, Formulation formulation) {
           if (run.voltage != point.first || run.frequency != point.second) continue;
           values[run.design == first.design ? 0 : 1] = run.result.metrics[metric];
         }
-        const char* unit = metric_table()[std::size_t(metric)].unit;
+        const char* unit = metric_info(metric).unit;
         html += fmt::format("<td class=\"n\">{} → {}</td>", readable(values[0], unit), readable(values[1], unit));
       }
       html += "</tr>\n";

@@ -1,0 +1,23 @@
+// What the reports of several commands share.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+namespace wingbeat::detail {
+
+using Json = nlohmann::ordered_json;
+
+/// JSON knows neither infinity nor NaN.
+inline Json number_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+
+/// "12.3 mN"; no unit where it is "1".
+inline std::string with_unit(double x, std::string_view unit) {
+  return unit == "1" ? fmt::format("{:.5g}", x) : fmt::format("{:.5g} {}", x, unit);
+}
+
+}  // namespace wingbeat::detail
