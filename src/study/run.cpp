@@ -177,6 +177,7 @@ StartUp start_up_in_time(double tolerance) {
   return [tolerance](const Vehicle<double>& vehicle) {
     TransientOptions options;
     options.tolerance = std::max(tolerance, transient_tightest);
+    options.metrics = false;
     const TransientResult r = simulate_start_up(vehicle, options);
     return StartUpOutcome{r.status, r.settled, r.detail, r.crank_speed, r.current, r.stroke_angle};
   };

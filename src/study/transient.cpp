@@ -43,6 +43,7 @@ constexpr double captured_amplitude = 1e-4;    // [rad] swings about a stable eq
 constexpr double captured_creep = 1e-8;        // [rad] the same where friction holds: the angle itself is the answer
 constexpr double same_swing = 1e-4;            // [rad] swings with a varying supply that differ less repeat
 constexpr int averaged_laps_pwm = 8;
+constexpr double settled_without_metrics = 1e-4;
 constexpr double lap_spread_settled = 1e-2;
 
 using detail::format, detail::maximum, detail::raise_extremes;
@@ -906,6 +907,10 @@ bool StartUp::lap_done_constant() {
     // Weakly damped: what a lap's errors leave behind adds up over 1 / (1 - rate) laps.
     relative_tolerance_ = std::min(relative_tolerance_, std::max(tightest_, loosest_ * (1.0 - rate)));
   }
+  if (!options_.metrics && rate < 0.3 && to_come < settled_without_metrics) {
+    flap();
+    return true;
+  }
   if (to_come < 0.1 * options_.tolerance || (rate < 1.0 && change_ < noise)) {
     begin_measuring();
     return true;
@@ -996,7 +1001,7 @@ void StartUp::take_metrics(int laps) {
 void StartUp::flap() {
   done_ = true;
   result_.status = FlappingStatus::flapping;
-  const double period = result_.integrals[std::size_t(Integral::time)];
+  const double period = options_.metrics ? result_.integrals[std::size_t(Integral::time)] : lap_time(crossings_.size() - 1);
   std::size_t lap = crossings_.size();
   while (lap > 0 && std::abs(period / lap_time(lap - 1) - 1.0) <= 1e-2) --lap;
   result_.time_to_steady = lap > 0 ? crossings_[lap - 1].time : 0.0;

@@ -31,6 +31,9 @@ struct TransientOptions {
 
   std::optional<Supply<double>> supply;  ///< replaces the constant vehicle.voltage; not for a direct drive
   int cycle_rows = 0;  ///< direct drive: instants of the last period to return, both ends included; 0: none
+  /// False, for a slider-crank under constant voltage: ends as soon as laps are within 1e-4 of where they settle, and
+  /// gives no metrics.
+  bool metrics = true;
   Reporting reporting;
   std::function<bool()> cancel;  ///< polled now and then; true ends the computation unsettled
 };
