@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "wingbeat/cycle/lane_blocks.hpp"
+#include "wingbeat/solve/collocation.hpp"
 
 namespace wingbeat {
 namespace {
@@ -31,12 +32,6 @@ struct Plan {
   std::array<LaneSettings, 3> again;
 };
 
-/// Steps of half a lap that bring the error of the means below `target` in all but few designs: 11 for 1e-6 (the number
-/// that makes benchmarks/benchmark_ensemble fastest), and the method is of order 8.
-int steps_for(double target) {
-  return std::clamp(int(std::ceil(11.0 * std::pow(1e-6 / target, 0.125))), 6, most_half_steps);
-}
-
 Plan plan_for(const EnsembleOptions& options) {
   const auto wanted = [&](Metric m) { return options.metrics[std::size_t(m)]; };
   Plan plan{};
@@ -55,24 +50,27 @@ Plan plan_for(const EnsembleOptions& options) {
   const bool peaks = std::any_of(s.wanted.begin(), s.wanted.end(), [](bool on) { return on; });
   plan.amplification = peaks ? 2.0 : 1.0;
   const double target = options.tolerance / plan.amplification;
-  s.fine_steps = steps_for(target);
-  s.medium_steps = std::clamp(3 * s.fine_steps / 4, 4, most_half_steps);
+  // Where benchmarks/benchmark_ensemble is fastest at 1e-6. The order of the means is twice the number of intervals, that
+  // of peaks little more than it; a sweep gains about two digits.
+  const double digits = -std::log10(target);
+  const auto even = [](double x) { return std::clamp(2 * int(std::ceil(0.5 * x)), 6, solve::most_collocation_intervals); };
+  s.segments = digits > 5.0 ? 8 : 6;
+  s.intervals = even(peaks ? 1.6 * (digits - 2.8) : digits - 1.5);
+  s.sweeps = std::max(2, int(std::ceil((digits - 1.4) / 1.7)));
   s.coarse_laps = 2;
-  s.medium_laps = target >= 2e-7 ? 1 : target >= 1e-9 ? 2 : 3;
   s.peak_tolerance = 0.5 * options.tolerance;
 
   LaneSettings finer = s;
   finer.approach = LaneApproach::resume;
-  finer.medium_laps = 0;
   for (LaneSettings& again : plan.again) {
-    finer.medium_steps = finer.fine_steps;
-    finer.fine_steps = std::min(4 * finer.fine_steps / 3, most_half_steps);
+    ++finer.sweeps;
+    finer.segments = std::min(finer.segments + 2, most_half_segments);
     again = finer;
-    finer.medium_laps = 1;
+    finer.intervals = std::min(finer.intervals + 2, solve::most_collocation_intervals);
   }
   plan.from_rest = s;
   plan.from_rest.approach = LaneApproach::from_rest;
-  plan.from_rest.medium_laps = s.medium_laps + 1;
+  plan.from_rest.sweeps += 1;
   plan.from_rest_finely = plan.from_rest;
   plan.from_rest_finely.start_up_steps = 16 * plan.from_rest.start_up_steps;
   return plan;
@@ -115,6 +113,7 @@ class EnsembleRun {
            (v.motor.armature_inductance > 0.0 ? 1 : 0);
   }
 
+  /// Few need more than the first attempt: all of a kind together fill the lanes of the others.
   void solve_alike(const std::vector<std::size_t>& all) {
     std::vector<std::size_t> doubtful, still_doubtful, inexact, left;
     run(all, plan_.first, doubtful, inexact);
@@ -212,12 +211,7 @@ void solve_ensemble(std::span<const EnsembleMember> members, const EnsembleOptio
   require(options.tolerance >= 1e-12 && options.tolerance <= 1e-2, "tolerance", "must lie between 1e-12 and 1e-2", "1",
           options.tolerance);
   if (!is_available(options.isa)) throw ParameterError("isa", "this processor lacks the instruction set");
-  // Pieces whose results stay in the processor's cache.
-  constexpr std::size_t piece = 1024;
-  for (std::size_t start = 0; start < members.size(); start += piece) {
-    const std::size_t count = std::min(piece, members.size() - start);
-    EnsembleRun(members.subspan(start, count), options, start_up, outcomes.subspan(start, count)).solve();
-  }
+  EnsembleRun(members, options, start_up, outcomes).solve();
 }
 
 }  // namespace wingbeat

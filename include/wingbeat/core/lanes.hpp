@@ -46,6 +46,14 @@ struct Lanes {
   Part part[K];
 
   Lanes() = default;
+  // Spelt out, or arrays of lanes are copied by calls of memmove.
+  Lanes(const Lanes& x) {
+    for (int n = 0; n < K; ++n) part[n] = x.part[n];
+  }
+  Lanes& operator=(const Lanes& x) {
+    for (int n = 0; n < K; ++n) part[n] = x.part[n];
+    return *this;
+  }
   Lanes(double x) {  // NOLINT: numbers mix freely with lanes
     for (int n = 0; n < K; ++n) part[n] = Part(x);
   }

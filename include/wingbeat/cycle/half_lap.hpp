@@ -1,4 +1,4 @@
-// Half a lap of the crank as a system for solve/, and a step of it, on SIMD lanes.
+// Half a lap of the crank as a system for solve/, on SIMD lanes.
 #pragma once
 
 #include <array>
@@ -37,7 +37,7 @@ struct HalfLap {
   using Real = S;
   using State = std::array<S, N>;
   using Quadrature = std::array<S, lane_integrals.size()>;
-  using Switches = std::array<S, 2>;  ///< force_switch, stored moment along the stroke
+  using Switches = std::array<S, 1>;  ///< force_switch
   static constexpr std::array<std::size_t, 4> controlled_integrals = {
       lane_integral(Integral::time), lane_integral(Integral::friction_work), lane_integral(Integral::aero_work),
       lane_integral(Integral::lift)};
@@ -86,7 +86,6 @@ struct HalfLap {
     if constexpr (N == 2) r.dy[1] = m.voltage_reserve * per_inductance * per_omega;
     r.switches[0] = m.force_switch;
     if constexpr (quadratures) {
-      r.switches[1] = half * m.stored_moment;
       const CycleIntegrals<S> in_time = integrands(vehicle, m, y[0], branch(force));
       for (std::size_t q = 0; q < lane_integrals.size(); ++q) {
         r.dq[q] = in_time[std::size_t(lane_integrals[q])] * per_omega;
@@ -96,118 +95,12 @@ struct HalfLap {
   }
 };
 
-inline constexpr std::size_t late_stage = 10;  ///< its force is seen before the end of a step
-
-// A lap's code must stay within the processor's instruction cache: the right-hand side is one function, called in a loop
-// over the stages, where the scalar solver unrolls them.
+// A lap's code must stay within the processor's instruction cache: the right-hand side is one function.
 template <bool quadratures, class System>
 [[gnu::noinline, gnu::flatten]] void evaluate(const System& system, const Place<typename System::Real>& place,
                                               const typename System::State& y, const typename System::Real& force,
                                               solve::Rates<System>& out) {
   out = system.template rates_of<quadratures>(system.motion(place, y, force), y, force);
-}
-
-/// The places of a step's stages. Apart from the stages, which wait for each other while these do not.
-template <class System>
-[[gnu::noinline, gnu::flatten]] void find_places(const System& system, const typename System::Real& u,
-                                                 const typename System::Real& h,
-                                                 std::array<Place<typename System::Real>, solve::dop853::stages>& places) {
-  using S = typename System::Real;
-#pragma GCC unroll 1
-  for (std::size_t stage = 1; stage < places.size(); ++stage) {
-    places[stage] = system.place(S(u + S(solve::dop853::c[stage]) * h));
-  }
-}
-
-/// What is seen inside a step beside its result.
-template <class S>
-struct StepSights {
-  S late_force_switch;  ///< at 6/7 of the step
-  S dip_at;             ///< fraction of the step at which the stored moment is least by its sign at the start
-  Place<S> end;         ///< of the step
-};
-
-/// One step of Dormand and Prince's pair as solve::explicit_step takes it.
-template <bool quadratures, class System>
-[[gnu::noinline]] void lane_step(const System& system, const typename System::Real& u, const typename System::State& y,
-                                 const typename System::Real& h, const typename System::Real& force,
-                                 const solve::Rates<System>& first, solve::StepResult<System>& result,
-                                 StepSights<typename System::Real>& sights) {
-  using S = typename System::Real;
-  constexpr std::size_t states = std::tuple_size_v<typename System::State>;
-  namespace pair = solve::dop853;
-  std::array<typename System::State, pair::stages> k;
-  k[0] = first.dy;
-  const auto add_integrands = [&](std::size_t stage, const typename System::Quadrature& dq) {
-    if constexpr (quadratures) {
-      const S weight(pair::b[stage]), third(pair::e3[stage]), fifth(pair::e5[stage]);
-      for (std::size_t q = 0; q < dq.size(); ++q) result.dq[q] = result.dq[q] + weight * dq[q];
-      for (const std::size_t q : System::controlled_integrals) {
-        result.integral_error3[q] = result.integral_error3[q] + third * dq[q];
-        result.integral_error5[q] = result.integral_error5[q] + fifth * dq[q];
-      }
-    }
-  };
-  if constexpr (quadratures) {
-    result.dq.fill(S(0.0));
-    for (const std::size_t q : System::controlled_integrals) result.integral_error3[q] = result.integral_error5[q] = S(0.0);
-    add_integrands(0, first.dq);
-  }
-  result.lowest.fill(S(1e300));
-  S trend;
-  if constexpr (quadratures) trend = sign_of(first.switches[1]);
-  solve::Rates<System> rates;
-  std::array<Place<S>, pair::stages> places;
-  find_places(system, u, h, places);
-  sights.end = places[pair::stages - 1];
-#pragma GCC unroll 1
-  for (std::size_t stage = 1; stage < std::size_t(pair::stages); ++stage) {
-    typename System::State sum;
-    for (std::size_t n = 0; n < states; ++n) sum[n] = S(pair::a[stage][0]) * k[0][n];
-#pragma GCC unroll 1
-    for (std::size_t j = stage < 4 ? 1 : stage < 6 ? 2 : 3; j < stage; ++j) {
-      const S a(pair::a[stage][j]);
-      for (std::size_t n = 0; n < states; ++n) sum[n] = sum[n] + a * k[j][n];
-    }
-    typename System::State at;
-    for (std::size_t n = 0; n < states; ++n) at[n] = y[n] + h * sum[n];
-    if (quadratures && pair::b[stage] != 0.0) {
-      evaluate<true>(system, places[stage], at, force, rates);
-      add_integrands(stage, rates.dq);
-    } else {
-      evaluate<false>(system, places[stage], at, force, rates);
-    }
-    k[stage] = rates.dy;
-    if (stage == late_stage) sights.late_force_switch = rates.switches[0];
-    if constexpr (quadratures) {
-      if (stage < 5) continue;
-      // At the end of a step the force may be zero on purpose.
-      if (stage <= late_stage) result.lowest[0] = min(result.lowest[0], rates.switches[0] * force);
-      const S along = rates.switches[1] * trend;
-      sights.dip_at = select<S>(along < result.lowest[1], S(pair::c[stage]), sights.dip_at);
-      result.lowest[1] = min(result.lowest[1], along);
-    }
-  }
-  for (std::size_t n = 0; n < states; ++n) {
-    S sum(0.0), third(0.0), fifth(0.0);
-    for (std::size_t j = 0; j < std::size_t(pair::stages); ++j) {
-      sum = sum + S(pair::b[j]) * k[j][n];
-      if constexpr (quadratures) {
-        third = third + S(pair::e3[j]) * k[j][n];
-        fifth = fifth + S(pair::e5[j]) * k[j][n];
-      }
-    }
-    result.y[n] = y[n] + h * sum;
-    result.error3[n] = h * third;
-    result.error5[n] = h * fifth;
-  }
-  if constexpr (quadratures) {
-    for (std::size_t q = 0; q < result.dq.size(); ++q) result.dq[q] = h * result.dq[q];
-    for (const std::size_t q : System::controlled_integrals) {
-      result.integral_error3[q] = h * result.integral_error3[q];
-      result.integral_error5[q] = h * result.integral_error5[q];
-    }
-  }
 }
 
 }  // namespace wingbeat

@@ -8,7 +8,7 @@
 
 namespace wingbeat {
 
-inline constexpr int most_half_steps = 48;     ///< of half a lap
+inline constexpr int most_half_segments = 12;  ///< of half a lap
 inline constexpr int most_force_switches = 3;  ///< sign changes of the rod force within half a lap
 
 /// A quantity of which extremes are sought.
@@ -40,9 +40,9 @@ struct LaneSettings {
   int start_up_steps = 48; ///< from rest: of a turn at the speed without load
   bool inductance = true;  ///< whether the block's motors have one
   int coarse_laps = 2;
-  int medium_laps = 1;
-  int medium_steps = 6;    ///< of half a lap
-  int fine_steps = 9;      ///< of half a lap
+  int segments = 6;        ///< of half a lap
+  int intervals = 6;       ///< between the nodes of a segment, even
+  int sweeps = 2;          ///< Newton's steps before the last
   double peak_tolerance = 5e-7;  ///< a peak is settled when the cubic at its top promises less, relative
   std::array<bool, quantity_count> wanted{};
   bool multipliers = false;

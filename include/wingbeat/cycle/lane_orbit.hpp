@@ -1,10 +1,11 @@
-// The orbits of many vehicles at once, one per lane, on meshes of fixed size.
+// The orbits of many vehicles at once, one per lane, by collocation on meshes of fixed size.
 //
 // A lap runs from the lower dead centre through two half laps, on each of which the stroke velocity keeps its sign. The
-// half laps' steps end where the rod force changes sign, which differs from lane to lane while the number of steps does
-// not. Coarse laps find where, a medium lap corrects it, the fine lap integrates the metrics; lane_peaks.hpp holds the
-// search for extremes. Everything is computed
-// lane by lane without looking at the neighbours, so that a vehicle gets the same bits in any company.
+// half laps' segments end where the rod force changes sign, which differs from lane to lane while the number of segments
+// does not. Coarse laps find where; a lap with one step per segment gives a first course and its derivatives; Newton's
+// method makes it satisfy the equations at the Lobatto points of every segment, and the lap its own end. lane_peaks.hpp
+// holds the search for extremes. Everything is computed lane by lane without looking at the neighbours, so that a vehicle
+// gets the same bits in any company.
 #pragma once
 
 #include <array>
@@ -16,7 +17,7 @@
 #include "wingbeat/cycle/lane_blocks.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
-#include "wingbeat/solve/explicit_step.hpp"
+#include "wingbeat/solve/collocation.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
@@ -32,11 +33,11 @@ struct ForceSwitches {
   L first_sign;  ///< sign of the rod force at the start
 };
 
-/// The steps of half a lap.
+/// The segments of half a lap.
 template <class L>
 struct HalfMesh {
-  std::array<L, most_half_steps + 1> u;
-  std::array<L, most_half_steps> force;  ///< sign of the rod force on each step
+  std::array<L, most_half_segments + 1> u;
+  std::array<L, most_half_segments> force;  ///< sign of the rod force on each segment
 };
 
 /// Value and derivative by crank angle: |beta'| [rad/s], i [A], -omega and omega [rad/s], |F| [N], energy stored in wings
@@ -46,23 +47,21 @@ struct Reading {
   L value, slope;
 };
 
-/// What the fine lap leaves at a node.
-template <class L, int N>
-struct LaneNode {
-  std::array<L, N> y;
-  L dip, dip_at;  ///< in the step from here: least stored moment by its sign at the start, and where
-  std::array<Reading<L>, quantity_count> readings;
+/// A stretch between two nodes in which a quantity rises from its start and falls towards its end.
+template <class L>
+struct PeakBracket {
+  L segment;          ///< of the lap, counted from 0
+  L x0, v0, d0;       ///< start: distance from the segment's start [rad], value, slope
+  L x1, v1, d1;       ///< end
+  L rises_and_falls;  ///< 1, or 0 where the larger end is all there is
+  L estimate;
 };
 
-/// A stretch of a step in which a quantity rises from its start and falls towards its end.
+/// The course of the state over one segment, another one in every lane.
 template <class L, int N>
-struct PeakBracket {
-  L half, u, force;     ///< where the step begins, and its branch
-  std::array<L, N> y;
-  L x0, v0, d0;         ///< start: distance from u [rad], value, slope
-  L x1, v1, d1;         ///< end
-  L rises_and_falls;    ///< 1, or 0 where the larger end is all there is
-  L estimate;
+struct SegmentCourse {
+  L half, u, length, force;
+  std::array<std::array<L, N>, solve::CollocationRule::most + 1> legendre;  ///< coefficients of the state
 };
 
 template <class L, int N>
@@ -72,19 +71,24 @@ class LaneOrbit {
   using System = HalfLap<L, N>;
   using Matrix = std::array<std::array<L, N>, N>;
   static constexpr double quarter = 0.5 * pi;
+  static constexpr std::size_t nodes_per_segment = solve::CollocationRule::most;
+  static constexpr std::size_t most_nodes = 2 * most_half_segments * nodes_per_segment;
   static constexpr int coarse_samples = 2 * coarse_half_steps + 1;
 
  public:
-  LaneOrbit(const Vehicle<L>& vehicle, const LaneSettings& settings) : vehicle_(vehicle), settings_(settings) {
+  LaneOrbit(const Vehicle<L>& vehicle, const LaneSettings& settings)
+      : vehicle_(vehicle), settings_(settings), rule_(solve::collocation_rule(settings.intervals)),
+        segments_(settings.segments) {
     no_load_ = no_load_speed(vehicle);
     floor_ = L(1e-4) * no_load_;
     current_scale_ = vehicle.voltage / circuit_resistance(vehicle);
     wanted_ = settings.wanted;
+    for (const bool wanted : wanted_) reads_ = reads_ || wanted;
     geometry_ = geometry_of(vehicle.crank);
     if constexpr (N == 2) per_inductance_ = L(1.0) / vehicle.motor.armature_inductance;
   }
 
-  /// Metrics by one fine lap, after as many others as the settings ask for. `mass` [kg] and `bench_torque_constant`
+  /// Metrics of the orbit. `mass` [kg] and `bench_torque_constant`
   /// [N m/A] may be absent.
   Metrics<L> solve(const L& mass, const L& bench_torque_constant);
 
@@ -120,53 +124,84 @@ class LaneOrbit {
   template <bool last>
   [[gnu::noinline, gnu::flatten]] void coarse_lap();
   [[gnu::noinline, gnu::flatten]] L find_switches(int half, const L* u, const L* force, int count);
-  [[gnu::noinline, gnu::flatten]] void build_mesh(int half, int steps);
-  [[gnu::noinline, gnu::flatten]] void advance(int half, int steps, L* force);
-  [[gnu::noinline, gnu::flatten]] void medium_lap(int steps);
-  [[gnu::noinline, gnu::flatten]] void fine_lap();
-  [[gnu::noinline, gnu::flatten]] void visit_node(const System& system, const L& u, const L& force,
-                                                  LaneNode<L, N>& node, const Place<L>& place,
-                                                  solve::Rates<System>& first);
+  [[gnu::noinline, gnu::flatten]] void build_mesh(int half);
+  [[gnu::noinline]] void march();
+  [[gnu::noinline, gnu::flatten]] void place_nodes();
+  template <bool last>
+  [[gnu::noinline]] void sweep();
+  [[gnu::noinline, gnu::flatten]] void propose(std::size_t base, const L& h, State& end);
+  [[gnu::noinline, gnu::flatten]] void correct(State end);
+  [[gnu::noinline, gnu::flatten]] void visit_node(const System& system, std::size_t node, const L& force,
+                                                  solve::Rates<System>& rates);
+  [[gnu::noinline, gnu::flatten]] void add_tails(const std::array<std::array<L, nodes_per_segment>, 4>& controlled,
+                                                 std::size_t base, const L& h);
   [[gnu::noinline, gnu::flatten]] void read(const System& system, const L& u, const State& y, const L& force,
                                             const Motion<L>& m, const State& dy,
                                             const std::array<bool, quantity_count>& wanted,
                                             std::array<Reading<L>, quantity_count>& out) const;
-  [[gnu::noinline, gnu::flatten]] PeakBracket<L, N> bracket(int half, Quantity quantity) const;
-  [[gnu::noinline, gnu::flatten]] Reading<L> reading_inside(Quantity quantity, const PeakBracket<L, N>& b,
+  [[gnu::noinline, gnu::flatten]] void follow(const L& segment, SegmentCourse<L, N>& course) const;
+  [[gnu::noinline, gnu::flatten]] Reading<L> reading_inside(Quantity quantity, const SegmentCourse<L, N>& course,
                                                             const L& x) const;
   template <class Visit>
   void for_each_stretch(int half, Quantity quantity, const L& floor, const Visit& visit) const;
-  static void keep(const PeakBracket<L, N>& from, const Mask& where, PeakBracket<L, N>& to);
-  static L estimate_peak(PeakBracket<L, N>& b);
-  [[gnu::noinline, gnu::flatten]] L refine(Quantity quantity, const L& sign, PeakBracket<L, N> b) const;
-  [[gnu::noinline, gnu::flatten]] L peak(Quantity quantity) const;
+  static void keep(const PeakBracket<L>& from, const Mask& where, PeakBracket<L>& to);
+  static L estimate_peak(PeakBracket<L>& b);
+  [[gnu::noinline, gnu::flatten]] L refine(Quantity quantity, const L& sign, PeakBracket<L> b);
+  [[gnu::noinline, gnu::flatten]] L peak(Quantity quantity);
   [[gnu::noinline, gnu::flatten]] L exchanged_energy();
   [[gnu::noinline, gnu::flatten]] L lift_peak(const L& highest_velocity) const;
-  [[gnu::noinline, gnu::flatten]] L floquet_multiplier(const State& start);
-  template <bool quadratures>
-  [[gnu::noinline, gnu::flatten]] void correct_for_offset(const System& system, const HalfMesh<L>& mesh,
-                                                          std::size_t node, const StepSights<L>& sights);
-  Matrix jacobian_at(const System& system, const Place<L>& place, const State& y, const State& rates,
-                     const L& force);
-  void append_to_monodromy(const Matrix& a, const Matrix& b, double h);
-  [[gnu::noinline, gnu::flatten]] void accelerate(const State& start);
-  L residual_weight() const;
+  [[gnu::noinline, gnu::flatten]] L floquet_multiplier();
+  [[gnu::noinline]] Matrix jacobian_at(const System& system, const Place<L>& place, const State& y, const State& rates,
+                                       const L& force) const;
+  static void propagator(const Matrix& jacobian, const L& h, Matrix& out);
+  static void append(const Matrix& step, Matrix& product);
+  void close_lap(State& off) const;
+
+  [[gnu::noinline, gnu::flatten]] static void find_place(const System& system, const L& u, Place<L>& place) {
+    place = system.place(u);
+  }
+  /// Segments that meet share the place of their common node.
+  const Place<L>& place_of(std::size_t node) const {
+    return places_[node > 0 && node % std::size_t(rule_.intervals + 1) == 0 && node != first_node(1, 0) ? node - 1 : node];
+  }
+  std::size_t first_node(int half, std::size_t segment) const {
+    return (std::size_t(half * segments_) + segment) * std::size_t(rule_.intervals + 1);
+  }
 
   const Vehicle<L>& vehicle_;
   const LaneSettings& settings_;
+  const solve::CollocationRule& rule_;
+  int segments_;  ///< of half a lap
   CrankGeometry<L> geometry_;
   L per_inductance_, current_scale_, no_load_, floor_;
-  Matrix monodromy_;  ///< of a lap, to a few per cent
+  Matrix monodromy_;  ///< of a lap
   std::array<std::array<Place<L>, coarse_samples>, 2> table_;
-  State y_;
+  State y_;  ///< where a lap starts
   Mask doubtful_, locked_;
   std::array<ForceSwitches<L>, 2> switches_{};
   std::array<HalfMesh<L>, 2> mesh_;
-  std::array<std::array<LaneNode<L, N>, most_half_steps + 1>, 2> nodes_;
+
+  /// Where a segment starts as march() leaves it, and the derivatives of the rates there and in its middle.
+  struct Stretch {
+    State y, rates;
+    std::array<Matrix, 2> jacobian;
+  };
+  std::array<Stretch, 2 * most_half_segments + 1> stretches_;
+  // At the nodes, segment after segment; where segments meet there is one for either.
+  std::array<Place<L>, most_nodes> places_;
+  std::array<State, most_nodes> course_, rates_, correction_;
+  std::array<L, most_nodes> force_;
+  std::array<L, 2 * most_half_segments> off_;  ///< of each segment's start from the sign change before it [rad], 0 without
+  std::array<Matrix, most_nodes> step_;  ///< derivative of the state by that at the node before
+  std::array<std::array<Reading<L>, most_nodes>, quantity_count> readings_;
+
   std::array<L, lane_integrals.size()> integrals_;
+  std::array<L, 5> high_, low_;  ///< sums of the last and last but two coefficients of what limits the error
   std::array<bool, quantity_count> wanted_;
+  bool reads_ = false;  ///< anything
   L slowest_, residual_, step_error_, switch_offset_;
-  L overlooked_;  ///< depth to which the rod force has the wrong sign inside a step, of its largest magnitude
+  L overlooked_;   ///< depth to which the rod force has the wrong sign inside a segment, of its largest magnitude
+  L peak_error_;
   L error_estimate_;
 };
 
@@ -297,71 +332,71 @@ void LaneOrbit<L, N>::start_from_rest() {
 /// Derivatives of the rates by the state, to four digits.
 template <class L, int N>
 auto LaneOrbit<L, N>::jacobian_at(const System& system, const Place<L>& place, const State& y, const State& rates,
-                                  const L& force) -> Matrix {
+                                  const L& force) const -> Matrix {
   Matrix jacobian;
+  solve::Rates<System> at;
   for (std::size_t n = 0; n < N; ++n) {
     State moved = y;
     const L by = n == 0 ? L(1e-4) * y[0] : L(1e-4) * current_scale_;
     moved[n] = moved[n] + by;
-    const State at = system.template rates_of<false>(system.motion(place, moved, force), moved, force).dy;
+    evaluate<false>(system, place, moved, force, at);
     const L per_move = inverse_of(by);
-    for (std::size_t row = 0; row < N; ++row) jacobian[row][n] = (at[row] - rates[row]) * per_move;
+    for (std::size_t row = 0; row < N; ++row) jacobian[row][n] = (at.dy[row] - rates[row]) * per_move;
   }
   return jacobian;
 }
 
-/// monodromy := exp(h (a + b) / 2) monodromy, the exponential by its (1, 1) Pade approximation.
+/// exp(h jacobian) by its (1, 1) Pade approximation (1 - z)^-1 (1 + z), z = h jacobian / 2.
 template <class L, int N>
-void LaneOrbit<L, N>::append_to_monodromy(const Matrix& a, const Matrix& b, double h) {
-  const L quarter_h(0.25 * h);
+void LaneOrbit<L, N>::propagator(const Matrix& jacobian, const L& h, Matrix& out) {
+  const L half_h = L(0.5) * h;
   if constexpr (N == 1) {
-    const L z = quarter_h * (a[0][0] + b[0][0]);
-    monodromy_[0][0] = monodromy_[0][0] * (L(1.0) + z) * inverse_of(L(L(1.0) - z));
+    out[0][0] = L(2.0) * inverse_of(L(L(1.0) - half_h * jacobian[0][0])) - L(1.0);
   } else {
-    Matrix z;
-    for (std::size_t row = 0; row < 2; ++row) {
-      for (std::size_t column = 0; column < 2; ++column) z[row][column] = quarter_h * (a[row][column] + b[row][column]);
-    }
-    // (1 - z)^-1 (1 + z) m = 2 (1 - z)^-1 m - m
-    const L p = L(1.0) - z[0][0], q = L(1.0) - z[1][1];
-    const L twice_per_det = L(2.0) * inverse_of(L(p * q - z[0][1] * z[1][0]));
-    for (std::size_t column = 0; column < 2; ++column) {
-      const L m0 = monodromy_[0][column], m1 = monodromy_[1][column];
-      monodromy_[0][column] = (q * m0 + z[0][1] * m1) * twice_per_det - m0;
-      monodromy_[1][column] = (z[1][0] * m0 + p * m1) * twice_per_det - m1;
+    const L z01 = half_h * jacobian[0][1], z10 = half_h * jacobian[1][0];
+    const L p = L(1.0) - half_h * jacobian[0][0], q = L(1.0) - half_h * jacobian[1][1];
+    const L twice_per_det = L(2.0) * inverse_of(L(p * q - z01 * z10));
+    out[0][0] = q * twice_per_det - L(1.0);
+    out[0][1] = z01 * twice_per_det;
+    out[1][0] = z10 * twice_per_det;
+    out[1][1] = p * twice_per_det - L(1.0);
+  }
+}
+
+/// product := step product.
+template <class L, int N>
+void LaneOrbit<L, N>::append(const Matrix& step, Matrix& product) {
+  const Matrix before = product;
+  for (std::size_t row = 0; row < N; ++row) {
+    for (std::size_t column = 0; column < N; ++column) {
+      L sum = step[row][0] * before[0][column];
+      if constexpr (N == 2) sum = sum + step[row][1] * before[1][column];
+      product[row][column] = sum;
     }
   }
 }
 
-/// Moves the end of a lap from `start` to where the linearised lap map would settle: y += (1 - M)^-1 M (y - start).
+/// off := (1 - M)^-1 off: what a lap's start must move by for its end to meet it, the end being off it by so much.
 template <class L, int N>
-void LaneOrbit<L, N>::accelerate(const State& start) {
+void LaneOrbit<L, N>::close_lap(State& off) const {
   const auto& M = monodromy_;
   if constexpr (N == 1) {
-    y_[0] = y_[0] + M[0][0] * (y_[0] - start[0]) * inverse_of(L(L(1.0) - M[0][0]));
+    off[0] = off[0] * inverse_of(L(L(1.0) - M[0][0]));
   } else {
-    const L d0 = y_[0] - start[0], d1 = y_[1] - start[1];
-    const L e0 = M[0][0] * d0 + M[0][1] * d1, e1 = M[1][0] * d0 + M[1][1] * d1;
     const L p = L(1.0) - M[0][0], q = L(1.0) - M[1][1];
     const L per_det = inverse_of(L(p * q - M[0][1] * M[1][0]));
-    y_[0] = y_[0] + (q * e0 + M[0][1] * e1) * per_det;
-    y_[1] = y_[1] + (M[1][0] * e0 + p * e1) * per_det;
+    const L d0 = off[0], d1 = off[1];
+    off[0] = (q * d0 + M[0][1] * d1) * per_det;
+    off[1] = (M[1][0] * d0 + p * d1) * per_det;
   }
 }
 
 /// One lap by the classical fourth-order method, each stage on the branch that holds there; the last one finds the
-/// switches and the monodromy matrix.
+/// switches.
 template <class L, int N>
 template <bool last>
 void LaneOrbit<L, N>::coarse_lap() {
   constexpr double h = pi / coarse_half_steps;
-  const State start = y_;
-  Matrix jacobian_before, first_jacobian;
-  if constexpr (last) {
-    for (std::size_t row = 0; row < N; ++row) {
-      for (std::size_t column = 0; column < N; ++column) monodromy_[row][column] = L(row == column ? 1.0 : 0.0);
-    }
-  }
   slowest_ = y_[0];
   std::array<L, coarse_samples> angles;
   for (std::size_t k = 0; k < coarse_samples; ++k) angles[k] = L(quarter * (2.0 * double(k) / (coarse_samples - 1) - 1.0));
@@ -381,15 +416,6 @@ void LaneOrbit<L, N>::coarse_lap() {
         return system.template rates_of<false>(m, y, L(1.0)).dy;
       };
       const State k1 = at(k, y_);
-      if constexpr (last) {
-        const Matrix jacobian = jacobian_at(system, table[k], y_, k1, sign_of(force[k]));
-        if (half > 0 || k > 0) {
-          append_to_monodromy(jacobian_before, jacobian, h);
-        } else {
-          first_jacobian = jacobian;
-        }
-        jacobian_before = jacobian;
-      }
       const State k2 = at(k + 1, moved(y_, k1, 0.5 * h));
       const State k3 = at(k + 1, moved(y_, k2, 0.5 * h));
       const State k4 = at(k + 2, moved(y_, k3, h));
@@ -399,10 +425,6 @@ void LaneOrbit<L, N>::coarse_lap() {
       slowest_ = min(slowest_, y_[0]);
     }
     if constexpr (last) find_switches(half, angles.data(), force.data(), coarse_samples - 1);
-  }
-  if constexpr (last) {
-    append_to_monodromy(jacobian_before, first_jacobian, h);
-    accelerate(start);
   }
   doubtful_ = doubtful_ || !(slowest_ > floor_);
 }
@@ -461,9 +483,10 @@ L LaneOrbit<L, N>::find_switches(int half, const L* u, const L* force, int count
   return offset;
 }
 
-/// Steps of equal length between the switches, their number in proportion to the distance.
+/// Segments of equal length between the switches, their number in proportion to the distance.
 template <class L, int N>
-void LaneOrbit<L, N>::build_mesh(int half, int steps) {
+void LaneOrbit<L, N>::build_mesh(int half) {
+  const int steps = segments_;
   const ForceSwitches<L>& s = switches_[std::size_t(half)];
   HalfMesh<L>& mesh = mesh_[std::size_t(half)];
   const L all(steps);
@@ -496,66 +519,303 @@ void LaneOrbit<L, N>::build_mesh(int half, int steps) {
   }
 }
 
+/// A lap from y_ by the classical fourth-order method with one step per segment; corrects the switches.
+template <class L, int N>
+void LaneOrbit<L, N>::march() {
+  solve::Rates<System> k1, k2, k3, k4;
+  for (int half = 0; half < 2; ++half) {
+    const System system = half_lap(half);
+    build_mesh(half);
+    const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+    std::array<L, 2 * most_half_segments + 1> u, force;
+    std::array<Place<L>, 3> places;
+    places[2] = system.place(mesh.u[0]);
+    const auto moved = [](const State& from, const State& slope, const L& by) {
+      State to;
+      for (std::size_t n = 0; n < N; ++n) to[n] = from[n] + by * slope[n];
+      return to;
+    };
+    for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
+      Stretch& stretch = stretches_[std::size_t(half * segments_) + s];
+      const L sign = mesh.force[s], h = mesh.u[s + 1] - mesh.u[s], half_h = L(0.5) * h;
+      u[2 * s] = mesh.u[s];
+      u[2 * s + 1] = mesh.u[s] + half_h;
+      const Place<L>&start = places[s % 2 == 0 ? 2 : 0], &middle = places[1], &end = places[s % 2 == 0 ? 0 : 2];
+      find_place(system, u[2 * s + 1], places[1]);
+      find_place(system, mesh.u[s + 1], places[s % 2 == 0 ? 0 : 2]);
+      evaluate<false>(system, start, y_, sign, k1);
+      force[2 * s] = k1.switches[0];
+      stretch.y = y_;
+      stretch.rates = k1.dy;
+      stretch.jacobian[0] = jacobian_at(system, start, y_, k1.dy, sign);
+      evaluate<false>(system, middle, moved(y_, k1.dy, half_h), sign, k2);
+      const State inside = moved(y_, k2.dy, half_h);
+      evaluate<false>(system, middle, inside, sign, k3);
+      force[2 * s + 1] = k3.switches[0];
+      stretch.jacobian[1] = jacobian_at(system, middle, inside, k3.dy, sign);
+      evaluate<false>(system, end, moved(y_, k3.dy, h), sign, k4);
+      for (std::size_t n = 0; n < N; ++n) {
+        y_[n] = y_[n] + L(1.0 / 6.0) * h * (k1.dy[n] + L(2.0) * (k2.dy[n] + k3.dy[n]) + k4.dy[n]);
+      }
+    }
+    u[2 * std::size_t(segments_)] = mesh.u[std::size_t(segments_)];
+    evaluate<false>(system, places[segments_ % 2 == 0 ? 2 : 0], y_, mesh.force[std::size_t(segments_ - 1)], k4);
+    force[2 * std::size_t(segments_)] = k4.switches[0];
+    stretches_[std::size_t((half + 1) * segments_)].y = y_;
+    stretches_[std::size_t((half + 1) * segments_)].rates = k4.dy;
+    find_switches(half, u.data(), force.data(), 2 * segments_);
+  }
+}
+
+/// Nodes on segments that end at the switches as march() left them, with its course and derivatives interpolated there.
+template <class L, int N>
+void LaneOrbit<L, N>::place_nodes() {
+  for (std::size_t row = 0; row < N; ++row) {
+    for (std::size_t column = 0; column < N; ++column) monodromy_[row][column] = L(row == column ? 1.0 : 0.0);
+  }
+  for (int half = 0; half < 2; ++half) {
+    const System system = half_lap(half);
+    const HalfMesh<L> before = mesh_[std::size_t(half)];
+    build_mesh(half);
+    const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+    for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
+      const Stretch& from = stretches_[std::size_t(half * segments_) + s];
+      const Stretch& to = stretches_[std::size_t(half * segments_) + s + 1];
+      const std::size_t base = first_node(half, s);
+      const L u = mesh.u[s], h = mesh.u[s + 1] - u, h_before = before.u[s + 1] - before.u[s];
+      const L shift = u - before.u[s], stretched = h - h_before;
+      const L per_h_before = inverse_of(max(h_before, L(1e-12)));
+      State c1, c2, c3;
+      for (std::size_t n = 0; n < N; ++n) {
+        const L rise = to.y[n] - from.y[n], d0 = h_before * from.rates[n], d1 = h_before * to.rates[n];
+        c1[n] = d0;
+        c2[n] = L(3.0) * rise - L(2.0) * d0 - d1;
+        c3[n] = d0 + d1 - L(2.0) * rise;
+      }
+      // The derivatives by the parabola through start, middle and end; across a switch they jump, and a straight line goes
+      // on from the middle.
+      const bool last = s + 1 == std::size_t(segments_);
+      const Mask smooth = (last ? L(-1.0) : before.force[s] * before.force[s + 1]) > L(0.0);
+      Matrix linear, bend;
+      for (std::size_t row = 0; row < N; ++row) {
+        for (std::size_t column = 0; column < N; ++column) {
+          const L rise = L(2.0) * (from.jacobian[1][row][column] - from.jacobian[0][row][column]);
+          linear[row][column] = rise;
+          bend[row][column] = select<L>(
+              smooth, L(2.0) * (to.jacobian[0][row][column] - from.jacobian[0][row][column] - rise), L(0.0));
+        }
+      }
+      for (std::size_t m = 0; m <= std::size_t(rule_.intervals); ++m) {
+        const double x = rule_.node[m];
+        if (m > 0 || s == 0) places_[base + m] = system.place(u + L(x) * h);
+        const L moved = (shift + L(x) * stretched) * per_h_before;
+        for (std::size_t n = 0; n < N; ++n) {
+          course_[base + m][n] = from.y[n] + L(x) * (c1[n] + L(x) * (c2[n] + L(x) * c3[n])) +
+                                 moved * (c1[n] + L(2.0 * x) * c2[n] + L(3.0 * x * x) * c3[n]);
+        }
+        if (m == 0) continue;
+        const double width = x - rule_.node[m - 1], t = x - 0.5 * width;
+        Matrix jacobian;
+        for (std::size_t row = 0; row < N; ++row) {
+          for (std::size_t column = 0; column < N; ++column) {
+            jacobian[row][column] =
+                from.jacobian[0][row][column] + L(t) * (linear[row][column] + L(t - 0.5) * bend[row][column]);
+          }
+        }
+        propagator(jacobian, L(width) * h, step_[base + m]);
+        append(step_[base + m], monodromy_);
+      }
+    }
+  }
+}
+
+/// What the nodes of a segment would each move by if the node before stood still: its rates' integral says so. `end` is
+/// what the node before the segment, and afterwards its last one, moves by if the lap's start stands still.
+template <class L, int N>
+void LaneOrbit<L, N>::propose(std::size_t base, const L& h, State& end) {
+  const std::size_t intervals = std::size_t(rule_.intervals);
+  for (std::size_t n = 0; n < N; ++n) end[n] = end[n] + correction_[base][n];
+  for (std::size_t m = 1; m <= intervals; ++m) {
+    State sum;
+    sum.fill(L(0.0));
+    for (std::size_t j = 0; j <= intervals; ++j) {
+      const L weight(rule_.between[m][j]);
+      for (std::size_t n = 0; n < N; ++n) sum[n] = sum[n] + weight * rates_[base + j][n];
+    }
+    for (std::size_t n = 0; n < N; ++n) sum[n] = h * sum[n] - (course_[base + m][n] - course_[base + m - 1][n]);
+    // (1 - z)^-1 = (1 + step) / 2
+    const Matrix& step = step_[base + m];
+    const State before = end;
+    for (std::size_t n = 0; n < N; ++n) {
+      L along = step[n][0] * sum[0], onward = step[n][0] * before[0];
+      if constexpr (N == 2) {
+        along = along + step[n][1] * sum[1];
+        onward = onward + step[n][1] * before[1];
+      }
+      correction_[base + m][n] = L(0.5) * (sum[n] + along);
+      end[n] = onward + correction_[base + m][n];
+    }
+  }
+}
+
+/// Newton's step from the proposed corrections, along the lap, which is to end where it started; `end` as propose() leaves
+/// it.
+template <class L, int N>
+void LaneOrbit<L, N>::correct(State end) {
+  const std::size_t per_segment = std::size_t(rule_.intervals + 1), nodes = first_node(2, 0);
+  State by;
+  for (std::size_t n = 0; n < N; ++n) by[n] = end[n] + course_[nodes - 1][n] - course_[0][n];
+  close_lap(by);
+  L sum(0.0);
+  slowest_ = course_[0][0];
+  const L per_speed = inverse_of(slowest_), per_current = inverse_of(current_scale_);
+  for (std::size_t base = 0; base < nodes; base += per_segment) {
+    for (std::size_t m = 0; m < per_segment; ++m) {
+      const std::size_t node = base + m;
+      if (m == 0) {
+        for (std::size_t n = 0; n < N; ++n) by[n] = by[n] + correction_[node][n];
+      } else {
+        const Matrix& step = step_[node];
+        const State before = by;
+        for (std::size_t n = 0; n < N; ++n) {
+          by[n] = step[n][0] * before[0] + correction_[node][n];
+          if constexpr (N == 2) by[n] = by[n] + step[n][1] * before[1];
+        }
+      }
+      sum = sum + abs(by[0]) * per_speed;
+      if constexpr (N == 2) sum = sum + abs(by[1]) * per_current;
+      for (std::size_t n = 0; n < N; ++n) course_[node][n] = course_[node][n] + by[n];
+      slowest_ = min(slowest_, course_[node][0]);
+    }
+  }
+  residual_ = sum * L(1.0 / double(nodes));
+  y_ = course_[0];
+}
+
+/// The equations at all nodes, and the corrections that follow; the last sweep takes integrals and readings, too.
+///
 /// Where a node stands off the sign change it was meant for by d, the wrong branch has held, or will hold, over d. The
 /// difference of the branches grows linearly from zero there, so that half of d times the difference at the node is the
 /// error left behind, up to O(d^3).
 template <class L, int N>
-template <bool quadratures>
-void LaneOrbit<L, N>::correct_for_offset(const System& system, const HalfMesh<L>& mesh, std::size_t node,
-                                         const StepSights<L>& sights) {
-  const L before = mesh.force[node - 1], after = mesh.force[node];
-  const Mask switches = before * after < L(0.0);
-  if (!any<L>(switches)) return;
-  const Motion<L> motion_before = system.motion(sights.end, y_, before);
-  const Motion<L> motion_after = system.motion(sights.end, y_, -before);
-  const auto on_before = system.template rates_of<quadratures>(motion_before, y_, before);
-  const auto on_after = system.template rates_of<quadratures>(motion_after, y_, -before);
-  const L h = mesh.u[node] - mesh.u[node - 1];
-  const L rest = L(1.0 - solve::dop853::c[late_stage]) * h;
-  const L f = on_before.switches[0];
-  const L offset = min(max(f * rest * inverse_of(L(f - sights.late_force_switch)), -h), h);
-  const L half_offset = select<L>(switches, L(0.5) * offset, L(0.0));
-  if constexpr (quadratures) {
-    for (std::size_t q = 0; q < integrals_.size(); ++q) {
-      integrals_[q] = integrals_[q] - half_offset * (on_before.dq[q] - on_after.dq[q]);
-    }
-    switch_offset_ = max(switch_offset_, L(2.0) * abs(half_offset));
+template <bool last>
+void LaneOrbit<L, N>::sweep() {
+  const std::size_t intervals = std::size_t(rule_.intervals);
+  solve::Rates<System> rates;
+  State end;
+  end.fill(L(0.0));
+  correction_[0] = end;
+  L overlooked(0.0), highest(0.0);
+  std::array<std::array<L, nodes_per_segment>, 4> controlled;
+  typename System::Quadrature integrands_before;
+  if constexpr (last) {
+    integrals_.fill(L(0.0));
+    high_.fill(L(0.0));
+    low_.fill(L(0.0));
+    switch_offset_ = L(0.0);
   }
-  y_[0] = y_[0] - half_offset * (on_before.dy[0] - on_after.dy[0]);
-}
-
-/// Half a lap on its mesh without integrals; force[0..steps] receives the switch values at the nodes.
-template <class L, int N>
-void LaneOrbit<L, N>::advance(int half, int steps, L* force) {
-  solve::Rates<System> first;
-  solve::StepResult<System> step;
-  StepSights<L> sights;
-  const System system = half_lap(half);
-  const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
-  sights.end = system.place(mesh.u[0]);
-  for (std::size_t m = 0; m < std::size_t(steps); ++m) {
-    evaluate<false>(system, sights.end, y_, mesh.force[m], first);
-    force[m] = first.switches[0];
-    lane_step<false>(system, mesh.u[m], y_, L(mesh.u[m + 1] - mesh.u[m]), mesh.force[m], first, step, sights);
-    y_ = step.y;
-    if (m + 1 < std::size_t(steps)) correct_for_offset<false>(system, mesh, m + 1, sights);
-    slowest_ = min(slowest_, y_[0]);
-  }
-  evaluate<false>(system, sights.end, y_, mesh.force[std::size_t(steps - 1)], first);
-  force[std::size_t(steps)] = first.switches[0];
-}
-
-/// A lap without integrals, which corrects the switches and closes in on the orbit.
-template <class L, int N>
-void LaneOrbit<L, N>::medium_lap(int steps) {
-  const State start = y_;
   for (int half = 0; half < 2; ++half) {
-    build_mesh(half, steps);
-    std::array<L, most_half_steps + 1> force;
-    advance(half, steps, force.data());
-    find_switches(half, mesh_[std::size_t(half)].u.data(), force.data(), steps);
+    const System system = half_lap(half);
+    const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+    L h_before(0.0);
+    for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
+      const std::size_t base = first_node(half, s);
+      const L sign = mesh.force[s], h = mesh.u[s + 1] - mesh.u[s];
+      for (std::size_t m = 0; m <= intervals; ++m) {
+        if constexpr (last) {
+          visit_node(system, base + m, sign, rates);
+          const L weight = L(rule_.weight[m]) * h;
+          for (std::size_t q = 0; q < integrals_.size(); ++q) integrals_[q] = integrals_[q] + weight * rates.dq[q];
+          for (std::size_t c = 0; c < controlled.size(); ++c) controlled[c][m] = rates.dq[System::controlled_integrals[c]];
+          highest = max(highest, abs(rates.switches[0]));
+          if (m > 0 && m < intervals) overlooked = max(overlooked, -(rates.switches[0] * sign));
+        } else {
+          evaluate<false>(system, place_of(base + m), course_[base + m], sign, rates);
+        }
+        rates_[base + m] = rates.dy;
+        force_[base + m] = rates.switches[0];
+        if (m > 0) continue;
+        if constexpr (last) off_[std::size_t(half * segments_) + s] = L(0.0);
+        if (half == 0 && s == 0) continue;
+        // From the end of the segment before to the start of this one.
+        State& jump = correction_[base];
+        for (std::size_t n = 0; n < N; ++n) jump[n] = course_[base - 1][n] - course_[base][n];
+        if (s == 0) continue;
+        const Mask switches = mesh.force[s - 1] * sign < L(0.0);
+        if (!any<L>(switches)) continue;
+        L slope(0.0);
+        for (std::size_t j = 0; j <= intervals; ++j) slope = slope + L(rule_.slope[intervals][j]) * force_[base - 1 - intervals + j];
+        const L off = min(max(force_[base - 1] * h_before * inverse_of(slope), -h), h);
+        const L half_off = select<L>(switches, L(0.5) * off, L(0.0));
+        for (std::size_t n = 0; n < N; ++n) jump[n] = jump[n] - half_off * (rates_[base - 1][n] - rates_[base][n]);
+        if constexpr (last) {
+          for (std::size_t q = 0; q < integrals_.size(); ++q) {
+            integrals_[q] = integrals_[q] - half_off * (integrands_before[q] - rates.dq[q]);
+          }
+          off_[std::size_t(half * segments_) + s] = L(2.0) * half_off;
+          switch_offset_ = max(switch_offset_, L(2.0) * abs(half_off));
+        }
+      }
+      h_before = h;
+      propose(base, h, end);
+      if constexpr (last) {
+        integrands_before = rates.dq;
+        add_tails(controlled, base, h);
+        if (wanted_[std::size_t(Quantity::force)]) {
+          const L per_h = inverse_of(max(h, L(1e-12)));
+          auto& readings = readings_[std::size_t(Quantity::force)];
+          for (std::size_t m = 0; m <= intervals; ++m) {
+            L slope(0.0);
+            for (std::size_t j = 0; j <= intervals; ++j) slope = slope + L(rule_.slope[m][j]) * readings[base + j].value;
+            readings[base + m].slope = slope * per_h;
+          }
+        }
+      }
+    }
+    if constexpr (last) {
+      std::array<L, 2 * most_half_segments + 1> u, force;
+      for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
+        const std::size_t base = first_node(half, s);
+        u[2 * s] = mesh.u[s];
+        force[2 * s] = force_[base];
+        u[2 * s + 1] = L(0.5) * (mesh.u[s] + mesh.u[s + 1]);
+        force[2 * s + 1] = force_[base + intervals / 2];
+      }
+      u[2 * std::size_t(segments_)] = mesh.u[std::size_t(segments_)];
+      force[2 * std::size_t(segments_)] = force_[first_node(half, std::size_t(segments_)) - 1];
+      switch_offset_ = max(switch_offset_, find_switches(half, u.data(), force.data(), 2 * segments_));
+    }
   }
-  accelerate(start);
+  correct(end);
+  if constexpr (last) {
+    overlooked_ = overlooked * inverse_of(max(highest, L(1e-300)));
+    // The coefficients fall geometrically, and the sums over the nodes see none below the 2 n-th.
+    step_error_ = L(0.0);
+    for (std::size_t c = 0; c < high_.size(); ++c) {
+      const L scale = c == 0 ? L(1.0) : inverse_of(max(abs(integrals_[System::controlled_integrals[c - 1]]), L(1e-300)));
+      const L ratio = high_[c] * inverse_of(max(low_[c], L(1e-300)));
+      L error = high_[c] * scale;
+      for (std::size_t k = 0; k < intervals / 2; ++k) error = error * ratio;
+      step_error_ = max(step_error_, error);
+    }
+  }
+}
+
+/// Adds the last coefficients of a segment's rates of speed and integrals.
+template <class L, int N>
+void LaneOrbit<L, N>::add_tails(const std::array<std::array<L, nodes_per_segment>, 4>& controlled, std::size_t base,
+                                const L& h) {
+  const std::size_t n = std::size_t(rule_.intervals);
+  const L per_omega = inverse_of(course_[base][0]);
+  for (std::size_t c = 0; c < high_.size(); ++c) {
+    L tail[4] = {L(0.0), L(0.0), L(0.0), L(0.0)};
+    for (std::size_t j = 0; j <= n; ++j) {
+      const L value = c == 0 ? rates_[base + j][0] * per_omega : controlled[c - 1][j];
+      for (std::size_t k = 0; k < 4; ++k) tail[k] = tail[k] + L(k <= n ? rule_.legendre[n - k][j] : 0.0) * value;
+    }
+    high_[c] = high_[c] + h * (abs(tail[0]) + abs(tail[1]));
+    low_[c] = low_[c] + h * (abs(tail[2]) + abs(tail[3]));
+  }
 }
 
 /// The readings wanted at a state, with the motion there.
@@ -595,37 +855,110 @@ void LaneOrbit<L, N>::read(const System& system, const L& u, const State& y, con
   }
 }
 
-/// Rates and readings at a node of the fine lap.
+/// Rates and readings at a node.
 template <class L, int N>
-void LaneOrbit<L, N>::visit_node(const System& system, const L& u, const L& force, LaneNode<L, N>& node,
-                                 const Place<L>& place, solve::Rates<System>& first) {
-  const Motion<L> motion = system.motion(place, y_, force);
-  first = system.template rates_of<true>(motion, y_, force);
-  node.y = y_;
-  read(system, u, y_, force, motion, first.dy, wanted_, node.readings);
+void LaneOrbit<L, N>::visit_node(const System& system, std::size_t node, const L& force, solve::Rates<System>& rates) {
+  const Motion<L> motion = system.motion(place_of(node), course_[node], force);
+  rates = system.template rates_of<true>(motion, course_[node], force);
+  if (!reads_) return;
+  std::array<bool, quantity_count> wanted = wanted_;
+  wanted[std::size_t(Quantity::force)] = false;
+  std::array<Reading<L>, quantity_count> readings;
+  read(system, L(0.0), course_[node], force, motion, rates.dy, wanted, readings);
+  readings[std::size_t(Quantity::force)].value = force * motion.rod_force;
+  for (std::size_t q = 0; q < std::size_t(quantity_count); ++q) {
+    if (wanted_[q]) readings_[q][node] = readings[q];
+  }
 }
 
-/// The largest modulus of the eigenvalues of the lap map's derivative, by central differences on the fine lap's mesh.
+/// The largest modulus of the eigenvalues of the lap map's derivative, by collocation of the variational equation.
 template <class L, int N>
-L LaneOrbit<L, N>::floquet_multiplier(const State& start) {
-  const State kept = y_;
-  const L kept_slowest = slowest_;
+L LaneOrbit<L, N>::floquet_multiplier() {
+  const std::size_t intervals = std::size_t(rule_.intervals);
   Matrix M;
-  std::array<L, most_half_steps + 1> ignored;
-  for (std::size_t column = 0; column < N; ++column) {
-    const L by = column == 0 ? L(2e-4) * start[0] : L(2e-4) * current_scale_;
-    std::array<State, 2> ends;
-    for (std::size_t side = 0; side < 2; ++side) {
-      y_ = start;
-      y_[column] = y_[column] + (side == 0 ? -by : by);
-      for (int half = 0; half < 2; ++half) advance(half, settings_.fine_steps, ignored.data());
-      ends[side] = y_;
-    }
-    const L per_both = L(0.5) * inverse_of(by);
-    for (std::size_t row = 0; row < N; ++row) M[row][column] = (ends[1][row] - ends[0][row]) * per_both;
+  for (std::size_t row = 0; row < N; ++row) {
+    for (std::size_t column = 0; column < N; ++column) M[row][column] = L(row == column ? 1.0 : 0.0);
   }
-  y_ = kept;
-  slowest_ = kept_slowest;
+  std::array<Matrix, nodes_per_segment> jacobian, path, moves;
+  solve::Rates<System> below, above;
+  for (int half = 0; half < 2; ++half) {
+    const System system = half_lap(half);
+    const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+    for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
+      const std::size_t base = first_node(half, s);
+      const L h = mesh.u[s + 1] - mesh.u[s];
+      Matrix end_before = jacobian[intervals];
+      for (std::size_t m = 0; m <= intervals; ++m) {
+        for (std::size_t column = 0; column < N; ++column) {
+          const L by = column == 0 ? L(1e-4) * course_[base + m][0] : L(1e-4) * current_scale_;
+          State moved = course_[base + m];
+          moved[column] = moved[column] - by;
+          evaluate<false>(system, place_of(base + m), moved, mesh.force[s], below);
+          moved[column] = course_[base + m][column] + by;
+          evaluate<false>(system, place_of(base + m), moved, mesh.force[s], above);
+          const L per_both = L(0.5) * inverse_of(by);
+          for (std::size_t row = 0; row < N; ++row) jacobian[m][row][column] = (above.dy[row] - below.dy[row]) * per_both;
+        }
+        if (m == 0) {
+          // What sweep() corrects by grows with the square of the distance, its derivative with the distance.
+          const L& off = off_[std::size_t(half * segments_) + s];
+          if (any<L>(!(off == L(0.0)))) {
+            for (std::size_t row = 0; row < N; ++row) {
+              for (std::size_t column = 0; column < N; ++column) {
+                const L jump = off * (end_before[row][column] - jacobian[0][row][column]);
+                end_before[row][column] = select<L>(off == L(0.0), L(0.0), -jump);
+              }
+              end_before[row][row] = end_before[row][row] + L(1.0);
+            }
+            append(end_before, M);
+          }
+          path[0] = M;
+          continue;
+        }
+        path[m] = path[m - 1];
+        append(step_[base + m], path[m]);
+      }
+      for (int repeat = 0; repeat < settings_.sweeps + 2; ++repeat) {
+        std::array<Matrix, nodes_per_segment> rates;
+        for (std::size_t m = 0; m <= intervals; ++m) {
+          rates[m] = path[m];
+          append(jacobian[m], rates[m]);
+        }
+        Matrix d;
+        for (auto& row : d) row.fill(L(0.0));
+        for (std::size_t m = 1; m <= intervals; ++m) {
+          Matrix sum;
+          for (std::size_t row = 0; row < N; ++row) {
+            for (std::size_t column = 0; column < N; ++column) {
+              L integral(0.0);
+              for (std::size_t j = 0; j <= intervals; ++j) {
+                integral = integral + L(rule_.between[m][j]) * rates[j][row][column];
+              }
+              sum[row][column] = h * integral - (path[m][row][column] - path[m - 1][row][column]);
+            }
+          }
+          // d := step d + (1 + step) sum / 2
+          Matrix along = sum;
+          append(step_[base + m], along);
+          append(step_[base + m], d);
+          for (std::size_t row = 0; row < N; ++row) {
+            for (std::size_t column = 0; column < N; ++column) {
+              d[row][column] = d[row][column] + L(0.5) * (sum[row][column] + along[row][column]);
+            }
+          }
+          moves[m] = d;
+        }
+        for (std::size_t m = 1; m <= intervals; ++m) {
+          for (std::size_t row = 0; row < N; ++row) {
+            for (std::size_t column = 0; column < N; ++column) {
+              path[m][row][column] = path[m][row][column] + moves[m][row][column];
+            }
+          }
+        }
+      }
+      M = path[intervals];
+    }
+  }
   if constexpr (N == 1) {
     return abs(M[0][0]);
   } else {
@@ -638,82 +971,9 @@ L LaneOrbit<L, N>::floquet_multiplier(const State& start) {
 }
 
 template <class L, int N>
-void LaneOrbit<L, N>::fine_lap() {
-  const int steps = settings_.fine_steps;
-  const State start = y_;
-  integrals_.fill(L(0.0));
-  std::array<L, 5> error3, error5;
-  error3.fill(L(0.0));
-  error5.fill(L(0.0));
-  switch_offset_ = L(0.0);
-  solve::Rates<System> first;
-  solve::StepResult<System> step;
-  StepSights<L> sights;
-  L overlooked(0.0), highest(0.0);
-  for (int half = 0; half < 2; ++half) {
-    const System system = half_lap(half);
-    build_mesh(half, steps);
-    const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
-    auto& nodes = nodes_[std::size_t(half)];
-    std::array<L, most_half_steps + 1> force;
-    sights.end = system.place(mesh.u[0]);
-    const auto visit = [&](std::size_t m, const L& sign) {
-      visit_node(system, mesh.u[m], sign, nodes[m], sights.end, first);
-      force[m] = first.switches[0];
-      highest = max(highest, abs(force[m]));
-    };
-    for (std::size_t m = 0; m < std::size_t(steps); ++m) {
-      visit(m, mesh.force[m]);
-      const L h = mesh.u[m + 1] - mesh.u[m];
-      lane_step<true>(system, mesh.u[m], y_, h, mesh.force[m], first, step, sights);
-      for (std::size_t q = 0; q < integrals_.size(); ++q) integrals_[q] = integrals_[q] + step.dq[q];
-      const L per_omega = inverse_of(y_[0]);
-      error3[0] = error3[0] + abs(step.error3[0]) * per_omega;
-      error5[0] = error5[0] + abs(step.error5[0]) * per_omega;
-      for (std::size_t c = 0; c < System::controlled_integrals.size(); ++c) {
-        const std::size_t q = System::controlled_integrals[c];
-        error3[c + 1] = error3[c + 1] + abs(step.integral_error3[q]);
-        error5[c + 1] = error5[c + 1] + abs(step.integral_error5[q]);
-      }
-      overlooked = max(overlooked, -step.lowest[0]);
-      nodes[m].dip = step.lowest[1];
-      nodes[m].dip_at = sights.dip_at;
-      y_ = step.y;
-      if (m + 1 < std::size_t(steps)) correct_for_offset<true>(system, mesh, m + 1, sights);
-      slowest_ = min(slowest_, y_[0]);
-    }
-    visit(std::size_t(steps), mesh.force[std::size_t(steps - 1)]);
-    switch_offset_ = max(switch_offset_, find_switches(half, mesh.u.data(), force.data(), steps));
-  }
-  overlooked_ = overlooked * inverse_of(max(highest, L(1e-300)));
-  residual_ = abs(y_[0] - start[0]) * inverse_of(start[0]);
-  if constexpr (N == 2) {
-    residual_ = max(residual_, abs(y_[1] - start[1]) * inverse_of(L(abs(start[1]) + L(0.1) * current_scale_)));
-  }
-  // The embedded errors combined as DOP853 does, over the lap as a whole.
-  step_error_ = L(0.0);
-  for (std::size_t c = 0; c < error3.size(); ++c) {
-    L scale(1.0);
-    if (c > 0) scale = inverse_of(max(abs(integrals_[System::controlled_integrals[c - 1]]), L(1e-300)));
-    const L e3 = error3[c] * scale, e5 = error5[c] * scale;
-    const L combined = square(e5) * root_of(L(square(e5) + L(0.01) * square(e3) + L(1e-60))).inverse;
-    step_error_ = max(step_error_, combined);
-  }
-}
-
-/// What the means feel of a start off the orbit, which fades within the lap: the slower, the more.
-template <class L, int N>
-L LaneOrbit<L, N>::residual_weight() const {
-  L size = abs(monodromy_[0][0]);
-  if constexpr (N == 2) size = max(size, abs(L(monodromy_[0][0] + monodromy_[1][1])));
-  return L(0.3) + L(2.5) * sqrt(size);
-}
-
-template <class L, int N>
 Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant) {
   if (settings_.approach == LaneApproach::resume) {
     doubtful_ = locked_ = L(1.0) < L(0.0);
-    slowest_ = y_[0];
   } else {
     tabulate();
     judge_statics();
@@ -725,12 +985,10 @@ Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
     for (int n = 1; n < settings_.coarse_laps; ++n) coarse_lap<false>();
     coarse_lap<true>();
   }
-  for (int n = 0; n < settings_.medium_laps; ++n) {
-    const bool last = n + 1 == settings_.medium_laps;
-    medium_lap(last || settings_.medium_steps < 6 ? settings_.medium_steps : 6);
-  }
-  const State start = y_;
-  fine_lap();
+  march();
+  place_nodes();
+  for (int n = 0; n < settings_.sweeps; ++n) sweep<false>();
+  sweep<true>();
 
   CycleIntegrals<L> integrals;
   integrals.fill(L(0.0));
@@ -741,6 +999,7 @@ Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   total(Integral::motor_work) =
       total(Integral::friction_work) + total(Integral::aero_work) + total(Integral::residual_work);
   const auto is_wanted = [&](Quantity q) { return wanted_[std::size_t(q)]; };
+  peak_error_ = L(0.0);
   if (is_wanted(Quantity::energy)) total(Integral::reactive_work) = exchanged_energy();
 
   CycleExtremes<L> extremes;
@@ -756,12 +1015,11 @@ Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   seek(Quantity::force, Extreme::rod_force);
   seek(Quantity::slowness, Extreme::crank_speed_min);
   seek(Quantity::speed, Extreme::crank_speed_max);
-  const L multiplier = settings_.multipliers ? floquet_multiplier(start) : L(0.0);
+  const L multiplier = settings_.multipliers ? floquet_multiplier() : L(0.0);
 
-  error_estimate_ = L(1.5) * step_error_ + residual_weight() * residual_ + L(0.03) * square(switch_offset_) +
+  error_estimate_ = L(1.5) * (step_error_ + L(2.0) * residual_ + peak_error_) + L(0.03) * square(switch_offset_) +
                     overlooked_ * sqrt(overlooked_);
   doubtful_ = doubtful_ || !(slowest_ > floor_);
-  accelerate(start);
   return cycle_metrics(vehicle_, integrals, extremes, multiplier, ReportingOf<L>{mass, bench_torque_constant});
 }
 

@@ -5,95 +5,129 @@
 
 namespace wingbeat {
 
-/// A quantity, with the motion, at distance x from the start of a step.
+/// The course over a segment, which may differ from lane to lane: the integral of its rates' interpolant.
 template <class L, int N>
-Reading<L> LaneOrbit<L, N>::reading_inside(Quantity quantity, const PeakBracket<L, N>& b, const L& x) const {
+void LaneOrbit<L, N>::follow(const L& segment, SegmentCourse<L, N>& course) const {
+  const std::size_t intervals = std::size_t(rule_.intervals);
+  std::array<State, nodes_per_segment> rates;
+  State y;
+  course = {};
+  y.fill(L(0.0));
+  rates.fill(y);
+  for (int half = 0; half < 2; ++half) {
+    const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+    for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
+      const Mask here = segment == L(double(half * segments_) + double(s));
+      if (!any<L>(here)) continue;
+      const std::size_t base = first_node(half, s);
+      course.half = select<L>(here, L(half == 0 ? 1.0 : -1.0), course.half);
+      course.u = select<L>(here, mesh.u[s], course.u);
+      course.length = select<L>(here, mesh.u[s + 1] - mesh.u[s], course.length);
+      course.force = select<L>(here, mesh.force[s], course.force);
+      for (std::size_t n = 0; n < N; ++n) {
+        y[n] = select<L>(here, course_[base][n], y[n]);
+        for (std::size_t j = 0; j <= intervals; ++j) rates[j][n] = select<L>(here, rates_[base + j][n], rates[j][n]);
+      }
+    }
+  }
+  // Coefficients c of the rates; their integral from the start: c[k] (P[k+1] - P[k-1]) / (2 k + 1).
+  const L half_length = L(0.5) * course.length;
+  for (std::size_t n = 0; n < N; ++n) {
+    std::array<L, nodes_per_segment> c;
+    for (std::size_t k = 0; k <= intervals; ++k) {
+      L sum(0.0);
+      for (std::size_t j = 0; j <= intervals; ++j) sum = sum + L(rule_.legendre[k][j]) * rates[j][n];
+      c[k] = half_length * sum * L(1.0 / double(2 * k + 1));
+    }
+    auto& to = course.legendre;
+    to[0][n] = y[n] + c[0] - c[1];
+    for (std::size_t k = 1; k <= intervals + 1; ++k) {
+      to[k][n] = c[k - 1] - (k + 1 <= intervals ? c[k + 1] : L(0.0));
+    }
+  }
+}
+
+/// A quantity, with the motion, at distance x from the start of a segment.
+template <class L, int N>
+Reading<L> LaneOrbit<L, N>::reading_inside(Quantity quantity, const SegmentCourse<L, N>& course, const L& x) const {
   std::array<bool, quantity_count> wanted{};
   wanted[std::size_t(quantity)] = true;
-  const System system = {vehicle_, geometry_, per_inductance_, b.half};
-  solve::Rates<System> first;
-  solve::StepResult<System> step;
-  StepSights<L> sights;
-  evaluate<false>(system, system.place(b.u), b.y, b.force, first);
-  lane_step<false>(system, b.u, b.y, x, b.force, first, step, sights);
-  const L u = b.u + x;
-  const Motion<L> motion = system.motion(sights.end, step.y, b.force);
-  const State dy = system.template rates_of<false>(motion, step.y, b.force).dy;
+  const System system = {vehicle_, geometry_, per_inductance_, course.half};
+  const L t = L(2.0) * x * inverse_of(max(course.length, L(1e-12))) - L(1.0);
+  State y;
+  for (std::size_t n = 0; n < N; ++n) y[n] = course.legendre[0][n] + t * course.legendre[1][n];
+  L before(1.0), here = t;
+  for (std::size_t k = 1; k <= std::size_t(rule_.intervals); ++k) {
+    const L next = L(double(2 * k + 1) / double(k + 1)) * t * here - L(double(k) / double(k + 1)) * before;
+    for (std::size_t n = 0; n < N; ++n) y[n] = y[n] + course.legendre[k + 1][n] * next;
+    before = here;
+    here = next;
+  }
+  const L u = course.u + x;
+  const Motion<L> motion = system.motion(system.place(u), y, course.force);
+  const State dy = system.template rates_of<false>(motion, y, course.force).dy;
   std::array<Reading<L>, quantity_count> readings;
-  read(system, u, step.y, b.force, motion, dy, wanted, readings);
+  read(system, u, y, course.force, motion, dy, wanted, readings);
   return readings[std::size_t(quantity)];
 }
 
-/// Calls visit(bracket, mask) for each stretch of half a lap, in order: the steps, and where the cubic through a step's
-/// ends turns twice inside, its two parts; the latter only where the step may rise above `floor`.
+/// Calls visit(bracket, mask) for each stretch of half a lap, in order: from node to node, and where the cubic through
+/// both turns twice in between, its two parts; stretches that cannot rise above `floor` in any lane are left out.
 template <class L, int N>
 template <class Visit>
 void LaneOrbit<L, N>::for_each_stretch(int half, Quantity quantity, const L& floor, const Visit& visit) const {
   const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
-  const auto& nodes = nodes_[std::size_t(half)];
-  for (std::size_t m = 0; m < std::size_t(settings_.fine_steps); ++m) {
-    const Reading<L>& from = nodes[m].readings[std::size_t(quantity)];
-    const Reading<L>& to = nodes[m + 1].readings[std::size_t(quantity)];
-    PeakBracket<L, N> b = {L(half == 0 ? 1.0 : -1.0), mesh.u[m], mesh.force[m], nodes[m].y, L(0.0), from.value,
-                           from.slope, mesh.u[m + 1] - mesh.u[m], to.value, to.slope, L(0.0), L(0.0)};
-    const L slope = (b.v1 - b.v0) * inverse_of(b.x1);
-    const L c2 = L(3.0) * slope - L(2.0) * b.d0 - b.d1, c3 = b.d0 + b.d1 - L(2.0) * slope;
-    const L discriminant = square(c2) - L(3.0) * c3 * b.d0;
-    const L per_3c3 = inverse_of(select<L>(c3 == L(0.0), L(1e-300), L(3.0) * c3));
-    const L middle = -(c2 * per_3c3), reach = sqrt(max(discriminant, L(0.0))) * abs(per_3c3);
-    Mask twice = b.d0 * b.d1 > L(0.0) && discriminant > L(0.0) && middle - reach > L(0.0) &&
-                       middle + reach < L(1.0) &&
-                       max(b.v0, b.v1) + abs(b.v1 - b.v0) + L(0.1) * b.x1 * (abs(b.d0) + abs(b.d1)) > floor;
-    L split = middle;
-    if (quantity == Quantity::energy) {
-      // The stages have seen what a cubic may miss.
-      const Mask dips = sign_of(b.d0) == sign_of(b.d1) && nodes[m].dip < L(0.0);
-      split = select<L>(dips, nodes[m].dip_at, split);
-      twice = twice || dips;
+  const auto& readings = readings_[std::size_t(quantity)];
+  for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
+    const std::size_t base = first_node(half, s);
+    const L h = mesh.u[s + 1] - mesh.u[s];
+    for (std::size_t m = 1; m <= std::size_t(rule_.intervals); ++m) {
+      const Reading<L>& from = readings[m == 1 && s > 0 ? base - 1 : base + m - 1];
+      const Reading<L>& to = readings[base + m];
+      const L x0 = L(rule_.node[m - 1]) * h, x1 = L(rule_.node[m]) * h, width = x1 - x0;
+      const Mask may_rise = max(from.value, to.value) + L(0.3) * width * (abs(from.slope) + abs(to.slope)) > floor;
+      if (!any<L>(may_rise)) continue;
+      const PeakBracket<L> b = {L(double(half * segments_) + double(s)), x0, from.value, from.slope, x1, to.value,
+                                to.slope, L(0.0), L(0.0)};
+      const L slope = (b.v1 - b.v0) * inverse_of(max(width, L(1e-300)));
+      const L c2 = L(3.0) * slope - L(2.0) * b.d0 - b.d1, c3 = b.d0 + b.d1 - L(2.0) * slope;
+      const L discriminant = square(c2) - L(3.0) * c3 * b.d0;
+      Mask twice = may_rise && b.d0 * b.d1 > L(0.0) && discriminant > L(0.0);
+      if (any<L>(twice)) {
+        const L per_3c3 = inverse_of(select<L>(c3 == L(0.0), L(1e-300), L(3.0) * c3));
+        const L middle = -(c2 * per_3c3), reach = sqrt(max(discriminant, L(0.0))) * abs(per_3c3);
+        twice = twice && middle - reach > L(0.0) && middle + reach < L(1.0);
+        if (any<L>(twice)) {
+          visit(b, may_rise && !twice);
+          SegmentCourse<L, N> course;
+          follow(b.segment, course);
+          const L x = x0 + select<L>(twice, middle, L(0.5)) * width;
+          const Reading<L> at = reading_inside(quantity, course, x);
+          PeakBracket<L> first = b, second = b;
+          first.x1 = second.x0 = x;
+          first.v1 = second.v0 = at.value;
+          first.d1 = second.d0 = at.slope;
+          visit(first, twice);
+          visit(second, twice);
+          continue;
+        }
+      }
+      visit(b, may_rise);
     }
-    visit(b, !twice);
-    if (!any<L>(twice)) continue;
-    const L x = select<L>(twice, split, L(0.5)) * b.x1;
-    const Reading<L> at = reading_inside(quantity, b, x);
-    PeakBracket<L, N> first = b, second = b;
-    first.x1 = second.x0 = x;
-    first.v1 = second.v0 = at.value;
-    first.d1 = second.d0 = at.slope;
-    visit(first, twice);
-    visit(second, twice);
   }
 }
 
-/// The highest stretch of half a lap, by the cubics through values and slopes.
 template <class L, int N>
-PeakBracket<L, N> LaneOrbit<L, N>::bracket(int half, Quantity quantity) const {
-  PeakBracket<L, N> best{};
-  best.estimate = L(-1e300);
-  L highest_node(-1e300);
-  for (int m = 0; m <= settings_.fine_steps; ++m) {
-    highest_node = max(highest_node, nodes_[std::size_t(half)][std::size_t(m)].readings[std::size_t(quantity)].value);
+void LaneOrbit<L, N>::keep(const PeakBracket<L>& from, const Mask& where, PeakBracket<L>& to) {
+  using P = PeakBracket<L>;
+  for (L P::*member : {&P::segment, &P::x0, &P::v0, &P::d0, &P::x1, &P::v1, &P::d1, &P::rises_and_falls, &P::estimate}) {
+    to.*member = select<L>(where, from.*member, to.*member);
   }
-  for_each_stretch(half, quantity, highest_node, [&](PeakBracket<L, N> b, const Mask& where) {
-    estimate_peak(b);
-    keep(b, where && b.estimate > best.estimate, best);
-  });
-  return best;
-}
-
-template <class L, int N>
-void LaneOrbit<L, N>::keep(const PeakBracket<L, N>& from, const Mask& where, PeakBracket<L, N>& to) {
-  const auto choose = [&](L PeakBracket<L, N>::*member) { to.*member = select<L>(where, from.*member, to.*member); };
-  using P = PeakBracket<L, N>;
-  for (L P::*member : {&P::half, &P::u, &P::force, &P::x0, &P::v0, &P::d0, &P::x1, &P::v1, &P::d1, &P::rises_and_falls,
-                       &P::estimate}) {
-    choose(member);
-  }
-  for (std::size_t n = 0; n < N; ++n) to.y[n] = select<L>(where, from.y[n], to.y[n]);
 }
 
 /// Distance from x0, as a fraction of the bracket, of the maximum of the cubic through its ends; sets the estimate.
 template <class L, int N>
-L LaneOrbit<L, N>::estimate_peak(PeakBracket<L, N>& b) {
+L LaneOrbit<L, N>::estimate_peak(PeakBracket<L>& b) {
   const L h = b.x1 - b.x0;
   const L slope = (b.v1 - b.v0) * inverse_of(max(h, L(1e-300)));
   const L z = b.d0 + b.d1 - L(3.0) * slope;
@@ -107,16 +141,20 @@ L LaneOrbit<L, N>::estimate_peak(PeakBracket<L, N>& b) {
   return t;
 }
 
-/// The maximum within a bracket: a step of the integrator to the cubic's maximum, and again within the bracket that this leaves.
+/// The maximum within a bracket: the cubic's, read on the course, and again within the bracket that this leaves. What the
+/// course errs by is added to the error of peaks.
 template <class L, int N>
-L LaneOrbit<L, N>::refine(Quantity quantity, const L& sign, PeakBracket<L, N> b) const {
+L LaneOrbit<L, N>::refine(Quantity quantity, const L& sign, PeakBracket<L> b) {
   L highest = max(b.v0, b.v1);
   const Mask inside = b.rises_and_falls > L(0.0);
+  if (!any<L>(inside)) return highest;
+  SegmentCourse<L, N> course;
+  follow(b.segment, course);
   Mask active = inside;
   for (int n = 0; n < 8 && any<L>(active); ++n) {
     const L t = estimate_peak(b);
     const L x = b.x0 + t * (b.x1 - b.x0);
-    const Reading<L> at = reading_inside(quantity, b, x);
+    const Reading<L> at = reading_inside(quantity, course, x);
     const L v = sign * at.value, d = sign * at.slope;
     const Mask rising = active && d > L(0.0), falling = active && !rising;
     b.x0 = select<L>(rising, x, b.x0);
@@ -130,22 +168,45 @@ L LaneOrbit<L, N>::refine(Quantity quantity, const L& sign, PeakBracket<L, N> b)
     estimate_peak(b);
     active = active && b.estimate - highest > L(settings_.peak_tolerance) * abs(highest);
   }
+  // The first coefficients left out, from how the last ones fall.
+  const std::size_t end = std::size_t(rule_.intervals) + 1;
+  const auto left_out = [&](std::size_t n, const L& scale) {
+    const auto size = [&](std::size_t k) { return abs(course.legendre[k][n]) + abs(course.legendre[k - 1][n]); };
+    const L high = size(end), low = max(size(end - 2), L(1e-300));
+    return high * min(L(high * inverse_of(low)), L(1.0)) * inverse_of(scale);
+  };
+  L error = left_out(0, course.legendre[0][0]);
+  if constexpr (N == 2) {
+    if (quantity == Quantity::current) error = max(error, left_out(1, abs(highest)));
+  }
+  peak_error_ = select<L>(inside, max(peak_error_, error), peak_error_);
   return select<L>(inside, max(highest, b.estimate), highest);
 }
 
-/// The maximum of a quantity over the lap. Of two half laps with almost the same peak both are refined.
+/// The maximum of a quantity over the lap. Of two stretches with almost the same peak both are refined.
 template <class L, int N>
-L LaneOrbit<L, N>::peak(Quantity quantity) const {
-  PeakBracket<L, N> best = bracket(0, quantity), other = bracket(1, quantity);
-  const PeakBracket<L, N> first = best;
-  const Mask second_is_higher = other.estimate > best.estimate;
-  keep(other, second_is_higher, best);
-  keep(first, second_is_higher, other);
-  const L highest = refine(quantity, L(1.0), best);
+L LaneOrbit<L, N>::peak(Quantity quantity) {
+  L highest_node(-1e300);
+  const std::size_t nodes = first_node(2, 0);
+  for (std::size_t n = 0; n < nodes; ++n) highest_node = max(highest_node, readings_[std::size_t(quantity)][n].value);
+  PeakBracket<L> best{}, other{};
+  best.estimate = other.estimate = L(-1e300);
+  for (int half = 0; half < 2; ++half) {
+    for_each_stretch(half, quantity, highest_node, [&](PeakBracket<L> b, const Mask& where) {
+      estimate_peak(b);
+      const Mask turns = where && b.rises_and_falls > L(0.0);
+      const Mask first = turns && b.estimate > best.estimate;
+      keep(best, first, other);
+      keep(b, first, best);
+      keep(b, turns && !first && b.estimate > other.estimate, other);
+    });
+  }
+  const L highest = max(highest_node, select<L>(best.estimate > L(-1e300), refine(quantity, L(1.0), best), highest_node));
   // The cubics err by a small part of what they rise above their ends.
   const L rise = other.estimate - min(other.v0, other.v1) + best.estimate - min(best.v0, best.v1);
-  const Mask close = other.estimate + L(0.2) * rise > best.estimate;
+  const Mask close = other.estimate > L(-1e300) && other.estimate + L(0.2) * rise > best.estimate;
   if (!any<L>(close)) return highest;
+  other.rises_and_falls = select<L>(close, other.rises_and_falls, L(0.0));
   return select<L>(close, max(highest, refine(quantity, L(1.0), other)), highest);
 }
 
@@ -155,11 +216,11 @@ template <class L, int N>
 L LaneOrbit<L, N>::exchanged_energy() {
   L total(0.0);
   for (int half = 0; half < 2; ++half) {
-    const auto& nodes = nodes_[std::size_t(half)];
-    std::array<PeakBracket<L, N>, most_energy_extremes> extremes;
+    const auto& readings = readings_[std::size_t(Quantity::energy)];
+    std::array<PeakBracket<L>, most_energy_extremes> extremes{};
     std::array<L, most_energy_extremes> signs;
     L count(0.0);
-    for_each_stretch(half, Quantity::energy, L(-1e300), [&](PeakBracket<L, N> b, const Mask& where) {
+    for_each_stretch(half, Quantity::energy, L(-1e300), [&](PeakBracket<L> b, const Mask& where) {
       const L sign = sign_of(b.d0);
       const Mask turns = where && !(sign_of(b.d1) == sign);
       if (!any<L>(turns)) return;
@@ -173,7 +234,7 @@ L LaneOrbit<L, N>::exchanged_energy() {
       count = select<L>(turns, count + L(1.0), count);
     });
     doubtful_ = doubtful_ || count > L(double(most_energy_extremes));
-    L before = nodes[0].readings[std::size_t(Quantity::energy)].value;
+    L before = readings[first_node(half, 0)].value;
     for (std::size_t n = 0; n < most_energy_extremes; ++n) {
       const Mask exists = count > L(double(n));
       if (!any<L>(exists)) break;
@@ -181,7 +242,7 @@ L LaneOrbit<L, N>::exchanged_energy() {
       total = select<L>(exists, total + abs(here - before), total);
       before = select<L>(exists, here, before);
     }
-    const L end = nodes[std::size_t(settings_.fine_steps)].readings[std::size_t(Quantity::energy)].value;
+    const L end = readings[first_node(half, std::size_t(segments_)) - 1].value;
     total = total + abs(end - before);
   }
   return total;
