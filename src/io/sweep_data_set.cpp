@@ -111,7 +111,7 @@ void write_input(NetcdfFile& file, const Study& study, std::string_view version)
 std::uint64_t fingerprint(const Study& study, std::string_view version) {
   std::uint64_t sum = 1;
   const auto add = [&](std::string_view text) { sum = checksum(std::as_bytes(std::span(text)), sum); };
-  add("4");
+  add("5");
   add(version);
   add(study.input.study);
   add(study.input.vehicle);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "wingbeat/cycle/lane_blocks.hpp"
+#include "wingbeat/cycle/static_balance.hpp"
 #include "wingbeat/solve/collocation.hpp"
 
 namespace wingbeat {
@@ -25,9 +26,8 @@ LaneSolver solver_for(InstructionSet isa) {
   return {solve_block_sse2, lanes_sse2};
 }
 
-/// How a tolerance is met: what the estimate of the means' error is multiplied by, and the meshes.
+/// How a tolerance is met.
 struct Plan {
-  double amplification;
   LaneSettings first, from_rest, from_rest_finely;
   std::array<LaneSettings, 3> again;
 };
@@ -46,13 +46,10 @@ Plan plan_for(const EnsembleOptions& options) {
   want(Quantity::energy, wanted(Metric::power_reactive));
   s.multipliers = wanted(Metric::floquet_multiplier_max);
 
-  // Peaks feel the error of the state where they stand.
-  const bool peaks = std::any_of(s.wanted.begin(), s.wanted.end(), [](bool on) { return on; });
-  plan.amplification = peaks ? 2.0 : 1.0;
-  const double target = options.tolerance / plan.amplification;
   // Where benchmarks/benchmark_ensemble is fastest at 1e-6. The order of the means is twice the number of intervals, that
   // of peaks little more than it; a sweep gains about two digits.
-  const double digits = -std::log10(target);
+  const double digits = -std::log10(options.tolerance);
+  const bool peaks = std::any_of(s.wanted.begin(), s.wanted.end(), [](bool on) { return on; });
   const auto even = [](double x) { return std::clamp(2 * int(std::ceil(0.5 * x)), 6, solve::most_collocation_intervals); };
   s.segments = digits > 5.0 ? 8 : 6;
   s.intervals = even(peaks ? 1.6 * (digits - 2.8) : digits - 1.5);
@@ -71,6 +68,7 @@ Plan plan_for(const EnsembleOptions& options) {
   plan.from_rest = s;
   plan.from_rest.approach = LaneApproach::from_rest;
   plan.from_rest.sweeps += 1;
+  plan.from_rest.segments = most_half_segments;
   plan.from_rest_finely = plan.from_rest;
   plan.from_rest_finely.start_up_steps = 16 * plan.from_rest.start_up_steps;
   return plan;
@@ -88,7 +86,7 @@ class EnsembleRun {
   EnsembleRun(std::span<const EnsembleMember> members, const EnsembleOptions& options, const StartUp& start_up,
               std::span<EnsembleOutcome> outcomes)
       : members_(members), options_(options), start_up_(start_up), outcomes_(outcomes), plan_(plan_for(options)),
-        solver_(solver_for(options.isa)), results_(members.size()) {}
+        solver_(solver_for(options.isa)), results_(members.size()), rotates_(members.size()) {}
 
   void solve() {
     std::array<std::vector<std::size_t>, kinds> by_kind;
@@ -145,15 +143,15 @@ class EnsembleRun {
     }
     for (const std::size_t n : which) {
       const LaneResult& r = results_[n];
-      const double error = plan_.amplification * r.error_estimate;
+      if (settings.approach == LaneApproach::from_rest) rotates_[n] = r.verdict == LaneVerdict::rotates;
       if (r.verdict == LaneVerdict::locked) {
         settle(n, FlappingStatus::locked);
       } else if (r.verdict == LaneVerdict::doubtful) {
         doubtful.push_back(n);
-      } else if (!(error <= options_.tolerance)) {
+      } else if (!(r.error_estimate <= options_.tolerance)) {
         inexact.push_back(n);
       } else {
-        outcomes_[n] = {FlappingStatus::flapping, false, error, r.metrics};
+        outcomes_[n] = {FlappingStatus::flapping, false, r.error_estimate, r.metrics};
         keep_wanted(options_.metrics, outcomes_[n].metrics);
       }
     }
@@ -164,12 +162,21 @@ class EnsembleRun {
     outcomes_[n].metrics.values.fill(absent);
   }
 
+  /// Whether it rotates from rest is known, and that its orbit is the only one.
+  bool start_up_is_known(std::size_t n) const {
+    const Vehicle<double>& v = members_[n].vehicle;
+    return rotates_[n] && !static_balance(v).can_jam() && balanced_speed(v).count == 1.0;
+  }
+
   void solve_by_scalar(std::size_t n) {
     SteadyOptions steady;
     steady.tolerance = options_.tolerance;
     steady.stability = options_.metrics[std::size_t(Metric::floquet_multiplier_max)];
     steady.reporting = members_[n].reporting;
-    const SteadyFlapping found = find_steady_flapping(members_[n].vehicle, steady, start_up_);
+    const StartUp known = [](const Vehicle<double>&) { return StartUpOutcome{}; };
+    SteadyFlapping found;
+    if (start_up_is_known(n)) found = find_steady_flapping(members_[n].vehicle, steady, known);
+    if (found.status != FlappingStatus::flapping) found = find_steady_flapping(members_[n].vehicle, steady, start_up_);
     const bool flaps = found.status == FlappingStatus::flapping;
     outcomes_[n] = {found.status, true, flaps ? options_.tolerance : absent, found.metrics};
     keep_wanted(options_.metrics, outcomes_[n].metrics);
@@ -182,6 +189,7 @@ class EnsembleRun {
   Plan plan_;
   LaneSolver solver_;
   std::vector<LaneResult> results_;
+  std::vector<char> rotates_;  ///< from rest, as lanes have shown in time
 };
 
 }  // namespace

@@ -11,7 +11,7 @@
 
 namespace wingbeat {
 
-/// Integrals of the fine lap. The others follow: the supply's work from the current, the motor's from what it drives,
+/// Integrals over the lap. The others follow: the supply's work from the current, the motor's from what it drives,
 /// the reactive work from the extremes of the stored energy.
 inline constexpr std::array lane_integrals = {Integral::time,          Integral::current,   Integral::current_square,
                                               Integral::speed_square,  Integral::friction_work, Integral::aero_work,

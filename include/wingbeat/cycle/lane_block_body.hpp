@@ -4,8 +4,10 @@
 #include <type_traits>
 
 #include "wingbeat/cycle/lane_blocks.hpp"
+#include "wingbeat/cycle/lane_multiplier.hpp"
 #include "wingbeat/cycle/lane_orbit.hpp"
 #include "wingbeat/cycle/lane_peaks.hpp"
+#include "wingbeat/cycle/lane_start.hpp"
 
 namespace wingbeat {
 

@@ -3,13 +3,16 @@
 // A lap runs from the lower dead centre through two half laps, on each of which the stroke velocity keeps its sign. The
 // half laps' segments end where the rod force changes sign, which differs from lane to lane while the number of segments
 // does not. Coarse laps find where; a lap with one step per segment gives a first course and its derivatives; Newton's
-// method makes it satisfy the equations at the Lobatto points of every segment, and the lap its own end. lane_peaks.hpp
-// holds the search for extremes. Everything is computed lane by lane without looking at the neighbours, so that a vehicle
-// gets the same bits in any company.
+// method makes it satisfy the equations at the Lobatto points of every segment, and the lap its own end. Everything is
+// computed lane by lane without looking at the neighbours, so that a vehicle gets the same bits in any company.
+//
+// lane_start.hpp holds the way to the first course, lane_peaks.hpp the search for extremes, lane_multiplier.hpp the lap
+// map's derivative.
 #pragma once
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "wingbeat/core/lanes.hpp"
 #include "wingbeat/core/math.hpp"
@@ -178,6 +181,7 @@ class LaneOrbit {
   std::array<std::array<Place<L>, coarse_samples>, 2> table_;
   State y_;  ///< where a lap starts
   Mask doubtful_, locked_;
+  Mask lost_;  ///< the crank comes near standstill on the way to the orbit
   std::array<ForceSwitches<L>, 2> switches_{};
   std::array<HalfMesh<L>, 2> mesh_;
 
@@ -204,130 +208,6 @@ class LaneOrbit {
   L peak_error_;
   L error_estimate_;
 };
-
-template <class L, int N>
-void LaneOrbit<L, N>::tabulate() {
-  for (int half = 0; half < 2; ++half) {
-    const System system = half_lap(half);
-    for (int k = 0; k < coarse_samples; ++k) {
-      table_[std::size_t(half)][std::size_t(k)] = system.place(L(quarter * (2.0 * k / (coarse_samples - 1) - 1.0)));
-    }
-  }
-}
-
-/// Marks the lanes that could jam or lock: within a margin, for the table is coarse; static_balance() has the last word.
-template <class L, int N>
-void LaneOrbit<L, N>::judge_statics() {
-  const Vehicle<L>& v = vehicle_;
-  const L stall = stall_torque(v);
-  doubtful_ = !(stall > breakaway_torque(v));
-  locked_ = !doubtful_ && doubtful_;
-  // From rest, locking shows by itself, and only jams on the way are left to be told from near ones.
-  const bool from_rest = settings_.approach == LaneApproach::from_rest;
-  const L inertia_margin(from_rest ? 0.05 : 0.3), lever_margin(from_rest ? 0.02 : 0.1);
-  const bool springs = !from_rest && any<L>(v.spring.stiffness > L(0.0));
-  for (const auto& half : table_) {
-    for (const Place<L>& place : half) {
-      const CrankKinematics<L>& k = place.kinematics;
-      doubtful_ = doubtful_ || !(least_inertia(v, k) > inertia_margin * v.motor.inertia) ||
-                  !(k.wing_lever > lever_margin * v.crank.hinge_offset);
-      if (springs) {
-        doubtful_ = doubtful_ || !(advance_torque(v, k, place.spring_moment, L(L(0.8) * stall)) > L(0.0));
-      }
-    }
-  }
-}
-
-/// Starts at the balanced_speed(); more than one, or none, is doubtful.
-template <class L, int N>
-void LaneOrbit<L, N>::guess_speed() {
-  constexpr int stride = 4, count = coarse_samples / stride;
-  std::array<LoadPlace<L>, 2 * count> places;
-  for (int n = 0; n < 2 * count; ++n) {
-    const Place<L>& at = table_[std::size_t(n / count)][std::size_t(stride / 2 + stride * (n % count))];
-    places[std::size_t(n)] = load_place(vehicle_, at.kinematics, at.spring_moment);
-  }
-  const BalancedSpeed<L> balanced = balanced_speed<L>(vehicle_, places);
-  doubtful_ = doubtful_ || !(balanced.count == L(1.0));
-  y_[0] = balanced.slowest;
-  if constexpr (N == 2) y_[1] = algebraic_current(vehicle_, vehicle_.voltage, y_[0]);
-}
-
-/// From rest at crank angle zero, in time, by the classical fourth-order method: over the lower dead centre twice, where
-/// the lap may begin. Lanes that come near standing still are doubtful, but for those that come to rest and stay.
-template <class L, int N>
-void LaneOrbit<L, N>::start_from_rest() {
-  using Moving = std::array<L, N + 1>;  // crank angle, state
-  const int steps_per_lap = settings_.start_up_steps;
-  constexpr int most_laps = 24;
-  // The kinks leave an error of the second order, which counts most where the crank almost stands still.
-  const L slow_limit = L(1.92 / steps_per_lap) * no_load_;
-  constexpr double end = 3.5 * pi;
-  const L dt = L(two_pi / double(steps_per_lap)) * inverse_of(no_load_);
-  const auto rates = [&](const Moving& x) {
-    const L sine = sin(x[0]), cosine = cos(x[0]);
-    System system = half_lap(0);
-    State y;
-    for (std::size_t n = 0; n < N; ++n) y[n] = x[n + 1];
-    const CrankKinematics<L> k = crank_kinematics(geometry_, sine, cosine);
-    system.half = sign_of(k.stroke_slope);
-    const Motion<L> m = system.motion_on_its_branch(system.place_of(k), y);
-    Moving r;
-    r[0] = y[0];
-    r[1] = m.crank_acceleration;
-    if constexpr (N == 2) {
-      r[2] = motor_loads(vehicle_.motor, m.voltage, y[1], y[0]).voltage_reserve * per_inductance_;
-    }
-    return r;
-  };
-  const auto moved = [](const Moving& x, const Moving& rate, const L& by) {
-    Moving to;
-    for (std::size_t n = 0; n <= N; ++n) to[n] = x[n] + by * rate[n];
-    return to;
-  };
-  Moving x;
-  x.fill(L(0.0));
-  y_.fill(L(0.0));
-  Mask done = L(1.0) < L(0.0), started = done, slow = done, stopped = done;
-  L waited(0.0);  // steps at rest, or since the crank was slow: after a few laps' worth others must decide
-  for (int n = 0; n < steps_per_lap * most_laps; ++n) {
-    if (all<L>(done || stopped || waited > L(2.0 * steps_per_lap))) break;
-    const Moving k1 = rates(x);
-    const Moving k2 = rates(moved(x, k1, L(0.5) * dt));
-    const Moving k3 = rates(moved(x, k2, L(0.5) * dt));
-    const Moving k4 = rates(moved(x, k3, dt));
-    Moving next;
-    for (std::size_t j = 0; j <= N; ++j) {
-      next[j] = x[j] + dt * L(1.0 / 6.0) * (k1[j] + L(2.0) * (k2[j] + k3[j]) + k4[j]);
-    }
-    // Friction holds a crank that has not started; it does not turn it backwards.
-    const Mask held = !started && !(next[1] > L(0.0));
-    next[0] = select<L>(held, x[0], next[0]);
-    next[1] = select<L>(held, L(0.0), next[1]);
-    started = started || next[1] > L(0.05) * no_load_;
-    slow = slow || (started && !done && !(next[1] > slow_limit));
-    waited = select<L>(slow || !started, waited + L(1.0), waited);
-    const Mask stops = started && !done && !stopped && !(next[1] > L(0.0));
-    const Mask arrives = !done && !stopped && next[0] >= L(end);
-    const L part = (L(end) - x[0]) * inverse_of(max(L(next[0] - x[0]), L(1e-300)));
-    for (std::size_t j = 0; j < N; ++j) y_[j] = select<L>(arrives, x[j + 1] + part * (next[j + 1] - x[j + 1]), y_[j]);
-    done = done || arrives;
-    stopped = stopped || stops;
-    for (std::size_t j = 0; j <= N; ++j) x[j] = select<L>(stopped && !stops, x[j], next[j]);
-  }
-  // A crank that has come to rest where friction outweighs the drive, at the present current and at the one that it
-  // settles to, stays.
-  const L stall = stall_torque(vehicle_);
-  const L sine = sin(x[0]), cosine = cos(x[0]);
-  const CrankKinematics<L> k = crank_kinematics(geometry_, sine, cosine);
-  const L N_k_beta = spring_moment(vehicle_, k);
-  L margin = lock_margin(vehicle_, k, N_k_beta, stall);
-  if constexpr (N == 2) {
-    margin = min(margin, lock_margin(vehicle_, k, N_k_beta, L(vehicle_.motor.torque_constant * x[2])));
-  }
-  locked_ = stopped && !doubtful_ && margin > L(0.05) * stall;
-  doubtful_ = doubtful_ || slow || !done;
-}
 
 /// Derivatives of the rates by the state, to four digits.
 template <class L, int N>
@@ -389,44 +269,6 @@ void LaneOrbit<L, N>::close_lap(State& off) const {
     off[0] = (q * d0 + M[0][1] * d1) * per_det;
     off[1] = (M[1][0] * d0 + p * d1) * per_det;
   }
-}
-
-/// One lap by the classical fourth-order method, each stage on the branch that holds there; the last one finds the
-/// switches.
-template <class L, int N>
-template <bool last>
-void LaneOrbit<L, N>::coarse_lap() {
-  constexpr double h = pi / coarse_half_steps;
-  slowest_ = y_[0];
-  std::array<L, coarse_samples> angles;
-  for (std::size_t k = 0; k < coarse_samples; ++k) angles[k] = L(quarter * (2.0 * double(k) / (coarse_samples - 1) - 1.0));
-  for (int half = 0; half < 2; ++half) {
-    const System system = half_lap(half);
-    const auto& table = table_[std::size_t(half)];
-    std::array<L, coarse_samples> force;
-    const auto moved = [](const State& from, const State& slope, double by) {
-      State to;
-      for (std::size_t n = 0; n < N; ++n) to[n] = from[n] + L(by) * slope[n];
-      return to;
-    };
-    for (std::size_t k = 0; k + 2 < coarse_samples; k += 2) {
-      const auto at = [&](std::size_t sample, const State& y) {
-        const Motion<L> m = system.motion_on_its_branch(table[sample], y);
-        force[sample] = m.force_switch;
-        return system.template rates_of<false>(m, y, L(1.0)).dy;
-      };
-      const State k1 = at(k, y_);
-      const State k2 = at(k + 1, moved(y_, k1, 0.5 * h));
-      const State k3 = at(k + 1, moved(y_, k2, 0.5 * h));
-      const State k4 = at(k + 2, moved(y_, k3, h));
-      for (std::size_t n = 0; n < N; ++n) {
-        y_[n] = y_[n] + L(h / 6.0) * (k1[n] + L(2.0) * (k2[n] + k3[n]) + k4[n]);
-      }
-      slowest_ = min(slowest_, y_[0]);
-    }
-    if constexpr (last) find_switches(half, angles.data(), force.data(), coarse_samples - 1);
-  }
-  doubtful_ = doubtful_ || !(slowest_ > floor_);
 }
 
 /// Sign changes of the rod force between the samples force[0..count] at u[0..count] of half a lap, by parabolas. Returns
@@ -516,54 +358,6 @@ void LaneOrbit<L, N>::build_mesh(int half) {
     }
     mesh.u[std::size_t(m)] = m == steps ? L(quarter) : u;
     if (m < steps) mesh.force[std::size_t(m)] = force;
-  }
-}
-
-/// A lap from y_ by the classical fourth-order method with one step per segment; corrects the switches.
-template <class L, int N>
-void LaneOrbit<L, N>::march() {
-  solve::Rates<System> k1, k2, k3, k4;
-  for (int half = 0; half < 2; ++half) {
-    const System system = half_lap(half);
-    build_mesh(half);
-    const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
-    std::array<L, 2 * most_half_segments + 1> u, force;
-    std::array<Place<L>, 3> places;
-    places[2] = system.place(mesh.u[0]);
-    const auto moved = [](const State& from, const State& slope, const L& by) {
-      State to;
-      for (std::size_t n = 0; n < N; ++n) to[n] = from[n] + by * slope[n];
-      return to;
-    };
-    for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
-      Stretch& stretch = stretches_[std::size_t(half * segments_) + s];
-      const L sign = mesh.force[s], h = mesh.u[s + 1] - mesh.u[s], half_h = L(0.5) * h;
-      u[2 * s] = mesh.u[s];
-      u[2 * s + 1] = mesh.u[s] + half_h;
-      const Place<L>&start = places[s % 2 == 0 ? 2 : 0], &middle = places[1], &end = places[s % 2 == 0 ? 0 : 2];
-      find_place(system, u[2 * s + 1], places[1]);
-      find_place(system, mesh.u[s + 1], places[s % 2 == 0 ? 0 : 2]);
-      evaluate<false>(system, start, y_, sign, k1);
-      force[2 * s] = k1.switches[0];
-      stretch.y = y_;
-      stretch.rates = k1.dy;
-      stretch.jacobian[0] = jacobian_at(system, start, y_, k1.dy, sign);
-      evaluate<false>(system, middle, moved(y_, k1.dy, half_h), sign, k2);
-      const State inside = moved(y_, k2.dy, half_h);
-      evaluate<false>(system, middle, inside, sign, k3);
-      force[2 * s + 1] = k3.switches[0];
-      stretch.jacobian[1] = jacobian_at(system, middle, inside, k3.dy, sign);
-      evaluate<false>(system, end, moved(y_, k3.dy, h), sign, k4);
-      for (std::size_t n = 0; n < N; ++n) {
-        y_[n] = y_[n] + L(1.0 / 6.0) * h * (k1.dy[n] + L(2.0) * (k2.dy[n] + k3.dy[n]) + k4.dy[n]);
-      }
-    }
-    u[2 * std::size_t(segments_)] = mesh.u[std::size_t(segments_)];
-    evaluate<false>(system, places[segments_ % 2 == 0 ? 2 : 0], y_, mesh.force[std::size_t(segments_ - 1)], k4);
-    force[2 * std::size_t(segments_)] = k4.switches[0];
-    stretches_[std::size_t((half + 1) * segments_)].y = y_;
-    stretches_[std::size_t((half + 1) * segments_)].rates = k4.dy;
-    find_switches(half, u.data(), force.data(), 2 * segments_);
   }
 }
 
@@ -825,14 +619,18 @@ void LaneOrbit<L, N>::read(const System& system, const L& u, const State& y, con
                            std::array<Reading<L>, quantity_count>& out) const {
   const auto is_wanted = [&](Quantity q) { return wanted[std::size_t(q)]; };
   const auto at = [&](Quantity q) -> Reading<L>& { return out[std::size_t(q)]; };
-  at(Quantity::velocity) = {system.half * m.stroke_velocity, system.half * m.stroke_acceleration * inverse_of(y[0])};
-  at(Quantity::speed) = {y[0], dy[0]};
-  at(Quantity::slowness) = {-y[0], -dy[0]};
-  if constexpr (N == 2) {
-    at(Quantity::current) = {y[1], dy[1]};
-  } else {
-    const L per_resistance = inverse_of(circuit_resistance(vehicle_));
-    at(Quantity::current) = {m.current, -(vehicle_.motor.torque_constant * dy[0] * per_resistance)};
+  if (is_wanted(Quantity::velocity)) {
+    at(Quantity::velocity) = {system.half * m.stroke_velocity, system.half * m.stroke_acceleration * inverse_of(y[0])};
+  }
+  if (is_wanted(Quantity::speed)) at(Quantity::speed) = {y[0], dy[0]};
+  if (is_wanted(Quantity::slowness)) at(Quantity::slowness) = {-y[0], -dy[0]};
+  if (is_wanted(Quantity::current)) {
+    if constexpr (N == 2) {
+      at(Quantity::current) = {y[1], dy[1]};
+    } else {
+      const L per_resistance = inverse_of(circuit_resistance(vehicle_));
+      at(Quantity::current) = {m.current, -(vehicle_.motor.torque_constant * dy[0] * per_resistance)};
+    }
   }
   if (is_wanted(Quantity::energy)) {
     const L energy = wing_energy(vehicle_, m.kinematics, m.stroke_velocity);
@@ -871,109 +669,11 @@ void LaneOrbit<L, N>::visit_node(const System& system, std::size_t node, const L
   }
 }
 
-/// The largest modulus of the eigenvalues of the lap map's derivative, by collocation of the variational equation.
-template <class L, int N>
-L LaneOrbit<L, N>::floquet_multiplier() {
-  const std::size_t intervals = std::size_t(rule_.intervals);
-  Matrix M;
-  for (std::size_t row = 0; row < N; ++row) {
-    for (std::size_t column = 0; column < N; ++column) M[row][column] = L(row == column ? 1.0 : 0.0);
-  }
-  std::array<Matrix, nodes_per_segment> jacobian, path, moves;
-  solve::Rates<System> below, above;
-  for (int half = 0; half < 2; ++half) {
-    const System system = half_lap(half);
-    const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
-    for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
-      const std::size_t base = first_node(half, s);
-      const L h = mesh.u[s + 1] - mesh.u[s];
-      Matrix end_before = jacobian[intervals];
-      for (std::size_t m = 0; m <= intervals; ++m) {
-        for (std::size_t column = 0; column < N; ++column) {
-          const L by = column == 0 ? L(1e-4) * course_[base + m][0] : L(1e-4) * current_scale_;
-          State moved = course_[base + m];
-          moved[column] = moved[column] - by;
-          evaluate<false>(system, place_of(base + m), moved, mesh.force[s], below);
-          moved[column] = course_[base + m][column] + by;
-          evaluate<false>(system, place_of(base + m), moved, mesh.force[s], above);
-          const L per_both = L(0.5) * inverse_of(by);
-          for (std::size_t row = 0; row < N; ++row) jacobian[m][row][column] = (above.dy[row] - below.dy[row]) * per_both;
-        }
-        if (m == 0) {
-          // What sweep() corrects by grows with the square of the distance, its derivative with the distance.
-          const L& off = off_[std::size_t(half * segments_) + s];
-          if (any<L>(!(off == L(0.0)))) {
-            for (std::size_t row = 0; row < N; ++row) {
-              for (std::size_t column = 0; column < N; ++column) {
-                const L jump = off * (end_before[row][column] - jacobian[0][row][column]);
-                end_before[row][column] = select<L>(off == L(0.0), L(0.0), -jump);
-              }
-              end_before[row][row] = end_before[row][row] + L(1.0);
-            }
-            append(end_before, M);
-          }
-          path[0] = M;
-          continue;
-        }
-        path[m] = path[m - 1];
-        append(step_[base + m], path[m]);
-      }
-      for (int repeat = 0; repeat < settings_.sweeps + 2; ++repeat) {
-        std::array<Matrix, nodes_per_segment> rates;
-        for (std::size_t m = 0; m <= intervals; ++m) {
-          rates[m] = path[m];
-          append(jacobian[m], rates[m]);
-        }
-        Matrix d;
-        for (auto& row : d) row.fill(L(0.0));
-        for (std::size_t m = 1; m <= intervals; ++m) {
-          Matrix sum;
-          for (std::size_t row = 0; row < N; ++row) {
-            for (std::size_t column = 0; column < N; ++column) {
-              L integral(0.0);
-              for (std::size_t j = 0; j <= intervals; ++j) {
-                integral = integral + L(rule_.between[m][j]) * rates[j][row][column];
-              }
-              sum[row][column] = h * integral - (path[m][row][column] - path[m - 1][row][column]);
-            }
-          }
-          // d := step d + (1 + step) sum / 2
-          Matrix along = sum;
-          append(step_[base + m], along);
-          append(step_[base + m], d);
-          for (std::size_t row = 0; row < N; ++row) {
-            for (std::size_t column = 0; column < N; ++column) {
-              d[row][column] = d[row][column] + L(0.5) * (sum[row][column] + along[row][column]);
-            }
-          }
-          moves[m] = d;
-        }
-        for (std::size_t m = 1; m <= intervals; ++m) {
-          for (std::size_t row = 0; row < N; ++row) {
-            for (std::size_t column = 0; column < N; ++column) {
-              path[m][row][column] = path[m][row][column] + moves[m][row][column];
-            }
-          }
-        }
-      }
-      M = path[intervals];
-    }
-  }
-  if constexpr (N == 1) {
-    return abs(M[0][0]);
-  } else {
-    const L mean = L(0.5) * (M[0][0] + M[1][1]), half_difference = L(0.5) * (M[0][0] - M[1][1]);
-    const L determinant = M[0][0] * M[1][1] - M[0][1] * M[1][0];
-    const L discriminant = square(half_difference) + M[0][1] * M[1][0];
-    const L real = abs(mean) + sqrt(max(discriminant, L(0.0)));
-    return select<L>(discriminant >= L(0.0), real, sqrt(max(determinant, L(0.0))));
-  }
-}
-
 template <class L, int N>
 Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant) {
+  lost_ = L(1.0) < L(0.0);
   if (settings_.approach == LaneApproach::resume) {
-    doubtful_ = locked_ = L(1.0) < L(0.0);
+    doubtful_ = locked_ = lost_;
   } else {
     tabulate();
     judge_statics();
@@ -1019,7 +719,9 @@ Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
 
   error_estimate_ = L(1.5) * (step_error_ + L(2.0) * residual_ + peak_error_) + L(0.03) * square(switch_offset_) +
                     overlooked_ * sqrt(overlooked_);
-  doubtful_ = doubtful_ || !(slowest_ > floor_);
+  lost_ = lost_ || !(slowest_ > floor_);
+  if (settings_.approach == LaneApproach::guess) doubtful_ = doubtful_ || lost_;
+  error_estimate_ = select<L>(lost_, L(std::numeric_limits<double>::infinity()), error_estimate_);
   return cycle_metrics(vehicle_, integrals, extremes, multiplier, ReportingOf<L>{mass, bench_torque_constant});
 }
 

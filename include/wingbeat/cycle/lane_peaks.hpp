@@ -1,19 +1,19 @@
-// Extremes of a fine lap on SIMD lanes: the part of LaneOrbit that looks for them.
+// Extremes of a lap on SIMD lanes: the part of LaneOrbit that looks for them.
 #pragma once
 
 #include "wingbeat/cycle/lane_orbit.hpp"
 
 namespace wingbeat {
 
-/// The course over a segment, which may differ from lane to lane: the integral of its rates' interpolant.
+/// The course over a segment, which may differ from lane to lane: the integral of its rates' interpolant, and through the
+/// nodes that the last correction has moved since the rates were taken.
 template <class L, int N>
 void LaneOrbit<L, N>::follow(const L& segment, SegmentCourse<L, N>& course) const {
   const std::size_t intervals = std::size_t(rule_.intervals);
-  std::array<State, nodes_per_segment> rates;
-  State y;
+  std::array<State, nodes_per_segment> rates, y;
   course = {};
-  y.fill(L(0.0));
-  rates.fill(y);
+  for (State& at : y) at.fill(L(0.0));
+  rates = y;
   for (int half = 0; half < 2; ++half) {
     const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
     for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
@@ -25,8 +25,10 @@ void LaneOrbit<L, N>::follow(const L& segment, SegmentCourse<L, N>& course) cons
       course.length = select<L>(here, mesh.u[s + 1] - mesh.u[s], course.length);
       course.force = select<L>(here, mesh.force[s], course.force);
       for (std::size_t n = 0; n < N; ++n) {
-        y[n] = select<L>(here, course_[base][n], y[n]);
-        for (std::size_t j = 0; j <= intervals; ++j) rates[j][n] = select<L>(here, rates_[base + j][n], rates[j][n]);
+        for (std::size_t j = 0; j <= intervals; ++j) {
+          y[j][n] = select<L>(here, course_[base + j][n], y[j][n]);
+          rates[j][n] = select<L>(here, rates_[base + j][n], rates[j][n]);
+        }
       }
     }
   }
@@ -40,9 +42,17 @@ void LaneOrbit<L, N>::follow(const L& segment, SegmentCourse<L, N>& course) cons
       c[k] = half_length * sum * L(1.0 / double(2 * k + 1));
     }
     auto& to = course.legendre;
-    to[0][n] = y[n] + c[0] - c[1];
+    to[0][n] = y[0][n] + c[0] - c[1];
     for (std::size_t k = 1; k <= intervals + 1; ++k) {
       to[k][n] = c[k - 1] - (k + 1 <= intervals ? c[k + 1] : L(0.0));
+    }
+    L reached = y[0][n];
+    for (std::size_t m = 1; m <= intervals; ++m) {
+      L sum(0.0);
+      for (std::size_t j = 0; j <= intervals; ++j) sum = sum + L(rule_.between[m][j]) * rates[j][n];
+      reached = reached + course.length * sum;
+      const L moved = y[m][n] - reached;
+      for (std::size_t k = 0; k <= intervals; ++k) to[k][n] = to[k][n] + L(rule_.legendre[k][m]) * moved;
     }
   }
 }
@@ -90,13 +100,15 @@ void LaneOrbit<L, N>::for_each_stretch(int half, Quantity quantity, const L& flo
       const PeakBracket<L> b = {L(double(half * segments_) + double(s)), x0, from.value, from.slope, x1, to.value,
                                 to.slope, L(0.0), L(0.0)};
       const L slope = (b.v1 - b.v0) * inverse_of(max(width, L(1e-300)));
-      const L c2 = L(3.0) * slope - L(2.0) * b.d0 - b.d1, c3 = b.d0 + b.d1 - L(2.0) * slope;
-      const L discriminant = square(c2) - L(3.0) * c3 * b.d0;
-      Mask twice = may_rise && b.d0 * b.d1 > L(0.0) && discriminant > L(0.0);
+      // A slope that is nowhere far below the larger one of the ends' does not change its sign in between.
+      Mask twice = may_rise && b.d0 * b.d1 > L(0.0) &&
+                   slope * sign_of(b.d0) < L(0.5) * max(abs(b.d0), abs(b.d1));
       if (any<L>(twice)) {
+        const L c2 = L(3.0) * slope - L(2.0) * b.d0 - b.d1, c3 = b.d0 + b.d1 - L(2.0) * slope;
+        const L discriminant = square(c2) - L(3.0) * c3 * b.d0;
         const L per_3c3 = inverse_of(select<L>(c3 == L(0.0), L(1e-300), L(3.0) * c3));
         const L middle = -(c2 * per_3c3), reach = sqrt(max(discriminant, L(0.0))) * abs(per_3c3);
-        twice = twice && middle - reach > L(0.0) && middle + reach < L(1.0);
+        twice = twice && discriminant > L(0.0) && middle - reach > L(0.0) && middle + reach < L(1.0);
         if (any<L>(twice)) {
           visit(b, may_rise && !twice);
           SegmentCourse<L, N> course;
@@ -175,9 +187,9 @@ L LaneOrbit<L, N>::refine(Quantity quantity, const L& sign, PeakBracket<L> b) {
     const L high = size(end), low = max(size(end - 2), L(1e-300));
     return high * min(L(high * inverse_of(low)), L(1.0)) * inverse_of(scale);
   };
-  L error = left_out(0, course.legendre[0][0]);
+  L error = L(2.0) * left_out(0, course.legendre[0][0]);
   if constexpr (N == 2) {
-    if (quantity == Quantity::current) error = max(error, left_out(1, abs(highest)));
+    if (quantity == Quantity::current) error = max(error, L(2.0) * left_out(1, abs(highest)));
   }
   peak_error_ = select<L>(inside, max(peak_error_, error), peak_error_);
   return select<L>(inside, max(highest, b.estimate), highest);
