@@ -2,12 +2,12 @@
 // time per design, ratio to the batched solver and the accuracy that each reached. docs/benchmarks.md has a run and its
 // meaning.
 //
-//   benchmark_peers             1024 designs (fewer for the slow ones)
+//   benchmark_peers             4096 designs (fewer for the slow ones)
 //   benchmark_peers DESIGNS     another number of designs
 //
 // Every peer integrates in crank angle, where the period is known, from the same guess; its first laps are coarse; and
 // its tolerance (for AUTO-07p: its number of mesh intervals) is the loosest of a ladder that brings the median lift
-// error to 1e-6. SciPy is asked of /usr/bin/python3, or of what WINGBEAT_PYTHON names; AUTO-07p is expected where
+// error to 1e-6 and 99 % of the designs within ten times that. SciPy is asked of /usr/bin/python3, or of what WINGBEAT_PYTHON names; AUTO-07p is expected where
 // Debian puts it, or in AUTO_DIR.
 #include <algorithm>
 #include <boost/numeric/odeint.hpp>
@@ -36,7 +36,8 @@ namespace {
 using namespace wingbeat;
 namespace fs = std::filesystem;
 
-constexpr double goal = 1e-6;      // lift error that every method is to reach
+constexpr double goal = 1e-6;              // lift error that every method is to reach at the median
+constexpr double high_goal = 10.0 * goal;  // and at the 99th percentile
 constexpr double periodic = 1e-6;  // a lap that returns to its start within this, relatively, is the orbit
 constexpr double coarse = 1e-4;    // tolerance of the first laps, which only approach the orbit
 constexpr double settled = 3e-2;   // change over a coarse lap below which the real ones begin
@@ -371,7 +372,8 @@ Row tuned(const Rival& rival) {
     row.setting = setting;
     row.answers = rival.solve(setting);
     row.errors = errors_of(row.answers);
-    if (row.errors.failed * 20 < int(row.answers.got.size()) && row.errors.median <= goal) break;
+    const bool few_failures = row.errors.failed * 20 < int(row.answers.got.size());
+    if (few_failures && row.errors.median <= goal && row.errors.high <= high_goal) break;
   }
   return row;
 }
@@ -459,7 +461,7 @@ Answers by_auto(const std::vector<EnsembleMember>& members, int intervals, const
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::size_t count = argc > 1 ? std::max(1, std::atoi(argv[1])) : 1024;
+  const std::size_t count = argc > 1 ? std::max(1, std::atoi(argv[1])) : 4096;
   const StartUp start_up = start_up_in_time();
 
   // The designs of the box that flap, with their exact answers.
