@@ -26,6 +26,10 @@ LaneSolver solver_for(InstructionSet isa) {
   return {solve_block_sse2, lanes_sse2};
 }
 
+/// Angle that a crank turns by at the speed without load while its current decays by a factor of e: up to here lanes take
+/// it for a lag. Segments are forty times as long.
+constexpr double most_lag = 0.01;
+
 /// How a tolerance is met.
 struct Plan {
   LaneSettings first, from_rest, from_rest_finely;
@@ -105,10 +109,16 @@ class EnsembleRun {
   }
 
  private:
-  static constexpr std::size_t kinds = 8;
+  static constexpr std::size_t kinds = 12;
   static std::size_t kind_of(const Vehicle<double>& v) {
-    return (v.crank.formulation == Formulation::virtual_work ? 4 : 0) + (v.spring.stiffness > 0.0 ? 2 : 0) +
-           (v.motor.armature_inductance > 0.0 ? 1 : 0);
+    return (v.crank.formulation == Formulation::virtual_work ? 6 : 0) + (v.spring.stiffness > 0.0 ? 3 : 0) +
+           std::size_t(current_of(v));
+  }
+
+  static LaneCurrent current_of(const Vehicle<double>& v) {
+    if (!(v.motor.armature_inductance > 0.0)) return LaneCurrent::algebraic;
+    const double lag = v.motor.armature_inductance / circuit_resistance(v) * no_load_speed(v);
+    return lag < most_lag ? LaneCurrent::lagging : LaneCurrent::state;
   }
 
   /// Few need more than the first attempt: all of a kind together fill the lanes of the others.
@@ -130,7 +140,7 @@ class EnsembleRun {
   void run(const std::vector<std::size_t>& which, LaneSettings settings, std::vector<std::size_t>& doubtful,
            std::vector<std::size_t>& inexact) {
     if (which.empty()) return;
-    settings.inductance = members_[which.front()].vehicle.motor.armature_inductance > 0.0;
+    settings.current = current_of(members_[which.front()].vehicle);
     std::array<const EnsembleMember*, lanes_avx512> members;
     std::array<LaneResult*, lanes_avx512> results;
     for (std::size_t start = 0; start < which.size(); start += std::size_t(solver_.lanes)) {

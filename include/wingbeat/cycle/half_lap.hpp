@@ -46,12 +46,13 @@ struct HalfLap {
   CrankGeometry<S> geometry;
   S per_inductance;  ///< 1 / L_a [1/H]
   S half;            ///< +1: crank angle u, stroke upward; -1: crank angle pi + u, stroke downward
+  S drop = S(0.0);   ///< N = 1: L_a di/dt [V], which a small inductance takes from the voltage
 
   S current(const State& y) const {
     if constexpr (N == 2) {
       return y[1];
     } else {
-      return algebraic_current(vehicle, vehicle.voltage, y[0]);
+      return algebraic_current(vehicle, S(vehicle.voltage - drop), y[0]);
     }
   }
 

@@ -59,7 +59,7 @@ void solve_block(const EnsembleMember* const* members, int count, const LaneSett
       scatter(from, [&](LaneResult& r) -> double& { return to(r.start); });
     });
   };
-  if (settings.inductance) {
+  if (settings.current == LaneCurrent::state) {
     with_states(std::integral_constant<int, 2>{});
   } else {
     with_states(std::integral_constant<int, 1>{});

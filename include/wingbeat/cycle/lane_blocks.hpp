@@ -35,10 +35,17 @@ enum class LaneApproach {
   resume      ///< from the LapStart that an earlier attempt left
 };
 
+/// What the inductance of a block's motors makes of the current.
+enum class LaneCurrent {
+  algebraic,  ///< none
+  lagging,    ///< small: the current follows the speed within a fraction of a segment
+  state
+};
+
 struct LaneSettings {
   LaneApproach approach = LaneApproach::guess;
   int start_up_steps = 48; ///< from rest: of a turn at the speed without load
-  bool inductance = true;  ///< whether the block's motors have one
+  LaneCurrent current = LaneCurrent::state;
   int coarse_laps = 2;
   int segments = 6;        ///< of half a lap
   int intervals = 6;       ///< between the nodes of a segment, even
@@ -61,8 +68,8 @@ struct LaneResult {
   LapStart start;
 };
 
-/// Solves `count` members, at most lanes_*() of them, alike in formulation and in whether they have springs and
-/// inductance. A member's result does not depend on the others.
+/// Solves `count` members, at most lanes_*() of them, alike in formulation, in whether they have springs and in
+/// what their inductance makes of the current. A member's result does not depend on the others.
 void solve_block_sse2(const EnsembleMember* const* members, int count, const LaneSettings& settings,
                       LaneResult* const* results);
 void solve_block_avx2(const EnsembleMember* const* members, int count, const LaneSettings& settings,

@@ -5,6 +5,24 @@
 
 namespace wingbeat {
 
+/// Takes the rates below and above a node's speed again with what the inductance makes of the change of acceleration.
+template <class L, int N>
+void LaneOrbit<L, N>::lag_with(System system, std::size_t node, const L& by, const L& force, solve::Rates<System>& below,
+                               solve::Rates<System>& above) const {
+  const L per_acceleration = vehicle_.motor.armature_inductance * vehicle_.motor.torque_constant *
+                             inverse_of(circuit_resistance(vehicle_));
+  const State& y = course_[node];
+  const L acceleration = rates_[node][0] * y[0];
+  for (solve::Rates<System>* rates : {&below, &above}) {
+    State moved = y;
+    moved[0] = rates == &below ? y[0] - by : y[0] + by;
+    for (int repeat = 0; repeat < 2; ++repeat) {
+      system.drop = drop_[node] - per_acceleration * (rates->dy[0] * moved[0] - acceleration);
+      evaluate<false>(system, place_of(node), moved, force, *rates);
+    }
+  }
+}
+
 /// The largest modulus of the eigenvalues of the lap map's derivative, by collocation of the variational equation.
 template <class L, int N>
 L LaneOrbit<L, N>::floquet_multiplier() {
@@ -16,13 +34,14 @@ L LaneOrbit<L, N>::floquet_multiplier() {
   std::array<Matrix, nodes_per_segment> jacobian, path, moves;
   solve::Rates<System> below, above;
   for (int half = 0; half < 2; ++half) {
-    const System system = half_lap(half);
+    System system = half_lap(half);
     const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
     for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
       const std::size_t base = first_node(half, s);
       const L h = mesh.u[s + 1] - mesh.u[s];
       Matrix end_before = jacobian[intervals];
       for (std::size_t m = 0; m <= intervals; ++m) {
+        if (lags_) system.drop = drop_[base + m];
         for (std::size_t column = 0; column < N; ++column) {
           const L by = column == 0 ? L(1e-4) * course_[base + m][0] : L(1e-4) * current_scale_;
           State moved = course_[base + m];
@@ -30,6 +49,7 @@ L LaneOrbit<L, N>::floquet_multiplier() {
           evaluate<false>(system, place_of(base + m), moved, mesh.force[s], below);
           moved[column] = course_[base + m][column] + by;
           evaluate<false>(system, place_of(base + m), moved, mesh.force[s], above);
+          if (lags_) lag_with(system, base + m, by, mesh.force[s], below, above);
           const L per_both = L(0.5) * inverse_of(by);
           for (std::size_t row = 0; row < N; ++row) jacobian[m][row][column] = (above.dy[row] - below.dy[row]) * per_both;
         }

@@ -65,6 +65,7 @@ template <class L, int N>
 struct SegmentCourse {
   L half, u, length, force;
   std::array<std::array<L, N>, solve::CollocationRule::most + 1> legendre;  ///< coefficients of the state
+  std::array<L, solve::CollocationRule::most + 1> drop;                     ///< and of HalfLap::drop
 };
 
 template <class L, int N>
@@ -88,7 +89,8 @@ class LaneOrbit {
     wanted_ = settings.wanted;
     for (const bool wanted : wanted_) reads_ = reads_ || wanted;
     geometry_ = geometry_of(vehicle.crank);
-    if constexpr (N == 2) per_inductance_ = L(1.0) / vehicle.motor.armature_inductance;
+    lags_ = N == 1 && settings.current == LaneCurrent::lagging;
+    if (N == 2 || lags_) per_inductance_ = L(1.0) / vehicle.motor.armature_inductance;
   }
 
   /// Metrics of the orbit. `mass` [kg] and `bench_torque_constant`
@@ -134,13 +136,15 @@ class LaneOrbit {
   [[gnu::noinline]] void sweep();
   [[gnu::noinline, gnu::flatten]] void propose(std::size_t base, const L& h, State& end);
   [[gnu::noinline, gnu::flatten]] void correct(State end);
+  [[gnu::noinline, gnu::flatten]] void let_current_lag();
+  [[gnu::noinline, gnu::flatten]] solve::Rates<System> relaxation(System system, std::size_t base, const L& force);
   [[gnu::noinline, gnu::flatten]] void visit_node(const System& system, std::size_t node, const L& force,
                                                   solve::Rates<System>& rates);
   [[gnu::noinline, gnu::flatten]] void add_tails(const std::array<std::array<L, nodes_per_segment>, 4>& controlled,
                                                  std::size_t base, const L& h);
   [[gnu::noinline, gnu::flatten]] void read(const System& system, const L& u, const State& y, const L& force,
                                             const Motion<L>& m, const State& dy,
-                                            const std::array<bool, quantity_count>& wanted,
+                                            const L& drop_slope, const std::array<bool, quantity_count>& wanted,
                                             std::array<Reading<L>, quantity_count>& out) const;
   [[gnu::noinline, gnu::flatten]] void follow(const L& segment, SegmentCourse<L, N>& course) const;
   [[gnu::noinline, gnu::flatten]] Reading<L> reading_inside(Quantity quantity, const SegmentCourse<L, N>& course,
@@ -154,6 +158,8 @@ class LaneOrbit {
   [[gnu::noinline, gnu::flatten]] L exchanged_energy();
   [[gnu::noinline, gnu::flatten]] L lift_peak(const L& highest_velocity) const;
   [[gnu::noinline, gnu::flatten]] L floquet_multiplier();
+  [[gnu::noinline]] void lag_with(System system, std::size_t node, const L& by, const L& force,
+                                  solve::Rates<System>& below, solve::Rates<System>& above) const;
   [[gnu::noinline]] Matrix jacobian_at(const System& system, const Place<L>& place, const State& y, const State& rates,
                                        const L& force) const;
   static void propagator(const Matrix& jacobian, const L& h, Matrix& out);
@@ -177,6 +183,9 @@ class LaneOrbit {
   int segments_;  ///< of half a lap
   CrankGeometry<L> geometry_;
   L per_inductance_, current_scale_, no_load_, floor_;
+  bool lags_;         ///< the current, behind the speed
+  L lag_residual_, layer_;
+  std::array<L, most_nodes> drop_;  ///< HalfLap::drop at the nodes
   Matrix monodromy_;  ///< of a lap
   std::array<std::array<Place<L>, coarse_samples>, 2> table_;
   State y_;  ///< where a lap starts
@@ -203,7 +212,19 @@ class LaneOrbit {
   std::array<L, 5> high_, low_;  ///< sums of the last and last but two coefficients of what limits the error
   std::array<bool, quantity_count> wanted_;
   bool reads_ = false;  ///< anything
-  L slowest_, residual_, step_error_, switch_offset_;
+  /// What relaxation() leaves out.
+  L lag_left_out() const {
+    const L angle = vehicle_.motor.armature_inductance * no_load_ * inverse_of(circuit_resistance(vehicle_));
+    return layer_ * (angle + electrical_to_mechanical_time());
+  }
+  L electrical_to_mechanical_time() const {
+    const Motor<L>& m = vehicle_.motor;
+    return m.armature_inductance * square(L(m.torque_constant * inverse_of(circuit_resistance(vehicle_)))) *
+           inverse_of(m.inertia);
+  }
+
+  L slowest_, residual_, switch_offset_;
+  L step_error_, speed_error_;  ///< of what the segments' polynomials leave out: at all, and of speed and time
   L overlooked_;   ///< depth to which the rod force has the wrong sign inside a segment, of its largest magnitude
   L peak_error_;
   L error_estimate_;
@@ -502,20 +523,22 @@ void LaneOrbit<L, N>::sweep() {
   L overlooked(0.0), highest(0.0);
   std::array<std::array<L, nodes_per_segment>, 4> controlled;
   typename System::Quadrature integrands_before;
+  if (lags_) let_current_lag();
   if constexpr (last) {
     integrals_.fill(L(0.0));
     high_.fill(L(0.0));
     low_.fill(L(0.0));
-    switch_offset_ = L(0.0);
+    switch_offset_ = layer_ = L(0.0);
   }
   for (int half = 0; half < 2; ++half) {
-    const System system = half_lap(half);
+    System system = half_lap(half);
     const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
     L h_before(0.0);
     for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
       const std::size_t base = first_node(half, s);
       const L sign = mesh.force[s], h = mesh.u[s + 1] - mesh.u[s];
       for (std::size_t m = 0; m <= intervals; ++m) {
+        if (lags_) system.drop = drop_[base + m];
         if constexpr (last) {
           visit_node(system, base + m, sign, rates);
           const L weight = L(rule_.weight[m]) * h;
@@ -542,6 +565,16 @@ void LaneOrbit<L, N>::sweep() {
         const L off = min(max(force_[base - 1] * h_before * inverse_of(slope), -h), h);
         const L half_off = select<L>(switches, L(0.5) * off, L(0.0));
         for (std::size_t n = 0; n < N; ++n) jump[n] = jump[n] - half_off * (rates_[base - 1][n] - rates_[base][n]);
+        if (lags_) {
+          const solve::Rates<System> by = relaxation(system, base, sign);
+          for (std::size_t n = 0; n < N; ++n) jump[n] = jump[n] + select<L>(switches, by.dy[n], L(0.0));
+          if constexpr (last) {
+            for (std::size_t q = 0; q < integrals_.size(); ++q) {
+              integrals_[q] = integrals_[q] + select<L>(switches, by.dq[q], L(0.0));
+            }
+            layer_ = max(layer_, select<L>(switches, abs(by.dy[0]) * inverse_of(course_[base][0]), L(0.0)));
+          }
+        }
         if constexpr (last) {
           for (std::size_t q = 0; q < integrals_.size(); ++q) {
             integrals_[q] = integrals_[q] - half_off * (integrands_before[q] - rates.dq[q]);
@@ -584,15 +617,63 @@ void LaneOrbit<L, N>::sweep() {
   if constexpr (last) {
     overlooked_ = overlooked * inverse_of(max(highest, L(1e-300)));
     // The coefficients fall geometrically, and the sums over the nodes see none below the 2 n-th.
-    step_error_ = L(0.0);
+    step_error_ = speed_error_ = L(0.0);
     for (std::size_t c = 0; c < high_.size(); ++c) {
       const L scale = c == 0 ? L(1.0) : inverse_of(max(abs(integrals_[System::controlled_integrals[c - 1]]), L(1e-300)));
       const L ratio = high_[c] * inverse_of(max(low_[c], L(1e-300)));
       L error = high_[c] * scale;
       for (std::size_t k = 0; k < intervals / 2; ++k) error = error * ratio;
       step_error_ = max(step_error_, error);
+      if (c < 2) speed_error_ = max(speed_error_, error);
     }
   }
+}
+
+/// The inductance's voltage at the nodes from the course of the current that it leaves, twice: an iteration gains the
+/// ratio of its time constant to that of the course.
+template <class L, int N>
+void LaneOrbit<L, N>::let_current_lag() {
+  if constexpr (N == 1) {
+    const std::size_t intervals = std::size_t(rule_.intervals), nodes = first_node(2, 0);
+    const L inductance = vehicle_.motor.armature_inductance;
+    L change(0.0);
+    for (int repeat = 0; repeat < 2; ++repeat) {
+      change = L(0.0);
+      for (int half = 0; half < 2; ++half) {
+        const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+        for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
+          const std::size_t base = first_node(half, s);
+          const L inductance_per_h = inductance * inverse_of(max(L(mesh.u[s + 1] - mesh.u[s]), L(1e-12)));
+          std::array<L, nodes_per_segment> current;
+          for (std::size_t j = 0; j <= intervals; ++j) {
+            current[j] = algebraic_current(vehicle_, L(vehicle_.voltage - drop_[base + j]), course_[base + j][0]);
+          }
+          for (std::size_t m = 0; m <= intervals; ++m) {
+            L slope(0.0);
+            for (std::size_t j = 0; j <= intervals; ++j) slope = slope + L(rule_.slope[m][j]) * current[j];
+            const L drop = inductance_per_h * course_[base + m][0] * slope;
+            change = change + abs(drop - drop_[base + m]);
+            drop_[base + m] = drop;
+          }
+        }
+      }
+    }
+    lag_residual_ = change * inverse_of(L(vehicle_.voltage * L(double(nodes))));
+  }
+}
+
+/// Where the course bends, at a sign change of the rod force, the current goes on from what it was before and has relaxed
+/// within a time constant: what that adds to state and integrals, up to the square of the angle it takes.
+template <class L, int N>
+auto LaneOrbit<L, N>::relaxation(System system, std::size_t base, const L& force) -> solve::Rates<System> {
+  solve::Rates<System> after, before;
+  evaluate<true>(system, place_of(base), course_[base], force, after);
+  system.drop = drop_[base - 1];
+  evaluate<true>(system, place_of(base), course_[base], force, before);
+  const L angle = vehicle_.motor.armature_inductance * course_[base][0] * inverse_of(circuit_resistance(vehicle_));
+  for (std::size_t n = 0; n < N; ++n) after.dy[n] = angle * (before.dy[n] - after.dy[n]);
+  for (std::size_t q = 0; q < after.dq.size(); ++q) after.dq[q] = angle * (before.dq[q] - after.dq[q]);
+  return after;
 }
 
 /// Adds the last coefficients of a segment's rates of speed and integrals.
@@ -615,7 +696,7 @@ void LaneOrbit<L, N>::add_tails(const std::array<std::array<L, nodes_per_segment
 /// The readings wanted at a state, with the motion there.
 template <class L, int N>
 void LaneOrbit<L, N>::read(const System& system, const L& u, const State& y, const L& force, const Motion<L>& m,
-                           const State& dy, const std::array<bool, quantity_count>& wanted,
+                           const State& dy, const L& drop_slope, const std::array<bool, quantity_count>& wanted,
                            std::array<Reading<L>, quantity_count>& out) const {
   const auto is_wanted = [&](Quantity q) { return wanted[std::size_t(q)]; };
   const auto at = [&](Quantity q) -> Reading<L>& { return out[std::size_t(q)]; };
@@ -629,7 +710,8 @@ void LaneOrbit<L, N>::read(const System& system, const L& u, const State& y, con
       at(Quantity::current) = {y[1], dy[1]};
     } else {
       const L per_resistance = inverse_of(circuit_resistance(vehicle_));
-      at(Quantity::current) = {m.current, -(vehicle_.motor.torque_constant * dy[0] * per_resistance)};
+      at(Quantity::current) = {m.current, lags_ ? system.drop * per_inductance_ * inverse_of(y[0])
+                                                : -(vehicle_.motor.torque_constant * dy[0] * per_resistance)};
     }
   }
   if (is_wanted(Quantity::energy)) {
@@ -647,7 +729,9 @@ void LaneOrbit<L, N>::read(const System& system, const L& u, const State& y, con
       const L move(side == 0 ? -by : by);
       State moved;
       for (std::size_t n = 0; n < N; ++n) moved[n] = y[n] + move * dy[n];
-      ahead[side] = system.motion(system.place(u + move), moved, force).rod_force;
+      System there = system;
+      if (lags_) there.drop = system.drop + move * drop_slope;
+      ahead[side] = there.motion(there.place(u + move), moved, force).rod_force;
     }
     at(Quantity::force) = {force * m.rod_force, force * (ahead[1] - ahead[0]) * L(0.5 / by)};
   }
@@ -662,7 +746,7 @@ void LaneOrbit<L, N>::visit_node(const System& system, std::size_t node, const L
   std::array<bool, quantity_count> wanted = wanted_;
   wanted[std::size_t(Quantity::force)] = false;
   std::array<Reading<L>, quantity_count> readings;
-  read(system, L(0.0), course_[node], force, motion, rates.dy, wanted, readings);
+  read(system, L(0.0), course_[node], force, motion, rates.dy, L(0.0), wanted, readings);
   readings[std::size_t(Quantity::force)].value = force * motion.rod_force;
   for (std::size_t q = 0; q < std::size_t(quantity_count); ++q) {
     if (wanted_[q]) readings_[q][node] = readings[q];
@@ -687,6 +771,7 @@ Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   }
   march();
   place_nodes();
+  if (lags_) drop_.fill(L(0.0));
   for (int n = 0; n < settings_.sweeps; ++n) sweep<false>();
   sweep<true>();
 
@@ -719,6 +804,12 @@ Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
 
   error_estimate_ = L(1.5) * (step_error_ + L(2.0) * residual_ + peak_error_) + L(0.03) * square(switch_offset_) +
                     overlooked_ * sqrt(overlooked_);
+  if (lags_) error_estimate_ = error_estimate_ + L(1.5) * lag_residual_ + lag_left_out();
+  // A motor near its speed without load draws the small difference of two large voltages.
+  const L back_emf = L(two_pi) * vehicle_.motor.torque_constant;
+  const L resistive = circuit_resistance(vehicle_) * abs(integrals_[lane_integral(Integral::current)]);
+  const L difference = max(L(back_emf * inverse_of(max(resistive, L(1e-300))) - L(1.0)), L(0.0));
+  error_estimate_ = error_estimate_ + L(1.5) * difference * (speed_error_ + L(2.0) * residual_);
   lost_ = lost_ || !(slowest_ > floor_);
   if (settings_.approach == LaneApproach::guess) doubtful_ = doubtful_ || lost_;
   error_estimate_ = select<L>(lost_, L(std::numeric_limits<double>::infinity()), error_estimate_);

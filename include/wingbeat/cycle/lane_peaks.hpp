@@ -24,6 +24,11 @@ void LaneOrbit<L, N>::follow(const L& segment, SegmentCourse<L, N>& course) cons
       course.u = select<L>(here, mesh.u[s], course.u);
       course.length = select<L>(here, mesh.u[s + 1] - mesh.u[s], course.length);
       course.force = select<L>(here, mesh.force[s], course.force);
+      for (std::size_t k = 0; lags_ && k <= intervals; ++k) {
+        L sum(0.0);
+        for (std::size_t j = 0; j <= intervals; ++j) sum = sum + L(rule_.legendre[k][j]) * drop_[base + j];
+        course.drop[k] = select<L>(here, sum, course.drop[k]);
+      }
       for (std::size_t n = 0; n < N; ++n) {
         for (std::size_t j = 0; j <= intervals; ++j) {
           y[j][n] = select<L>(here, course_[base + j][n], y[j][n]);
@@ -62,22 +67,34 @@ template <class L, int N>
 Reading<L> LaneOrbit<L, N>::reading_inside(Quantity quantity, const SegmentCourse<L, N>& course, const L& x) const {
   std::array<bool, quantity_count> wanted{};
   wanted[std::size_t(quantity)] = true;
-  const System system = {vehicle_, geometry_, per_inductance_, course.half};
+  System system = {vehicle_, geometry_, per_inductance_, course.half};
   const L t = L(2.0) * x * inverse_of(max(course.length, L(1e-12))) - L(1.0);
   State y;
   for (std::size_t n = 0; n < N; ++n) y[n] = course.legendre[0][n] + t * course.legendre[1][n];
-  L before(1.0), here = t;
+  L before(1.0), here = t, slope_before(0.0), slope(1.0), drop_slope(0.0);
+  if (lags_) {
+    system.drop = course.drop[0] + t * course.drop[1];
+    drop_slope = course.drop[1];
+  }
   for (std::size_t k = 1; k <= std::size_t(rule_.intervals); ++k) {
     const L next = L(double(2 * k + 1) / double(k + 1)) * t * here - L(double(k) / double(k + 1)) * before;
     for (std::size_t n = 0; n < N; ++n) y[n] = y[n] + course.legendre[k + 1][n] * next;
+    if (lags_) {
+      const L next_slope = slope_before + L(double(2 * k + 1)) * here;
+      system.drop = system.drop + course.drop[k + 1] * next;
+      drop_slope = drop_slope + course.drop[k + 1] * next_slope;
+      slope_before = slope;
+      slope = next_slope;
+    }
     before = here;
     here = next;
   }
+  drop_slope = drop_slope * L(2.0) * inverse_of(max(course.length, L(1e-12)));
   const L u = course.u + x;
   const Motion<L> motion = system.motion(system.place(u), y, course.force);
   const State dy = system.template rates_of<false>(motion, y, course.force).dy;
   std::array<Reading<L>, quantity_count> readings;
-  read(system, u, y, course.force, motion, dy, wanted, readings);
+  read(system, u, y, course.force, motion, dy, drop_slope, wanted, readings);
   return readings[std::size_t(quantity)];
 }
 

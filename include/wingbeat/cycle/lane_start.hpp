@@ -61,9 +61,14 @@ void LaneOrbit<L, N>::start_from_rest() {
   const int steps_per_lap = settings_.start_up_steps;
   constexpr int most_laps = 24;
   // The kinks leave an error of the second order, which counts most where the crank almost stands still.
-  const L slow_limit = L(1.92 / steps_per_lap) * no_load_;
+  L slow_limit = L(1.92 / steps_per_lap) * no_load_;
+  // An inductance that is left out here changes the speed by less than its share of the motor's time constant.
+  if (lags_) slow_limit = slow_limit + L(2.0) * electrical_to_mechanical_time() * no_load_;
   constexpr double end = 3.5 * pi;
   const L dt = L(two_pi / double(steps_per_lap)) * inverse_of(no_load_);
+  if constexpr (N == 2) {  // beyond the method's stability
+    doubtful_ = doubtful_ || dt * circuit_resistance(vehicle_) * per_inductance_ > L(2.0);
+  }
   const auto rates = [&](const Moving& x) {
     const L sine = sin(x[0]), cosine = cos(x[0]);
     System system = half_lap(0);
