@@ -150,5 +150,22 @@ int main(int argc, char** argv) {
       best_time([&] { solve_ensemble(batched, options, start_up, std::span(outcomes).first(batched.size())); }, seconds);
   std::printf("\npower and lift, without the %zu recomputed designs: %.0f designs/s, these take %.0f %% of the time\n",
               members.size() - batched.size(), double(batched.size()) / without, 1e2 * (1.0 - without / whole));
+
+  // Real motors: stiff, for an explicit method.
+  std::mt19937_64 random(20223);
+  std::vector<EnsembleMember> coreless;
+  for (std::size_t n = 0; n < design_count / 4; ++n) {
+    const Design<double> design = coreless_design(random);
+    coreless.push_back({resolve(design), reporting_of(design)});
+  }
+  const std::vector<EnsembleMember> some(coreless.begin(), coreless.begin() + std::ptrdiff_t(design_count / 16));
+  const double one_by_one_time =
+      best_time([&] { solve_ensemble(some, one_by_one, start_up, std::span(outcomes).first(some.size())); }, seconds);
+  const double batched_time =
+      best_time([&] { solve_ensemble(coreless, options, start_up, std::span(outcomes).first(coreless.size())); }, seconds);
+  const auto recomputed = std::count_if(outcomes.begin(), outcomes.begin() + std::ptrdiff_t(coreless.size()),
+                                        [](const EnsembleOutcome& out) { return out.scalar; });
+  std::printf("coreless motors, 1 us to 1 ms: %.0f designs/s, scalar %.0f; %td of %zu recomputed\n",
+              double(coreless.size()) / batched_time, double(some.size()) / one_by_one_time, recomputed, coreless.size());
   return 0;
 }

@@ -27,8 +27,10 @@ LaneSolver solver_for(InstructionSet isa) {
 }
 
 /// Angle that a crank turns by at the speed without load while its current decays by a factor of e: up to here lanes take
-/// it for a lag. Segments are forty times as long.
-constexpr double most_lag = 0.01;
+/// it for a lag, of which they leave out what is of higher order. Segments are a hundred times as long.
+double most_lag(double tolerance) {
+  return 0.004 * std::min(std::sqrt(tolerance / 1e-6), 2.0);
+}
 
 /// How a tolerance is met.
 struct Plan {
@@ -63,6 +65,7 @@ Plan plan_for(const EnsembleOptions& options) {
 
   LaneSettings finer = s;
   finer.approach = LaneApproach::resume;
+  finer.implicit = true;
   for (LaneSettings& again : plan.again) {
     ++finer.sweeps;
     finer.segments = std::min(finer.segments + 2, most_half_segments);
@@ -73,6 +76,7 @@ Plan plan_for(const EnsembleOptions& options) {
   plan.from_rest.approach = LaneApproach::from_rest;
   plan.from_rest.sweeps += 1;
   plan.from_rest.segments = most_half_segments;
+  plan.from_rest.implicit = true;
   plan.from_rest_finely = plan.from_rest;
   plan.from_rest_finely.start_up_steps = 16 * plan.from_rest.start_up_steps;
   return plan;
@@ -110,15 +114,15 @@ class EnsembleRun {
 
  private:
   static constexpr std::size_t kinds = 12;
-  static std::size_t kind_of(const Vehicle<double>& v) {
+  std::size_t kind_of(const Vehicle<double>& v) const {
     return (v.crank.formulation == Formulation::virtual_work ? 6 : 0) + (v.spring.stiffness > 0.0 ? 3 : 0) +
            std::size_t(current_of(v));
   }
 
-  static LaneCurrent current_of(const Vehicle<double>& v) {
+  LaneCurrent current_of(const Vehicle<double>& v) const {
     if (!(v.motor.armature_inductance > 0.0)) return LaneCurrent::algebraic;
     const double lag = v.motor.armature_inductance / circuit_resistance(v) * no_load_speed(v);
-    return lag < most_lag ? LaneCurrent::lagging : LaneCurrent::state;
+    return lag < most_lag(options_.tolerance) ? LaneCurrent::lagging : LaneCurrent::state;
   }
 
   /// Few need more than the first attempt: all of a kind together fill the lanes of the others.

@@ -79,13 +79,17 @@ bool same_bits(const EnsembleOutcome& a, const EnsembleOutcome& b) {
          std::memcmp(&a.metrics, &b.metrics, sizeof a.metrics) == 0;
 }
 
-/// Members of every kind: conditions, springs, formulations, friction laws, no inductance, and some that do not flap.
+/// Members of every kind: conditions, springs, formulations, friction laws, no or little inductance, and some that do not
+/// flap.
 std::vector<EnsembleMember> mixed_members(int count, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::vector<EnsembleMember> members;
   for (int n = 0; n < count; ++n) {
     const Condition condition = n % 11 == 0 ? Condition::wingless : n % 7 == 0 ? Condition::vacuum : Condition::air;
-    members.push_back(member_of(n % 3 == 0 ? random_design(random, 1.6) : box_design(random), condition));
+    members.push_back(member_of(n % 3 == 0   ? random_design(random, 1.6)
+                                : n % 5 == 0 ? coreless_design(random)
+                                             : box_design(random),
+                                condition));
   }
   return members;
 }
@@ -122,6 +126,40 @@ TEST(Ensemble, InternalResistanceAgreesWithTheScalarSolver) {
     EXPECT_GT(flapping, 400);
     EXPECT_GT(by_lanes, flapping * 4 / 5);
     EXPECT_LE(outside, flapping / 50);
+  }
+}
+
+TEST(Ensemble, SmallInductancesAgreeWithTheScalarSolver) {
+  std::mt19937_64 random(37);
+  std::vector<EnsembleMember> members;
+  for (int n = 0; n < many / 20; ++n) members.push_back(member_of(coreless_design(random)));
+  const StartUp start_up = remembered_start_up();
+  EnsembleOptions exact;
+  exact.scalar_only = true;
+  exact.tolerance = 1e-10;
+  const auto expected = solve(members, exact, start_up);
+  for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
+    EnsembleOptions options;
+    options.tolerance = tolerance;
+    const auto got = solve(members, options, start_up);
+    int flapping = 0, by_lanes = 0, outside = 0;
+    for (std::size_t n = 0; n < members.size(); ++n) {
+      EXPECT_EQ(got[n].status, expected[n].status) << n;
+      if (expected[n].status != FlappingStatus::flapping) continue;
+      ++flapping;
+      by_lanes += !got[n].scalar;
+      std::string where;
+      const double error = largest_error(got[n].metrics, expected[n].metrics, &where);
+      EXPECT_LT(error, 20.0 * tolerance) << n << ' ' << where << " at " << tolerance;
+      const double multiplier = expected[n].metrics[Metric::floquet_multiplier_max];
+      const double off = std::abs(got[n].metrics[Metric::floquet_multiplier_max] - multiplier);
+      outside += error > tolerance || (tolerance <= 1e-6 && off > 2e-3 * multiplier + 1e-6);
+    }
+    EXPECT_GT(flapping, many / 30);
+    EXPECT_LE(outside, flapping / 200 + 1) << tolerance;
+    if (tolerance >= 1e-6) {
+      EXPECT_GT(by_lanes, flapping * 17 / 20) << tolerance;
+    }
   }
 }
 

@@ -64,6 +64,24 @@ inline Design<double> box_design(std::mt19937_64& random) {
   return d;
 }
 
+/// A design of the box with a coreless motor of 4.5 g (0816K006SR of data/motors/motors.csv) behind a gearbox of 2 to 60,
+/// from near stall to far above its voltage, whose electrical time constant is drawn from 1 us to 1 ms: it is 10 us.
+inline Design<double> coreless_design(std::mt19937_64& random) {
+  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  const auto logarithmic = [&](double a, double b) { return a * std::pow(b / a, uniform(0.0, 1.0)); };
+  Design<double> d = box_design(random);
+  const double gear_ratio = logarithmic(2.0, 60.0);
+  Motor<double>& m = d.motor.constants;
+  m.armature_resistance = 21.2;
+  m.armature_inductance = 21.2 * logarithmic(1e-6, 1e-3);
+  m.torque_constant = 4.12e-3 * gear_ratio;
+  m.inertia = 5.2e-9 * gear_ratio * gear_ratio;
+  m.viscous_damping = 1.4e-10 * gear_ratio * gear_ratio;
+  d.supply.voltage = uniform(1.0, 12.0);
+  d.spring.stiffness = std::max(0.0, uniform(-1e-3, 5e-3));
+  return d;
+}
+
 /// A direct drive whose every parameter is drawn: quality factors from about a half to 20, electrical time constants from
 /// nothing to a fifth of a period, drive frequencies up to 60 % off resonance, half with a pitch stop. With
 /// `constant_friction` the friction reaches up to what the drive can just overcome.

@@ -47,6 +47,7 @@ struct LaneSettings {
   int start_up_steps = 48; ///< from rest: of a turn at the speed without load
   LaneCurrent current = LaneCurrent::state;
   int coarse_laps = 2;
+  bool implicit = false;   ///< where explicit steps would be unstable, laps before the collocation take implicit ones
   int segments = 6;        ///< of half a lap
   int intervals = 6;       ///< between the nodes of a segment, even
   int sweeps = 2;          ///< Newton's steps before the last

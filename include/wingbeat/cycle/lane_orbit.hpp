@@ -126,6 +126,8 @@ class LaneOrbit {
   [[gnu::noinline, gnu::flatten]] void judge_statics();
   [[gnu::noinline, gnu::flatten]] void guess_speed();
   [[gnu::noinline, gnu::flatten]] void start_from_rest();
+  [[gnu::noinline]] void replace_stiff(const System& system, const L& u, const L& h, const State& y, State& end,
+                                       L& force_in_middle, L& force_at_end) const;
   template <bool last>
   [[gnu::noinline, gnu::flatten]] void coarse_lap();
   [[gnu::noinline, gnu::flatten]] L find_switches(int half, const L* u, const L* force, int count);
@@ -162,6 +164,15 @@ class LaneOrbit {
                                   solve::Rates<System>& below, solve::Rates<System>& above) const;
   [[gnu::noinline]] Matrix jacobian_at(const System& system, const Place<L>& place, const State& y, const State& rates,
                                        const L& force) const;
+  static Mask is_stiff(const Matrix& jacobian, const L& h);
+  [[gnu::noinline, gnu::flatten]] static void find_rates(const System& system, const L& u, const State& y, State& rates,
+                                                         L& force) {
+    const Motion<L> m = system.motion_on_its_branch(system.place(u), y);
+    force = m.force_switch;
+    rates = system.template rates_of<false>(m, y, L(1.0)).dy;
+  }
+  template <class Rates>
+  [[gnu::noinline]] State implicit_step(const State& y, const L& h, const Rates& rates) const;
   static void propagator(const Matrix& jacobian, const L& h, Matrix& out);
   static void append(const Matrix& step, Matrix& product);
   void close_lap(State& off) const;

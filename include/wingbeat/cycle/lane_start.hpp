@@ -134,6 +134,91 @@ void LaneOrbit<L, N>::start_from_rest() {
   doubtful_ = doubtful_ || slow || !done;
 }
 
+/// Whether an explicit step of fourth order would be near its limit of stability.
+template <class L, int N>
+auto LaneOrbit<L, N>::is_stiff(const Matrix& jacobian, const L& h) -> Mask {
+  L fastest = abs(jacobian[0][0]);
+  if constexpr (N == 2) fastest = max(fastest, abs(jacobian[1][1]));
+  return h * fastest > L(1.5);
+}
+
+/// A step by the L-stable diagonally implicit method of second order with two stages (Alexander 1977), each by a few Newton
+/// steps; rates(part, y) are those at a part of the step.
+template <class L, int N>
+template <class Rates>
+auto LaneOrbit<L, N>::implicit_step(const State& y, const L& h, const Rates& rates) const -> State {
+  const double gamma = 1.0 - std::sqrt(0.5);
+  const L own = L(gamma) * h;
+  State known = y, at = y;
+  for (const double part : {gamma, 1.0}) {
+    State slope;
+    for (int newton = 0; newton < 4; ++newton) {
+      slope = rates(L(part), at);
+      Matrix reduced;  // 1 - gamma h jacobian
+      for (std::size_t n = 0; n < N; ++n) {
+        State moved = at;
+        const L by = n == 0 ? L(1e-4) * at[0] : L(1e-4) * current_scale_;
+        moved[n] = moved[n] + by;
+        const State there = rates(L(part), moved);
+        const L per_move = inverse_of(by);
+        for (std::size_t row = 0; row < N; ++row) {
+          reduced[row][n] = L(row == n ? 1.0 : 0.0) - own * (there[row] - slope[row]) * per_move;
+        }
+      }
+      State off;
+      for (std::size_t n = 0; n < N; ++n) off[n] = known[n] + own * slope[n] - at[n];
+      if constexpr (N == 1) {
+        off[0] = off[0] * inverse_of(reduced[0][0]);
+      } else {
+        // By elimination: of a b - c d, either product may be the fused one, another in each half of a block.
+        const L per_first = inverse_of(reduced[0][0]), factor = reduced[1][0] * per_first;
+        off[1] = (off[1] - factor * off[0]) * inverse_of(L(reduced[1][1] - factor * reduced[0][1]));
+        off[0] = (off[0] - reduced[0][1] * off[1]) * per_first;
+      }
+      const L least = L(0.3) * at[0];  // it shall not pass standstill
+      for (std::size_t n = 0; n < N; ++n) at[n] = at[n] + off[n];
+      at[0] = max(at[0], least);
+    }
+    // What the first stage leaves to the second: y + (1 - gamma) h slope.
+    for (std::size_t n = 0; n < N; ++n) known[n] = y[n] + L((1.0 - gamma) / gamma) * (at[n] - y[n]);
+  }
+  return at;
+}
+
+/// Where a step of coarse_lap() from y is stiff, takes an implicit one instead: its end, and the rod force's switch in its
+/// middle and at its end.
+template <class L, int N>
+void LaneOrbit<L, N>::replace_stiff(const System& system, const L& u, const L& h, const State& y, State& end,
+                                    L& force_in_middle, L& force_at_end) const {
+  State rates, beside_rates;
+  L force;
+  find_rates(system, u, y, rates, force);
+  Matrix jacobian;
+  for (std::size_t n = 0; n < N; ++n) {
+    State beside = y;
+    const L by = n == 0 ? L(1e-4) * y[0] : L(1e-4) * current_scale_;
+    beside[n] = beside[n] + by;
+    find_rates(system, u, beside, beside_rates, force);
+    const L per_move = inverse_of(by);
+    for (std::size_t row = 0; row < N; ++row) jacobian[row][n] = (beside_rates[row] - rates[row]) * per_move;
+  }
+  const Mask stiff = is_stiff(jacobian, h);
+  if (!any<L>(stiff)) return;
+  const State by_implicit = implicit_step(y, h, [&](const L& part, const State& at) {
+    find_rates(system, u + part * h, at, rates, force);
+    return rates;
+  });
+  State middle;
+  for (std::size_t n = 0; n < N; ++n) {
+    end[n] = select<L>(stiff, by_implicit[n], end[n]);
+    middle[n] = L(0.5) * (y[n] + end[n]);
+  }
+  find_rates(system, u + L(0.5) * h, middle, rates, force);
+  force_in_middle = select<L>(stiff, force, force_in_middle);
+  find_rates(system, u + h, end, rates, force);
+  force_at_end = select<L>(stiff, force, force_at_end);
+}
+
 /// One lap by the classical fourth-order method, each stage on the branch that holds there; the last one finds the
 /// switches.
 template <class L, int N>
@@ -162,9 +247,12 @@ void LaneOrbit<L, N>::coarse_lap() {
       const State k2 = at(k + 1, moved(y_, k1, 0.5 * h));
       const State k3 = at(k + 1, moved(y_, k2, 0.5 * h));
       const State k4 = at(k + 2, moved(y_, k3, h));
+      State next;
       for (std::size_t n = 0; n < N; ++n) {
-        y_[n] = y_[n] + L(h / 6.0) * (k1[n] + L(2.0) * (k2[n] + k3[n]) + k4[n]);
+        next[n] = y_[n] + L(h / 6.0) * (k1[n] + L(2.0) * (k2[n] + k3[n]) + k4[n]);
       }
+      if (settings_.implicit) replace_stiff(system, angles[k], L(h), y_, next, force[k + 1], force[k + 2]);
+      y_ = next;
       slowest_ = min(slowest_, y_[0]);
     }
     if constexpr (last) find_switches(half, angles.data(), force.data(), coarse_samples - 1);
@@ -207,9 +295,35 @@ void LaneOrbit<L, N>::march() {
       force[2 * s + 1] = k3.switches[0];
       stretch.jacobian[1] = jacobian_at(system, middle, inside, k3.dy, sign);
       evaluate<false>(system, end, moved(y_, k3.dy, h), sign, k4);
+      State next;
       for (std::size_t n = 0; n < N; ++n) {
-        y_[n] = y_[n] + L(1.0 / 6.0) * h * (k1.dy[n] + L(2.0) * (k2.dy[n] + k3.dy[n]) + k4.dy[n]);
+        next[n] = y_[n] + L(1.0 / 6.0) * h * (k1.dy[n] + L(2.0) * (k2.dy[n] + k3.dy[n]) + k4.dy[n]);
       }
+      if (settings_.implicit) {
+        const Mask stiff = is_stiff(stretch.jacobian[0], h);
+        solve::Rates<System> rates;
+        const State by_implicit = implicit_step(y_, h, [&](const L& part, const State& y) {
+          Place<L> place;
+          find_place(system, mesh.u[s] + part * h, place);
+          evaluate<false>(system, place, y, sign, rates);
+          return rates.dy;
+        });
+        State between;
+        for (std::size_t n = 0; n < N; ++n) {
+          next[n] = select<L>(stiff, by_implicit[n], next[n]);
+          between[n] = L(0.5) * (y_[n] + next[n]);
+        }
+        evaluate<false>(system, middle, between, sign, rates);
+        force[2 * s + 1] = select<L>(stiff, rates.switches[0], force[2 * s + 1]);
+        const Matrix jacobian = jacobian_at(system, middle, between, rates.dy, sign);
+        for (std::size_t row = 0; row < N; ++row) {
+          for (std::size_t column = 0; column < N; ++column) {
+            L& to = stretch.jacobian[1][row][column];
+            to = select<L>(stiff, jacobian[row][column], to);
+          }
+        }
+      }
+      y_ = next;
     }
     u[2 * std::size_t(segments_)] = mesh.u[std::size_t(segments_)];
     evaluate<false>(system, places[segments_ % 2 == 0 ? 2 : 0], y_, mesh.force[std::size_t(segments_ - 1)], k4);
