@@ -27,9 +27,9 @@ LaneSolver solver_for(InstructionSet isa) {
 }
 
 /// Angle that a crank turns by at the speed without load while its current decays by a factor of e: up to here lanes take
-/// it for a lag, of which they leave out what is of higher order. Segments are a hundred times as long.
+/// it for a lag, of which they leave out what is of higher order. Segments are forty times as long.
 double most_lag(double tolerance) {
-  return 0.004 * std::min(std::sqrt(tolerance / 1e-6), 2.0);
+  return 0.007 * std::min(std::sqrt(tolerance / 1e-6), 1.0);
 }
 
 /// How a tolerance is met.

@@ -226,7 +226,7 @@ class LaneOrbit {
   /// What relaxation() leaves out.
   L lag_left_out() const {
     const L angle = vehicle_.motor.armature_inductance * no_load_ * inverse_of(circuit_resistance(vehicle_));
-    return layer_ * (angle + electrical_to_mechanical_time());
+    return L(20.0) * layer_ * (angle + electrical_to_mechanical_time());
   }
   L electrical_to_mechanical_time() const {
     const Motor<L>& m = vehicle_.motor;
@@ -815,12 +815,12 @@ Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
 
   error_estimate_ = L(1.5) * (step_error_ + L(2.0) * residual_ + peak_error_) + L(0.03) * square(switch_offset_) +
                     overlooked_ * sqrt(overlooked_);
-  if (lags_) error_estimate_ = error_estimate_ + L(1.5) * lag_residual_ + lag_left_out();
   // A motor near its speed without load draws the small difference of two large voltages.
   const L back_emf = L(two_pi) * vehicle_.motor.torque_constant;
   const L resistive = circuit_resistance(vehicle_) * abs(integrals_[lane_integral(Integral::current)]);
   const L difference = max(L(back_emf * inverse_of(max(resistive, L(1e-300))) - L(1.0)), L(0.0));
   error_estimate_ = error_estimate_ + L(1.5) * difference * (speed_error_ + L(2.0) * residual_);
+  if (lags_) error_estimate_ = error_estimate_ + L(1.5) * (difference + L(2.0)) * lag_residual_ + lag_left_out();
   lost_ = lost_ || !(slowest_ > floor_);
   if (settings_.approach == LaneApproach::guess) doubtful_ = doubtful_ || lost_;
   error_estimate_ = select<L>(lost_, L(std::numeric_limits<double>::infinity()), error_estimate_);
