@@ -94,6 +94,30 @@ std::vector<EnsembleMember> mixed_members(int count, std::uint64_t seed) {
   return members;
 }
 
+struct Agreement {
+  int flapping = 0, by_lanes = 0, outside = 0;
+};
+
+/// Counts what flaps, and whose metrics are outside the tolerance; all states must be equal, and no error beyond `far`
+/// tolerances. With `multipliers` these must be good to three digits.
+Agreement agreement(const std::vector<EnsembleOutcome>& got, const std::vector<EnsembleOutcome>& expected,
+                    double tolerance, double far, bool multipliers = false) {
+  Agreement found;
+  for (std::size_t n = 0; n < got.size(); ++n) {
+    EXPECT_EQ(got[n].status, expected[n].status) << n;
+    if (expected[n].status != FlappingStatus::flapping) continue;
+    ++found.flapping;
+    found.by_lanes += !got[n].scalar;
+    std::string where;
+    const double error = largest_error(got[n].metrics, expected[n].metrics, &where);
+    EXPECT_LT(error, far * tolerance) << n << ' ' << where << " at " << tolerance;
+    const double multiplier = expected[n].metrics[Metric::floquet_multiplier_max];
+    const double off = std::abs(got[n].metrics[Metric::floquet_multiplier_max] - multiplier);
+    found.outside += error > tolerance || (multipliers && off > 2e-3 * multiplier + 1e-6);
+  }
+  return found;
+}
+
 TEST(Ensemble, InternalResistanceAgreesWithTheScalarSolver) {
   std::mt19937_64 random(31);
   std::vector<EnsembleMember> members;
@@ -112,17 +136,7 @@ TEST(Ensemble, InternalResistanceAgreesWithTheScalarSolver) {
   for (const InstructionSet isa : available()) {
     options.isa = isa;
     const auto got = solve(members, options);
-    int flapping = 0, by_lanes = 0, outside = 0;
-    for (std::size_t n = 0; n < members.size(); ++n) {
-      EXPECT_EQ(got[n].status, expected[n].status) << n;
-      if (expected[n].status != FlappingStatus::flapping) continue;
-      ++flapping;
-      by_lanes += !got[n].scalar;
-      std::string where;
-      const double error = largest_error(got[n].metrics, expected[n].metrics, &where);
-      outside += error > 1e-6;
-      EXPECT_LT(error, 3e-6) << n << ' ' << where;
-    }
+    const auto [flapping, by_lanes, outside] = agreement(got, expected, 1e-6, 3.0);
     EXPECT_GT(flapping, 400);
     EXPECT_GT(by_lanes, flapping * 4 / 5);
     EXPECT_LE(outside, flapping / 50);
@@ -142,19 +156,7 @@ TEST(Ensemble, SmallInductancesAgreeWithTheScalarSolver) {
     EnsembleOptions options;
     options.tolerance = tolerance;
     const auto got = solve(members, options, start_up);
-    int flapping = 0, by_lanes = 0, outside = 0;
-    for (std::size_t n = 0; n < members.size(); ++n) {
-      EXPECT_EQ(got[n].status, expected[n].status) << n;
-      if (expected[n].status != FlappingStatus::flapping) continue;
-      ++flapping;
-      by_lanes += !got[n].scalar;
-      std::string where;
-      const double error = largest_error(got[n].metrics, expected[n].metrics, &where);
-      EXPECT_LT(error, 20.0 * tolerance) << n << ' ' << where << " at " << tolerance;
-      const double multiplier = expected[n].metrics[Metric::floquet_multiplier_max];
-      const double off = std::abs(got[n].metrics[Metric::floquet_multiplier_max] - multiplier);
-      outside += error > tolerance || (tolerance <= 1e-6 && off > 2e-3 * multiplier + 1e-6);
-    }
+    const auto [flapping, by_lanes, outside] = agreement(got, expected, tolerance, 20.0, tolerance <= 1e-6);
     EXPECT_GT(flapping, many / 30);
     EXPECT_LE(outside, flapping / 200 + 1) << tolerance;
     if (tolerance >= 1e-6) {
