@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "wingbeat/cycle/lane_blocks.hpp"
+#include "wingbeat/cycle/lane_lag.hpp"
 #include "wingbeat/cycle/lane_multiplier.hpp"
 #include "wingbeat/cycle/lane_orbit.hpp"
 #include "wingbeat/cycle/lane_peaks.hpp"

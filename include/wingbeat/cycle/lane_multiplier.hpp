@@ -5,24 +5,6 @@
 
 namespace wingbeat {
 
-/// Takes the rates below and above a node's speed again with what the inductance makes of the change of acceleration.
-template <class L, int N>
-void LaneOrbit<L, N>::lag_with(System system, std::size_t node, const L& by, const L& force, solve::Rates<System>& below,
-                               solve::Rates<System>& above) const {
-  const L per_acceleration = vehicle_.motor.armature_inductance * vehicle_.motor.torque_constant *
-                             inverse_of(circuit_resistance(vehicle_));
-  const State& y = course_[node];
-  const L acceleration = rates_[node][0] * y[0];
-  for (solve::Rates<System>* rates : {&below, &above}) {
-    State moved = y;
-    moved[0] = rates == &below ? y[0] - by : y[0] + by;
-    for (int repeat = 0; repeat < 2; ++repeat) {
-      system.drop = drop_[node] - per_acceleration * (rates->dy[0] * moved[0] - acceleration);
-      evaluate<false>(system, place_of(node), moved, force, *rates);
-    }
-  }
-}
-
 /// The largest modulus of the eigenvalues of the lap map's derivative, by collocation of the variational equation.
 template <class L, int N>
 L LaneOrbit<L, N>::floquet_multiplier() {

@@ -6,8 +6,8 @@
 // method makes it satisfy the equations at the Lobatto points of every segment, and the lap its own end. Everything is
 // computed lane by lane without looking at the neighbours, so that a vehicle gets the same bits in any company.
 //
-// lane_start.hpp holds the way to the first course, lane_peaks.hpp the search for extremes, lane_multiplier.hpp the lap
-// map's derivative.
+// lane_start.hpp holds the way to the first course, lane_lag.hpp the current behind a small inductance, lane_peaks.hpp the
+// search for extremes, lane_multiplier.hpp the lap map's derivative.
 #pragma once
 
 #include <array>
@@ -139,7 +139,9 @@ class LaneOrbit {
   [[gnu::noinline, gnu::flatten]] void propose(std::size_t base, const L& h, State& end);
   [[gnu::noinline, gnu::flatten]] void correct(State end);
   [[gnu::noinline, gnu::flatten]] void let_current_lag();
-  [[gnu::noinline, gnu::flatten]] solve::Rates<System> relaxation(System system, std::size_t base, const L& force);
+  [[gnu::noinline, gnu::flatten]] solve::Rates<System> relaxation(System system, std::size_t base, const L& force) const;
+  L lag_left_out() const;
+  L electrical_to_mechanical_time() const;
   [[gnu::noinline, gnu::flatten]] void visit_node(const System& system, std::size_t node, const L& force,
                                                   solve::Rates<System>& rates);
   [[gnu::noinline, gnu::flatten]] void add_tails(const std::array<std::array<L, nodes_per_segment>, 4>& controlled,
@@ -162,6 +164,8 @@ class LaneOrbit {
   [[gnu::noinline, gnu::flatten]] L floquet_multiplier();
   [[gnu::noinline]] void lag_with(System system, std::size_t node, const L& by, const L& force,
                                   solve::Rates<System>& below, solve::Rates<System>& above) const;
+  template <class RatesAt>
+  Matrix derivatives(const State& y, const State& rates, const RatesAt& rates_at) const;
   [[gnu::noinline]] Matrix jacobian_at(const System& system, const Place<L>& place, const State& y, const State& rates,
                                        const L& force) const;
   static Mask is_stiff(const Matrix& jacobian, const L& h);
@@ -194,9 +198,6 @@ class LaneOrbit {
   int segments_;  ///< of half a lap
   CrankGeometry<L> geometry_;
   L per_inductance_, current_scale_, no_load_, floor_;
-  bool lags_;         ///< the current, behind the speed
-  L lag_residual_, layer_;
-  std::array<L, most_nodes> drop_;  ///< HalfLap::drop at the nodes
   Matrix monodromy_;  ///< of a lap
   std::array<std::array<Place<L>, coarse_samples>, 2> table_;
   State y_;  ///< where a lap starts
@@ -223,16 +224,11 @@ class LaneOrbit {
   std::array<L, 5> high_, low_;  ///< sums of the last and last but two coefficients of what limits the error
   std::array<bool, quantity_count> wanted_;
   bool reads_ = false;  ///< anything
-  /// What relaxation() leaves out.
-  L lag_left_out() const {
-    const L angle = vehicle_.motor.armature_inductance * no_load_ * inverse_of(circuit_resistance(vehicle_));
-    return L(20.0) * layer_ * (angle + electrical_to_mechanical_time());
-  }
-  L electrical_to_mechanical_time() const {
-    const Motor<L>& m = vehicle_.motor;
-    return m.armature_inductance * square(L(m.torque_constant * inverse_of(circuit_resistance(vehicle_)))) *
-           inverse_of(m.inertia);
-  }
+  // The current behind the speed, where the inductance is small.
+  bool lags_;
+  std::array<L, most_nodes> drop_;  ///< HalfLap::drop at the nodes
+  L lag_residual_;                  ///< its last change, of the voltage
+  L layer_;                         ///< largest relaxation() of the speed, relative
 
   L slowest_, residual_, switch_offset_;
   L step_error_, speed_error_;  ///< of what the segments' polynomials leave out: at all, and of speed and time
@@ -241,21 +237,30 @@ class LaneOrbit {
   L error_estimate_;
 };
 
-/// Derivatives of the rates by the state, to four digits.
+/// Derivatives by the state of the rates, which rates_at(state) gives, to four digits.
 template <class L, int N>
-auto LaneOrbit<L, N>::jacobian_at(const System& system, const Place<L>& place, const State& y, const State& rates,
-                                  const L& force) const -> Matrix {
+template <class RatesAt>
+auto LaneOrbit<L, N>::derivatives(const State& y, const State& rates, const RatesAt& rates_at) const -> Matrix {
   Matrix jacobian;
-  solve::Rates<System> at;
   for (std::size_t n = 0; n < N; ++n) {
     State moved = y;
     const L by = n == 0 ? L(1e-4) * y[0] : L(1e-4) * current_scale_;
     moved[n] = moved[n] + by;
-    evaluate<false>(system, place, moved, force, at);
+    const State there = rates_at(moved);
     const L per_move = inverse_of(by);
-    for (std::size_t row = 0; row < N; ++row) jacobian[row][n] = (at.dy[row] - rates[row]) * per_move;
+    for (std::size_t row = 0; row < N; ++row) jacobian[row][n] = (there[row] - rates[row]) * per_move;
   }
   return jacobian;
+}
+
+template <class L, int N>
+auto LaneOrbit<L, N>::jacobian_at(const System& system, const Place<L>& place, const State& y, const State& rates,
+                                  const L& force) const -> Matrix {
+  solve::Rates<System> at;
+  return derivatives(y, rates, [&](const State& moved) -> const State& {
+    evaluate<false>(system, place, moved, force, at);
+    return at.dy;
+  });
 }
 
 /// exp(h jacobian) by its (1, 1) Pade approximation (1 - z)^-1 (1 + z), z = h jacobian / 2.
@@ -638,53 +643,6 @@ void LaneOrbit<L, N>::sweep() {
       if (c < 2) speed_error_ = max(speed_error_, error);
     }
   }
-}
-
-/// The inductance's voltage at the nodes from the course of the current that it leaves, twice: an iteration gains the
-/// ratio of its time constant to that of the course.
-template <class L, int N>
-void LaneOrbit<L, N>::let_current_lag() {
-  if constexpr (N == 1) {
-    const std::size_t intervals = std::size_t(rule_.intervals), nodes = first_node(2, 0);
-    const L inductance = vehicle_.motor.armature_inductance;
-    L change(0.0);
-    for (int repeat = 0; repeat < 2; ++repeat) {
-      change = L(0.0);
-      for (int half = 0; half < 2; ++half) {
-        const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
-        for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
-          const std::size_t base = first_node(half, s);
-          const L inductance_per_h = inductance * inverse_of(max(L(mesh.u[s + 1] - mesh.u[s]), L(1e-12)));
-          std::array<L, nodes_per_segment> current;
-          for (std::size_t j = 0; j <= intervals; ++j) {
-            current[j] = algebraic_current(vehicle_, L(vehicle_.voltage - drop_[base + j]), course_[base + j][0]);
-          }
-          for (std::size_t m = 0; m <= intervals; ++m) {
-            L slope(0.0);
-            for (std::size_t j = 0; j <= intervals; ++j) slope = slope + L(rule_.slope[m][j]) * current[j];
-            const L drop = inductance_per_h * course_[base + m][0] * slope;
-            change = change + abs(drop - drop_[base + m]);
-            drop_[base + m] = drop;
-          }
-        }
-      }
-    }
-    lag_residual_ = change * inverse_of(L(vehicle_.voltage * L(double(nodes))));
-  }
-}
-
-/// Where the course bends, at a sign change of the rod force, the current goes on from what it was before and has relaxed
-/// within a time constant: what that adds to state and integrals, up to the square of the angle it takes.
-template <class L, int N>
-auto LaneOrbit<L, N>::relaxation(System system, std::size_t base, const L& force) -> solve::Rates<System> {
-  solve::Rates<System> after, before;
-  evaluate<true>(system, place_of(base), course_[base], force, after);
-  system.drop = drop_[base - 1];
-  evaluate<true>(system, place_of(base), course_[base], force, before);
-  const L angle = vehicle_.motor.armature_inductance * course_[base][0] * inverse_of(circuit_resistance(vehicle_));
-  for (std::size_t n = 0; n < N; ++n) after.dy[n] = angle * (before.dy[n] - after.dy[n]);
-  for (std::size_t q = 0; q < after.dq.size(); ++q) after.dq[q] = angle * (before.dq[q] - after.dq[q]);
-  return after;
 }
 
 /// Adds the last coefficients of a segment's rates of speed and integrals.

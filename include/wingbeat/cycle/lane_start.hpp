@@ -154,16 +154,9 @@ auto LaneOrbit<L, N>::implicit_step(const State& y, const L& h, const Rates& rat
     State slope;
     for (int newton = 0; newton < 4; ++newton) {
       slope = rates(L(part), at);
-      Matrix reduced;  // 1 - gamma h jacobian
-      for (std::size_t n = 0; n < N; ++n) {
-        State moved = at;
-        const L by = n == 0 ? L(1e-4) * at[0] : L(1e-4) * current_scale_;
-        moved[n] = moved[n] + by;
-        const State there = rates(L(part), moved);
-        const L per_move = inverse_of(by);
-        for (std::size_t row = 0; row < N; ++row) {
-          reduced[row][n] = L(row == n ? 1.0 : 0.0) - own * (there[row] - slope[row]) * per_move;
-        }
+      Matrix reduced = derivatives(at, slope, [&](const State& moved) { return rates(L(part), moved); });
+      for (std::size_t row = 0; row < N; ++row) {  // 1 - gamma h jacobian
+        for (std::size_t n = 0; n < N; ++n) reduced[row][n] = L(row == n ? 1.0 : 0.0) - own * reduced[row][n];
       }
       State off;
       for (std::size_t n = 0; n < N; ++n) off[n] = known[n] + own * slope[n] - at[n];
@@ -190,18 +183,13 @@ auto LaneOrbit<L, N>::implicit_step(const State& y, const L& h, const Rates& rat
 template <class L, int N>
 void LaneOrbit<L, N>::replace_stiff(const System& system, const L& u, const L& h, const State& y, State& end,
                                     L& force_in_middle, L& force_at_end) const {
-  State rates, beside_rates;
+  State rates, beside;
   L force;
   find_rates(system, u, y, rates, force);
-  Matrix jacobian;
-  for (std::size_t n = 0; n < N; ++n) {
-    State beside = y;
-    const L by = n == 0 ? L(1e-4) * y[0] : L(1e-4) * current_scale_;
-    beside[n] = beside[n] + by;
-    find_rates(system, u, beside, beside_rates, force);
-    const L per_move = inverse_of(by);
-    for (std::size_t row = 0; row < N; ++row) jacobian[row][n] = (beside_rates[row] - rates[row]) * per_move;
-  }
+  const Matrix jacobian = derivatives(y, rates, [&](const State& moved) -> const State& {
+    find_rates(system, u, moved, beside, force);
+    return beside;
+  });
   const Mask stiff = is_stiff(jacobian, h);
   if (!any<L>(stiff)) return;
   const State by_implicit = implicit_step(y, h, [&](const L& part, const State& at) {
