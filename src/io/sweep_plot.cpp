@@ -91,10 +91,11 @@ struct Scale {
     std::string text = fmt::format("set {0}range [{1}:{2}]\n{3} logscale {0}\n", which, *least, *most,
                                    logarithmic ? "set" : "unset");
     if (!logarithmic || *most > 1000.0 * *least) return text;
-    // Over few decades powers of ten alone are too few marks.
+    // Over few decades powers of ten alone are too few marks; over more, three a decade would overlap.
+    const std::vector<double> steps = *most > 30.0 * *least ? std::vector{1.0, 3.0} : std::vector{1.0, 2.0, 5.0};
     std::string marks;
     for (double decade = std::pow(10.0, std::floor(std::log10(*least))); decade <= *most; decade *= 10.0) {
-      for (const double step : {1.0, 2.0, 5.0}) marks += fmt::format("{}{}", marks.empty() ? "" : ",", step * decade);
+      for (const double step : steps) marks += fmt::format("{}{}", marks.empty() ? "" : ",", step * decade);
     }
     return text + fmt::format("set {}tics ({})\n", which, marks);
   }

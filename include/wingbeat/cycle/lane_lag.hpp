@@ -42,8 +42,7 @@ void LaneOrbit<L, N>::let_current_lag() {
 /// Where the course bends, at a sign change of the rod force, the current goes on from what it was before and has relaxed
 /// within a time constant: what that adds to state and integrals, up to the square of the angle it takes.
 template <class L, int N>
-auto LaneOrbit<L, N>::relaxation(System system, std::size_t base, const L& force) const
-    -> solve::Rates<System> {
+auto LaneOrbit<L, N>::relaxation(System system, std::size_t base, const L& force) const -> solve::Rates<System> {
   solve::Rates<System> after, before;
   evaluate<true>(system, place_of(base), course_[base], force, after);
   system.drop = drop_[base - 1];
