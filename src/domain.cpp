@@ -19,7 +19,7 @@ bool in_air(const Vehicle<double>& v) {
 
 bool has_wings(const Vehicle<double>& v) { return v.wing_inertia > 0.0 || v.wings.s2 > 0.0 || v.wings.s3 > 0.0; }
 
-/// Range of the force coefficients [deg]. A table may be narrower than 0 to 90 deg; it does not widen the range, for the
+/// Range of the force coefficients [deg]. A table may be narrower than 0 to 90 deg; it does not widen the range: the
 /// pitch law is meant for wings that have not turned over.
 struct Range {
   double low, high;
@@ -52,7 +52,9 @@ std::array<S, domain_limit_count> excess_of(const Vehicle<double>& v, const Metr
   std::array<S, domain_limit_count> excess;
   excess.fill(S(-1.0));
   const auto at = [&](DomainLimit limit) -> S& { return excess[std::size_t(limit)]; };
-  const auto larger = [](const S& a, const S& b) { return value_of(a) > value_of(b) || std::isnan(value_of(a)) ? a : b; };
+  const auto larger = [](const S& a, const S& b) {
+    return value_of(a) > value_of(b) || std::isnan(value_of(a)) ? a : b;
+  };
   const bool air = in_air(v);
   const bool direct = v.transmission == TransmissionType::direct;
 
@@ -99,8 +101,10 @@ std::array<S, domain_limit_count> excess_of(const Vehicle<double>& v, const Metr
 
 const std::array<DomainLimitInfo, domain_limit_count>& domain_limit_table() {
   static const std::array<DomainLimitInfo, domain_limit_count> table = {{
-      {"angle_of_attack", "angle of attack within 0 to 90 deg, and within a table of coefficients, over the whole cycle"},
-      {"stroke", "stroke angle of a slider-crank up to 85 deg to either side, stroke amplitude of a direct drive to 180 deg"},
+      {"angle_of_attack",
+       "angle of attack within 0 to 90 deg, and within a table of coefficients, over the whole cycle"},
+      {"stroke",
+       "stroke angle of a slider-crank up to 85 deg to either side, stroke amplitude of a direct drive to 180 deg"},
       {"formulation_residual", "formulation residual at most 5 % of the input power"},
       {"mechanism_efficiency", "mechanism efficiency from 0 to 1"},
       {"motor_efficiency", "motor efficiency from 0 to 1"},
@@ -134,8 +138,9 @@ DomainExcess domain_excess_slopes(const Vehicle<double>& vehicle, const Metrics<
 
 std::bitset<metric_count> domain_metrics() {
   std::bitset<metric_count> needed;
-  for (const Metric m : {Metric::power_electrical, Metric::power_motor, Metric::power_aerodynamic, Metric::power_residual,
-                         Metric::angle_of_attack_min, Metric::stroke_amplitude, Metric::flapping_velocity_peak}) {
+  for (const Metric m : {Metric::power_electrical, Metric::power_motor, Metric::power_aerodynamic,
+                         Metric::power_residual, Metric::angle_of_attack_min, Metric::stroke_amplitude,
+                         Metric::flapping_velocity_peak}) {
     needed.set(std::size_t(m));
   }
   return needed;
@@ -173,9 +178,9 @@ std::string describe_domain(const Vehicle<double>& v, const Metrics<double>& m) 
         format("the angle of attack runs from %.4g to 90 deg (the coefficients hold from %.4g to %.4g deg)",
                m[Metric::angle_of_attack_min], range.low, range.high));
   } else {
-    say(DomainLimit::angle_of_attack, format("the angle of attack falls to %.4g deg (the coefficients hold from %.4g to "
-                                             "%.4g deg)",
-                                             m[Metric::angle_of_attack_min], range.low, range.high));
+    say(DomainLimit::angle_of_attack,
+        format("the angle of attack falls to %.4g deg (the coefficients hold from %.4g to %.4g deg)",
+               m[Metric::angle_of_attack_min], range.low, range.high));
   }
   if (v.transmission == TransmissionType::direct) {
     say(DomainLimit::stroke, format("the stroke amplitude is %.4g deg (at most %.4g deg)",
@@ -184,9 +189,9 @@ std::string describe_domain(const Vehicle<double>& v, const Metrics<double>& m) 
     say(DomainLimit::stroke, format("the stroke angle reaches %.4g deg (the mechanism's law holds to %.4g deg)",
                                     stroke_to_either_side_deg(v.crank), tan_law_stroke_max_deg));
   }
-  say(DomainLimit::formulation_residual, format("the formulation fails to conserve %.3g %% of the input power (at most %.3g %%)",
-                                                100.0 * std::abs(m[Metric::power_residual] / P_e),
-                                                100.0 * formulation_residual_max));
+  say(DomainLimit::formulation_residual,
+      format("the formulation fails to conserve %.3g %% of the input power (at most %.3g %%)",
+             100.0 * std::abs(m[Metric::power_residual] / P_e), 100.0 * formulation_residual_max));
   say(DomainLimit::mechanism_efficiency,
       P_m > 0.0 ? format("the mechanism efficiency is %.4g %% (0 to 100 %%)", 100.0 * P_aero / P_m)
                 : format("the wings take %.3g W from a motor output of %.3g W", P_aero, P_m));

@@ -127,8 +127,8 @@ TEST(Domain, SentenceNamesTheNumbers) {
   m[Metric::power_residual] = -0.123;
   EXPECT_EQ(name_of(domain_of(reference_vehicle(), m)), "angle_of_attack, formulation_residual");
   EXPECT_EQ(describe_domain(reference_vehicle(), m),
-            "the angle of attack falls to -103.2 deg (the coefficients hold from 0 to 90 deg); the formulation fails to "
-            "conserve 12.3 % of the input power (at most 5 %)");
+            "the angle of attack falls to -103.2 deg (the coefficients hold from 0 to 90 deg); the formulation "
+            "fails to conserve 12.3 % of the input power (at most 5 %)");
 }
 
 TEST(Domain, RodForceWarnsAboveOnePerCent) {

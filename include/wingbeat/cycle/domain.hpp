@@ -27,14 +27,14 @@ using DomainStatus = std::bitset<domain_limit_count>;
 
 inline constexpr double angle_of_attack_lowest_deg = 0.0;
 inline constexpr double angle_of_attack_highest_deg = 90.0;
-/// Largest stroke angle of the tan-law mechanism [deg]. It reaches 90 deg only with a hinge offset of zero, so that any
-/// amplitude "obeys" it; at 85 deg the side load on the slider, which the model does not rub with, is eleven rod forces.
+/// Largest stroke angle of the tan-law mechanism [deg]. The law reaches 90 deg only with a hinge offset of zero, so
+/// that every amplitude obeys it; at 85 deg the side load on the slider, whose friction is not modelled, is 11 rod forces.
 inline constexpr double tan_law_stroke_max_deg = 85.0;
-inline constexpr double direct_stroke_max_deg = 180.0;      ///< of the amplitude: beyond, a wing turns past its own start
-inline constexpr double formulation_residual_max = 0.05;    ///< of the input power
-inline constexpr double formulation_residual_warn = 0.01;   ///< of the input power: said beside the result
-inline constexpr double efficiency_slack = 1e-4;            ///< efficiencies are as exact as the tolerance of the orbit
-/// Largest speed of the wings' chord at S_3/S_2, two thirds of a semi-ellipse's length [m/s]: Mach 0.3 in air at 20 degC.
+inline constexpr double direct_stroke_max_deg = 180.0;    ///< of the amplitude: beyond, a wing turns past its own start
+inline constexpr double formulation_residual_max = 0.05;  ///< of the input power
+inline constexpr double formulation_residual_warn = 0.01; ///< of the input power: said beside the result
+inline constexpr double efficiency_slack = 1e-4;          ///< efficiencies are as exact as the tolerance of the orbit
+/// Largest speed of the wings at the radius S_3/S_2, two thirds of a semi-ellipse's length [m/s]: Mach 0.3 at 20 degC.
 inline constexpr double flow_speed_max = 103.0;
 
 /// How a limit is named outside the program.
@@ -44,11 +44,12 @@ struct DomainLimitInfo {
 };
 const std::array<DomainLimitInfo, domain_limit_count>& domain_limit_table();
 
-/// By how much each limit is exceeded, as a share of it: positive outside, at most 0 inside, -1 where it does not apply.
-/// NaN counts as outside.
+/// By how much each limit is exceeded, as a share of it: positive outside, at most 0 inside, -1 where it does not
+/// apply. NaN counts as outside.
 using DomainExcess = std::array<double, domain_limit_count>;
-/// Of a flapping vehicle. From what the vehicle is and what its cycle gives, by whichever solver; of the metrics it needs
-/// the four powers, the residual, the smallest angle of attack, the stroke amplitude and the peak flapping velocity.
+/// Of a flapping vehicle. From what the vehicle is and what its cycle gives, by whichever solver; of the metrics it
+/// needs the four powers, the residual, the smallest angle of attack, the stroke amplitude and the peak flapping
+/// velocity.
 DomainExcess domain_excess(const Vehicle<double>& vehicle, const Metrics<double>& metrics);
 
 /// Derivative of domain_excess() where the metrics change at the rates `slopes`, the vehicle itself held: that of
@@ -69,11 +70,11 @@ DomainStatus domain_of(const DomainExcess& excess);
 /// "inside", or the limits that are exceeded, as "angle_of_attack, stroke".
 std::string name_of(DomainStatus status);
 
-/// One clause for each limit that is exceeded, with its number: "the angle of attack falls to -103 deg (0 to 90 deg)"; empty
-/// inside.
+/// One clause for each limit that is exceeded, with its number: "the angle of attack falls to -103 deg (the
+/// coefficients hold from 0 to 90 deg)"; empty inside.
 std::string describe_domain(const Vehicle<double>& vehicle, const Metrics<double>& metrics);
 
-/// A sentence where `rod-force` fails to conserve more than formulation_residual_warn of the input power; empty elsewhere.
+/// A sentence where `rod-force` fails to conserve more than formulation_residual_warn of the input power; else empty.
 std::string residual_warning(const Vehicle<double>& vehicle, const Metrics<double>& metrics);
 
 }  // namespace wingbeat
