@@ -196,10 +196,10 @@ int run(const Arguments& arguments) {
 
   print(arguments.json ? json_report(result) : text_report(result, options));
   if (flaps && has_metrics) return done;
-  if (waveforms || cycle_plot || power_plot) complain("the vehicle does not flap: no file was written");
-  if (flaps || !result.settled) {
-    complain("the simulation did not settle: " + result.detail);
-    return flaps ? failed : does_not_flap;
+  if (waveforms || cycle_plot || power_plot) complain("no steady flapping: no file was written");
+  if (flaps || result.status == FlappingStatus::undecided) {
+    complain("no verdict: " + result.detail);
+    return failed;
   }
   return does_not_flap;
 }

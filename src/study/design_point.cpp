@@ -23,18 +23,18 @@ DesignPoint design_point(const Design<double>& given, const DesignPointOptions& 
     const FrequencySearch search = find_voltage_for_frequency(vehicle, *options.frequency, steady, start_up);
     if (search.outcome != FrequencyOutcome::reached) {
       const bool flaps = search.status == FlappingStatus::flapping;
-      point.status = flaps ? SweepStatus::unreached : SweepStatus(int(search.status));
+      point.status = flaps ? SweepStatus::unreached : sweep_status(search.status);
       point.detail = search.detail;
       return point;
     }
     vehicle.voltage = search.voltage;
   }
   const SteadyFlapping orbit = find_steady_flapping(vehicle, steady, start_up);
-  point.status = SweepStatus(int(orbit.status));
+  point.status = sweep_status(orbit.status);
   point.detail = orbit.detail;
   if (orbit.status != FlappingStatus::flapping) return point;
   point.metrics = orbit.metrics;
-  if (parameters.empty()) return point;
+  if (parameters.empty() || orbit.record.empty()) return point;
 
   const GradientOptions held{options.frequency ? Held::frequency : Held::voltage, options.peaks, {}};
   const MetricGradients gradients = metric_gradients(design, options.condition, orbit, parameters, held);

@@ -193,6 +193,7 @@ class EnsembleRun {
     if (found.status != FlappingStatus::flapping) found = find_steady_flapping(members_[n].vehicle, steady, start_up_);
     const bool flaps = found.status == FlappingStatus::flapping;
     outcomes_[n] = {found.status, true, flaps ? options_.tolerance : absent, found.metrics};
+    if (found.simulated) outcomes_[n].error_estimate = found.simulated->error_estimate;
     keep_wanted(options_.metrics, outcomes_[n].metrics);
   }
 

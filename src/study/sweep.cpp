@@ -38,9 +38,6 @@ void next(const Sweep& sweep, std::span<std::uint64_t> place) {
   }
 }
 
-SweepStatus status_of(FlappingStatus status) { return SweepStatus(int(status)); }
-static_assert(int(SweepStatus::jammed) == int(FlappingStatus::jammed));
-
 }  // namespace
 
 double SweepAxis::value(std::size_t quantity, std::uint64_t place) const {
@@ -70,8 +67,14 @@ const char* name_of(SweepStatus status) {
   switch (status) {
     case SweepStatus::unreached: return "unreached";
     case SweepStatus::invalid: return "invalid";
+    case SweepStatus::undecided: return name_of(FlappingStatus::undecided);
     default: return name_of(FlappingStatus(int(status)));
   }
+}
+
+SweepStatus sweep_status(FlappingStatus status) {
+  static_assert(int(SweepStatus::jammed) == int(FlappingStatus::jammed));
+  return status == FlappingStatus::undecided ? SweepStatus::undecided : SweepStatus(int(status));
 }
 
 SweepDesign design_at(const Sweep& sweep, std::uint64_t index) {
@@ -143,7 +146,7 @@ void SweepSolver::solve(SweepColumns& columns, std::size_t begin, std::size_t en
     const EnsembleOutcome& out = outcomes_[n];
     const bool flaps = out.status == FlappingStatus::flapping;
     const bool unreached = flaps && reached_[n] != FrequencyOutcome::reached;
-    columns.status[row] = std::int8_t(unreached ? SweepStatus::unreached : status_of(out.status));
+    columns.status[row] = std::int8_t(unreached ? SweepStatus::unreached : sweep_status(out.status));
     columns.recomputed[row] = out.scalar ? 1 : 0;
     if (!flaps || unreached) continue;
     columns.error_estimate[row] = out.error_estimate;

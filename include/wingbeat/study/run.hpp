@@ -30,7 +30,10 @@ struct RunOptions {
 struct RunResult {
   FlappingStatus status = FlappingStatus::stalled;
   std::string detail;  ///< one sentence with the evidence
-  bool settled = true; ///< false: the transient ran out of time, laps or steps; status is the best guess
+  /// False: no steady state was shown within the solvers' limits; the status is undecided, or the metrics are averages
+  /// over laps that still differ.
+  bool settled = true;
+  bool simulated_cycle = false;  ///< Method::orbit found flapping in time only: the metrics are the simulated cycle's
   Metrics<double> metrics;  ///< all absent unless flapping
   std::vector<WaveformRow> cycle;
   std::vector<double> cycle_voltage;       ///< terminal voltage of each row [V]
