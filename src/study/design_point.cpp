@@ -11,6 +11,8 @@ DesignPoint design_point(const Design<double>& given, const DesignPointOptions& 
   std::array<double, metric_count> nothing;
   nothing.fill(absent);
   point.gradients.assign(parameters.size(), nothing);
+  point.domain_slopes.resize(parameters.size());
+  for (DomainExcess& slopes : point.domain_slopes) slopes.fill(absent);
   try {
     validate(design);
   } catch (const ParameterError& error) {
@@ -34,12 +36,17 @@ DesignPoint design_point(const Design<double>& given, const DesignPointOptions& 
   point.detail = orbit.detail;
   if (orbit.status != FlappingStatus::flapping) return point;
   point.metrics = orbit.metrics;
+  point.domain_excess = domain_excess(vehicle, orbit.metrics);
+  point.domain = domain_of(point.domain_excess);
   if (parameters.empty() || orbit.record.empty()) return point;
 
   const GradientOptions held{options.frequency ? Held::frequency : Held::voltage, options.peaks, {}};
   const MetricGradients gradients = metric_gradients(design, options.condition, orbit, parameters, held);
   if (!gradients.regular) return point;
   point.gradients = gradients.by_parameter;
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    point.domain_slopes[k] = domain_excess_slopes(vehicle, orbit.metrics, Metrics<double>{point.gradients[k]});
+  }
   return point;
 }
 

@@ -183,6 +183,14 @@ void run_transient(const Vehicle<double>& vehicle, const RunOptions& options, Ru
   }
 }
 
+void note_domain(const Vehicle<double>& vehicle, RunResult& result) {
+  if (result.status != FlappingStatus::flapping || !std::isfinite(result.metrics[Metric::frequency])) return;
+  result.domain = domain_of(vehicle, result.metrics);
+  result.domain_detail = describe_domain(vehicle, result.metrics);
+  const std::string warning = residual_warning(vehicle, result.metrics);
+  if (!warning.empty()) result.warnings.push_back(warning);
+}
+
 }  // namespace
 
 StartUp start_up_in_time(double tolerance) {
@@ -254,6 +262,7 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
   } else {
     run_transient(vehicle, options, result);
   }
+  note_domain(vehicle, result);
   return result;
 }
 

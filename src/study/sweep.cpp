@@ -38,6 +38,8 @@ void next(const Sweep& sweep, std::span<std::uint64_t> place) {
   }
 }
 
+static_assert(domain_limit_count <= 7, "bits of a signed byte");
+
 }  // namespace
 
 double SweepAxis::value(std::size_t quantity, std::uint64_t place) const {
@@ -87,6 +89,7 @@ SweepDesign design_at(const Sweep& sweep, std::uint64_t index) {
 void SweepColumns::resize(std::size_t designs, std::size_t metrics_kept) {
   status.resize(designs);
   recomputed.resize(designs);
+  domain.resize(designs);
   error_estimate.resize(designs);
   metrics.resize(metrics_kept);
   for (auto& column : metrics) column.resize(designs);
@@ -130,7 +133,7 @@ void SweepSolver::gather(SweepColumns& columns, std::size_t begin, std::size_t e
 void SweepSolver::solve(SweepColumns& columns, std::size_t begin, std::size_t end) {
   gather(columns, begin, end);
   for (std::size_t row = begin; row < end; ++row) {
-    columns.recomputed[row] = 0;
+    columns.recomputed[row] = columns.domain[row] = 0;
     columns.error_estimate[row] = absent;
     for (auto& column : columns.metrics) column[row] = absent;
   }
@@ -149,6 +152,7 @@ void SweepSolver::solve(SweepColumns& columns, std::size_t begin, std::size_t en
     columns.status[row] = std::int8_t(unreached ? SweepStatus::unreached : sweep_status(out.status));
     columns.recomputed[row] = out.scalar ? 1 : 0;
     if (!flaps || unreached) continue;
+    columns.domain[row] = std::int8_t(out.domain.to_ulong());
     columns.error_estimate[row] = out.error_estimate;
     for (std::size_t m = 0; m < kept_.size(); ++m) {
       columns.metrics[m][row] = out.metrics.values[std::size_t(kept_[m])];

@@ -772,17 +772,18 @@ Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
       total(Integral::friction_work) + total(Integral::aero_work) + total(Integral::residual_work);
   const auto is_wanted = [&](Quantity q) { return wanted_[std::size_t(q)]; };
   peak_error_ = L(0.0);
-  if (is_wanted(Quantity::energy)) total(Integral::reactive_work) = exchanged_energy();
-
   CycleExtremes<L> extremes;
   extremes.fill(L(0.0));
   const auto seek = [&](Quantity quantity, Extreme extreme) {
     if (is_wanted(quantity)) extremes[std::size_t(extreme)] = peak(quantity);
   };
   seek(Quantity::velocity, Extreme::flapping_velocity);
-  if (is_wanted(Quantity::velocity)) {
+  if (settings_.velocity_aside) {
+    peak_error_ = L(0.0);
+  } else if (is_wanted(Quantity::velocity)) {
     extremes[std::size_t(Extreme::lift)] = lift_peak(extremes[std::size_t(Extreme::flapping_velocity)]);
   }
+  if (is_wanted(Quantity::energy)) total(Integral::reactive_work) = exchanged_energy();
   seek(Quantity::current, Extreme::current);
   seek(Quantity::force, Extreme::rod_force);
   seek(Quantity::slowness, Extreme::crank_speed_min);
