@@ -199,7 +199,7 @@ class EnsembleRun {
     if (start_up_is_known(n)) found = find_steady_flapping(members_[n].vehicle, steady, known);
     if (found.status != FlappingStatus::flapping) found = find_steady_flapping(members_[n].vehicle, steady, start_up_);
     const bool flaps = found.status == FlappingStatus::flapping;
-    outcomes_[n] = {found.status, true, flaps ? options_.tolerance : absent, found.metrics,
+    outcomes_[n] = {found.status, true, flaps ? found.summary.error_estimate : absent, found.metrics,
                     flaps ? domain(n, found.metrics) : DomainStatus()};
     if (found.simulated) outcomes_[n].error_estimate = found.simulated->error_estimate;
     keep_wanted(options_.metrics, outcomes_[n].metrics);

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -110,8 +111,7 @@ class LapInverse {
   LapInverse(const System& system, const Lap<System>& lap)
       : inverse_(monodromy(system, system.template cast<Jet<int(n)>>(), lap)) {
     for (std::size_t k = 0; k < n * n; ++k) inverse_[k] = (k % (n + 1) == 0 ? 1.0 : 0.0) - inverse_[k];
-    good_ = invert(int(n), inverse_.data());
-    if (!good_) return;
+    if (!invert(int(n), inverse_.data())) return;
     const State scale = system.error_scale(lap.steps.front().y);
     for (std::size_t row = 0; row < n; ++row) {
       double sum = 0.0;
@@ -120,16 +120,19 @@ class LapInverse {
       }
       amplification_ = std::max(amplification_, sum);
     }
+    isolated_ = amplification_ < 1e9;
   }
 
-  /// How much further from the orbit a lap's start may be than its end is from its start, at least 1; infinite where the
-  /// lap map has no isolated fixed point to working precision.
-  double amplification() const { return good_ ? amplification_ : std::numeric_limits<double>::infinity(); }
+  /// False where something drifts freely: neither a fixed point nor errors of it are to be had from the derivative.
+  bool isolated() const { return isolated_; }
+
+  /// How much further from the orbit a lap's start may be than its end is from its start, at least 1.
+  double amplification() const { return isolated_ ? amplification_ : 1.0; }
 
   /// Moves y, the end of the lap, to the fixed point of the linearised lap map. False, y unchanged, where that is not
   /// trustworthy.
   bool move(const System& system, const Lap<System>& lap, State& y) const {
-    if (!good_) return false;
+    if (!isolated_) return false;
     const State& start = lap.steps.front().y;
     State moved = start;
     for (std::size_t row = 0; row < n; ++row) {
@@ -144,7 +147,7 @@ class LapInverse {
 
  private:
   std::array<double, n * n> inverse_;
-  bool good_ = false;
+  bool isolated_ = false;
   double amplification_ = 1.0;
 };
 
@@ -225,13 +228,16 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
     off = residual;
     bool grazes = false;
     const double position_error = 0.7 * detail::switch_tolerance(lap_options.tolerance);
+    std::optional<detail::LapInverse<System>> inverse;
     if (is_fine && slow) {
-      const detail::LapInverse<System> inverse(system, lap);
+      inverse.emplace(system, lap);
       ++summary.laps;
-      amplification = inverse.amplification();
+      amplification = inverse->amplification();
+    }
+    if (inverse && inverse->isolated()) {
       const auto move_on = [&] {
         State moved = lap.end;
-        const bool good = inverse.move(system, lap, moved);
+        const bool good = inverse->move(system, lap, moved);
         off = detail::scaled_distance(system, lap.steps.front().y, moved);
         return std::pair{good, moved};
       };
@@ -288,14 +294,14 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
     const bool closes = residual < 0.1;
     const bool ask = level + 2 == tolerances.size() && closes && !contracts && !known;
     if ((stalls && residual < 0.5) || ask) {
-      const detail::LapInverse<System> inverse(system, lap);
+      const detail::LapInverse<System> of_lap(system, lap);
       ++summary.laps;
       known = ask;
       if (ask) {
-        amplification = std::min(inverse.amplification(), 1e6);
+        amplification = of_lap.amplification();
         tolerances[2] = std::max(fine / amplification, tightest);
       }
-      if ((stalls || amplification > 1.0 + slow_contraction) && inverse.move(system, lap, y)) {
+      if ((stalls || amplification > 1.0 + slow_contraction) && of_lap.move(system, lap, y)) {
         ++summary.newton_steps;
         moved_by_newton = true;
         // The fine lap may start from here only if the step was small.
@@ -311,7 +317,8 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
     return summary;
   }
   summary.message = "orbit closed";
-  summary.error_estimate = amplification * cancellation * lap.error_sum + cancellation * off;
+  // Estimates of single steps are pessimistic.
+  summary.error_estimate = 0.4 * amplification * cancellation * lap.error_sum + cancellation * off;
   if (options.stability) {
     summary.floquet_multiplier_max =
         monodromy_product(system, system.template cast<Jet<int(n)>>(), lap).spectral_radius();

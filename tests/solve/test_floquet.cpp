@@ -1,0 +1,60 @@
+// Products of step matrices, and multipliers of laps whose steps do not resolve a decay.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "solve/oscillators.hpp"
+#include "wingbeat/solve/floquet.hpp"
+
+namespace wingbeat::solve {
+namespace {
+
+TEST(Floquet, ProductsNeitherOverflowNorUnderflow) {
+  for (const double size : {1e-200, 1e200}) {
+    MatrixProduct<2> product;
+    for (int n = 0; n < 10; ++n) product.append({size, 0.0, size, 0.5 * size});
+    EXPECT_NEAR(product.log_scale, 10.0 * std::log(size), 10.0);
+    EXPECT_NEAR(product.log_determinant, 20.0 * std::log(size) + 10.0 * std::log(0.5), 1e-9);
+    EXPECT_NEAR(spectral_radius(2, product.scaled.data()) * std::exp(product.log_scale - 10.0 * std::log(size)), 1.0,
+                1e-12);
+    // As many back again.
+    for (int n = 0; n < 10; ++n) product.append({1.0 / size, 0.0, 0.0, 1.0 / size});
+    EXPECT_NEAR(product.spectral_radius(), 1.0, 1e-10);
+  }
+}
+
+TEST(Floquet, ComplexPairsHaveTheRootOfTheDeterminant) {
+  MatrixProduct<2> product;
+  for (int n = 0; n < 100; ++n) product.append({0.9 * std::cos(0.1), -0.9 * std::sin(0.1), 0.9 * std::sin(0.1), 0.9 * std::cos(0.1)});
+  EXPECT_NEAR(product.spectral_radius() / std::pow(0.9, 100), 1.0, 1e-10);
+}
+
+TEST(Floquet, SingularFactorsEndTheProduct) {
+  MatrixProduct<2> product;
+  product.append({0.0, 0.0, 0.0, 0.0});
+  product.append({1e300, 0.0, 0.0, 1e300});
+  EXPECT_EQ(product.spectral_radius(), 0.0);
+  EXPECT_EQ(product.matrix()[0], 0.0);
+}
+
+TEST(Floquet, StepsBeyondStabilityDoNotGrow) {
+  // At rest nothing is excited: steps of a twelfth of the period, on a decay that takes a hundredth of one.
+  const StiffFollower<double> system(300.0);
+  Lap<StiffFollower<double>> lap;
+  lap.steps.clear();
+  constexpr int steps = 12;
+  for (int n = 0; n < steps; ++n) {
+    Step<StiffFollower<double>> step{};
+    step.x = two_pi * n / steps;
+    step.h = two_pi / steps;
+    step.y = {std::cos(step.x)};
+    step.signs.fill(1.0);
+    step.first = system.template rates<false>(step.x, step.y, step.signs);
+    lap.steps.push_back(step);
+  }
+  lap.end = lap.steps.front().y;
+  EXPECT_LT(monodromy_product(system, system.template cast<Jet<1>>(), lap).spectral_radius(), 1e-6);
+}
+
+}  // namespace
+}  // namespace wingbeat::solve

@@ -1,0 +1,122 @@
+// The tolerance asked for is kept by orbits of vehicles far from the reference, and multipliers are the flow's own.
+#include <gtest/gtest.h>
+
+#include <complex>
+
+#include "vehicle/wide_design.hpp"
+#include "wingbeat/cycle/steady_flapping.hpp"
+
+namespace wingbeat {
+namespace {
+
+Vehicle<double> next_vehicle(WideBox box, std::mt19937_64& random) {
+  for (;;) {
+    try {
+      return resolve(wide_design(box, random));
+    } catch (const ParameterError&) {
+    }
+  }
+}
+
+// benchmarks/accuracy does the same with thousands of vehicles.
+TEST(Accuracy, OrbitsKeepTheToleranceInWideBoxes) {
+  for (const double tolerance : {1e-4, 1e-6}) {
+    for (std::size_t box = 0; box < wide_boxes.size(); ++box) {
+      std::mt19937_64 random(7);
+      int compared = 0;
+      for (int n = 0; n < 40; ++n) {
+        const Vehicle<double> vehicle = next_vehicle(WideBox(box), random);
+        const SteadyFlapping found = find_steady_flapping(vehicle, {.tolerance = tolerance});
+        if (found.status != FlappingStatus::flapping) continue;
+        const SteadyFlapping exact = find_steady_flapping(vehicle, {.tolerance = 1e-12, .stability = false});
+        ASSERT_EQ(exact.status, FlappingStatus::flapping) << wide_boxes[box] << " " << n;
+        int where = 0;
+        const double off = metrics_apart(found.metrics, exact.metrics, &where);
+        EXPECT_LE(off, tolerance) << wide_boxes[box] << " " << n << " " << metric_info(Metric(where)).key;
+        EXPECT_LE(off, 5.0 * found.summary.error_estimate + 1e-2 * tolerance)
+            << wide_boxes[box] << " " << n << " " << metric_info(Metric(where)).key;
+        ++compared;
+      }
+      EXPECT_GE(compared, 20) << wide_boxes[box];
+    }
+  }
+}
+
+TEST(Accuracy, HeavyRotorsKeepTheTolerance) {
+  // A lap that closes to the tolerance leaves 1 / (1 - multiplier) = 500 times as much in the orbit.
+  Vehicle<double> vehicle = reference_vehicle();
+  vehicle.motor.inertia = 1e-3;
+  const SteadyFlapping exact = find_steady_flapping(vehicle, {.tolerance = 1e-12});
+  ASSERT_EQ(exact.status, FlappingStatus::flapping) << exact.detail;
+  EXPECT_GT(exact.metrics[Metric::floquet_multiplier_max], 0.99);
+  for (const double tolerance : {1e-3, 1e-5, 1e-7}) {
+    const SteadyFlapping found = find_steady_flapping(vehicle, {.tolerance = tolerance});
+    ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+    EXPECT_LE(metrics_apart(found.metrics, exact.metrics), tolerance);
+  }
+}
+
+/// Largest multiplier of a motor that turns nothing at its constant speed, and the smaller one over it.
+double wingless_multiplier(const Vehicle<double>& v, double omega) {
+  const Motor<double>& m = v.motor;
+  const double b = m.viscous_damping + v.friction.damping + 2.0 * v.friction.quadratic * omega;
+  const double per_lap = two_pi / omega, R = m.armature_resistance;
+  if (m.armature_inductance == 0.0) {
+    return std::exp(-(b + m.torque_constant * m.torque_constant / R) / m.inertia * per_lap);
+  }
+  const double trace = -b / m.inertia - R / m.armature_inductance;
+  const double det = (b * R + m.torque_constant * m.torque_constant) / (m.inertia * m.armature_inductance);
+  const std::complex<double> root = std::sqrt(std::complex<double>(0.25 * trace * trace - det));
+  // The slower root from the product of both: their sum cancels.
+  const double slower = std::imag(root) != 0.0 ? 0.5 * trace : det / (0.5 * trace - std::real(root));
+  return std::exp(slower * per_lap);
+}
+
+TEST(Accuracy, WinglessMultipliersAreTheirClosedForm) {
+  Vehicle<double> motor = wingless_vehicle();
+  motor.motor.inertia = 1e-6;
+  motor.motor.armature_inductance = 1e-3;
+  const SteadyFlapping found = find_steady_flapping(motor);
+  ASSERT_EQ(found.status, FlappingStatus::flapping);
+  EXPECT_NEAR(found.metrics[Metric::floquet_multiplier_max], 0.66, 0.05);
+  EXPECT_NEAR(found.metrics[Metric::floquet_multiplier_max] /
+                  wingless_multiplier(motor, two_pi * found.metrics[Metric::frequency]), 1.0, 1e-5);
+  std::mt19937_64 random(3);
+  for (int n = 0; n < 200; ++n) {
+    const Vehicle<double> v = next_vehicle(WideBox::wingless, random);
+    const SteadyFlapping orbit = find_steady_flapping(v);
+    if (orbit.status != FlappingStatus::flapping) continue;
+    const double expected = wingless_multiplier(v, two_pi * orbit.metrics[Metric::frequency]);
+    EXPECT_NEAR(orbit.metrics[Metric::floquet_multiplier_max], expected, 1e-3 * expected + 1e-9) << n;
+  }
+}
+
+TEST(Accuracy, MultipliersAreTheContractionOfLaps) {
+  std::mt19937_64 random(5);
+  int compared = 0;
+  for (int n = 0; n < 60; ++n) {
+    const Vehicle<double> v = next_vehicle(n % 2 ? WideBox::heavy_rotor : WideBox::wide, random);
+    const SteadyFlapping orbit = find_steady_flapping(v, {.tolerance = 1e-9});
+    if (orbit.status != FlappingStatus::flapping || v.motor.armature_inductance == 0.0) continue;
+    const double multiplier = orbit.metrics[Metric::floquet_multiplier_max];
+    if (multiplier < 0.3) continue;
+    // The other multiplier is far smaller: after one lap its part has gone.
+    const CrankSystem<double, 2> system{v, 1e-4 * no_load_speed(v), v.voltage / circuit_resistance(v)};
+    solve::Lap<CrankSystem<double, 2>> lap;
+    std::array<double, 2> y = {orbit.crank_speed * (1.0 + 1e-4), orbit.current};
+    double apart[4];
+    for (double& distance : apart) {
+      solve::run_lap<false>(system, y, {.tolerance = 1e-13, .max_steps = 5000}, lap);
+      ASSERT_EQ(lap.status, solve::LapStatus::complete);
+      y = lap.end;
+      distance = y[0] - orbit.crank_speed;
+    }
+    if (std::abs(apart[3] / apart[2] - apart[2] / apart[1]) > 1e-3 * multiplier) continue;  // a pair of comparable ones
+    EXPECT_NEAR(std::abs(apart[3] / apart[2]), multiplier, 2e-3 * multiplier) << n;
+    ++compared;
+  }
+  EXPECT_GE(compared, 15);
+}
+
+}  // namespace
+}  // namespace wingbeat
