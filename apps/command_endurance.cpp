@@ -19,6 +19,7 @@ struct Arguments {
   std::string vehicle, output, plot;
   std::vector<std::string> overrides;
   bool json = false;
+  bool allow_extrapolation = false;
 };
 
 std::optional<OutputFile> reserved(const char* option, const std::string& path, const std::string& vehicle) {
@@ -46,7 +47,8 @@ int run(const Arguments& arguments) {
   std::optional<OutputFile> output = reserved("-o", arguments.output, arguments.vehicle);
   std::optional<OutputFile> plot = reserved("--plot", arguments.plot, arguments.vehicle);
 
-  const EnduranceOptions options;
+  EnduranceOptions options;
+  options.allow_extrapolation = arguments.allow_extrapolation;
   const EnduranceResult result = fly_to_the_end(design, options);
   const bool flies = result.endurance() > 0.0;
   if (flies && output) {
@@ -79,6 +81,8 @@ void add_endurance(CLI::App& program, Action& action) {
   command->add_option("--set", a->overrides, "Replace a key of the vehicle file; repeatable")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
+  command->add_flag("--allow-extrapolation", a->allow_extrapolation,
+                    "Flight outside the model's domain may hover (docs/domain.md)");
   command->add_flag("--json", a->json, "Print one JSON object (SI) instead of a table");
   command->add_option("-o,--output", a->output, "Write the course of the flight (NetCDF-4)")->type_name("FILE.nc");
   command->add_option("--plot", a->plot, "Plot the flight to FILE.svg, .pdf or .png")->type_name("FILE");

@@ -22,6 +22,7 @@ struct Arguments {
   std::string study, output, plot, designs;
   int threads = 0;
   bool json = false;
+  bool allow_extrapolation = false;
 };
 
 bool is_data_set(const std::string& name) { return std::filesystem::path(name).extension() == ".nc"; }
@@ -88,7 +89,8 @@ int run(const Arguments& arguments) {
   if (!arguments.plot.empty() && !plot_format(arguments.plot)) {
     throw InputError("--plot " + arguments.plot, 0, 0, "", "the name must end in .svg, .pdf or .png");
   }
-  const OptimiseFile file = read_optimise_study(arguments.study);
+  OptimiseFile file = read_optimise_study(arguments.study);
+  file.study.allow_extrapolation |= arguments.allow_extrapolation;
   const ForEach for_each = [&](std::size_t count, const std::function<void(std::size_t)>& act) {
     for_each_in_parallel(count, act, arguments.threads);
   };
@@ -158,6 +160,8 @@ void add_optimise(CLI::App& program, Action& action) {
   command->add_option("--plot", a->plot, "Draw the optimum and its neighbourhood, or the front, to FILE.svg, .pdf or .png")->type_name("FILE");
   command->add_option("--designs", a->designs, "Write designs of the front as vehicle files: ends, knee, even steps")
       ->type_name("FOLDER");
+  command->add_flag("--allow-extrapolation", a->allow_extrapolation,
+                    "Search outside the model's domain too (docs/domain.md)");
   command->add_flag("--json", a->json, "Print one JSON object instead of tables");
   command->add_option("--threads", a->threads, "Use at most so many threads (default: one for each core)")
       ->type_name("N")

@@ -30,6 +30,7 @@ struct Arguments {
   std::string method = "orbit";
   std::string tolerance = "1e-6";
   bool json = false;
+  bool allow_extrapolation = false;
   std::string waveforms, plot, plot_power;
 };
 
@@ -89,6 +90,7 @@ std::string case_title(const Design<double>& design, const RunResult& result, Co
                                   readable(result.metrics[Metric::frequency], "Hz"));
   if (condition != Condition::air) title += fmt::format(", {}", name_of(condition));
   if (design.supply.type == SupplyType::sine) title = fmt::format("sine supply, {}", title);
+  if (result.domain.any()) title += fmt::format("; OUTSIDE THE DOMAIN ({})", name_of(result.domain));
   return title;
 }
 
@@ -106,6 +108,7 @@ void apply_voltage(Supply<double>& supply, const std::string& text) {
 
 int run(const Arguments& arguments) {
   RunOptions options;
+  options.allow_extrapolation = arguments.allow_extrapolation;
   options.condition = choice("--condition", arguments.condition, conditions);
   options.method = choice("--method", arguments.method, methods);
   try {
@@ -179,6 +182,7 @@ int run(const Arguments& arguments) {
                                 .input = write_design(result.design),
                                 .condition = name_of(options.condition),
                                 .method = name_of(options.method),
+                                .domain = name_of(result.domain),
                                 .tolerance = options.tolerance});
       }
       (*waveforms).commit();
@@ -196,10 +200,10 @@ int run(const Arguments& arguments) {
 
   print(arguments.json ? json_report(result) : text_report(result, options));
   if (flaps && has_metrics) return done;
-  if (waveforms || cycle_plot || power_plot) complain("the vehicle does not flap: no file was written");
-  if (flaps || !result.settled) {
-    complain("the simulation did not settle: " + result.detail);
-    return flaps ? failed : does_not_flap;
+  if (waveforms || cycle_plot || power_plot) complain("no steady flapping: no file was written");
+  if (flaps || result.status == FlappingStatus::undecided) {
+    complain("no verdict: " + result.detail);
+    return failed;
   }
   return does_not_flap;
 }
@@ -231,6 +235,8 @@ void add_run(CLI::App& program, Action& action) {
       ->type_name("METHOD");
   command->add_option("--tolerance", a->tolerance, "Relative accuracy of every metric, 1e-12 to 1e-2 (default 1e-6)")
       ->type_name("NUMBER");
+  command->add_flag("--allow-extrapolation", a->allow_extrapolation,
+                    "Search for a lift outside the model's domain too (docs/domain.md)");
   command->add_flag("--json", a->json, "Print one JSON object (SI) instead of a table");
   command->add_option("--waveforms", a->waveforms, "Write one cycle to FILE.csv or FILE.nc")->type_name("FILE");
   command->add_option("--plot", a->plot, "Plot one cycle to FILE.svg, .pdf or .png")->type_name("FILE");

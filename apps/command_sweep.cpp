@@ -27,6 +27,7 @@ struct Arguments {
   std::string study, output;
   std::string tolerance, isa;
   int threads = 0;
+  bool allow_extrapolation = false;
   std::string plot;
   std::vector<std::string> plot_metrics;
 };
@@ -125,7 +126,7 @@ std::string summary(const Study& study, const SweepResult& result) {
   constexpr const char* meanings[sweep_status_count] = {
       "", "the motor never starts", "the crank comes to rest at an angle",
       "the equations of motion lose their unique solution on the way", "flapping, but not at the frequency asked for",
-      "a parameter out of its range beside the others"};
+      "a parameter out of its range beside the others", "start-up came to no end within the solvers' limits"};
   for (int s = 0; s < sweep_status_count; ++s) {
     const std::uint64_t n = digest.designs[std::size_t(s)];
     if (n == 0 && s > 0) continue;
@@ -135,6 +136,16 @@ std::string summary(const Study& study, const SweepResult& result) {
   }
   fmt::format_to(out, "  {:<12}{:>14}{:>9.2f} %   by the scalar solver\n", "recomputed", grouped(digest.recomputed),
                  100.0 * double(digest.recomputed) / double(sweep.size()));
+  if (digest.outside > 0) {
+    std::string limits;
+    for (std::size_t k = 0; k < digest.beyond.size(); ++k) {
+      if (digest.beyond[k] == 0) continue;
+      limits += fmt::format("{}{} {}", limits.empty() ? "" : ", ", grouped(digest.beyond[k]), domain_limit_table()[k].key);
+    }
+    fmt::format_to(out, "  {:<12}{:>14}{:>9.2f} %   flapping outside the model's domain ({})\n", "outside",
+                   grouped(digest.outside), 100.0 * double(digest.outside) / double(sweep.size()), limits);
+    if (sweep.allow_extrapolation) fmt::format_to(out, "extrapolation is allowed: designs outside the domain may be best\n");
+  }
   const auto best = [&](const char* what, const std::optional<SweepDigest::Best>& b, const std::string& value) {
     if (b) fmt::format_to(out, "{}\n", wrapped(fmt::format("{}: {}, {}", what, value, description(sweep, b->index)), 88, 2));
   };
@@ -148,6 +159,7 @@ std::string summary(const Study& study, const SweepResult& result) {
 Study study_of(const Arguments& arguments) {
   Study study = std::filesystem::path(arguments.study).extension() == ".nc" ? read_study_in_data_set(arguments.study)
                                                                             : read_study(arguments.study);
+  study.sweep.allow_extrapolation |= arguments.allow_extrapolation;
   EnsembleOptions& options = study.sweep.options;
   if (!arguments.tolerance.empty()) {
     try {
@@ -244,6 +256,8 @@ void add_sweep(CLI::App& program, Action& action) {
   command->add_option("--threads", a->threads, "Use at most so many threads (default: one for each core)")
       ->type_name("N")
       ->check(CLI::PositiveNumber);
+  command->add_flag("--allow-extrapolation", a->allow_extrapolation,
+                    "Designs outside the model's domain may be best (docs/domain.md)");
   command->add_option("--isa", a->isa, "Instructions: sse2, avx2 or avx512 (default: the widest there is)")
       ->type_name("NAME");
   CLI::Option* plot =

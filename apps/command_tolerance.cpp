@@ -19,6 +19,7 @@ struct Arguments {
   std::string study, output, plot, plot_metric;
   int threads = 0;
   bool json = false;
+  bool allow_extrapolation = false;
 };
 
 void show_progress(const SweepProgress& p) {
@@ -35,7 +36,8 @@ int run(const Arguments& arguments) {
   if (!arguments.output.empty() && std::filesystem::path(arguments.output).extension() != ".nc") {
     throw InputError("-o " + arguments.output, 0, 0, "", "the name must end in .nc");
   }
-  const ToleranceStudy study = read_tolerance_study(arguments.study);
+  ToleranceStudy study = read_tolerance_study(arguments.study);
+  study.allow_extrapolation |= arguments.allow_extrapolation;
   const std::string option = "--plot-metric " + arguments.plot_metric;
   if (!arguments.plot_metric.empty()) {
     const int index = metric_index(arguments.plot_metric);
@@ -79,6 +81,8 @@ void add_tolerance(CLI::App& program, Action& action) {
   const auto a = std::make_shared<Arguments>();
   command->add_option("study", a->study, "Study file (TOML): vehicle, distributions")->required()->type_name("STUDY");
   command->add_option("-o,--output", a->output, "Write samples, metrics and indices (NetCDF-4)")->type_name("FILE.nc");
+  command->add_flag("--allow-extrapolation", a->allow_extrapolation,
+                    "Samples outside the model's domain count and may hover (docs/domain.md)");
   command->add_flag("--json", a->json, "Print one JSON object instead of tables");
   command->add_option("--threads", a->threads, "Use at most so many threads (default: one for each core)")
       ->type_name("N")

@@ -46,25 +46,37 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
   };
   bool found = balance.responses.empty() ? from_rest() : from_harmonic(balance.responses.front());
   if (!found && !balance.responses.empty()) found = from_rest();
-  if ((balance.responses.size() > 1 || !found) && start_up) {
+  // Nothing returns a shaft without springs to any angle: a multiplier of 1 there.
+  const bool springs = vehicle.spring.stiffness > 0.0;
+  const auto is_stable = [&] { return !springs || orbit.multiplier() < 1.0; };
+  if ((balance.responses.size() > 1 || !found || !is_stable()) && start_up) {
     const StartUpOutcome outcome = start_up(vehicle);
+    result.summary = orbit.summary();
     if (outcome.status != FlappingStatus::flapping) {
       result.status = outcome.status;
       result.detail = outcome.detail;
-      result.summary = orbit.summary();
       return result;
     }
-    if (outcome.settled) found = orbit.search(state(outcome.stroke_angle, outcome.crank_speed, outcome.current));
+    if (outcome.settled) {
+      const State reached = state(outcome.stroke_angle, outcome.crank_speed, outcome.current);
+      found = (orbit.search(reached) || orbit.search_near(reached)) && is_stable();
+      result.summary = orbit.summary();
+    }
+    if (!found) {
+      fill_simulated(outcome, options, "the phase of the supply", result);
+      return result;
+    }
   }
   result.summary = orbit.summary();
-  if (!found) {
-    result.status = FlappingStatus::locked;
-    result.detail = format("no periodic response to the supply was found: %s", orbit.summary().message.c_str());
+  if (!found || !is_stable()) {
+    result.status = FlappingStatus::undecided;
+    result.detail = found ? format("the periodic response to the supply is unstable (Floquet multiplier %.4g)",
+                                   orbit.multiplier())
+                          : format("no periodic response to the supply was found: %s", orbit.summary().message.c_str());
     return result;
   }
-  // Nothing returns a shaft without springs to any angle: a multiplier of 1 that says nothing.
   orbit.fill(result);
-  if (!(vehicle.spring.stiffness > 0.0)) result.metrics[Metric::floquet_multiplier_max] = absent;
+  if (!springs) result.metrics[Metric::floquet_multiplier_max] = absent;
   result.status = FlappingStatus::flapping;
   result.detail = format("steady flapping at the supply's %.4g Hz", vehicle.drive_frequency);
   const double amplitude = result.metrics[Metric::stroke_amplitude];

@@ -331,6 +331,12 @@ MetricGradients metric_gradients(const Design<double>& design, Condition conditi
                                  std::span<const DesignParameter> parameters, const GradientOptions& options) {
   MetricGradients result;
   result.by_parameter.resize(parameters.size());
+  if (orbit.record.empty()) {  // a cycle simulated in time is no lap to be repeated
+    result.regular = false;
+    result.by_voltage.fill(absent);
+    for (auto& gradient : result.by_parameter) gradient.fill(absent);
+    return result;
+  }
   const Design<GradientJet> plain = cast_design<GradientJet>(design);
   for (std::size_t first = 0; first == 0 || first < parameters.size(); first += gradient_parameters) {
     const std::size_t count = std::min<std::size_t>(gradient_parameters, parameters.size() - first);

@@ -31,6 +31,15 @@ class CrankSearch : public OrbitSearch<CrankSystem<double, N>> {
       return this->search({omega});
     }
   }
+  /// The same from where a simulation in time has settled.
+  bool near(double omega, double current) {
+    if (!(omega > this->system().speed_floor)) return false;
+    if constexpr (N == 2) {
+      return this->search_near({omega, current});
+    } else {
+      return this->search_near({omega});
+    }
+  }
   double crank_speed() const { return this->start()[0]; }
 };
 
@@ -72,33 +81,39 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
   }
 
   CrankSearch<N> orbit(vehicle, options);
-  bool found = false, several = false;
+  bool found = false, ambiguous = false;
   if (!statics.can_jam()) {
     const BalancedSpeed<double> balanced = balanced_speed(vehicle);
-    several = balanced.count > 1.0;
     found = balanced.count > 0.0 && orbit.from(balanced.slowest);
     // The fastest start: if laps from there fail, no slower one can be expected to last.
     if (!found) found = orbit.from(no_load_speed(vehicle));
+    ambiguous = balanced.count > 1.0 ||
+                (found && hardly_returns(vehicle, orbit.multiplier(), 1.0 / orbit.frequency()));
   }
 
-  bool rotates_in_time = false;
-  const bool doubtful = statics.can_jam() || statics.can_lock() || several || !found;
-  if (doubtful && start_up) {
-    const StartUpOutcome outcome = start_up(vehicle);
-    if (outcome.status != FlappingStatus::flapping) {
-      result.status = outcome.status;
-      result.detail = outcome.detail;
+  std::optional<StartUpOutcome> outcome;
+  if ((statics.can_jam() || statics.can_lock() || ambiguous || !found) && start_up) {
+    outcome = start_up(vehicle);
+    if (outcome->status != FlappingStatus::flapping) {
+      result.status = outcome->status;
+      result.detail = outcome->detail;
       if (found) {
         result.detail += format("; a rotating orbit at %.4g Hz exists for a faster start", orbit.frequency());
       }
       result.summary = orbit.summary();
       return result;
     }
-    rotates_in_time = outcome.settled;
-    if (outcome.settled && !(found && std::abs(orbit.crank_speed() - outcome.crank_speed) <
-                                          1e-3 * outcome.crank_speed)) {
-      found = orbit.from(outcome.crank_speed, outcome.current);
+    if (outcome->settled) {
+      const auto is_reached = [&](double closeness) {
+        return std::abs(orbit.crank_speed() - outcome->crank_speed) < closeness * outcome->crank_speed &&
+               orbit.multiplier() < 1.0;
+      };
+      found = (found && is_reached(1e-3)) || (orbit.near(outcome->crank_speed, outcome->current) && is_reached(1e-2));
+    } else if (ambiguous) {
+      found = false;  // it rotates, but nobody says on which orbit
     }
+  } else if (found) {
+    found = orbit.multiplier() < 1.0;
   }
   result.summary = orbit.summary();
   if (found) {
@@ -112,22 +127,49 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
     orbit.fill(result);
     return result;
   }
+  if (outcome) {
+    detail::fill_simulated(*outcome, options, "crank angle", result);
+    return result;
+  }
   if (statics.can_jam()) {
     result.status = FlappingStatus::jammed;
     result.detail = jam_detail(statics);
+  } else if (result.summary.status == solve::PeriodicStatus::converged) {
+    result.status = FlappingStatus::undecided;
+    result.detail = format("the only orbit found, at %.4g Hz, is unstable (Floquet multiplier %.4g), and nobody says what "
+                           "start-up does", orbit.frequency(), orbit.multiplier());
   } else {
     result.status = FlappingStatus::locked;
     result.detail = format("no rotating orbit: laps end at crank angle %.1f deg (%s)", in_degrees(result.summary.stop),
                            result.summary.message.c_str());
     if (statics.can_lock()) result.detail += "; the crank locks at crank angles " + lock_list(vehicle);
-    if (rotates_in_time) {
-      result.detail += "; simulated in time it does flap steadily: the orbit search failed, use the transient's result";
-    }
   }
   return result;
 }
 
 }  // namespace
+
+void detail::fill_simulated(const StartUpOutcome& outcome, const SteadyOptions& options, const char* variable,
+                            SteadyFlapping& result) {
+  if (outcome.settled && outcome.cycle) result.simulated = outcome.cycle(options.tolerance, options.reporting);
+  const std::string& why = result.summary.message;
+  if (!result.simulated) {
+    result.status = FlappingStatus::undecided;
+    result.detail = format("it rotates when simulated in time, but neither a periodic orbit in %s (%s) nor a simulated "
+                           "cycle was found that it settles on", variable, why.c_str());
+    return;
+  }
+  result.status = FlappingStatus::flapping;
+  result.metrics = result.simulated->metrics;
+  result.crank_speed = outcome.crank_speed;
+  result.current = outcome.current;
+  result.detail = format("steady flapping at %.4g Hz, from its cycle simulated in time to %.1g%s: the search for an orbit "
+                         "in %s found none that start-up reaches (%s)",
+                         result.metrics[Metric::frequency], result.simulated->error_estimate,
+                         result.simulated->cycles > 1
+                             ? format(", which repeats after %d turns", result.simulated->cycles).c_str() : "",
+                         variable, why.c_str());
+}
 
 SteadyFlapping find_steady_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                     const StartUp& start_up) {

@@ -67,7 +67,8 @@ Answer along(const PublishedFile& file, const PublishedTrend& t) {
     }
     const RunResult run = run_design(design, options);
     const bool reached = !run.search || run.search->outcome == FrequencyOutcome::reached;
-    return run.status == FlappingStatus::flapping && reached ? run.metrics[t.metric] : absent;
+    const bool counts = run.status == FlappingStatus::flapping && reached && run.domain.none();
+    return counts ? run.metrics[t.metric] : absent;
   };
   if (t.kind == PublishedTrend::Kind::crossing) {
     const auto ratio = [&](double x) { return value_of(t.design, x) / value_of(*t.relative_to, x); };

@@ -47,9 +47,7 @@ class Reader {
     if (const Value* name = document_.find("vehicle.name")) d.name = text_of(*name, "vehicle.name", "a text");
     d.supply.type = choice("supply.type", supply_types);
     d.transmission.type = choice("transmission.type", transmission_types);
-    d.transmission.formulation = document_.find("transmission.formulation")
-                                     ? choice("transmission.formulation", formulations)
-                                     : Formulation::rod_force;
+    read_formulation(d.transmission);
     d.friction.law = choice("friction.type", friction_laws);
     if (!document_.has_section("wing.planform")) {
       missing("wing.planform",
@@ -145,6 +143,16 @@ class Reader {
                                        fmt::join(requirement.values, " or "), in_quotes(choice->text)));
     }
     return false;
+  }
+
+  void read_formulation(TransmissionDesign<double>& transmission) const {
+    const std::string_view path = "transmission.formulation";
+    if (document_.find(path)) {
+      transmission.formulation = choice(path, formulations);
+    } else if (transmission.type == TransmissionType::slider_crank) {
+      missing(path, "rod-force or virtual-work: virtual-work conserves power and is the choice for a new vehicle, "
+                    "rod-force is equation (1) of the 2022 paper as printed");
+    }
   }
 
   void read_numbers(Design<double>& d) const {

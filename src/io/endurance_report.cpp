@@ -51,6 +51,16 @@ constexpr Column columns[] = {
     {"energy_internal_j", "J", "energy lost inside the battery since the start", &EnduranceRow::energy_internal},
     {"energy_aerodynamic_j", "J", "energy given to the air since the start", &EnduranceRow::energy_aerodynamic}};
 
+/// Rows outside the model's domain, and every limit that they exceed.
+std::pair<std::size_t, DomainStatus> outside(const EnduranceResult& result) {
+  std::pair<std::size_t, DomainStatus> sum{0, {}};
+  for (const EnduranceRow& row : result.rows) {
+    sum.first += row.domain.any();
+    sum.second |= row.domain;
+  }
+  return sum;
+}
+
 Json metrics_json(const Metrics<double>& metrics) {
   Json json = Json::object();
   for (int m = 0; m < metric_count; ++m) {
@@ -84,6 +94,7 @@ const char* name_of(Hover hover) {
   switch (hover) {
     case Hover::unknown: return "unknown";
     case Hover::never: return "never";
+    case Hover::outside: return "outside domain";
     case Hover::lost: return "lost";
     case Hover::kept: return "kept";
   }
@@ -97,6 +108,7 @@ std::string json_endurance(const EnduranceResult& result) {
   json["end"] = name_of(result.end);
   json["endurance_s"] = result.endurance();
   json["hover"] = name_of(result.hover);
+  json["domain"] = result.rows.empty() ? Json(nullptr) : Json(name_of(outside(result).second));
   Json moment = nullptr;
   if (const auto& at = result.hover_lost) {
     moment = {{"time_s", at->time}, {"charge", at->charge}, {"open_circuit_voltage_v", at->open_circuit_voltage}};
@@ -129,6 +141,7 @@ std::string json_endurance(const EnduranceResult& result) {
       const char* key = metric_info(m).key;
       for (const EnduranceRow& row : f.rows) history[key].push_back(number_or_null(row.metrics[m]));
     }
+    for (const EnduranceRow& row : f.rows) history["domain"].push_back(name_of(row.domain));
     json["history"] = history;
   }
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -144,6 +157,11 @@ std::string text_endurance(const Design<double>& design, const EnduranceResult& 
   };
   const auto charge = [](double c) { return fmt::format("{:.2f} %", 100.0 * c); };
   if (!design.name.empty()) text += wrapped(design.name, 88, 0) + "\n";
+  if (const auto [rows, limits] = outside(result); rows > 0) {
+    text += wrapped(fmt::format("OUTSIDE THE MODEL'S DOMAIN ({}) in {} of {} rows of the discharge: what they give is "
+                                "extrapolated.",
+                                name_of(limits), rows, result.rows.size()), 88, 2) + "\n";
+  }
   text += wrapped(fmt::format("{}: {}.", name_of(result.end), result.detail), 88, 2) + "\n";
   if (result.rows.empty()) return text;
   const Flight f(result);
@@ -153,6 +171,7 @@ std::string text_endurance(const Design<double>& design, const EnduranceResult& 
   switch (result.hover) {
     case Hover::unknown: line("hover", "-", "the vehicle file gives no mass"); break;
     case Hover::never: line("hover", "never", "lift is below the weight from the start"); break;
+    case Hover::outside: line("hover", "not claimed", "lift exceeds the weight, but outside the model's domain"); break;
     case Hover::kept: line("hover", "to the end", "lift exceeds the weight throughout"); break;
     case Hover::lost: {
       const EnduranceRow& at = *result.hover_lost;
@@ -239,6 +258,12 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
     figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", panel_top, panel_top - height);
     figure.add("set format x {}\nset yrange [0:{}]\n", index == 3 ? "'%g'" : "''", 1.06 * most);
     figure.text(name, 7.5, fmt::format("screen 0.026,{} center rotate by 90", panel_top - 0.5 * height));
+    for (std::size_t n = 0; n + 1 < rows.size(); ++n) {
+      if (rows[n].domain.none() && rows[n + 1].domain.none()) continue;
+      figure.add("set object {} rectangle from {},graph 0 to {},graph 1 behind fillcolor rgb '#909090' fillstyle transparent "
+                 "pattern 4 noborder\n",
+                 1000 + n, time_scale * rows[n].time, time_scale * rows[n + 1].time);
+    }
     // Loss of hover runs through all panels.
     if (result.hover_lost) {
       const double at = time_scale * result.hover_lost->time;
@@ -268,6 +293,9 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
   figure.add("plot $flight using 1:5 with lines {}, '' using 1:6 with lines {}\n", blue_solid, vermillion_dashed);
 
   panel(3, "charge (%)", 100.0);
+  if (outside(result).first > 0) {
+    figure.text("hatched: outside the model's domain", 6.5, fmt::format("screen {},0.014 right", right));
+  }
   figure.text(in_minutes ? "time (min)" : "time (s)", 7.5, fmt::format("screen {},0.014 center", 0.5 * (left + right)));
   figure.key_entry(left, key_height, blue_solid, "state of charge");
   figure.add("plot $flight using 1:7 with lines {}\n", blue_solid);
@@ -285,6 +313,11 @@ void write_endurance(const EnduranceResult& result, const Provenance& provenance
     variables.push_back(file.define_variable(is_time ? "time" : c.key, {time}, c.unit, c.long_name));
   }
   for (const MetricInfo& m : metric_table()) variables.push_back(file.define_variable(m.key, {time}, m.unit, m.long_name));
+  const auto domain = file.define_dense("domain", {time}, "1", "limits of the model's domain that are exceeded",
+                                        NetcdfFile::Storage::flag);
+  std::vector<std::string> limits;
+  for (const DomainLimitInfo& limit : domain_limit_table()) limits.push_back(limit.key);
+  file.set_flag_masks(domain, limits);
   file.set_attribute("end", name_of(result.end));
   file.set_attribute("end_detail", result.detail);
   file.set_attribute("hover", name_of(result.hover));
@@ -297,6 +330,9 @@ void write_endurance(const EnduranceResult& result, const Provenance& provenance
   for (std::size_t c = 0; c < std::size(columns); ++c) {
     write(variables[c], [&](const EnduranceRow& row) { return row.*columns[c].value; });
   }
+  std::vector<std::int8_t> exceeded;
+  for (const EnduranceRow& row : result.rows) exceeded.push_back(std::int8_t(row.domain.to_ulong()));
+  file.write_run(domain, 0, std::span<const std::int8_t>(exceeded));
   for (std::size_t m = 0; m < std::size_t(metric_count); ++m) {
     write(variables[std::size(columns) + m], [&](const EnduranceRow& row) { return row.metrics.values[m]; });
   }

@@ -86,6 +86,18 @@ void NetcdfFile::set_flags(const Variable& variable, std::span<const std::string
   set_attribute(variable, "flag_meanings", names);
 }
 
+void NetcdfFile::set_flag_masks(const Variable& variable, std::span<const std::string> meanings) {
+  std::vector<signed char> masks;
+  std::string names;
+  for (const std::string& meaning : meanings) {
+    names += (names.empty() ? "" : " ") + meaning;
+    masks.push_back(static_cast<signed char>(1 << masks.size()));
+  }
+  check(nc_put_att_schar(id_, variable.id, "flag_masks", NC_BYTE, masks.size(), masks.data()),
+        "set attribute flag_masks");
+  set_attribute(variable, "flag_meanings", names);
+}
+
 void NetcdfFile::set_attribute(const std::string& name, std::string_view text) {
   check(nc_put_att_text(id_, NC_GLOBAL, name.c_str(), text.size(), text.data()), "set attribute " + name);
 }
@@ -247,6 +259,7 @@ void write_provenance(NetcdfFile& file, const Provenance& provenance) {
   file.set_attribute("input", provenance.input);
   file.set_attribute("condition", provenance.condition);
   file.set_attribute("method", provenance.method);
+  if (!provenance.domain.empty()) file.set_attribute("domain", provenance.domain);
   file.set_attribute("tolerance", fmt::format("{}", provenance.tolerance));
 }
 

@@ -35,6 +35,7 @@ class OptimiseReader : public detail::StudySections {
     accuracy.tolerance = study.options.tolerance;
     read_tolerance(accuracy);
     study.options.tolerance = accuracy.tolerance;
+    study.allow_extrapolation = read_allow_extrapolation();
     study.options.frequency = read_frequency(study.design);
     if (const TomlNode* motors = root_.find("motors")) read_motors(*motors, file);
     // The keys of a catalogue's motors are those of its first usable one.
@@ -461,6 +462,7 @@ ParetoStudy pareto_study(const OptimiseFile& file) {
   study.parameters = file.study.parameters;
   study.choices = file.choices;
   study.constraints = file.study.constraints;
+  study.allow_extrapolation = file.study.allow_extrapolation;
   study.evolution = file.evolution;
   study.screen = file.study.screen;
   study.designs = file.designs;

@@ -25,6 +25,10 @@ void text_neighbourhood(Out& out, const OptimiseStudy& study, const OptimiseResu
     fmt::format_to(out, "  {:<44}{:>18}\n", a.name, worse);
   }
   if (r.active.empty()) fmt::format_to(out, "  no constraint and no bound: the optimum lies inside\n");
+  if (std::any_of(r.active.begin(), r.active.end(), [](const ActiveLimit& a) { return a.domain; })) {
+    fmt::format_to(out, "{}\n", wrapped("  The model's domain limits this optimum: a better one would lie where the model no "
+                                        "longer holds.", width, 2));
+  }
 
   fmt::format_to(out, "\nHow flat it is: moving along each direction until the objective is {:g} % worse\n",
                  100.0 * flat_loss);
@@ -57,10 +61,15 @@ Json result_json(const OptimiseFile& file, const OptimiseResult& r) {
     json["screened"][name_of(SweepStatus(s))] = r.screen.status[std::size_t(s)];
   }
   json["screened"]["feasible"] = r.screen.feasible;
+  json["screened"]["outside_domain"] = r.screen.outside;
+  json["allow_extrapolation"] = study.allow_extrapolation;
   if (r.outcome != Outcome::found) {
     json["reason"] = explanation(study, r);
     return json;
   }
+  json["domain"] = name_of(r.point.domain);
+  json["limited_by_domain"] =
+      std::any_of(r.active.begin(), r.active.end(), [](const ActiveLimit& a) { return a.domain; });
   json["value"] = r.point.metrics[study.objective];
   for (std::size_t k = 0; k < study.parameters.size(); ++k) {
     json["parameters"][study.parameters[k].parameter.key] = r.parameters[k];
@@ -95,10 +104,20 @@ std::string explanation(const std::string& reason, bool nothing_flaps, std::span
     }
     return text + counts;
   }
+  if (screen.outside > 0) {
+    std::string limits;
+    for (std::size_t k = 0; k < screen.beyond.size(); ++k) {
+      if (screen.beyond[k] == 0) continue;
+      limits += fmt::format("{}{} {}", limits.empty() ? "" : ", ", screen.beyond[k], domain_limit_table()[k].key);
+    }
+    text += fmt::format("; {} of {} that flap are outside the model's domain ({})", screen.outside, screen.status[0],
+                        limits);
+  }
   for (std::size_t c = 0; c < constraints.size(); ++c) {
     if (screen.violated[c] == 0) continue;
-    text += fmt::format("; {}: {} of {} that flap break it, the best of them reaches {}", name_of(constraints[c]),
-                        screen.violated[c], screen.status[0],
+    text += fmt::format("; {}: {} of {} {} break it, the best of them reaches {}", name_of(constraints[c]),
+                        screen.violated[c], screen.status[0] - screen.outside,
+                        screen.outside > 0 ? "inside" : "that flap",
                         with_unit(screen.closest[c], metric_info(constraints[c].metric).unit));
   }
   return text;
@@ -129,6 +148,10 @@ std::string text_optimum(const OptimiseFile& file, const OptimiseResult& r) {
   const std::uint64_t screened = std::accumulate(r.screen.status.begin(), r.screen.status.end(), std::uint64_t(0));
   fmt::format_to(out, "\nscreened {} designs: {} flap, {} of these within every constraint\n", screened,
                  r.screen.status[0], r.screen.feasible);
+  if (r.screen.outside > 0) {
+    fmt::format_to(out, "{} that flap are outside the model's domain and do not count\n", r.screen.outside);
+  }
+  if (study.allow_extrapolation) fmt::format_to(out, "designs outside the model's domain count: extrapolation is allowed\n");
   if (r.outcome != Outcome::found) {
     fmt::format_to(out, "{}\n", wrapped("No design found: " + explanation(study, r), width, 2));
     return text;
@@ -137,6 +160,10 @@ std::string text_optimum(const OptimiseFile& file, const OptimiseResult& r) {
                  r.same, r.elsewhere, r.failed);
   fmt::format_to(out, "{} {}: {}\n", study.maximise ? "most" : "least", objective.long_name,
                  with_unit(r.point.metrics[study.objective], objective.unit));
+  if (r.point.domain.any()) {
+    fmt::format_to(out, "{}\n", wrapped(fmt::format("OUTSIDE THE MODEL'S DOMAIN ({}): these numbers are extrapolated",
+                                                    name_of(r.point.domain)), width, 2));
+  }
   if (!study.parameters.empty()) {
     fmt::format_to(out, "\n{:<36}{:>13}{:>13}{:>13}\n", "Parameter", "optimum", "lower", "upper");
   }

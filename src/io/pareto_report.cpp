@@ -119,6 +119,10 @@ std::string text_front(const OptimiseFile& file, const ParetoStudy& study, const
   if (study.frequency) aims += fmt::format("; flapping held at {:.6g} Hz", *study.frequency);
   fmt::format_to(out, "{}\nscreened {} designs: {} flap, {} of these within every constraint\n", wrapped(aims, width, 0),
                  study.screen, r.screen.status[0], r.screen.feasible);
+  if (r.screen.outside > 0) {
+    fmt::format_to(out, "{} that flap are outside the model's domain and do not count\n", r.screen.outside);
+  }
+  if (study.allow_extrapolation) fmt::format_to(out, "designs outside the model's domain count: extrapolation is allowed\n");
   const auto motors = [&] {
     if (file.motors.empty()) return;
     fmt::format_to(out, "\n{:<30}{:>10}{:>10}{:>10}{:>14}\n", "Motor", "solved", "flap", "feasible", "on the front");
@@ -196,6 +200,8 @@ std::string json_front(const OptimiseFile& file, const ParetoStudy& study, const
     json["screened"][name_of(SweepStatus(s))] = r.screen.status[std::size_t(s)];
   }
   json["screened"]["feasible"] = r.screen.feasible;
+  json["screened"]["outside_domain"] = r.screen.outside;
+  json["allow_extrapolation"] = study.allow_extrapolation;
   if (!file.motors.empty()) {
     const std::vector<VehicleCount> counts = count_vehicles(study, r);
     for (std::size_t v = 0; v < counts.size(); ++v) {
@@ -226,6 +232,7 @@ std::string json_front(const OptimiseFile& file, const ParetoStudy& study, const
     for (int m = 0; m < metric_count; ++m) {
       entry["metrics"][metric_info(Metric(m)).key] = number_or_null(d.metrics.values[std::size_t(m)]);
     }
+    entry["domain"] = name_of(d.domain);
     json["front"].push_back(std::move(entry));
   }
   return json.dump(2) + "\n";
@@ -262,6 +269,15 @@ void write_front(const ParetoStudy& study, const ParetoResult& r, const std::str
       column(metric_table()[m].key, metric_table()[m].unit, metric_table()[m].long_name,
              [m](const ParetoDesign& d) { return d.metrics.values[m]; });
     }
+    const auto domain = data.define_dense(prefix + "domain", {along}, "1",
+                                          std::string("limits of the model's domain that are exceeded") + of,
+                                          NetcdfFile::Storage::flag);
+    std::vector<std::string> limits;
+    for (const DomainLimitInfo& limit : domain_limit_table()) limits.push_back(limit.key);
+    data.set_flag_masks(domain, limits);
+    std::vector<std::int8_t> exceeded;
+    for (const ParetoDesign& d : list) exceeded.push_back(std::int8_t(d.domain.to_ulong()));
+    data.write_run(domain, 0, std::span<const std::int8_t>(exceeded));
     if (study.vehicles.size() > 1) {
       std::vector<std::string> names;
       for (const ParetoDesign& d : list) names.push_back(study.vehicles[d.vehicle].name);
@@ -289,7 +305,7 @@ void write_front(const ParetoStudy& study, const ParetoResult& r, const std::str
   std::vector<std::string> statuses;
   for (int s = 0; s < sweep_status_count; ++s) statuses.push_back(name_of(SweepStatus(s)));
   flag("evaluated_status", "what became of the design", statuses, [&](std::size_t n) { return r.status[n]; });
-  flag("evaluated_feasible", "flapping and within every constraint", {"no", "yes"},
+  flag("evaluated_feasible", "flapping, inside the model's domain and within every constraint", {"no", "yes"},
        [&](std::size_t n) { return r.feasible[n] ? 1 : 0; });
 
   const auto objective = data.define_dimension("objective", study.objectives.size());

@@ -189,8 +189,12 @@ std::string wrapped(std::string_view text, int width, int indent) {
 
 std::string json_report(const RunResult& result) {
   Json json;
-  json["status"] = name_of(result.status);
+  json["status"] = result.status == FlappingStatus::undecided ? Json(nullptr) : Json(name_of(result.status));
   json["status_detail"] = result.detail;
+  const bool judged = result.status == FlappingStatus::flapping && std::isfinite(result.metrics[Metric::frequency]);
+  json["domain"] = judged ? Json(name_of(result.domain)) : Json(nullptr);
+  json["domain_detail"] = result.domain_detail.empty() ? Json(nullptr) : Json(result.domain_detail);
+  json["warnings"] = result.warnings;
   const auto& table = metric_table();
   for (std::size_t m = 0; m < table.size(); ++m) json[table[m].key] = number_or_null(result.metrics.values[m]);
   if (result.design.supply.type == SupplyType::pwm) json["supply_duty"] = result.design.supply.duty;
@@ -203,11 +207,21 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
   const bool flapping = result.status == FlappingStatus::flapping;
   Table table(m);
   if (!result.design.name.empty()) table.text(wrapped(result.design.name, table_width, 0) + "\n");
+  if (result.domain.any()) {
+    table.text(wrapped(fmt::format("OUTSIDE THE MODEL'S DOMAIN ({}): {}. The numbers below are extrapolated.",
+                                   name_of(result.domain), result.domain_detail),
+                       table_width, 2) +
+               "\n");
+  }
   table.text(wrapped(fmt::format("{}: {}.", name_of(result.status), result.detail), table_width, 2) + "\n");
+  for (const std::string& warning : result.warnings) {
+    table.text(wrapped(fmt::format("warning: {}.", warning), table_width, 2) + "\n");
+  }
   std::string how = fmt::format("{}, by {}, tolerance {:.0e}", name_of(options.condition),
-                                options.method == Method::orbit ? "periodic orbit" : "simulation from rest",
+                                options.method == Method::orbit && !result.simulated_cycle ? "periodic orbit"
+                                                                                           : "simulation from rest",
                                 options.tolerance);
-  if (options.method == Method::orbit && result.orbit.laps > 0) {
+  if (options.method == Method::orbit && result.orbit.laps > 0 && !result.simulated_cycle) {
     how += fmt::format("; {} lap{}", result.orbit.laps, result.orbit.laps == 1 ? "" : "s");
     if (result.orbit.newton_steps > 0) how += fmt::format(", {} Newton steps", result.orbit.newton_steps);
     if (flapping) how += fmt::format(", closed to {:.0e}", result.orbit.residual);

@@ -50,6 +50,7 @@ class StudyReader : public detail::StudySections {
     sweep_ = &study.sweep;
     if (const TomlNode* title = study_->find("title")) study.title = text_of(*title, "study.title", "a text");
     read_tolerance(sweep_->options);
+    sweep_->allow_extrapolation = read_allow_extrapolation();
     read_metrics(sweep_->options);
     if (held_frequency_) sweep_->frequency = quantity(*held_frequency_, "study.hold.frequency", "Hz");
     if (sweep_->frequency && !(*sweep_->frequency > 0.0)) {

@@ -72,7 +72,7 @@ class StudySections {
     known_keys(root_, "", with({"study", "set"}, sections));
     study_ = &need(root_, "", "study", "a section [study] with the name of a vehicle file");
     if (study_->kind != Kind::table) wrong(*study_, "study", "a section [study]");
-    known_keys(*study_, "study", with({"vehicle", "title", "tolerance", "metrics", "hold"}, keys));
+    known_keys(*study_, "study", with({"vehicle", "title", "tolerance", "metrics", "hold", "allow_extrapolation"}, keys));
     read_hold();
   }
 
@@ -303,6 +303,14 @@ class StudySections {
     refuse(node, where,
            near.empty() ? fmt::format("{} is no metric; the metrics are {}", in_quotes(name), joined(names))
                         : fmt::format("{} is no metric; did you mean {}?", in_quotes(name), near));
+  }
+
+  /// Whether designs outside the model's domain count as best, feasible or hovering.
+  bool read_allow_extrapolation() const {
+    const TomlNode* node = study_->find("allow_extrapolation");
+    if (!node) return false;
+    if (node->kind != Kind::boolean) wrong(*node, "study.allow_extrapolation", "true or false");
+    return node->number != 0.0;
   }
 
   Condition read_condition() const {

@@ -28,7 +28,7 @@ std::vector<Metric> kept_metrics(const Sweep& sweep) {
 /// Counts designs and keeps the best, in the order of their indices.
 class Digester {
  public:
-  explicit Digester(const Sweep& sweep) {
+  explicit Digester(const Sweep& sweep) : allow_extrapolation_(sweep.allow_extrapolation) {
     const auto kept = kept_metrics(sweep);
     for (std::size_t m = 0; m < kept.size(); ++m) {
       if (kept[m] == Metric::lift_mean) lift_ = int(m);
@@ -40,6 +40,8 @@ class Digester {
     for (std::size_t row = 0; row < columns.status.size(); ++row) {
       ++digest_.designs[std::size_t(columns.status[row])];
       digest_.recomputed += columns.recomputed[row] != 0;
+      digest_.outside += columns.domain[row] != 0;
+      for (std::size_t k = 0; k < digest_.beyond.size(); ++k) digest_.beyond[k] += columns.domain[row] >> k & 1;
     }
     if (lift_ >= 0) best(digest_.lift, columns, lift_);
     if (efficiency_ >= 0) best(digest_.efficiency, columns, efficiency_);
@@ -48,14 +50,16 @@ class Digester {
   const SweepDigest& digest() const { return digest_; }
 
  private:
-  static void best(std::optional<SweepDigest::Best>& best, const SweepColumns& columns, int metric) {
+  void best(std::optional<SweepDigest::Best>& best, const SweepColumns& columns, int metric) const {
     const auto& values = columns.metrics[std::size_t(metric)];
     for (std::size_t row = 0; row < values.size(); ++row) {
-      if (std::isfinite(values[row]) && (!best || values[row] > best->value)) best = {columns.first + row, values[row]};
+      if (!std::isfinite(values[row]) || !columns.counts(row, allow_extrapolation_)) continue;
+      if (!best || values[row] > best->value) best = {columns.first + row, values[row]};
     }
   }
 
   SweepDigest digest_;
+  bool allow_extrapolation_;
   int lift_ = -1, efficiency_ = -1;
 };
 
@@ -111,7 +115,7 @@ void write_input(NetcdfFile& file, const Study& study, std::string_view version)
 std::uint64_t fingerprint(const Study& study, std::string_view version) {
   std::uint64_t sum = 1;
   const auto add = [&](std::string_view text) { sum = checksum(std::as_bytes(std::span(text)), sum); };
-  add("5");
+  add("6");
   add(version);
   add(study.input.study);
   add(study.input.vehicle);
@@ -168,6 +172,15 @@ std::vector<std::uint64_t> prepare_data_set(const fs::path& path, const Study& s
   file.set_flags(columns.back(), meanings);
   columns.push_back(define("recomputed", "1", "solver that gave the result", Storage::flag));
   file.set_flags(columns.back(), std::vector<std::string>{"batch", "scalar"});
+  columns.push_back(define("domain", "1", "limits of the model's domain that are exceeded", Storage::flag));
+  std::vector<std::string> limits;
+  for (const DomainLimitInfo& limit : domain_limit_table()) limits.push_back(limit.key);
+  file.set_flag_masks(columns.back(), limits);
+  std::string limits_in_words = "0: inside, or not flapping (see status). ";
+  for (const DomainLimitInfo& limit : domain_limit_table()) {
+    limits_in_words += fmt::format("{}{}", &limit == domain_limit_table().data() ? "" : "; ", limit.meaning);
+  }
+  file.set_attribute(columns.back(), "comment", limits_in_words);
   columns.push_back(define("error_estimate", "1", "estimated relative error of the metrics", Storage::real));
   for (const Metric m : kept_metrics(sweep)) {
     columns.push_back(define(metric_info(m).key, metric_info(m).unit, metric_info(m).long_name, Storage::real));
@@ -209,7 +222,7 @@ std::vector<std::uint64_t> prepare_data_set(const fs::path& path, const Study& s
     else file.write_run(columns[c], last, std::span(&nothing, 1));
   }
   file.close();
-  std::vector<std::string> names = {"status", "recomputed", "error_estimate"};
+  std::vector<std::string> names = {"status", "recomputed", "domain", "error_estimate"};
   for (const Metric m : kept_metrics(sweep)) names.push_back(metric_info(m).key);
   return places_in_file(path, names);
 }
@@ -226,6 +239,7 @@ SweepDigest digest_of(const fs::path& path, const Study& study) {
     columns.resize(std::size_t(layout.size(c)), kept.size());
     file.read_run("status", columns.first, columns.status);
     file.read_run("recomputed", columns.first, columns.recomputed);
+    file.read_run("domain", columns.first, columns.domain);
     for (std::size_t m = 0; m < kept.size(); ++m) {
       const bool wanted = kept[m] == Metric::lift_mean || kept[m] == Metric::efficiency_system;
       if (wanted) file.read_run(metric_info(kept[m]).key, columns.first, columns.metrics[m]);
@@ -287,7 +301,7 @@ std::uint64_t data_set_size(const Study& study) {
   const Sweep& sweep = study.sweep;
   std::uint64_t bytes = 100000 + study.input.study.size() + study.input.vehicle.size() + study.input.table.size();
   for (const SweepAxis& axis : sweep.axes) bytes += 8 * axis.count * axis.quantities.size();
-  return bytes + sweep.size() * (2 + 8 * (1 + sweep.options.metrics.count()));
+  return bytes + sweep.size() * (ChunkLayout::flags + 8 * (1 + sweep.options.metrics.count()));
 }
 
 }  // namespace wingbeat

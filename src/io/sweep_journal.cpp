@@ -57,8 +57,8 @@ bool write_at(int file, const void* from, std::size_t length, std::uint64_t offs
 }  // namespace
 
 std::uint64_t ChunkLayout::begin(std::size_t column) const {
-  const std::uint64_t flags = (2 * chunk + 7) & ~std::uint64_t(7);
-  return column < 2 ? column * chunk : flags + 8 * chunk * (column - 2);
+  const std::uint64_t bytes_of_flags = (flags * chunk + 7) & ~std::uint64_t(7);
+  return column < flags ? column * chunk : bytes_of_flags + 8 * chunk * (column - flags);
 }
 
 ChunkLayout layout_of(const Sweep& sweep) {
@@ -70,13 +70,14 @@ void pack(const ChunkLayout& layout, const SweepColumns& columns, std::vector<st
   const std::size_t n = columns.status.size();
   bytes.resize(layout.bytes());
   if (n < layout.chunk) std::fill(bytes.begin(), bytes.end(), std::byte(0));
-  std::fill(bytes.begin() + std::ptrdiff_t(2 * layout.chunk), bytes.begin() + std::ptrdiff_t(layout.begin(2)),
-            std::byte(0));
+  std::fill(bytes.begin() + std::ptrdiff_t(layout.flags * layout.chunk),
+            bytes.begin() + std::ptrdiff_t(layout.begin(layout.flags)), std::byte(0));
   std::memcpy(bytes.data(), columns.status.data(), n);
   std::memcpy(bytes.data() + layout.begin(1), columns.recomputed.data(), n);
-  std::memcpy(bytes.data() + layout.begin(2), columns.error_estimate.data(), 8 * n);
+  std::memcpy(bytes.data() + layout.begin(2), columns.domain.data(), n);
+  std::memcpy(bytes.data() + layout.begin(3), columns.error_estimate.data(), 8 * n);
   for (std::size_t m = 0; m < columns.metrics.size(); ++m) {
-    std::memcpy(bytes.data() + layout.begin(3 + m), columns.metrics[m].data(), 8 * n);
+    std::memcpy(bytes.data() + layout.begin(4 + m), columns.metrics[m].data(), 8 * n);
   }
 }
 

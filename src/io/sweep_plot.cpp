@@ -185,6 +185,19 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
   Figure figure(format, 3.5, inches);
   constexpr double left = 0.125, right = 0.965;
   bool broken = false;
+  const std::vector<double> status = file.read("status"), domain = file.read("domain");
+  const auto inside = [&](std::uint64_t n) { return status[n] == 0.0 && domain[n] == 0.0; };
+  // Places along the axis where some curve is outside the domain and none inside, as runs of `order`.
+  std::vector<std::pair<std::size_t, std::size_t>> hatched;
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto at = [&](std::uint64_t c) { return c + order[k] * stride; };
+    const bool out = std::any_of(curves.begin(), curves.end(), [&](std::uint64_t c) { return domain[at(c)] != 0.0; }) &&
+                     std::none_of(curves.begin(), curves.end(), [&](std::uint64_t c) { return inside(at(c)); });
+    if (!out) continue;
+    if (!hatched.empty() && hatched.back().second + 1 == k) hatched.back().second = k;
+    else hatched.emplace_back(k, k);
+  }
+  const bool leaves = std::any_of(domain.begin(), domain.end(), [](double d) { return d != 0.0; });
   for (std::size_t p = 0; p < metrics.size(); ++p) {
     const Field field(file, metrics[p]);
     for (std::size_t c = 0; c < curves.size(); ++c) {
@@ -194,6 +207,12 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
         broken = broken || !std::isfinite(y);
         if (std::isfinite(y)) figure.add("{} {}\n", x.at[n], y);
         else figure.add("{} NaN\n", x.at[n]);
+      }
+      figure.add("END\n");
+      figure.add("$outside_{}_{} << END\n{} NaN\n", p, c, x.at[order.front()]);
+      for (const std::size_t n : order) {
+        const std::size_t at = curves[c] + n * stride;
+        if (domain[at] != 0.0 && std::isfinite(field.values[at])) figure.add("{} {}\n", x.at[n], field.values[at]);
       }
       figure.add("END\n");
       // A design that flaps between two that do not would leave no line.
@@ -222,6 +241,17 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
   for (std::size_t p = 0; p < metrics.size(); ++p) {
     if (p > 0) figure.next_panel();
     figure.add("unset object\n");
+    for (std::size_t h = 0; h < hatched.size(); ++h) {
+      const auto between = [&](std::size_t a, std::size_t b) {
+        const double from = x.at[order[a]], to = x.at[order[b]];
+        return x.logarithmic ? std::sqrt(from * to) : 0.5 * (from + to);
+      };
+      const auto [first, last] = hatched[h];
+      figure.add("set object {} rectangle from {},graph 0 to {},graph 1 behind fillcolor rgb '#909090' fillstyle transparent "
+                 "pattern 4 noborder\n",
+                 5000 + h, first == 0 ? x.at[order[0]] : between(first - 1, first),
+                 last + 1 == count ? x.at[order[last]] : between(last, last + 1));
+    }
     const Field field(file, metrics[p]);
     const double top = 1.0 - (head + double(p) * (panel + gap)) / inches;
     figure.add("set tmargin at screen {}\nset bmargin at screen {}\nset format x {}\n", top, top - panel / inches,
@@ -229,7 +259,8 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
     figure.text(field.label(), 7.5, fmt::format("screen {},{} left", left, top + 0.22 / inches));
     std::uint64_t best = sweep.size();
     for (std::uint64_t n = 0; n < sweep.size(); ++n) {
-      if (std::isfinite(field.values[n]) && (best == sweep.size() || field.values[n] > field.values[best])) best = n;
+      if (!std::isfinite(field.values[n]) || (!sweep.allow_extrapolation && domain[n] != 0.0)) continue;
+      if (best == sweep.size() || field.values[n] > field.values[best]) best = n;
     }
     if (best < sweep.size()) {
       const std::size_t at = std::size_t(places(sweep, best)[along]);
@@ -241,15 +272,18 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
     }
     if (p + 1 == metrics.size()) {
       figure.text(x.label(), 7.5, fmt::format("screen {},{} center", 0.5 * (left + right), 0.23 / inches));
-      if (broken) {
-        figure.text("no line: does not flap", 6.5, fmt::format("screen {},{} right", right, 0.075 / inches));
+      std::string note = broken ? "no line: does not flap" : "";
+      if (leaves) note += fmt::format("{}crossed, hatched: outside the model's domain", note.empty() ? "" : "; ");
+      if (!note.empty()) {
+        figure.text(note, 6.5, fmt::format("screen {},{} right", right, 0.075 / inches));
       }
     }
     std::string curves_drawn;
     for (std::size_t c = 0; c < curves.size(); ++c) {
       curves_drawn += fmt::format("{}$curve_{}_{} using 1:2 with lines {}, $lone_{}_{} using 1:2 with points pt 7 "
-                                  "ps 0.2 lc rgb '{}'",
-                                  c == 0 ? "" : ", ", p, c, curve_styles[c], p, c, curve_colours[c]);
+                                  "ps 0.2 lc rgb '{}', $outside_{}_{} using 1:2 with points pt 2 ps 0.3 lc rgb '{}'",
+                                  c == 0 ? "" : ", ", p, c, curve_styles[c], p, c, curve_colours[c], p, c,
+                                  curve_colours[c]);
     }
     figure.add("set yrange [*:*]\nset offsets 0,0,graph 0.06,0\nplot {}\n", curves_drawn);
   }
@@ -460,15 +494,22 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
     return grid;
   };
 
-  const std::vector<double> status = file.read("status");
+  const std::vector<double> status = file.read("status"), domain = file.read("domain");
+  const bool extrapolates = study.sweep.allow_extrapolation;
+  const auto outside = [&](std::size_t n) { return domain[n] != 0.0; };
+  const bool leaves = std::any_of(domain.begin(), domain.end(), [](double d) { return d != 0.0; });
   const auto flaps = [&](std::size_t n) { return status[n] == 0.0; };
   const bool has_weight = study.sweep.options.metrics[std::size_t(Metric::lift_to_weight)];
   std::vector<double> weight;
   if (has_weight) weight = file.read(metric_info(Metric::lift_to_weight).key);
   const bool weighed = has_weight && std::any_of(weight.begin(), weight.end(), [](double w) { return std::isfinite(w); });
-  const bool carried = weighed && std::any_of(weight.begin(), weight.end(), [](double w) { return w >= 1.0; });
+  const auto carries = [&](std::size_t n) { return weight[n] >= 1.0 && (extrapolates || !outside(n)); };
+  bool carried = false;
+  for (std::size_t n = 0; n < weight.size(); ++n) carried = carried || (weighed && carries(n));
   const bool all_flap = std::all_of(status.begin(), status.end(), [](double s) { return s == 0.0; });
-  const auto feasible = [&](std::size_t n) { return flaps(n) && (!carried || weight[n] >= 1.0); };
+  const auto feasible = [&](std::size_t n) {
+    return flaps(n) && (extrapolates || !outside(n)) && (!carried || carries(n));
+  };
 
   const double head = 0.52, panel = 2.05, gap = 0.84, foot = 0.62;
   const double inches = head + double(metrics.size()) * panel + double(metrics.size() - 1) * gap + foot;
@@ -478,6 +519,12 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
   smooth(idle);
   add_filled(figure, "idle", boundaries(idle, 0.5));
   add_outline(figure, "idle_outline", base, boundaries(idle, 0.5));
+  if (leaves) {
+    Grid beyond = gridded([&](std::size_t n) { return outside(n) ? 1.0 : 0.0; });
+    smooth(beyond);
+    add_filled(figure, "outside", boundaries(beyond, 0.5));
+    add_outline(figure, "outside_outline", base, boundaries(beyond, 0.5));
+  }
   if (carried) {
     const Grid lifted = gridded([&](std::size_t n) { return flaps(n) ? weight[n] : 0.0; });
     add_outline(figure, "feasible", base, boundaries(lifted, 1.0));
@@ -535,6 +582,11 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
     }
     drawn += "$idle using 1:2 with filledcurves closed fs solid 1.0 noborder lc rgb '#e4e4e4', "
              "$idle_outline using 1:2 with lines dt 1 lw 0.8 lc rgb '#606060'";
+    if (leaves) {
+      drawn += ", $outside using 1:2 with filledcurves closed fs transparent pattern 4 noborder lc rgb '#ffffff', "
+               "$outside_outline using 1:2 with lines dt 1 lw 1.4 lc rgb '#ffffff', "
+               "$outside_outline using 1:2 with lines dt 1 lw 0.7 lc rgb '#b00000'";
+    }
     if (carried) {
       drawn += ", $feasible using 1:2 with lines dt 1 lw 3.2 lc rgb '#ffffff', "
                "$feasible using 1:2 with lines dt (9,4) lw 1.5 lc rgb '#000000'";
@@ -549,6 +601,10 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
     if (p + 1 == metrics.size()) {
       std::string note = all_flap ? "" : "grey: does not flap";
       if (carried) note += fmt::format("{}dashed: lift = weight, best sought above", note.empty() ? "" : "; ");
+      if (leaves) {
+        note += fmt::format("{}hatched: outside the model's domain{}", note.empty() ? "" : "; ",
+                            extrapolates ? "" : ", no best there");
+      }
       if (weighed && !carried) note += fmt::format("{}lift < weight everywhere", note.empty() ? "" : "; ");
       if (!note.empty()) figure.text(note, 6.5, fmt::format("screen {},{} right", right, 0.075 / inches));
     }

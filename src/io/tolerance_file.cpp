@@ -26,6 +26,7 @@ class ToleranceReader : public detail::StudySections {
     study.design = read_vehicle(folder_);
     study.condition = read_condition();
     read_tolerance(study.options);
+    study.allow_extrapolation = read_allow_extrapolation();
     read_metrics(study.options);
     if (study.design.mass) study.options.metrics.set(std::size_t(Metric::lift_to_weight));
     study.frequency = read_frequency(study.design);

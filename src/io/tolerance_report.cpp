@@ -43,11 +43,21 @@ std::string spread_text(const Distribution& d, bool correlated, const std::strin
   return text + (correlated ? ", correlated" : "");
 }
 
-/// The samples' values of an output that is a metric.
+/// The samples' values of an output that is a metric, those outside the domain included.
 std::span<const double> samples_of(const ToleranceStudy& study, const SweepColumns& columns, Metric metric) {
   std::size_t column = 0;
   for (int m = 0; m < int(metric); ++m) column += study.options.metrics[std::size_t(m)];
   return std::span(columns.metrics[column]).subspan(0, base_count(study));
+}
+
+/// "12 angle_of_attack, 3 stroke"
+std::string limits_beyond(const ToleranceResult& result) {
+  std::string text;
+  for (std::size_t k = 0; k < result.beyond.size(); ++k) {
+    if (result.beyond[k] == 0) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", result.beyond[k], domain_limit_table()[k].key);
+  }
+  return text;
 }
 
 Json probability(const Probability& p) {
@@ -95,9 +105,21 @@ std::string text_tolerance(const ToleranceStudy& study, const ToleranceResult& r
     const Probability& p = result.status[std::size_t(s)];
     if (p.count > 0 || s <= int(SweepStatus::stalled)) line(name_of(SweepStatus(s)), p, "");
   }
+  line("outside the domain", result.outside, result.outside.count == 0 ? "" : limits_beyond(result));
   if (result.hover) {
     line("hovers", *result.hover,
          std::isfinite(result.linear_hover) ? fmt::format("linear prediction {}", percent(result.linear_hover)) : "");
+  }
+  if (result.outside.count > 0) {
+    const char* what = study.allow_extrapolation ? "Samples outside the model's domain count: extrapolation is allowed."
+                                                 : "Samples outside the model's domain neither hover nor count below.";
+    fmt::format_to(out, "{}\n", wrapped(what, 100, 2));
+  }
+  if (result.centre.domain.any()) {
+    const std::string reason =
+        fmt::format("{}t the parameters' means the vehicle is outside the model's domain: {}",
+                    study.allow_extrapolation ? "A" : "No linear prediction: a", name_of(result.centre.domain));
+    fmt::format_to(out, "{}\n", wrapped(reason, 100, 2));
   }
   if (result.centre.status != SweepStatus::flapping) {
     const std::string reason = fmt::format("No linear prediction: at the parameters' means the vehicle is {}: {}",
@@ -174,6 +196,11 @@ std::string json_tolerance(const ToleranceStudy& study, const ToleranceResult& r
   for (int s = 0; s < sweep_status_count; ++s) {
     json["probability"][name_of(SweepStatus(s))] = probability(result.status[std::size_t(s)]);
   }
+  json["probability"]["outside_domain"] = probability(result.outside);
+  for (std::size_t k = 0; k < result.beyond.size(); ++k) {
+    json["outside_domain"][domain_limit_table()[k].key] = result.beyond[k];
+  }
+  json["allow_extrapolation"] = study.allow_extrapolation;
   json["probability"]["hover"] = result.hover ? probability(*result.hover) : Json(nullptr);
   json["probability"]["hover_linear"] = number_or_null(result.linear_hover);
   const auto inputs = factors(study);
@@ -227,6 +254,12 @@ void write_tolerance(const ToleranceStudy& study, const ToleranceResult& result,
   for (int s = 0; s < sweep_status_count; ++s) names.push_back(name_of(SweepStatus(s)));
   data.set_flags(status, names);
   data.write_run(status, 0, std::span(columns.status).subspan(0, base));
+  const auto domain = data.define_dense("domain", {sample}, "1", "limits of the model's domain that are exceeded",
+                                        NetcdfFile::Storage::flag);
+  std::vector<std::string> limits;
+  for (const DomainLimitInfo& limit : domain_limit_table()) limits.push_back(limit.key);
+  data.set_flag_masks(domain, limits);
+  data.write_run(domain, 0, std::span(columns.domain).subspan(0, base));
   for (int m = 0; m < metric_count; ++m) {
     if (!study.options.metrics[std::size_t(m)]) continue;
     const MetricInfo& info = metric_info(Metric(m));
@@ -278,8 +311,12 @@ void write_tolerance(const ToleranceStudy& study, const ToleranceResult& result,
 void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns,
                     const ToleranceOutput& output, PlotFormat format, const std::filesystem::path& file) {
   std::vector<double> values;
-  for (const double x : samples_of(study, columns, *output.metric)) {
-    if (std::isfinite(x)) values.push_back(x);
+  const auto all = samples_of(study, columns, *output.metric);
+  std::size_t outside = 0;
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    if (!std::isfinite(all[n])) continue;
+    if (columns.counts(n, study.allow_extrapolation)) values.push_back(all[n]);
+    else ++outside;
   }
   std::sort(values.begin(), values.end());
   // Freedman and Diaconis, 1981; the few samples beyond the drawn range are in the tails.
@@ -319,7 +356,9 @@ void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns,
   figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", y(0.62), y(2.1));
   const std::string title = study.title.empty() ? "Tolerance" : study.title;
   figure.text(title, 8.0, fmt::format("screen 0.5,{} center", y(0.12)));
-  figure.key_entry(0.07, y(0.32), "lw 5 lc rgb '#9ecae1'", fmt::format("{} vehicles that flap", values.size()));
+  std::string drawn = fmt::format("{} vehicles that flap", values.size());
+  if (outside > 0) drawn += fmt::format(" ({} outside the domain left out)", outside);
+  figure.key_entry(0.07, y(0.32), "lw 5 lc rgb '#9ecae1'", drawn);
   if (linear) figure.key_entry(0.07, y(0.48), vermillion_dashed, "linear prediction from the gradient");
   if (output.metric == Metric::lift_to_weight) figure.key_entry(0.6, y(0.32), black_dotted, "hover");
   const MetricInfo& info = metric_table()[std::size_t(*output.metric)];

@@ -11,6 +11,8 @@ DesignPoint design_point(const Design<double>& given, const DesignPointOptions& 
   std::array<double, metric_count> nothing;
   nothing.fill(absent);
   point.gradients.assign(parameters.size(), nothing);
+  point.domain_slopes.resize(parameters.size());
+  for (DomainExcess& slopes : point.domain_slopes) slopes.fill(absent);
   try {
     validate(design);
   } catch (const ParameterError& error) {
@@ -23,23 +25,28 @@ DesignPoint design_point(const Design<double>& given, const DesignPointOptions& 
     const FrequencySearch search = find_voltage_for_frequency(vehicle, *options.frequency, steady, start_up);
     if (search.outcome != FrequencyOutcome::reached) {
       const bool flaps = search.status == FlappingStatus::flapping;
-      point.status = flaps ? SweepStatus::unreached : SweepStatus(int(search.status));
+      point.status = flaps ? SweepStatus::unreached : sweep_status(search.status);
       point.detail = search.detail;
       return point;
     }
     vehicle.voltage = search.voltage;
   }
   const SteadyFlapping orbit = find_steady_flapping(vehicle, steady, start_up);
-  point.status = SweepStatus(int(orbit.status));
+  point.status = sweep_status(orbit.status);
   point.detail = orbit.detail;
   if (orbit.status != FlappingStatus::flapping) return point;
   point.metrics = orbit.metrics;
-  if (parameters.empty()) return point;
+  point.domain_excess = domain_excess(vehicle, orbit.metrics);
+  point.domain = domain_of(point.domain_excess);
+  if (parameters.empty() || orbit.record.empty()) return point;
 
   const GradientOptions held{options.frequency ? Held::frequency : Held::voltage, options.peaks, {}};
   const MetricGradients gradients = metric_gradients(design, options.condition, orbit, parameters, held);
   if (!gradients.regular) return point;
   point.gradients = gradients.by_parameter;
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    point.domain_slopes[k] = domain_excess_slopes(vehicle, orbit.metrics, Metrics<double>{point.gradients[k]});
+  }
   return point;
 }
 

@@ -416,6 +416,7 @@ void DirectStartUp::period_done() {
     take_metrics();
     if (close || change < noise) {
       done_ = true;
+      result_.closure = std::min(off, change / (1.0 - std::min(rate, 0.999)));
       result_.settled = true;
       result_.status = FlappingStatus::flapping;
       std::size_t first = swings_.size();
@@ -454,7 +455,7 @@ bool DirectStartUp::out_of_budget() {
 void DirectStartUp::give_up(const std::string& why) {
   done_ = true;
   result_.settled = false;
-  result_.status = stuck_ ? FlappingStatus::stalled : FlappingStatus::flapping;
+  result_.status = FlappingStatus::undecided;
   result_.time_to_steady = t_;
   result_.detail = why;
 }

@@ -22,6 +22,7 @@ struct State {
   FlappingStatus status = FlappingStatus::stalled;
   std::string detail;
   Metrics<double> metrics;
+  DomainStatus domain = {};
 };
 
 class Flight {
@@ -57,7 +58,9 @@ class Flight {
     ++result_.evaluations;
     vehicle_.voltage = open_circuit_voltage(battery_, charge);
     const SteadyFlapping found = find_steady_flapping(vehicle_, steady_, start_up);
-    return {found.status == FlappingStatus::flapping, found.status, found.detail, found.metrics};
+    const bool flaps = found.status == FlappingStatus::flapping;
+    return {flaps, found.status, found.detail, found.metrics,
+            flaps ? domain_of(vehicle_, found.metrics) : DomainStatus()};
   }
 
   /// The turning vehicle at a charge: no start from rest is asked for.
@@ -125,9 +128,12 @@ class Flight {
 
   /// The charge at which lift falls below the weight for the first time.
   std::optional<double> hover_charge(double last) {
-    const auto hovers = [&](double charge) { return at(charge).metrics[Metric::lift_to_weight] >= 1.0; };
+    const auto lifts = [&](double charge) { return at(charge).metrics[Metric::lift_to_weight] >= 1.0; };
+    const auto hovers = [&](double charge) {
+      return lifts(charge) && (options_.allow_extrapolation || at(charge).domain.none());
+    };
     if (!hovers(battery_.charge)) {
-      result_.hover = Hover::never;
+      result_.hover = lifts(battery_.charge) ? Hover::outside : Hover::never;
       return std::nullopt;
     }
     result_.hover = Hover::kept;
@@ -181,7 +187,7 @@ class Flight {
 
   EnduranceRow row(double charge, const Totals& sum) {
     return {sum[time],        charge,           open_circuit_voltage(battery_, charge), sum[electrical], sum[internal],
-            sum[aerodynamic], sum[lift], at(charge).metrics};
+            sum[aerodynamic], sum[lift], at(charge).metrics, at(charge).domain};
   }
 
   void discharge(double last, const std::optional<double>& hover) {

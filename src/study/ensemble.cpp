@@ -43,8 +43,9 @@ Plan plan_for(const EnsembleOptions& options) {
   Plan plan{};
   LaneSettings& s = plan.first;
   const auto want = [&](Quantity q, bool on) { s.wanted[std::size_t(q)] = on; };
-  want(Quantity::velocity,
-       wanted(Metric::lift_peak) || wanted(Metric::flapping_velocity_peak) || wanted(Metric::angle_of_attack_min));
+  const bool velocity =
+      wanted(Metric::lift_peak) || wanted(Metric::flapping_velocity_peak) || wanted(Metric::angle_of_attack_min);
+  want(Quantity::velocity, velocity);
   want(Quantity::current, wanted(Metric::current_peak));
   want(Quantity::force, wanted(Metric::rod_force_peak));
   want(Quantity::slowness, wanted(Metric::crank_speed_min));
@@ -57,6 +58,8 @@ Plan plan_for(const EnsembleOptions& options) {
   const double digits = -std::log10(options.tolerance);
   const bool peaks = std::any_of(s.wanted.begin(), s.wanted.end(), [](bool on) { return on; });
   const auto even = [](double x) { return std::clamp(2 * int(std::ceil(0.5 * x)), 6, solve::most_collocation_intervals); };
+  want(Quantity::velocity, velocity || options.domain);
+  s.velocity_aside = options.domain && !velocity;
   s.segments = digits > 5.0 ? 8 : 6;
   s.intervals = even(peaks ? 1.6 * (digits - 2.8) : digits - 1.5);
   s.sweeps = std::max(2, int(std::ceil((digits - 1.4) / 1.7)));
@@ -165,10 +168,14 @@ class EnsembleRun {
       } else if (!(r.error_estimate <= options_.tolerance)) {
         inexact.push_back(n);
       } else {
-        outcomes_[n] = {FlappingStatus::flapping, false, r.error_estimate, r.metrics};
+        outcomes_[n] = {FlappingStatus::flapping, false, r.error_estimate, r.metrics, domain(n, r.metrics)};
         keep_wanted(options_.metrics, outcomes_[n].metrics);
       }
     }
+  }
+
+  DomainStatus domain(std::size_t n, const Metrics<double>& metrics) const {
+    return options_.domain ? domain_of(members_[n].vehicle, metrics) : DomainStatus();
   }
 
   void settle(std::size_t n, FlappingStatus without_flapping) {
@@ -192,7 +199,9 @@ class EnsembleRun {
     if (start_up_is_known(n)) found = find_steady_flapping(members_[n].vehicle, steady, known);
     if (found.status != FlappingStatus::flapping) found = find_steady_flapping(members_[n].vehicle, steady, start_up_);
     const bool flaps = found.status == FlappingStatus::flapping;
-    outcomes_[n] = {found.status, true, flaps ? options_.tolerance : absent, found.metrics};
+    outcomes_[n] = {found.status, true, flaps ? options_.tolerance : absent, found.metrics,
+                    flaps ? domain(n, found.metrics) : DomainStatus()};
+    if (found.simulated) outcomes_[n].error_estimate = found.simulated->error_estimate;
     keep_wanted(options_.metrics, outcomes_[n].metrics);
   }
 

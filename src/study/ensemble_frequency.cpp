@@ -73,6 +73,7 @@ void solve_ensemble_at_frequency(std::span<EnsembleMember> members, std::span<co
   }
   // The metrics follow the frequency with a slope of up to 3; the search must not see the solver's own error.
   EnsembleOptions trial_options = options;
+  trial_options.domain = false;
   trial_options.metrics = MetricSet().set(std::size_t(Metric::frequency));
   trial_options.tolerance = std::max(0.05 * options.tolerance, 1e-12);
   const double closeness = std::max(0.1 * options.tolerance, 1e-13);

@@ -15,6 +15,8 @@ using Vector = Eigen::VectorXd;
 constexpr double feasible_to = 1e-6;  ///< of a constraint, relative to its limit
 constexpr double active_within = 1e-4;
 constexpr double at_bound = 1e-6;  ///< of the range
+/// Limits of the domain are kept by so much more, as a share: an optimum at one is inside at looser tolerances too.
+constexpr double domain_margin = 1e-5;
 
 std::string short_number(double x) {
   std::ostringstream text;
@@ -31,6 +33,10 @@ class Problem {
   }
 
   Eigen::Index size() const { return Eigen::Index(study_.parameters.size()); }
+  /// Those of the study, then the limits of the domain.
+  Eigen::Index constraints() const {
+    return Eigen::Index(study_.constraints.size()) + (study_.allow_extrapolation ? 0 : domain_limit_count);
+  }
 
   double value(Eigen::Index k, double u) const {
     const OptimisedParameter& p = study_.parameters[std::size_t(k)];
@@ -79,7 +85,7 @@ class Problem {
     std::span<const DesignParameter> wanted;
     if (gradients) wanted = parameters_;
     e.point = design_point(design(u), study_.options, wanted, start_up_);
-    const Eigen::Index m = Eigen::Index(study_.constraints.size());
+    const Eigen::Index m = constraints();
     e.gradient = Vector::Zero(size());
     e.constraints = Vector::Constant(m, 1.0);
     e.jacobian = Eigen::MatrixXd::Zero(m, size());
@@ -95,11 +101,23 @@ class Problem {
     const double sign = study_.maximise ? -1.0 : 1.0;
     e.objective = sign * e.point.metrics[study_.objective];
     e.gradient = row(study_.objective, sign);
-    for (Eigen::Index c = 0; c < m; ++c) {
+    const Eigen::Index own = Eigen::Index(study_.constraints.size());
+    for (Eigen::Index c = 0; c < own; ++c) {
       const MetricConstraint& limit = study_.constraints[std::size_t(c)];
       const double factor = (limit.at_least ? -1.0 : 1.0) / (limit.limit == 0.0 ? 1.0 : std::abs(limit.limit));
       e.constraints[c] = factor * (e.point.metrics[limit.metric] - limit.limit);
       e.jacobian.row(c) = row(limit.metric, factor).transpose();
+    }
+    for (Eigen::Index c = own; c < m; ++c) {
+      const std::size_t limit = std::size_t(c - own);
+      e.constraints[c] = e.point.domain_excess[limit] + domain_margin;
+      if (!gradients) continue;
+      const bool by_geometry =
+          limit == std::size_t(DomainLimit::stroke) && study_.design.transmission.type != TransmissionType::direct;
+      for (Eigen::Index k = 0; k < size(); ++k) {
+        e.jacobian(c, k) = by_geometry ? stroke_slope(u, k)
+                                       : e.point.domain_slopes[std::size_t(k)][limit] * slope(k, u[k]);
+      }
     }
     e.flaps = std::isfinite(e.objective) && e.constraints.allFinite() && e.gradient.allFinite() &&
               e.jacobian.allFinite();
@@ -110,6 +128,16 @@ class Problem {
   const OptimiseStudy& study() const { return study_; }
 
  private:
+  /// Derivative of the stroke's excess, which is geometry alone, by central differences.
+  double stroke_slope(const Vector& u, Eigen::Index k) const {
+    constexpr double step = 1e-5;
+    Vector up = u, down = u;
+    up[k] = std::min(1.0, u[k] + step);
+    down[k] = std::max(0.0, u[k] - step);
+    const auto excess = [&](const Vector& at) { return stroke_excess(resolve(design(at), study_.options.condition)); };
+    return (excess(up) - excess(down)) / (up[k] - down[k]);
+  }
+
   const OptimiseStudy& study_;
   const StartUp& start_up_;
   std::vector<DesignParameter> parameters_;
@@ -135,7 +163,7 @@ struct Search {
       solver.set_lower_bounds(0.0);
       solver.set_upper_bounds(1.0);
       solver.set_min_objective(&objective_of, &memory);
-      const unsigned constraints = unsigned(problem.study().constraints.size());
+      const unsigned constraints = unsigned(problem.constraints());
       if (constraints > 0) {
         solver.add_inequality_mconstraint(&constraints_of, &memory, std::vector<double>(constraints, 1e-9));
       }
@@ -246,13 +274,20 @@ std::vector<Vector> screened(const Problem& problem, const StartUp& start_up, Sc
   for (std::size_t n = 0; n < study.screen; ++n) {
     ++counts.status[std::size_t(columns.status[n])];
     if (columns.status[n] != 0) continue;
+    const bool counts_here = columns.counts(n, study.allow_extrapolation);
+    counts.outside += !counts_here;
     double violation = 0.0;
+    for (std::size_t k = 0; k < counts.beyond.size() && !counts_here; ++k) {
+      const bool exceeded = columns.domain[n] >> k & 1;
+      counts.beyond[k] += exceeded;
+      violation += exceeded;  // by how much is not known here
+    }
     for (std::size_t c = 0; c < constraints; ++c) {
       const MetricConstraint& limit = study.constraints[c];
       const double x = column(limit.metric)[n], sign = limit.at_least ? 1.0 : -1.0;
       const double beyond = sign * (limit.limit - x) / (limit.limit == 0.0 ? 1.0 : std::abs(limit.limit));
-      if (beyond > 0.0) ++counts.violated[c];
-      if (!(sign * counts.closest[c] >= sign * x)) counts.closest[c] = x;
+      if (counts_here && beyond > 0.0) ++counts.violated[c];
+      if (counts_here && !(sign * counts.closest[c] >= sign * x)) counts.closest[c] = x;
       violation = std::max(violation, beyond);
     }
     counts.feasible += violation <= 0.0;
@@ -304,8 +339,15 @@ class Neighbourhood {
     std::vector<ActiveLimit> result;
     const double f = std::abs(at_.objective);
     for (std::size_t i = 0; i < constraints_.size(); ++i) {
+      if (std::size_t(constraints_[i]) >= study.constraints.size()) {
+        const DomainLimit limit = DomainLimit(std::size_t(constraints_[i]) - study.constraints.size());
+        const bool from_zero = limit == DomainLimit::angle_of_attack;
+        result.push_back({"domain: " + bound_of(limit, study.design.transmission.type),
+                          from_zero ? absent : multipliers_[Eigen::Index(i)] / f, true});
+        continue;
+      }
       const MetricConstraint& c = study.constraints[std::size_t(constraints_[i])];
-      result.push_back({name_of(c), c.limit == 0.0 ? absent : multipliers_[Eigen::Index(i)] / f});
+      result.push_back({name_of(c), c.limit == 0.0 ? absent : multipliers_[Eigen::Index(i)] / f, false});
     }
     for (std::size_t i = 0; i < bounds_.size(); ++i) {
       const OptimisedParameter& p = study.parameters[std::size_t(bounds_[i])];
@@ -315,7 +357,7 @@ class Neighbourhood {
       const double relative = multiplier * std::abs(x) / problem_.slope(bounds_[i], best_[bounds_[i]]) / f;
       result.push_back({p.parameter.key + (low ? " >= " : " <= ") + short_number(x) +
                             (p.parameter.unit == "1" ? "" : " " + p.parameter.unit),
-                        x == 0.0 ? absent : relative});
+                        x == 0.0 ? absent : relative, false});
     }
     return result;
   }
@@ -503,13 +545,18 @@ void judge(const Problem& problem, OptimiseResult& result) {
     result.failed = 1;
     return;
   }
-  for (std::size_t c = 0; c < study.constraints.size(); ++c) {
+  if (!study.allow_extrapolation && only.point.domain.any()) {
+    result.screen.outside = 1;
+    for (std::size_t k = 0; k < result.screen.beyond.size(); ++k) result.screen.beyond[k] = only.point.domain[k];
+  }
+  for (std::size_t c = 0; c < study.constraints.size() && result.screen.outside == 0; ++c) {
     result.screen.violated[c] = only.constraints[Eigen::Index(c)] > feasible_to;
     result.screen.closest[c] = only.point.metrics[study.constraints[c].metric];
   }
   if (only.violation() > feasible_to) {
     result.outcome = OptimiseResult::Outcome::infeasible;
-    result.reason = "the design flaps, but not within every constraint";
+    result.reason = std::string("the design flaps, but not ") +
+                    (result.screen.outside ? "inside the model's domain" : "within every constraint");
     result.failed = 1;
     return;
   }
@@ -525,6 +572,23 @@ void judge(const Problem& problem, OptimiseResult& result) {
 std::string name_of(const MetricConstraint& c) {
   const char* key = metric_info(c.metric).key;
   return key + std::string(c.at_least ? " >= " : " <= ") + short_number(c.limit);
+}
+
+std::string bound_of(DomainLimit limit, TransmissionType transmission) {
+  switch (limit) {
+    case DomainLimit::angle_of_attack: return "angle_of_attack >= 0 deg";
+    case DomainLimit::stroke:
+      return "stroke <= " +
+             short_number(transmission == TransmissionType::direct ? direct_stroke_max_deg : tan_law_stroke_max_deg) +
+             " deg";
+    case DomainLimit::formulation_residual:
+      return "formulation_residual <= " + short_number(100.0 * formulation_residual_max) + " %";
+    case DomainLimit::mechanism_efficiency: return "mechanism_efficiency <= 1";
+    case DomainLimit::motor_efficiency: return "motor_efficiency <= 1";
+    case DomainLimit::input_power: return "input_power > 0";
+    case DomainLimit::flow_speed: return "flow_speed <= " + short_number(flow_speed_max) + " m/s";
+  }
+  return "unknown";
 }
 
 OptimiseResult optimise(const OptimiseStudy& study, const StartUp& start_up, const ForEach& for_each) {
@@ -585,7 +649,9 @@ OptimiseResult optimise(const OptimiseStudy& study, const StartUp& start_up, con
   if (!best) {
     result.outcome = OptimiseResult::Outcome::infeasible;
     result.failed = result.starts;
-    result.reason = "designs flap, but none within every constraint was found";
+    result.reason = study.allow_extrapolation
+                        ? "designs flap, but none within every constraint was found"
+                        : "designs flap, but none inside the model's domain and within every constraint was found";
     return result;
   }
   for (const Search& s : searches) {

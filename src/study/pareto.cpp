@@ -70,6 +70,7 @@ class Problem {
       SweepSolver(sweep, start_up_).solve(columns, 0, count);
       for (std::size_t k = 0; k < count; ++k) {
         status[first + k] = SweepStatus(columns.status[k]);
+        designs[first + k].domain = DomainStatus(static_cast<unsigned long long>(columns.domain[k]));
         std::size_t column = 0;
         for (std::size_t m = 0; m < metric_count; ++m) {
           if (metrics[m]) designs[first + k].metrics.values[m] = columns.metrics[column++][k];
@@ -85,7 +86,8 @@ class Problem {
 
   /// How far beyond the constraints, in shares of their limits, all of them together; infinite if a metric is absent.
   double violation(const ParetoDesign& d) const {
-    double sum = 0.0;
+    // By how much a limit of the domain is exceeded is not known here: each counts as much as twice a constraint.
+    double sum = study_.allow_extrapolation ? 0.0 : double(d.domain.count());
     for (const MetricConstraint& c : study_.constraints) sum += std::max(0.0, beyond(c, d.metrics[c.metric]));
     for (const ParetoObjective& o : study_.objectives) {
       if (!std::isfinite(d.metrics[o.metric])) return HUGE_VAL;
@@ -180,6 +182,12 @@ void count_screening(const ParetoStudy& study, ParetoResult& result) {
     ++counts.status[std::size_t(result.status[n])];
     counts.feasible += result.feasible[n];
     if (result.status[n] != SweepStatus::flapping) continue;
+    const DomainStatus domain = result.evaluated[n].domain;
+    if (!study.allow_extrapolation && domain.any()) {
+      ++counts.outside;
+      for (std::size_t k = 0; k < domain.size(); ++k) counts.beyond[k] += domain[k];
+      continue;
+    }
     for (std::size_t c = 0; c < study.constraints.size(); ++c) {
       const MetricConstraint& limit = study.constraints[c];
       const double x = result.evaluated[n].metrics[limit.metric], sign = limit.at_least ? 1.0 : -1.0;
@@ -277,7 +285,9 @@ ParetoResult pareto_front(const ParetoStudy& study, Evolve evolve, const StartUp
   }
   if (result.front.empty()) {
     result.outcome = ParetoResult::Outcome::infeasible;
-    result.reason = "designs flap, but none within every constraint was found";
+    result.reason = study.allow_extrapolation
+                        ? "designs flap, but none within every constraint was found"
+                        : "designs flap, but none inside the model's domain and within every constraint was found";
     return result;
   }
   result.outcome = ParetoResult::Outcome::found;

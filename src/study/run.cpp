@@ -137,7 +137,9 @@ void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunRes
   result.status = found.status;
   result.detail = found.detail;
   result.metrics = found.metrics;
+  result.settled = found.status != FlappingStatus::undecided;
   result.orbit = found.summary;
+  result.simulated_cycle = found.simulated.has_value();
   if (result.design.supply.type == SupplyType::pwm) {
     result.detail += format("; the orbit sees the mean voltage of the pwm supply, %.4g V", vehicle.voltage);
     if (options.lift) result.detail += format(", at a duty of %.6g", result.design.supply.duty);
@@ -145,6 +147,16 @@ void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunRes
   if (options.waveform_rows > 1 && !found.record.empty()) {
     result.cycle = found.record.waveform(options.waveform_rows);
     result.cycle_voltage = terminal_voltages(vehicle, result.cycle);
+  } else if (options.waveform_rows > 1 && found.simulated) {
+    TransientOptions transient;
+    transient.tolerance = std::max(options.tolerance, transient_tightest);
+    transient.cycle_rows = options.waveform_rows;
+    if (vehicle.transmission == TransmissionType::direct) {
+      result.cycle = simulate_start_up(vehicle, transient).cycle;
+      result.cycle_voltage = terminal_voltages(vehicle, result.cycle);
+    } else {
+      last_lap(vehicle, {SupplyType::constant, vehicle.voltage, 0.0, 1.0, {}}, transient, options.waveform_rows, result);
+    }
   }
 }
 
@@ -171,6 +183,14 @@ void run_transient(const Vehicle<double>& vehicle, const RunOptions& options, Ru
   }
 }
 
+void note_domain(const Vehicle<double>& vehicle, RunResult& result) {
+  if (result.status != FlappingStatus::flapping || !std::isfinite(result.metrics[Metric::frequency])) return;
+  result.domain = domain_of(vehicle, result.metrics);
+  result.domain_detail = describe_domain(vehicle, result.metrics);
+  const std::string warning = residual_warning(vehicle, result.metrics);
+  if (!warning.empty()) result.warnings.push_back(warning);
+}
+
 }  // namespace
 
 StartUp start_up_in_time(double tolerance) {
@@ -179,7 +199,20 @@ StartUp start_up_in_time(double tolerance) {
     options.tolerance = std::max(tolerance, transient_tightest);
     options.metrics = false;
     const TransientResult r = simulate_start_up(vehicle, options);
-    return StartUpOutcome{r.status, r.settled, r.detail, r.crank_speed, r.current, r.stroke_angle};
+    StartUpOutcome outcome{r.status, r.settled, r.detail, r.crank_speed, r.current, r.stroke_angle, {}};
+    if (r.status != FlappingStatus::flapping || !r.settled) return outcome;
+    outcome.cycle = [vehicle, state = outcome](double wanted, const Reporting& reporting) {
+      TransientOptions onward;
+      onward.tolerance = std::max(wanted, transient_tightest);
+      onward.reporting = reporting;
+      onward.crank_angle = state.stroke_angle;
+      onward.crank_speed = state.crank_speed;
+      onward.current = state.current;
+      const TransientResult cycle = simulate_start_up(vehicle, onward);
+      if (!cycle.settled || !cycle.metrics) return std::optional<SimulatedCycle>();
+      return std::optional(SimulatedCycle{*cycle.metrics, std::max(onward.tolerance, cycle.closure), cycle.averaged_laps});
+    };
+    return outcome;
   };
 }
 
@@ -229,6 +262,7 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
   } else {
     run_transient(vehicle, options, result);
   }
+  note_domain(vehicle, result);
   return result;
 }
 

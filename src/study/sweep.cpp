@@ -38,8 +38,7 @@ void next(const Sweep& sweep, std::span<std::uint64_t> place) {
   }
 }
 
-SweepStatus status_of(FlappingStatus status) { return SweepStatus(int(status)); }
-static_assert(int(SweepStatus::jammed) == int(FlappingStatus::jammed));
+static_assert(domain_limit_count <= 7, "bits of a signed byte");
 
 }  // namespace
 
@@ -70,8 +69,14 @@ const char* name_of(SweepStatus status) {
   switch (status) {
     case SweepStatus::unreached: return "unreached";
     case SweepStatus::invalid: return "invalid";
+    case SweepStatus::undecided: return name_of(FlappingStatus::undecided);
     default: return name_of(FlappingStatus(int(status)));
   }
+}
+
+SweepStatus sweep_status(FlappingStatus status) {
+  static_assert(int(SweepStatus::jammed) == int(FlappingStatus::jammed));
+  return status == FlappingStatus::undecided ? SweepStatus::undecided : SweepStatus(int(status));
 }
 
 SweepDesign design_at(const Sweep& sweep, std::uint64_t index) {
@@ -84,6 +89,7 @@ SweepDesign design_at(const Sweep& sweep, std::uint64_t index) {
 void SweepColumns::resize(std::size_t designs, std::size_t metrics_kept) {
   status.resize(designs);
   recomputed.resize(designs);
+  domain.resize(designs);
   error_estimate.resize(designs);
   metrics.resize(metrics_kept);
   for (auto& column : metrics) column.resize(designs);
@@ -127,7 +133,7 @@ void SweepSolver::gather(SweepColumns& columns, std::size_t begin, std::size_t e
 void SweepSolver::solve(SweepColumns& columns, std::size_t begin, std::size_t end) {
   gather(columns, begin, end);
   for (std::size_t row = begin; row < end; ++row) {
-    columns.recomputed[row] = 0;
+    columns.recomputed[row] = columns.domain[row] = 0;
     columns.error_estimate[row] = absent;
     for (auto& column : columns.metrics) column[row] = absent;
   }
@@ -143,9 +149,10 @@ void SweepSolver::solve(SweepColumns& columns, std::size_t begin, std::size_t en
     const EnsembleOutcome& out = outcomes_[n];
     const bool flaps = out.status == FlappingStatus::flapping;
     const bool unreached = flaps && reached_[n] != FrequencyOutcome::reached;
-    columns.status[row] = std::int8_t(unreached ? SweepStatus::unreached : status_of(out.status));
+    columns.status[row] = std::int8_t(unreached ? SweepStatus::unreached : sweep_status(out.status));
     columns.recomputed[row] = out.scalar ? 1 : 0;
     if (!flaps || unreached) continue;
+    columns.domain[row] = std::int8_t(out.domain.to_ulong());
     columns.error_estimate[row] = out.error_estimate;
     for (std::size_t m = 0; m < kept_.size(); ++m) {
       columns.metrics[m][row] = out.metrics.values[std::size_t(kept_[m])];

@@ -218,6 +218,7 @@ Sweep tolerance_sweep(const ToleranceStudy& study) {
   sweep.variant_stride = {0};
   sweep.frequency = study.frequency;
   sweep.options = study.options;
+  sweep.allow_extrapolation = study.allow_extrapolation;
   return sweep;
 }
 
@@ -246,6 +247,13 @@ ToleranceResult assess_tolerance(const ToleranceStudy& study, const SweepColumns
   for (std::uint64_t n = 0; n < base; ++n) ++counts[std::size_t(columns.status[n])];
   for (std::size_t s = 0; s < counts.size(); ++s) result.status[s] = probability_of(counts[s], base);
 
+  std::uint64_t outside = 0;
+  for (std::uint64_t n = 0; n < base; ++n) {
+    outside += columns.domain[n] != 0;
+    for (std::size_t k = 0; k < result.beyond.size(); ++k) result.beyond[k] += columns.domain[n] >> k & 1;
+  }
+  result.outside = probability_of(outside, base);
+
   Design<double> centre = study.design;
   std::vector<DesignParameter> parameters;
   for (const UncertainParameter& p : study.parameters) {
@@ -258,6 +266,7 @@ ToleranceResult assess_tolerance(const ToleranceStudy& study, const SweepColumns
 
   const auto add_linear = [&](ToleranceOutput& output, Metric metric) {
     if (result.centre.status != SweepStatus::flapping) return;
+    if (result.centre.domain.any() && !study.allow_extrapolation) return;
     const auto slope = [&](std::size_t k) { return result.centre.gradients[k][std::size_t(metric)]; };
     double variance = 0.0;
     std::vector<double> parts(inputs.size(), 0.0);
@@ -287,7 +296,10 @@ ToleranceResult assess_tolerance(const ToleranceStudy& study, const SweepColumns
   std::size_t column = 0;
   for (int m = 0; m < metric_count; ++m) {
     if (!study.options.metrics[std::size_t(m)]) continue;
-    const std::vector<double>& values = columns.metrics[column++];
+    std::vector<double> values = columns.metrics[column++];
+    for (std::size_t n = 0; n < values.size(); ++n) {
+      if (!columns.counts(n, study.allow_extrapolation)) values[n] = absent;
+    }
     ToleranceOutput output;
     output.name = metric_info(Metric(m)).key;
     output.metric = Metric(m);

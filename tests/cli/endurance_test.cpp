@@ -28,8 +28,8 @@ TEST_F(Endurance, ReportJsonFigureAndDataSet) {
   const Json json = run({"endurance", battery, "--set", "supply.cells=2", "--set", "vehicle.mass=5e-3", "--json"}).json();
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
-  EXPECT_THAT(keys, testing::ElementsAre("status", "status_detail", "end", "endurance_s", "hover", "hover_lost",
-                                         "charge_initial", "charge_final", "charge_drawn_c", "energy_chemical_j",
+  EXPECT_THAT(keys, testing::ElementsAre("status", "status_detail", "end", "endurance_s", "hover", "domain",
+                                         "hover_lost", "charge_initial", "charge_final", "charge_drawn_c", "energy_chemical_j",
                                          "energy_electrical_j", "energy_internal_j", "energy_aerodynamic_j",
                                          "current_mean_a", "power_electrical_w", "power_aerodynamic_w", "lift_mean_n",
                                          "efficiency_system", "initial", "final", "history"));

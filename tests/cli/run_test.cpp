@@ -24,6 +24,9 @@ std::vector<std::string> keys_of(const Json& json) {
 /// The contract's keys, in its order.
 const std::vector<std::string> contract_keys = {"status",
                                                 "status_detail",
+                                                "domain",
+                                                "domain_detail",
+                                                "warnings",
                                                 "voltage_v",
                                                 "frequency_hz",
                                                 "current_mean_a",
@@ -69,7 +72,7 @@ TEST_F(Run, JsonIsOneObjectWithTheContractsKeysAndNothingElse) {
   EXPECT_EQ(o.out.front(), '{');
   EXPECT_EQ(o.out.substr(o.out.size() - 2), "}\n");
   EXPECT_EQ(json["status"], "flapping");
-  for (std::size_t k = 2; k < contract_keys.size(); ++k) EXPECT_TRUE(json[contract_keys[k]].is_number());
+  for (std::size_t k = 5; k < contract_keys.size(); ++k) EXPECT_TRUE(json[contract_keys[k]].is_number());
   EXPECT_EQ(json["voltage_v"], 3.0);
 }
 
@@ -171,7 +174,8 @@ TEST_F(Run, NotFlappingGivesJsonWithNullsAndStatus3) {
   const Json json = o.json();
   EXPECT_EQ(keys_of(json), contract_keys);
   EXPECT_EQ(json["status"], "locked");
-  for (std::size_t k = 2; k < contract_keys.size(); ++k) EXPECT_TRUE(json[contract_keys[k]].is_null());
+  for (std::size_t k = 5; k < contract_keys.size(); ++k) EXPECT_TRUE(json[contract_keys[k]].is_null());
+  EXPECT_TRUE(json["domain"].is_null());
   EXPECT_THAT(o.err, HasSubstr("no file was written"));
   EXPECT_THAT(files(), IsEmpty());
 

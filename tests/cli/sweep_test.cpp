@@ -302,7 +302,7 @@ TEST_F(Sweep, XarrayFindsCoordinatesUnitsAndValues) {
       "')\nassert d.lift_mean_n.dims == ('springs', 'transmission_crank_radius')\n"
       "assert d.lift_mean_n.units == 'N' and d.transmission_crank_radius.units == 'm'\n"
       "assert list(d.springs.values) == ['off', 'on']\n"
-      "assert d.status.flag_meanings.split()[0] == 'flapping' and list(d.status.flag_values) == [0, 1, 2, 3, 4, 5]\n"
+      "assert d.status.flag_meanings.split()[0] == 'flapping' and list(d.status.flag_values) == [0, 1, 2, 3, 4, 5, 6]\n"
       "x = d.sel(springs='on').sel(transmission_crank_radius=5e-3, method='nearest')\n"
       "assert x.status == 0 and 0.01 < x.lift_mean_n < 0.013\n"
       "assert d.lift_mean_n.where(d.status == 0).notnull().sum() == (d.status == 0).sum()\n"

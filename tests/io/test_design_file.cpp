@@ -36,6 +36,7 @@ type = "slider-crank"
 crank_radius = "5 mm"
 rod_length = "20 mm"
 hinge_offset = "6 mm"
+formulation = "rod-force"
 [friction]
 type = "load-proportional"
 radius = "2.5 mm"
@@ -116,7 +117,6 @@ TEST(DesignFile, ReadsTheReferenceVehicle) {
 TEST(DesignFile, DefaultsAreTheDocumentedOnes) {
   const Design<double> d = parse_design(vehicle_text, "v.toml");
   EXPECT_EQ(d.wing.count, 2.0);
-  EXPECT_EQ(d.transmission.formulation, Formulation::rod_force);
   EXPECT_FALSE(d.transmission.mid_stroke_height);
   EXPECT_FALSE(d.mass);
   EXPECT_EQ(d.aerodynamics.coefficients_name, "translational-2022");
@@ -253,9 +253,9 @@ TEST(DesignErrors, FileCannotBeRead) {
 TEST(DesignErrors, UnknownKeyOrSection) {
   EXPECT_EQ(refusal(with("torque_constant", "torque_constan")),
             "v.toml:9:1: motor.torque_constan: unknown key; did you mean motor.torque_constant?");
-  EXPECT_EQ(refusal(with("[friction]", "[fricton]")), "v.toml:17:2: fricton: unknown key; did you mean [friction]?");
+  EXPECT_EQ(refusal(with("[friction]", "[fricton]")), "v.toml:18:2: fricton: unknown key; did you mean [friction]?");
   EXPECT_EQ(refusal(with("s3 =", "s4 =")),
-            "v.toml:22:53: wing.planform.s4: unknown key; did you mean wing.planform.s2?");
+            "v.toml:23:53: wing.planform.s4: unknown key; did you mean wing.planform.s2?");
   EXPECT_EQ(refusal("voltage = 3\n" + vehicle_text), "v.toml:1:1: voltage: unknown key; did you mean supply.voltage?");
   EXPECT_THAT(refusal(with("voltage =", "'supply.voltage' =")),
               HasSubstr("v.toml:5:1: supply.\"supply.voltage\": unknown key"));
@@ -346,16 +346,20 @@ TEST(DesignErrors, MissingKeyOrSection) {
   EXPECT_EQ(refusal(without_line("hinge_offset = \"6 mm\"")),
             "v.toml:12:2: transmission.hinge_offset: missing in [transmission]; expected a length such as \"5 mm\", or "
             "stroke_amplitude instead");
+  EXPECT_EQ(refusal(without_line("formulation = \"rod-force\"")),
+            "v.toml:12:2: transmission.formulation: missing in [transmission]; expected rod-force or virtual-work: "
+            "virtual-work conserves power and is the choice for a new vehicle, rod-force is equation (1) of the 2022 "
+            "paper as printed");
   EXPECT_EQ(refusal(without_line("type = \"constant\"")),
             "v.toml:3:2: supply.type: missing in [supply]; expected constant, sine, pwm or battery");
   EXPECT_EQ(refusal(with("[friction]\ntype = \"load-proportional\"\nradius = \"2.5 mm\"\n", "")),
-            "v.toml:22:1: friction: missing section [friction]: the friction law; without friction write type = "
+            "v.toml:23:1: friction: missing section [friction]: the friction law; without friction write type = "
             "\"none\"");
   EXPECT_EQ(refusal(vehicle_text + "[spring]\n"),
-            "v.toml:26:2: spring.stiffness: missing in [spring]; expected a torsional stiffness such as "
+            "v.toml:27:2: spring.stiffness: missing in [spring]; expected a torsional stiffness such as "
             "\"1.4e-3 N m/rad\", or resonance instead");
   EXPECT_EQ(refusal(with("planform = { shape = \"moments\", s2 = \"2.457e-6 m4\", s3 = \"1.048e-7 m5\" }\n", "")),
-            "v.toml:20:2: wing.planform: missing in [wing]; expected a table such as { shape = \"semi-ellipse\", "
+            "v.toml:21:2: wing.planform: missing in [wing]; expected a table such as { shape = \"semi-ellipse\", "
             "length = \"63 mm\", root_chord = \"25 mm\" }");
   EXPECT_EQ(refusal(""), "v.toml:1:1: supply: missing section [supply]: the voltage at the motor terminals");
 }
@@ -395,48 +399,48 @@ TEST(DesignErrors, OutOfRange) {
   EXPECT_EQ(refusal(with("\"9 ohm\"", "\"-9 ohm\"")),
             "v.toml:7:1: motor.armature_resistance: must be > 0 [ohm], got -9");
   EXPECT_EQ(refusal(with("[wing]", "[wing]\ncount = 1.5")),
-            "v.toml:21:1: wing.count: must be a whole number >= 1 [1], got 1.5");
+            "v.toml:22:1: wing.count: must be a whole number >= 1 [1], got 1.5");
   EXPECT_EQ(refusal(with("s2 = \"2.457e-6 m4\"", "s2 = -1")),
-            "v.toml:22:33: wing.planform.s2: must be >= 0 [m4], got -1");
+            "v.toml:23:33: wing.planform.s2: must be >= 0 [m4], got -1");
 }
 
 TEST(DesignErrors, Duplicates) {
   EXPECT_EQ(refusal(with("voltage = \"3 V\"", "voltage = 3\nvoltage = 4")), "v.toml:6:11: \"voltage\" is given twice");
-  EXPECT_EQ(refusal(vehicle_text + "[motor]\n"), "v.toml:26:1: \"motor\" is given twice");
+  EXPECT_EQ(refusal(vehicle_text + "[motor]\n"), "v.toml:27:1: \"motor\" is given twice");
   EXPECT_EQ(refusal(with("[friction]", "stroke_amplitude = 0.7\n[friction]")),
-            "v.toml:17:1: transmission.stroke_amplitude: give hinge_offset or stroke_amplitude, not both");
+            "v.toml:18:1: transmission.stroke_amplitude: give hinge_offset or stroke_amplitude, not both");
   EXPECT_EQ(refusal(vehicle_text + "[spring]\nstiffness = 1e-3\nresonance = 22\n"),
-            "v.toml:28:1: spring.resonance: give stiffness or resonance, not both");
+            "v.toml:29:1: spring.resonance: give stiffness or resonance, not both");
 }
 
 TEST(DesignErrors, KeyOfAnotherChoice) {
   EXPECT_EQ(refusal(with("radius = \"2.5 mm\"", "radius = \"2.5 mm\"\ndamping = 1e-6")),
-            "v.toml:20:1: friction.damping: belongs to friction.type = viscous, but friction.type is "
+            "v.toml:21:1: friction.damping: belongs to friction.type = viscous, but friction.type is "
             "\"load-proportional\"");
   EXPECT_EQ(refusal(with("\"3 V\"", "\"3 V\"\nfrequency = 20")),
             "v.toml:6:1: supply.frequency: belongs to supply.type = sine or pwm, but supply.type is \"constant\"");
   EXPECT_EQ(refusal(with("[motor]", "[motor]\ngear_inertia = 1e-9")),
             "v.toml:7:1: motor.gear_inertia: needs motor.gear_ratio, which is not given");
   EXPECT_EQ(refusal(with("\"moments\"", "\"moments\", length = 1")),
-            "v.toml:22:33: wing.planform.length: belongs to wing.planform.shape = semi-ellipse or rectangle, but "
+            "v.toml:23:33: wing.planform.length: belongs to wing.planform.shape = semi-ellipse or rectangle, but "
             "wing.planform.shape is \"moments\"");
   EXPECT_EQ(refusal(vehicle_text + "coefficients = { table = [], lift = { offset = 1 } }\n"),
-            "v.toml:26:30: aerodynamics.coefficients.lift: give table, or lift and drag, not both");
+            "v.toml:27:30: aerodynamics.coefficients.lift: give table, or lift and drag, not both");
 }
 
 TEST(DesignErrors, Coefficients) {
   EXPECT_EQ(refusal(vehicle_text + "coefficients = \"theodorsen\"\n"),
-            "v.toml:26:1: aerodynamics.coefficients: expected \"translational-2022\" or a table of coefficients, got "
+            "v.toml:27:1: aerodynamics.coefficients: expected \"translational-2022\" or a table of coefficients, got "
             "\"theodorsen\"");
   EXPECT_EQ(refusal(vehicle_text + "coefficients = { lift = { offset = 1, amplitude = 1, rate = 2, phase = 0 } }\n"),
-            "v.toml:26:1: aerodynamics.coefficients.drag.offset: missing in [aerodynamics.coefficients.drag]; "
+            "v.toml:27:1: aerodynamics.coefficients.drag.offset: missing in [aerodynamics.coefficients.drag]; "
             "expected a "
             "number such as 2");
   EXPECT_EQ(refusal(vehicle_text + "coefficients = { table = [[0, 1, 1], [1, 1, 1], [0.5, 1, 1]] }\n"),
-            "v.toml:26:18: aerodynamics.coefficients.table: row 3 of the coefficient table must have a larger angle of "
+            "v.toml:27:18: aerodynamics.coefficients.table: row 3 of the coefficient table must have a larger angle of "
             "attack than the row before it");
   EXPECT_EQ(refusal(vehicle_text + "coefficients = { table = [[0, 1]] }\n"),
-            "v.toml:26:18: aerodynamics.coefficients.table: row 1 must hold 3 values");
+            "v.toml:27:18: aerodynamics.coefficients.table: row 1 must hold 3 values");
 }
 
 TEST(DesignErrors, TableFiles) {
@@ -445,7 +449,7 @@ TEST(DesignErrors, TableFiles) {
                         "shape = \"tabulated\", file = \"c.csv\""),
                    {}, [&](const std::string&) { return csv; });
   };
-  const std::string where = "v.toml:22:35: wing.planform.file: ";
+  const std::string where = "v.toml:23:35: wing.planform.file: ";
   EXPECT_EQ(refusal_of(""), where + "c.csv: is empty; expected a header such as distance_mm,chord_mm");
   EXPECT_EQ(refusal_of("distance,chord_mm\n"),
             where + "c.csv:1:1: column \"distance\" names no unit; expected a header such as distance_mm,chord_mm");

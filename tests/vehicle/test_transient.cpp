@@ -386,7 +386,7 @@ TEST(Transient, BudgetsEndUnsettled) {
   const TransientResult few_laps = simulate_start_up(reference_vehicle(), options);
   EXPECT_FALSE(few_laps.settled);
   EXPECT_EQ(few_laps.laps, 2);
-  EXPECT_EQ(few_laps.status, FlappingStatus::flapping);
+  EXPECT_EQ(few_laps.status, FlappingStatus::undecided);
 
   options = {};
   options.max_steps = 100;

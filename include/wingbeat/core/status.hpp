@@ -25,7 +25,8 @@ enum class FlappingStatus {
   flapping,  ///< a steady rotating orbit exists and start-up from rest reaches it
   stalled,   ///< the motor never starts: its stall torque does not exceed the constant friction
   locked,    ///< the crank comes to rest at an angle (springs, or friction against them)
-  jammed     ///< the mechanism's equations lose their unique solution on the way (light rotor, strong friction)
+  jammed,    ///< the mechanism's equations lose their unique solution on the way (light rotor, strong friction)
+  undecided  ///< none of these was shown within the solver's limits; reported as no status at all, with the evidence
 };
 
 inline const char* name_of(FlappingStatus status) {
@@ -34,6 +35,7 @@ inline const char* name_of(FlappingStatus status) {
     case FlappingStatus::stalled: return "stalled";
     case FlappingStatus::locked: return "locked";
     case FlappingStatus::jammed: return "jammed";
+    case FlappingStatus::undecided: return "undecided";
   }
   return "unknown";
 }

@@ -53,6 +53,7 @@ struct LaneSettings {
   int sweeps = 2;          ///< Newton's steps before the last
   double peak_tolerance = 5e-7;  ///< a peak is settled when the cubic at its top promises less, relative
   std::array<bool, quantity_count> wanted{};
+  bool velocity_aside = false;   ///< the peak velocity is wanted for the domain alone: no metric, no part in the error
   bool multipliers = false;
 };
 

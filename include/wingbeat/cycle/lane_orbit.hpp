@@ -124,7 +124,7 @@ class LaneOrbit {
 
   [[gnu::noinline, gnu::flatten]] void tabulate();
   [[gnu::noinline, gnu::flatten]] void judge_statics();
-  [[gnu::noinline, gnu::flatten]] void guess_speed();
+  [[gnu::noinline, gnu::flatten]] L guess_speed();
   [[gnu::noinline, gnu::flatten]] void start_from_rest();
   [[gnu::noinline]] void replace_stiff(const System& system, const L& u, const L& h, const State& y, State& end,
                                        L& force_in_middle, L& force_at_end) const;
@@ -179,6 +179,7 @@ class LaneOrbit {
   [[gnu::noinline]] State implicit_step(const State& y, const L& h, const Rates& rates) const;
   static void propagator(const Matrix& jacobian, const L& h, Matrix& out);
   static void append(const Matrix& step, Matrix& product);
+  static L largest_modulus(const Matrix& M);
   void close_lap(State& off) const;
 
   [[gnu::noinline, gnu::flatten]] static void find_place(const System& system, const L& u, Place<L>& place) {
@@ -290,6 +291,20 @@ void LaneOrbit<L, N>::append(const Matrix& step, Matrix& product) {
       if constexpr (N == 2) sum = sum + step[row][1] * before[1][column];
       product[row][column] = sum;
     }
+  }
+}
+
+/// Largest modulus of the eigenvalues.
+template <class L, int N>
+L LaneOrbit<L, N>::largest_modulus(const Matrix& M) {
+  if constexpr (N == 1) {
+    return abs(M[0][0]);
+  } else {
+    const L mean = L(0.5) * (M[0][0] + M[1][1]), half_difference = L(0.5) * (M[0][0] - M[1][1]);
+    const L discriminant = square(half_difference) + M[0][1] * M[1][0];
+    const L determinant = M[0][0] * M[1][1] - M[0][1] * M[1][0];
+    const L real = abs(mean) + sqrt(max(discriminant, L(0.0)));
+    return select<L>(discriminant >= L(0.0), real, sqrt(max(determinant, L(0.0))));
   }
 }
 
@@ -730,10 +745,13 @@ Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   } else {
     tabulate();
     judge_statics();
+    const L balances = guess_speed();
     if (settings_.approach == LaneApproach::guess) {
-      guess_speed();
+      doubtful_ = doubtful_ || !(balances == L(1.0));
     } else {
+      // A heavy rotor is far from any orbit after the few turns simulated: they do not show which of several it reaches.
       start_from_rest();
+      doubtful_ = doubtful_ || balances > L(1.0);
     }
     for (int n = 1; n < settings_.coarse_laps; ++n) coarse_lap<false>();
     coarse_lap<true>();
@@ -754,17 +772,18 @@ Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
       total(Integral::friction_work) + total(Integral::aero_work) + total(Integral::residual_work);
   const auto is_wanted = [&](Quantity q) { return wanted_[std::size_t(q)]; };
   peak_error_ = L(0.0);
-  if (is_wanted(Quantity::energy)) total(Integral::reactive_work) = exchanged_energy();
-
   CycleExtremes<L> extremes;
   extremes.fill(L(0.0));
   const auto seek = [&](Quantity quantity, Extreme extreme) {
     if (is_wanted(quantity)) extremes[std::size_t(extreme)] = peak(quantity);
   };
   seek(Quantity::velocity, Extreme::flapping_velocity);
-  if (is_wanted(Quantity::velocity)) {
+  if (settings_.velocity_aside) {
+    peak_error_ = L(0.0);
+  } else if (is_wanted(Quantity::velocity)) {
     extremes[std::size_t(Extreme::lift)] = lift_peak(extremes[std::size_t(Extreme::flapping_velocity)]);
   }
+  if (is_wanted(Quantity::energy)) total(Integral::reactive_work) = exchanged_energy();
   seek(Quantity::current, Extreme::current);
   seek(Quantity::force, Extreme::rod_force);
   seek(Quantity::slowness, Extreme::crank_speed_min);
@@ -781,6 +800,7 @@ Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   if (lags_) error_estimate_ = error_estimate_ + L(1.5) * (difference + L(2.0)) * lag_residual_ + lag_left_out();
   lost_ = lost_ || !(slowest_ > floor_);
   if (settings_.approach == LaneApproach::guess) doubtful_ = doubtful_ || lost_;
+  doubtful_ = doubtful_ || (!lost_ && hardly_returns(vehicle_, largest_modulus(monodromy_), total(Integral::time)));
   error_estimate_ = select<L>(lost_, L(std::numeric_limits<double>::infinity()), error_estimate_);
   return cycle_metrics(vehicle_, integrals, extremes, multiplier, ReportingOf<L>{mass, bench_torque_constant});
 }

@@ -38,9 +38,9 @@ void LaneOrbit<L, N>::judge_statics() {
   }
 }
 
-/// Starts at the balanced_speed(); more than one, or none, is doubtful.
+/// Starts at the balanced_speed(); returns how many there are.
 template <class L, int N>
-void LaneOrbit<L, N>::guess_speed() {
+L LaneOrbit<L, N>::guess_speed() {
   constexpr int stride = 4, count = coarse_samples / stride;
   std::array<LoadPlace<L>, 2 * count> places;
   for (int n = 0; n < 2 * count; ++n) {
@@ -48,9 +48,9 @@ void LaneOrbit<L, N>::guess_speed() {
     places[std::size_t(n)] = load_place(vehicle_, at.kinematics, at.spring_moment);
   }
   const BalancedSpeed<L> balanced = balanced_speed<L>(vehicle_, places);
-  doubtful_ = doubtful_ || !(balanced.count == L(1.0));
   y_[0] = balanced.slowest;
   if constexpr (N == 2) y_[1] = algebraic_current(vehicle_, vehicle_.voltage, y_[0]);
+  return balanced.count;
 }
 
 /// From rest at crank angle zero, in time, by the classical fourth-order method: over the lower dead centre twice, where

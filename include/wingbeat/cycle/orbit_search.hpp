@@ -1,6 +1,7 @@
 // The search for one vehicle's orbit, and what is reported of it: the same for every system.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -13,6 +14,11 @@ namespace wingbeat::detail {
 /// The steady flapping of a direct drive; see find_steady_flapping.
 SteadyFlapping find_direct_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                     const StartUp& start_up);
+
+/// Takes the metrics of a vehicle that flaps, but on no orbit found, from its simulated cycle; undecided without one.
+/// `variable`: in which the orbit was sought.
+void fill_simulated(const StartUpOutcome& outcome, const SteadyOptions& options, const char* variable,
+                    SteadyFlapping& result);
 
 /// Searches for a periodic orbit and fills the result from it.
 template <class System>
@@ -39,6 +45,30 @@ class OrbitSearch {
     }
     summary_.laps += laps_before;
     return summary_.status == solve::PeriodicStatus::converged;
+  }
+
+  /// The same from a state close to the orbit. Explicit steps that are unstable may end at the edge as well as take too
+  /// many: implicit ones tell.
+  bool search_near(const State& guess) {
+    solve::PeriodicOptions periodic{.tolerance = options_.tolerance, .stability = options_.stability, .near = true};
+    for (const auto method : {solve::Method::explicit_pair, solve::Method::radau}) {
+      periodic.method = method;
+      const int laps_before = summary_.laps;
+      summary_ = solve::solve_periodic(system_, guess, periodic, lap_);
+      summary_.laps += laps_before;
+      if (summary_.status == solve::PeriodicStatus::converged) return true;
+    }
+    return false;
+  }
+
+  /// The largest multiplier of the orbit found, if only roughly: where plain laps have closed it, that shows that they
+  /// contract.
+  double multiplier() {
+    if (std::isfinite(summary_.floquet_multiplier_max)) return summary_.floquet_multiplier_max;
+    if (summary_.newton_steps == 0) return 0.0;
+    constexpr int n = int(std::tuple_size_v<State>);
+    const auto matrix = solve::monodromy(system_.template cast<Jet<n>>(), lap_);
+    return solve::spectral_radius(n, matrix.data());
   }
 
   const System& system() const { return system_; }

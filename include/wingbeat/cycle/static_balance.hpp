@@ -128,25 +128,81 @@ S torque_surplus(const Vehicle<S>& v, std::span<const LoadPlace<S>> places, cons
 template <Scalar S>
 struct BalancedSpeed {
   S slowest;  ///< first guess for the periodic orbit [rad/s]; the no-load speed where there is none
-  S count;    ///< more than one hints at several orbits; 0: the load stalls the motor
+  S count;    ///< more than one, or nearly so, hints at several orbits; 0: the load stalls the motor
 };
 
+/// What passive pitching can bend the drag's torque by: C_alpha |B1| omega at the largest stroke slope [rad].
 template <Scalar S>
-BalancedSpeed<S> balanced_speed(const Vehicle<S>& v, std::span<const LoadPlace<S>> places) {
-  constexpr int speeds = 8;
-  const S no_load = no_load_speed(v);
+S largest_pitch(const Vehicle<S>& v, std::span<const LoadPlace<S>> places, const S& omega) {
+  using std::max;
+  S steepest(0.0);
+  for (const LoadPlace<S>& p : places) steepest = max(steepest, p.slope);
+  return v.wings.pitch_coefficient * steepest * omega;
+}
+
+/// Balances between 2 % of the speed without load and that speed, on a grid. A surplus that is almost used up counts as
+/// a balance, too.
+template <int speeds, Scalar S>
+BalancedSpeed<S> balanced_on_grid(const Vehicle<S>& v, std::span<const LoadPlace<S>> places) {
+  const S no_load = no_load_speed(v), near = S(0.1) * stall_torque(v);
   BalancedSpeed<S> balanced{no_load, S(0.0)};
-  S before = S(0.02) * no_load, surplus_before = torque_surplus(v, places, before);
+  S before = S(0.02) * no_load, surplus_before = torque_surplus(v, places, before), surplus_earlier = surplus_before;
   for (int n = 1; n <= speeds; ++n) {
     const S omega = no_load * S(double(n) / speeds), at = torque_surplus(v, places, omega);
     const auto crossed = surplus_before > S(0.0) && at <= S(0.0);
     const S root = before + (omega - before) * surplus_before / (surplus_before - at);
     balanced.slowest = select<S>(crossed && balanced.count == S(0.0), root, balanced.slowest);
     balanced.count = select<S>(crossed, balanced.count + S(1.0), balanced.count);
+    if (n > 1) {
+      const auto touches = surplus_before > S(0.0) && surplus_before < near && surplus_before < surplus_earlier &&
+                           surplus_before < at;
+      balanced.count = select<S>(touches, balanced.count + S(1.0), balanced.count);
+    }
+    surplus_earlier = surplus_before;
     before = omega;
     surplus_before = at;
   }
   return balanced;
+}
+
+template <Scalar S>
+BalancedSpeed<S> balanced_speed(const Vehicle<S>& v, std::span<const LoadPlace<S>> places) {
+  // The drag coefficient is a wave in the angle of attack: over a long way of pitching the drag's torque has several
+  // humps, and beyond a longer one no grid is fine enough.
+  const S pitch = largest_pitch(v, places, no_load_speed(v));
+  BalancedSpeed<S> balanced = balanced_on_grid<8>(v, places);
+  const auto bends = pitch > S(1.2);
+  if (any<S>(bends)) {
+    const BalancedSpeed<S> finely = balanced_on_grid<40>(v, places);
+    balanced.slowest = select<S>(bends, finely.slowest, balanced.slowest);
+    balanced.count = select<S>(bends, finely.count, balanced.count);
+    balanced.count = select<S>(pitch > S(20.0), balanced.count + S(1.0), balanced.count);
+  }
+  return balanced;
+}
+
+/// Share of a disturbance of the speed that the motor alone would take away in a time [s], wings swinging along.
+template <Scalar S>
+S free_return(const Vehicle<S>& v, const S& time) {
+  using std::max;
+  using std::sqrt;
+  const Motor<S>& m = v.motor;
+  const S R = circuit_resistance(v), L = m.armature_inductance, K = m.torque_constant;
+  const S inertia = m.inertia + S(0.5) * v.wing_count * v.wing_inertia * square(v.crank.crank_radius / v.crank.hinge_offset);
+  // The slower eigenvalue of speed and current, times L/R to allow for none: s^2 L/R + s trace + determinant = 0.
+  const S damping = m.viscous_damping + v.friction.damping;
+  const S trace = S(1.0) + damping * L / (R * inertia), determinant = (damping + K * K / R) / inertia;
+  const S root = sqrt(max(S(square(trace) - S(4.0) * determinant * L / R), S(0.0)));
+  const S decay = S(2.0) * determinant / (trace + root);  // of a complex pair too fast by no more than a factor of 2
+  const S x = decay * time;
+  return x / (S(1.0) + x);
+}
+
+/// True where a multiplier is above 1, or so near that another orbit may be near: the load takes back almost all of what
+/// the motor does against a disturbance. Such an orbit shows only in time whether start-up leads there.
+template <Scalar S>
+auto hardly_returns(const Vehicle<S>& v, const S& multiplier, const S& period) {
+  return !(multiplier < S(0.8)) && !(S(1.0) - multiplier > S(0.1) * free_return(v, period));
 }
 BalancedSpeed<double> balanced_speed(const Vehicle<double>& vehicle);
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "wingbeat/core/status.hpp"
@@ -13,6 +14,13 @@
 
 namespace wingbeat {
 
+/// A settled cycle as it was simulated in time, where the crank angle cannot be the independent variable.
+struct SimulatedCycle {
+  Metrics<double> metrics;        ///< floquet_multiplier_max is absent
+  double error_estimate = absent; ///< of the metrics, relative
+  int cycles = 1;                 ///< after which the motion repeats; the metrics are averages over them
+};
+
 /// What a vehicle does when it is switched on at rest at stroke angle zero; the transient solver supplies it.
 struct StartUpOutcome {
   FlappingStatus status = FlappingStatus::flapping;
@@ -21,6 +29,9 @@ struct StartUpOutcome {
   double crank_speed = 0.0;  ///< flapping: omega at crank angle 0 (direct drive: phase 0 of the supply) [rad/s]
   double current = 0.0;      ///< flapping: i there [A]
   double stroke_angle = 0.0; ///< flapping, direct drive: beta there [rad]
+  /// Flapping: goes on with the simulation for the metrics of the settled cycle, to a tolerance; empty if it does not
+  /// settle. A judge that cannot tell them leaves this empty.
+  std::function<std::optional<SimulatedCycle>(double tolerance, const Reporting& reporting)> cycle;
 };
 using StartUp = std::function<StartUpOutcome(const Vehicle<double>&)>;
 
@@ -36,7 +47,8 @@ struct SteadyFlapping {
   solve::PeriodicSummary summary;  ///< of the orbit search
   StaticBalance balance{};
   Metrics<double> metrics;  ///< all absent unless flapping
-  CycleRecord record;       ///< the orbit's cycle; empty unless flapping
+  CycleRecord record;       ///< the orbit's cycle; empty unless flapping, and where the cycle was simulated in time
+  std::optional<SimulatedCycle> simulated;  ///< where no periodic orbit in crank angle gives the metrics, but this does
   double crank_speed = absent;  ///< flapping: omega at crank angle 0 (direct drive: phase 0 of the supply) [rad/s]
   double current = absent;      ///< flapping: i there [A]
 };

@@ -306,7 +306,7 @@ std::span<const Key<S>> vehicle_keys() {
                  "mass of the rod over its length: rod_length times this, in addition to vehicle.mass",
                  "vehicle.mass"},
                 [](auto& d) -> auto& { return d.masses.rod_linear_density; }, weighed),
-      text<S>({"transmission.formulation", "", "rod-force or virtual-work", "rod-force",
+      text<S>({"transmission.formulation", "", "rod-force or virtual-work", "required",
                "how the rod force turns the wings: the paper's eq (1), or conserving power exactly", of_crank},
               [](const D& d) {
                 return d.transmission.type == TransmissionType::direct

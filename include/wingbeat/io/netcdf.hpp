@@ -56,6 +56,8 @@ class NetcdfFile {
 
   /// What the values of a flag mean, in the manner of the CF conventions: 0, 1, 2, ...
   void set_flags(const Variable& variable, std::span<const std::string> meanings);
+  /// What the bits of a flag mean, the lowest first (at most seven): flag_masks 1, 2, 4, ...
+  void set_flag_masks(const Variable& variable, std::span<const std::string> meanings);
 
   /// The whole variable, last dimension fastest.
   void write(const Variable& variable, std::span<const double> values);
@@ -109,6 +111,7 @@ struct Provenance {
   std::string input;      ///< the vehicle file, complete in itself
   std::string condition;  ///< air, vacuum, wingless
   std::string method;     ///< orbit, transient
+  std::string domain = {};  ///< "inside" or the limits of the model that are exceeded; empty: not said
   double tolerance = 0.0;
 };
 

@@ -16,12 +16,14 @@ namespace wingbeat {
 struct SweepDigest {
   std::array<std::uint64_t, sweep_status_count> designs{};  ///< by SweepStatus
   std::uint64_t recomputed = 0;                             ///< by the scalar solver
+  std::uint64_t outside = 0;                                ///< flapping, but outside the model's domain
+  std::array<std::uint64_t, domain_limit_count> beyond{};   ///< of those, by DomainLimit
   struct Best {
     std::uint64_t index;
     double value;
   };
-  std::optional<Best> lift;        ///< most lift_mean [N], if kept
-  std::optional<Best> efficiency;  ///< most efficiency_system [1], if kept
+  std::optional<Best> lift;        ///< most lift_mean [N], if kept, of what counts
+  std::optional<Best> efficiency;  ///< most efficiency_system [1], if kept, of what counts
 };
 
 /// Stands for everything that a data set depends on: study, vehicle, options, instruction set, version.

@@ -22,6 +22,7 @@ struct PeriodicOptions {
   Method method = Method::explicit_pair;
   int max_steps = 80;           ///< of a lap at the coarsest level, more is called stiff; ten times as many later
   bool stability = true;        ///< compute the monodromy matrix and the Floquet multipliers
+  bool near = false;            ///< the guess is close to the orbit: no coarse laps, which may lose it
 };
 
 enum class PeriodicStatus {
@@ -152,7 +153,7 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   const std::array<double, 3> tolerances = {std::max(fine, 1e-2), std::max(10.0 * fine, 1e-7), fine};
   State y = guess;
   double residual = 1.0, before_tolerance = tolerances[0];
-  for (std::size_t level = 0; summary.laps < options.max_laps;) {
+  for (std::size_t level = options.near ? 1 : 0; summary.laps < options.max_laps;) {
     // Coarse laps need only the switches that bend the solution itself.
     const bool is_fine = level + 1 == tolerances.size();
     const LapOptions lap_options = {.method = options.method,

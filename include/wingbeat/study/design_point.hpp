@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "wingbeat/cycle/domain.hpp"
 #include "wingbeat/cycle/orbit_gradient.hpp"
 #include "wingbeat/study/frequency_search.hpp"
 #include "wingbeat/study/sweep.hpp"
@@ -23,6 +24,10 @@ struct DesignPoint {
   SweepStatus status = SweepStatus::invalid;
   std::string detail;       ///< one sentence: why it does not flap
   Metrics<double> metrics;  ///< all absent unless flapping
+  DomainStatus domain;      ///< limits of the model that are exceeded; none unless flapping
+  DomainExcess domain_excess{};  ///< by how much; only where flapping
+  /// Derivatives of domain_excess by each parameter, the stroke of a crank excepted (see stroke_excess); as `gradients`.
+  std::vector<DomainExcess> domain_slopes;
   /// By each parameter, SI; the supply's voltage and duty included. All absent unless flapping and regular.
   std::vector<std::array<double, metric_count>> gradients;
 };

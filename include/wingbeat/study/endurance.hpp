@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "wingbeat/cycle/domain.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/vehicle/design.hpp"
 
@@ -18,6 +19,7 @@ namespace wingbeat {
 struct EnduranceOptions {
   Condition condition = Condition::air;
   double tolerance = 1e-9;  ///< wanted relative accuracy of times and energies, 1e-10 to 1e-2
+  bool allow_extrapolation = false;  ///< a vehicle outside the model's domain may hover
   int intervals = 64;       ///< least number of rows between the first and the last charge
 };
 
@@ -31,7 +33,8 @@ enum class EnduranceEnd {
 enum class Hover {
   unknown,  ///< the vehicle has no mass
   never,    ///< lift is below the weight from the start
-  lost,     ///< lift falls below the weight on the way
+  outside,  ///< lift exceeds the weight at the start, but outside the model's domain
+  lost,     ///< lift falls below the weight, or the domain is left, on the way
   kept      ///< lift exceeds the weight to the end
 };
 
@@ -45,6 +48,7 @@ struct EnduranceRow {
   double energy_aerodynamic = 0.0;    ///< given to the air since the start [J]
   double lift_impulse = 0.0;          ///< time integral of the mean lift since the start [N s]
   Metrics<double> metrics;            ///< of steady flapping at this charge
+  DomainStatus domain = {};           ///< limits of the model that are exceeded there
 };
 
 struct EnduranceResult {
@@ -52,7 +56,7 @@ struct EnduranceResult {
   FlappingStatus status = FlappingStatus::stalled;  ///< at the first charge
   std::string detail;                               ///< one sentence: how it ends, or why it does not start
   Hover hover = Hover::unknown;
-  std::optional<EnduranceRow> hover_lost;  ///< the moment of Hover::lost, where lift equals weight
+  std::optional<EnduranceRow> hover_lost;  ///< the moment of Hover::lost: lift equals weight, or the domain is left
   std::vector<EnduranceRow> rows;          ///< from the first to the last charge; empty if it never starts
   double capacity = 0.0;                   ///< Q [C]
   int evaluations = 0;                     ///< orbits computed

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "wingbeat/core/status.hpp"
+#include "wingbeat/cycle/domain.hpp"
 #include "wingbeat/cycle/lane_blocks.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
@@ -34,6 +35,7 @@ struct EnsembleOptions {
   MetricSet metrics = all_metrics();     ///< those wanted; the others are absent. Peaks and multipliers cost extra
   InstructionSet isa = best_instruction_set();
   bool scalar_only = false;              ///< every design by the scalar solver
+  bool domain = true;                    ///< find out the domain status, whichever metrics are wanted
 };
 
 struct EnsembleOutcome {
@@ -41,6 +43,7 @@ struct EnsembleOutcome {
   bool scalar = false;             ///< computed by the scalar solver
   double error_estimate = absent;  ///< of the metrics, relative; absent unless flapping
   Metrics<double> metrics;         ///< all absent unless flapping
+  DomainStatus domain = {};        ///< limits of the model that it exceeds; none unless flapping
 };
 
 /// Solves every member into the outcome of the same index, on the calling thread. A member's outcome depends on nothing

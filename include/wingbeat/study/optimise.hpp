@@ -32,6 +32,7 @@ struct OptimiseStudy {
   bool maximise = false;
   std::vector<OptimisedParameter> parameters;
   std::vector<MetricConstraint> constraints;
+  bool allow_extrapolation = false;  ///< else the limits of the model's domain are constraints as well
   int starts = 20;           ///< the design as given where it lies within the bounds, the others from the screening
   std::uint64_t seed = 1;
   std::uint64_t screen = 1024;  ///< designs of a scrambled Sobol sequence solved first
@@ -40,15 +41,18 @@ struct OptimiseStudy {
 /// What the screening found.
 struct ScreenCounts {
   std::array<std::uint64_t, sweep_status_count> status{};
-  std::uint64_t feasible = 0;                 ///< flapping and within every constraint
-  std::vector<std::uint64_t> violated;        ///< by constraint: flapping, but beyond it
-  std::vector<double> closest;                ///< by constraint: the metric's best value met [SI]; absent if none flaps
+  std::uint64_t feasible = 0;                 ///< flapping, inside the domain and within every constraint
+  std::uint64_t outside = 0;                  ///< flapping outside the domain, where that does not count
+  std::array<std::uint64_t, domain_limit_count> beyond{};  ///< of those, by DomainLimit
+  std::vector<std::uint64_t> violated;        ///< by constraint: flapping inside the domain, but beyond it
+  std::vector<double> closest;                ///< by constraint: the metric's best value met there [SI]; absent if none
 };
 
 /// A constraint or bound that holds the optimum.
 struct ActiveLimit {
   std::string name;        ///< "lift_to_weight >= 1", "supply.voltage <= 5 V"
   double sensitivity = 0.0;  ///< relative loss for a relative tightening of the limit; absent for a limit of 0
+  bool domain = false;       ///< a limit of the model's domain
 };
 
 /// How far the design can move along one direction, the active limits kept, until the objective is 0.1 % worse.
@@ -79,7 +83,7 @@ struct SearchEnd {
 struct OptimiseResult {
   enum class Outcome {
     found,
-    infeasible,     ///< designs flap, but none within the constraints was found
+    infeasible,     ///< designs flap, but none within the constraints and the domain was found
     nothing_flaps   ///< in the screening
   };
   Outcome outcome = Outcome::nothing_flaps;
@@ -104,5 +108,7 @@ OptimiseResult optimise(const OptimiseStudy& study, const StartUp& start_up, con
 
 /// "lift_to_weight >= 1"
 std::string name_of(const MetricConstraint& constraint);
+/// "angle_of_attack >= 0 deg"
+std::string bound_of(DomainLimit limit, TransmissionType transmission);
 
 }  // namespace wingbeat

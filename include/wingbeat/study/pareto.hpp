@@ -66,6 +66,7 @@ struct ParetoStudy {
   std::vector<OptimisedParameter> parameters;
   std::vector<DiscreteParameter> choices;
   std::vector<MetricConstraint> constraints;
+  bool allow_extrapolation = false;  ///< else designs outside the model's domain are infeasible
   EvolutionOptions evolution;
   std::uint64_t screen = 1024;  ///< designs of a scrambled Sobol sequence solved first; at least the population
   std::size_t designs = 5;      ///< picked evenly along the front
@@ -75,6 +76,7 @@ struct ParetoDesign {
   std::size_t vehicle = 0;
   std::vector<double> parameters;  ///< those of the study, then the choices [SI]
   Metrics<double> metrics;         ///< of front designs all, of the others the objectives and constraints
+  DomainStatus domain = {};        ///< limits of the model that are exceeded; none unless flapping
 };
 
 struct ParetoResult {
@@ -84,7 +86,7 @@ struct ParetoResult {
   std::vector<ParetoDesign> front;      ///< by the first objective, best first
   std::vector<ParetoDesign> evaluated;  ///< every design solved, in the order of solving
   std::vector<SweepStatus> status;      ///< of `evaluated`
-  std::vector<bool> feasible;           ///< of `evaluated`: flapping and within every constraint
+  std::vector<bool> feasible;           ///< of `evaluated`: flapping, inside the domain and within every constraint
   FrontPicks picks;
   std::vector<double> reference;     ///< by objective [SI]
   double hypervolume = 0.0;          ///< product of the objectives' units

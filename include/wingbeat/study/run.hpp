@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "wingbeat/cycle/domain.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/study/frequency_search.hpp"
 #include "wingbeat/study/transient.hpp"
@@ -24,14 +25,21 @@ struct RunOptions {
   std::optional<double> frequency = {};
   /// [N]; given instead of the frequency: the same for the mean lift, which a pwm supply reaches by its duty.
   std::optional<double> lift = {};
+  bool allow_extrapolation = false; ///< a search for a lift may leave the model's domain
   int waveform_rows = 0;            ///< instants of one cycle to return, both ends included; 0: none
 };
 
 struct RunResult {
   FlappingStatus status = FlappingStatus::stalled;
   std::string detail;  ///< one sentence with the evidence
-  bool settled = true; ///< false: the transient ran out of time, laps or steps; status is the best guess
+  /// False: no steady state was shown within the solvers' limits; the status is undecided, or the metrics are averages
+  /// over laps that still differ.
+  bool settled = true;
+  bool simulated_cycle = false;  ///< Method::orbit found flapping in time only: the metrics are the simulated cycle's
   Metrics<double> metrics;  ///< all absent unless flapping
+  DomainStatus domain;         ///< limits of the model that the cycle exceeds; none unless flapping
+  std::string domain_detail;   ///< the same in words with numbers; empty inside
+  std::vector<std::string> warnings;  ///< what a reader of the metrics should know beside the domain
   std::vector<WaveformRow> cycle;
   std::vector<double> cycle_voltage;       ///< terminal voltage of each row [V]
   solve::PeriodicSummary orbit;            ///< of Method::orbit

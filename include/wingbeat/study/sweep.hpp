@@ -59,6 +59,7 @@ struct Sweep {
   std::vector<std::uint64_t> variant_stride;  ///< of each axis in `variants`; 0 for an axis without choices
   std::optional<double> frequency;            ///< held frequency [Hz]; an axis may hold it instead
   EnsembleOptions options;
+  bool allow_extrapolation = false;           ///< designs outside the model's domain count as best, feasible, ... too
 
   std::uint64_t size() const;  ///< number of designs
 };
@@ -66,17 +67,19 @@ struct Sweep {
 /// Place of a design along each axis.
 std::vector<std::uint64_t> places(const Sweep& sweep, std::uint64_t index);
 
-/// What became of a design of a sweep: FlappingStatus, and two cases more.
+/// What became of a design of a sweep: FlappingStatus, and two cases more. The numbers are those of data sets.
 enum class SweepStatus : std::int8_t {
   flapping,
   stalled,
   locked,
   jammed,
   unreached,  ///< it flaps, but not at the frequency asked for
-  invalid     ///< a parameter out of its physical range, for itself or beside the others
+  invalid,    ///< a parameter out of its physical range, for itself or beside the others
+  undecided   ///< start-up showed none of these within the solvers' limits
 };
-inline constexpr int sweep_status_count = 6;
+inline constexpr int sweep_status_count = 7;
 const char* name_of(SweepStatus status);
+SweepStatus sweep_status(FlappingStatus status);
 
 /// A design of the sweep, with its variant's condition. Not validated.
 struct SweepDesign {
@@ -91,10 +94,15 @@ struct SweepColumns {
   std::uint64_t first = 0;
   std::vector<std::int8_t> status;          ///< SweepStatus
   std::vector<std::int8_t> recomputed;      ///< 1: by the scalar solver
+  std::vector<std::int8_t> domain;          ///< bits of DomainStatus, of what flaps; 0: inside
   std::vector<double> error_estimate;       ///< relative; absent unless flapping
   std::vector<std::vector<double>> metrics;  ///< those of options.metrics, in the order of Metric
 
   void resize(std::size_t designs, std::size_t metrics_kept);
+  /// Flapping and, unless extrapolation is allowed, inside the model's domain.
+  bool counts(std::size_t row, bool allow_extrapolation) const {
+    return status[row] == std::int8_t(SweepStatus::flapping) && (allow_extrapolation || domain[row] == 0);
+  }
 };
 
 /// Computes designs of one sweep on one thread, with memory of its own.

@@ -47,6 +47,7 @@ struct ToleranceStudy {
   std::uint64_t seed = 1;
   bool indices = true;         ///< Sobol indices: 2 N vehicles and N more for each factor, instead of N
   int resamples = 500;         ///< of the bootstrap
+  bool allow_extrapolation = false;  ///< samples outside the model's domain count and may hover
 };
 
 /// Inputs that vary independently of each other: each parameter, the correlated ones together.
@@ -77,7 +78,8 @@ struct Probability {
 };
 Probability probability_of(std::uint64_t count, std::uint64_t of);
 
-/// One output of the study. Moments and percentiles are of the vehicles that flap.
+/// One output of the study. Moments and percentiles are of the vehicles that flap inside the model's domain, or of all
+/// that flap where extrapolation is allowed.
 struct ToleranceOutput {
   std::string name;        ///< key of the metric; "flaps", "hovers" for 0 or 1
   std::optional<Metric> metric;
@@ -91,7 +93,9 @@ struct ToleranceOutput {
 struct ToleranceResult {
   std::uint64_t vehicles = 0;  ///< solved, those for indices included
   std::array<Probability, sweep_status_count> status;
-  std::optional<Probability> hover;  ///< lift_to_weight >= 1, where the mass is known
+  Probability outside;               ///< flapping, but outside the model's domain
+  std::array<std::uint64_t, domain_limit_count> beyond{};  ///< samples, by DomainLimit
+  std::optional<Probability> hover;  ///< lift_to_weight >= 1 by what counts, where the mass is known
   double linear_hover = absent;      ///< the same from the linear prediction; absent where it has none
   DesignPoint centre;                ///< at the parameters' means
   std::vector<ToleranceOutput> outputs;

@@ -56,8 +56,10 @@ struct TransientSample {
 };
 
 struct TransientResult {
-  FlappingStatus status = FlappingStatus::locked;
-  bool settled = false;  ///< the verdict is final; false: time, laps or steps ran out first, `status` is the best guess
+  FlappingStatus status = FlappingStatus::undecided;
+  /// The verdict is final. False: time, laps or steps ran out first and the status is undecided; or it flaps, but laps
+  /// share no period with the supply.
+  bool settled = false;
   std::string detail;    ///< one sentence with the evidence
 
   double end_time = 0.0;         ///< time simulated [s]
@@ -83,6 +85,7 @@ struct TransientResult {
   /// behind the metrics [A]: how far the current at a switching off lies above the straight line between the currents at
   /// the switchings on before and after it, which leaves the swing within a flapping cycle out.
   std::optional<double> current_ripple = {};
+  double closure = 0.0;      ///< estimate of how far the states behind the metrics are from where they settle, relative
   double lap_scatter = 0.0;  ///< largest relative deviation of a lap's duration from their mean, over those laps
 
   std::vector<TransientEvent> events;

@@ -1,0 +1,80 @@
+// The domain of validity: where the metrics of a cycle mean something; model.md section 7, docs/domain.md.
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <string>
+
+#include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
+
+namespace wingbeat {
+
+/// A limit of the domain. The order is that of the bits in data sets.
+enum class DomainLimit {
+  angle_of_attack,       ///< 0 to 90 deg over the whole cycle: what the force coefficients were fitted to
+  stroke,                ///< of the tan-law mechanism 85 deg to either side; of a direct drive an amplitude of 180 deg
+  formulation_residual,  ///< |P_residual| at most 5 % of the input power
+  mechanism_efficiency,  ///< P_aero/P_m from 0 to 1, in air
+  motor_efficiency,      ///< P_m/P_e from 0 to 1; with the above, so is the system efficiency
+  input_power,           ///< P_e positive and finite
+  flow_speed             ///< wings below Mach 0.3: the coefficients are those of incompressible flow
+};
+inline constexpr int domain_limit_count = int(DomainLimit::flow_speed) + 1;
+
+/// Indexed by DomainLimit. A set bit: that limit is exceeded; none(): inside.
+using DomainStatus = std::bitset<domain_limit_count>;
+
+inline constexpr double angle_of_attack_lowest_deg = 0.0;
+inline constexpr double angle_of_attack_highest_deg = 90.0;
+/// Largest stroke angle of the tan-law mechanism [deg]. The law reaches 90 deg only with a hinge offset of zero, so
+/// that every amplitude obeys it; at 85 deg the side load on the slider, whose friction is not modelled, is 11 rod forces.
+inline constexpr double tan_law_stroke_max_deg = 85.0;
+inline constexpr double direct_stroke_max_deg = 180.0;    ///< of the amplitude: beyond, a wing turns past its own start
+inline constexpr double formulation_residual_max = 0.05;  ///< of the input power
+inline constexpr double formulation_residual_warn = 0.01; ///< of the input power: said beside the result
+inline constexpr double efficiency_slack = 1e-4;          ///< efficiencies are as exact as the tolerance of the orbit
+/// Largest speed of the wings at the radius S_3/S_2, two thirds of a semi-ellipse's length [m/s]: Mach 0.3 at 20 degC.
+inline constexpr double flow_speed_max = 103.0;
+
+/// How a limit is named outside the program.
+struct DomainLimitInfo {
+  const char* key;      ///< as in JSON and data sets, e.g. "angle_of_attack"
+  const char* meaning;  ///< plain words, with the numbers
+};
+const std::array<DomainLimitInfo, domain_limit_count>& domain_limit_table();
+
+/// By how much each limit is exceeded, as a share of it: positive outside, at most 0 inside, -1 where it does not
+/// apply. NaN counts as outside.
+using DomainExcess = std::array<double, domain_limit_count>;
+/// Of a flapping vehicle. From what the vehicle is and what its cycle gives, by whichever solver; of the metrics it
+/// needs the four powers, the residual, the smallest angle of attack, the stroke amplitude and the peak flapping
+/// velocity.
+DomainExcess domain_excess(const Vehicle<double>& vehicle, const Metrics<double>& metrics);
+
+/// Derivative of domain_excess() where the metrics change at the rates `slopes`, the vehicle itself held: that of
+/// `stroke` with a crank is 0, see stroke_excess().
+DomainExcess domain_excess_slopes(const Vehicle<double>& vehicle, const Metrics<double>& metrics,
+                                  const Metrics<double>& slopes);
+
+/// domain_excess() of the limit `stroke` of a slider-crank, which its geometry alone decides; -1 without wings.
+double stroke_excess(const Vehicle<double>& vehicle);
+
+/// Metrics that domain_excess() reads.
+std::bitset<metric_count> domain_metrics();
+
+/// Which limits are exceeded by a flapping vehicle.
+DomainStatus domain_of(const Vehicle<double>& vehicle, const Metrics<double>& metrics);
+DomainStatus domain_of(const DomainExcess& excess);
+
+/// "inside", or the limits that are exceeded, as "angle_of_attack, stroke".
+std::string name_of(DomainStatus status);
+
+/// One clause for each limit that is exceeded, with its number: "the angle of attack falls to -103 deg (the
+/// coefficients hold from 0 to 90 deg)"; empty inside.
+std::string describe_domain(const Vehicle<double>& vehicle, const Metrics<double>& metrics);
+
+/// A sentence where `rod-force` fails to conserve more than formulation_residual_warn of the input power; else empty.
+std::string residual_warning(const Vehicle<double>& vehicle, const Metrics<double>& metrics);
+
+}  // namespace wingbeat

@@ -1,0 +1,213 @@
+#include "wingbeat/cycle/domain.hpp"
+
+#include <ceres/jet.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "wingbeat/core/jet.hpp"
+#include "wingbeat/core/text.hpp"
+
+namespace wingbeat {
+namespace {
+
+using detail::format;
+
+bool in_air(const Vehicle<double>& v) {
+  return v.wings.air_density > 0.0 && (v.wings.s2 > 0.0 || v.wings.s3 > 0.0);
+}
+
+bool has_wings(const Vehicle<double>& v) { return v.wing_inertia > 0.0 || v.wings.s2 > 0.0 || v.wings.s3 > 0.0; }
+
+/// Range of the force coefficients [deg]. A table may be narrower than 0 to 90 deg; it does not widen the range: the
+/// pitch law is meant for wings that have not turned over.
+struct Range {
+  double low, high;
+};
+Range angle_range(const Vehicle<double>& v) {
+  Range range{angle_of_attack_lowest_deg, angle_of_attack_highest_deg};
+  if (const auto& table = v.wings.coefficients.table) {
+    range.low = std::max(range.low, degrees_per_radian * table->alpha().front());
+    range.high = std::min(range.high, degrees_per_radian * table->alpha().back());
+  }
+  return range;
+}
+
+/// Rounding of a table's ends in other units.
+constexpr double angle_slack_deg = 0.1;
+
+/// Largest stroke angle to either side of a slider-crank [deg].
+double stroke_to_either_side_deg(const SliderCrank<double>& c) {
+  const double top = std::atan((c.rod_length + c.crank_radius - c.mid_stroke_height) / c.hinge_offset);
+  const double bottom = std::atan((c.rod_length - c.crank_radius - c.mid_stroke_height) / c.hinge_offset);
+  return degrees_per_radian * std::max(std::abs(top), std::abs(bottom));
+}
+
+/// Radius at which the speed of the wings is compared [m].
+double reference_radius(const Vehicle<double>& v) { return v.wings.s2 > 0.0 ? v.wings.s3 / v.wings.s2 : 0.0; }
+
+/// For double and dual numbers.
+template <class S>
+std::array<S, domain_limit_count> excess_of(const Vehicle<double>& v, const Metrics<S>& m) {
+  std::array<S, domain_limit_count> excess;
+  excess.fill(S(-1.0));
+  const auto at = [&](DomainLimit limit) -> S& { return excess[std::size_t(limit)]; };
+  const auto larger = [](const S& a, const S& b) {
+    return value_of(a) > value_of(b) || std::isnan(value_of(a)) ? a : b;
+  };
+  const bool air = in_air(v);
+  const bool direct = v.transmission == TransmissionType::direct;
+
+  if (air) {
+    const Range range = angle_range(v);
+    at(DomainLimit::angle_of_attack) = (S(range.low) - m[Metric::angle_of_attack_min]) / S(angle_of_attack_highest_deg);
+    // At the reversals the wing is upright, whatever its pitching.
+    if (range.high < angle_of_attack_highest_deg - angle_slack_deg) {
+      at(DomainLimit::angle_of_attack) = larger(S(1.0 - range.high / angle_of_attack_highest_deg),
+                                                at(DomainLimit::angle_of_attack));
+    }
+    at(DomainLimit::flow_speed) =
+        m[Metric::flapping_velocity_peak] * S(reference_radius(v) / flow_speed_max) - S(1.0);
+  }
+  if (direct) {
+    at(DomainLimit::stroke) = m[Metric::stroke_amplitude] * S(degrees_per_radian / direct_stroke_max_deg) - S(1.0);
+  } else {
+    at(DomainLimit::stroke) = S(stroke_excess(v));
+  }
+
+  const S& P_e = m[Metric::power_electrical];
+  const S& P_m = m[Metric::power_motor];
+  const S& P_aero = m[Metric::power_aerodynamic];
+  const S& P_residual = m[Metric::power_residual];
+  const auto beyond = [&](const S& efficiency) {
+    return larger(efficiency - S(1.0 + efficiency_slack), -efficiency - S(efficiency_slack));
+  };
+  if (!(value_of(P_e) > 0.0 && std::isfinite(value_of(P_e)))) {
+    at(DomainLimit::input_power) = S(1.0);
+  } else {
+    const S share = value_of(P_residual) < 0.0 ? -P_residual / P_e : P_residual / P_e;
+    at(DomainLimit::formulation_residual) = share / S(formulation_residual_max) - S(1.0);
+    at(DomainLimit::motor_efficiency) = beyond(P_m / P_e);
+  }
+  if (air && value_of(P_m) > 0.0) {
+    at(DomainLimit::mechanism_efficiency) = beyond(P_aero / P_m);
+  } else if (air && !(std::abs(value_of(P_aero)) <= efficiency_slack * std::abs(value_of(P_e)))) {
+    at(DomainLimit::mechanism_efficiency) = S(1.0);
+  }
+  return excess;
+}
+
+}  // namespace
+
+const std::array<DomainLimitInfo, domain_limit_count>& domain_limit_table() {
+  static const std::array<DomainLimitInfo, domain_limit_count> table = {{
+      {"angle_of_attack",
+       "angle of attack within 0 to 90 deg, and within a table of coefficients, over the whole cycle"},
+      {"stroke",
+       "stroke angle of a slider-crank up to 85 deg to either side, stroke amplitude of a direct drive to 180 deg"},
+      {"formulation_residual", "formulation residual at most 5 % of the input power"},
+      {"mechanism_efficiency", "mechanism efficiency from 0 to 1"},
+      {"motor_efficiency", "motor efficiency from 0 to 1"},
+      {"input_power", "input power positive and finite"},
+      {"flow_speed", "speed of the wings at S_3/S_2 up to 103 m/s (Mach 0.3)"},
+  }};
+  return table;
+}
+
+double stroke_excess(const Vehicle<double>& vehicle) {
+  return has_wings(vehicle) ? stroke_to_either_side_deg(vehicle.crank) / tan_law_stroke_max_deg - 1.0 : -1.0;
+}
+
+DomainExcess domain_excess(const Vehicle<double>& vehicle, const Metrics<double>& metrics) {
+  return excess_of(vehicle, metrics);
+}
+
+DomainExcess domain_excess_slopes(const Vehicle<double>& vehicle, const Metrics<double>& metrics,
+                                  const Metrics<double>& slopes) {
+  using Dual = ceres::Jet<double, 1>;
+  Metrics<Dual> m;
+  for (std::size_t k = 0; k < std::size_t(metric_count); ++k) {
+    m.values[k].a = metrics.values[k];
+    m.values[k].v[0] = slopes.values[k];
+  }
+  const auto excess = excess_of(vehicle, m);
+  DomainExcess result;
+  for (std::size_t k = 0; k < result.size(); ++k) result[k] = excess[k].v[0];
+  return result;
+}
+
+std::bitset<metric_count> domain_metrics() {
+  std::bitset<metric_count> needed;
+  for (const Metric m : {Metric::power_electrical, Metric::power_motor, Metric::power_aerodynamic,
+                         Metric::power_residual, Metric::angle_of_attack_min, Metric::stroke_amplitude,
+                         Metric::flapping_velocity_peak}) {
+    needed.set(std::size_t(m));
+  }
+  return needed;
+}
+
+DomainStatus domain_of(const DomainExcess& excess) {
+  DomainStatus status;
+  for (std::size_t k = 0; k < excess.size(); ++k) status[k] = !(excess[k] <= 0.0);
+  return status;
+}
+
+DomainStatus domain_of(const Vehicle<double>& vehicle, const Metrics<double>& metrics) {
+  return domain_of(domain_excess(vehicle, metrics));
+}
+
+std::string name_of(DomainStatus status) {
+  if (status.none()) return "inside";
+  std::string names;
+  for (std::size_t k = 0; k < status.size(); ++k) {
+    if (status[k]) names += (names.empty() ? "" : ", ") + std::string(domain_limit_table()[k].key);
+  }
+  return names;
+}
+
+std::string describe_domain(const Vehicle<double>& v, const Metrics<double>& m) {
+  const DomainStatus status = domain_of(v, m);
+  std::string text;
+  const auto say = [&](DomainLimit limit, const std::string& clause) {
+    if (status[std::size_t(limit)]) text += (text.empty() ? "" : "; ") + clause;
+  };
+  const double P_e = m[Metric::power_electrical], P_m = m[Metric::power_motor], P_aero = m[Metric::power_aerodynamic];
+  const Range range = angle_range(v);
+  if (range.high < angle_of_attack_highest_deg - angle_slack_deg) {
+    say(DomainLimit::angle_of_attack,
+        format("the angle of attack runs from %.4g to 90 deg (the coefficients hold from %.4g to %.4g deg)",
+               m[Metric::angle_of_attack_min], range.low, range.high));
+  } else {
+    say(DomainLimit::angle_of_attack,
+        format("the angle of attack falls to %.4g deg (the coefficients hold from %.4g to %.4g deg)",
+               m[Metric::angle_of_attack_min], range.low, range.high));
+  }
+  if (v.transmission == TransmissionType::direct) {
+    say(DomainLimit::stroke, format("the stroke amplitude is %.4g deg (at most %.4g deg)",
+                                    degrees_per_radian * m[Metric::stroke_amplitude], direct_stroke_max_deg));
+  } else {
+    say(DomainLimit::stroke, format("the stroke angle reaches %.4g deg (the mechanism's law holds to %.4g deg)",
+                                    stroke_to_either_side_deg(v.crank), tan_law_stroke_max_deg));
+  }
+  say(DomainLimit::formulation_residual,
+      format("the formulation fails to conserve %.3g %% of the input power (at most %.3g %%)",
+             100.0 * std::abs(m[Metric::power_residual] / P_e), 100.0 * formulation_residual_max));
+  say(DomainLimit::mechanism_efficiency,
+      P_m > 0.0 ? format("the mechanism efficiency is %.4g %% (0 to 100 %%)", 100.0 * P_aero / P_m)
+                : format("the wings take %.3g W from a motor output of %.3g W", P_aero, P_m));
+  say(DomainLimit::motor_efficiency, format("the motor efficiency is %.4g %% (0 to 100 %%)", 100.0 * P_m / P_e));
+  say(DomainLimit::input_power, format("the input power is %.3g W (positive where the motor drives)", P_e));
+  say(DomainLimit::flow_speed, format("the wings reach %.4g m/s (incompressible flow to %.4g m/s)",
+                                      m[Metric::flapping_velocity_peak] * reference_radius(v), flow_speed_max));
+  return text;
+}
+
+std::string residual_warning(const Vehicle<double>& v, const Metrics<double>& m) {
+  if (v.transmission == TransmissionType::direct || v.crank.formulation != Formulation::rod_force) return {};
+  const double share = std::abs(m[Metric::power_residual] / m[Metric::power_electrical]);
+  if (!(share > formulation_residual_warn) || !(m[Metric::power_electrical] > 0.0)) return {};
+  return format("the formulation rod-force fails to conserve %.3g %% of the input power; virtual-work conserves it",
+                100.0 * share);
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,190 @@
+// One answer to "does it flap?": batched solver, orbit search and simulation in time give the same status and the same
+// orbit, whatever the tolerance.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "vehicle/wide_boxes.hpp"
+#include "wingbeat/study/ensemble.hpp"
+#include "wingbeat/study/run.hpp"
+
+namespace wingbeat {
+namespace {
+
+using ::testing::HasSubstr;
+
+SteadyFlapping orbit_of(const Design<double>& design, double tolerance = 1e-6, bool stability = true) {
+  return find_steady_flapping(resolve(design), {tolerance, stability, reporting_of(design)}, start_up_in_time());
+}
+
+EnsembleOutcome batched(const Design<double>& design, const EnsembleOptions& options = {}) {
+  const EnsembleMember member{resolve(design), reporting_of(design)};
+  EnsembleOutcome outcome;
+  solve_ensemble({&member, 1}, options, start_up_in_time(), {&outcome, 1});
+  return outcome;
+}
+
+/// A light rotor whose search for an orbit loses the crank at standstill.
+Design<double> light_rotor() {
+  Design<double> d = reference_design();
+  d.supply.voltage = 3.6;
+  d.motor.constants.torque_constant = 0.017;
+  d.motor.constants.inertia = 4e-8;
+  d.spring.stiffness = 0.006;
+  return d;
+}
+
+Design<double> crank_near_the_rod() {
+  Design<double> d = reference_design();
+  d.supply.voltage = 20.0;
+  d.motor.constants.armature_resistance = 3.0;
+  d.transmission.formulation = Formulation::virtual_work;
+  d.transmission.rod_length = 0.03;
+  d.transmission.crank_radius = 0.027;
+  d.wing.inertia = 6e-9;
+  d.aerodynamics.pitch_coefficient = 0.02;
+  d.friction.coefficient = 1e-4;
+  return d;
+}
+
+/// Drag that falls again as the wings pitch over: several crank speeds balance the motor, and start-up reaches 47.2 Hz.
+Design<double> several_orbits() {
+  Design<double> d = reference_design();
+  d.supply.voltage = 20.0;
+  d.friction = {FrictionLaw::none, 0.0};
+  d.transmission.formulation = Formulation::virtual_work;
+  d.transmission.rod_length = 0.034;
+  d.transmission.crank_radius = 0.022;
+  d.transmission.hinge_offset = 0.009;
+  Motor<double>& m = d.motor.constants;
+  m.armature_resistance = 2.5;
+  m.torque_constant = 0.005;
+  m.inertia = 5e-6;
+  m.viscous_damping = 1e-6;
+  d.aerodynamics.pitch_coefficient = 0.008;
+  return d;
+}
+
+TEST(Statuses, FlapsWhereStartUpFlaps) {
+  const std::pair<Design<double>, double> known[] = {{light_rotor(), 11.08}, {crank_near_the_rod(), 77.25}};
+  for (const auto& [design, frequency] : known) {
+    RunOptions options;
+    options.method = Method::transient;
+    options.waveform_rows = 61;
+    const RunResult in_time = run_design(design, options);
+    ASSERT_EQ(in_time.status, FlappingStatus::flapping) << in_time.detail;
+    EXPECT_NEAR(in_time.metrics[Metric::frequency], frequency, 0.005);
+    options.method = Method::orbit;
+    const RunResult orbit = run_design(design, options);
+    ASSERT_EQ(orbit.status, FlappingStatus::flapping) << orbit.detail;
+    for (const Metric m : {Metric::frequency, Metric::power_electrical, Metric::rod_force_peak}) {
+      EXPECT_NEAR(orbit.metrics[m] / in_time.metrics[m], 1.0, 3e-6) << metric_info(m).key << ", " << orbit.detail;
+    }
+    ASSERT_EQ(orbit.cycle.size(), 61u);
+    EXPECT_NEAR(orbit.cycle.back().time * orbit.metrics[Metric::frequency], 1.0, 1e-4);
+    const EnsembleOutcome outcome = batched(design);
+    ASSERT_EQ(outcome.status, FlappingStatus::flapping);
+    EXPECT_GT(outcome.error_estimate, 0.0);
+    EXPECT_NEAR(outcome.metrics[Metric::frequency] / in_time.metrics[Metric::frequency], 1.0, 3e-6);
+  }
+}
+
+TEST(Statuses, ACrankThatStopsWithinEachTurnIsReportedFromItsSimulatedCycle) {
+  // Number 22: friction holds the crank for a moment in every turn.
+  const WideVehicle v = wide_vehicle(WideBox::crank_near_rod, 22);
+  const SteadyFlapping found = orbit_of(v.design);
+  ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+  ASSERT_TRUE(found.simulated);
+  EXPECT_THAT(found.detail, HasSubstr("from its cycle simulated in time"));
+  EXPECT_GE(found.simulated->error_estimate, 1e-6);
+  EXPECT_LT(found.metrics[Metric::crank_speed_min], 1e-6);
+  EXPECT_TRUE(found.record.empty());
+}
+
+TEST(Statuses, OfSeveralOrbitsTheOneReachedFromRest) {
+  const Design<double> design = several_orbits();
+  for (const double tolerance : {1e-3, 1e-6, 1e-9}) {
+    for (const bool stability : {true, false}) {
+      const SteadyFlapping found = orbit_of(design, tolerance, stability);
+      ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+      EXPECT_NEAR(found.metrics[Metric::frequency], 47.20, 0.05) << tolerance << ' ' << stability;
+    }
+  }
+  for (const bool multipliers : {true, false}) {
+    EnsembleOptions options;
+    options.metrics[std::size_t(Metric::floquet_multiplier_max)] = multipliers;
+    const EnsembleOutcome outcome = batched(design, options);
+    ASSERT_EQ(outcome.status, FlappingStatus::flapping);
+    EXPECT_NEAR(outcome.metrics[Metric::frequency], 47.20, 0.05);
+  }
+}
+
+TEST(Statuses, HeavyRotorsSettleByExtrapolation) {
+  Design<double> d = reference_design();
+  d.motor.constants.inertia = 1e-3;
+  RunOptions options;
+  options.method = Method::transient;
+  const RunResult in_time = run_design(d, options);
+  ASSERT_EQ(in_time.status, FlappingStatus::flapping) << in_time.detail;
+  EXPECT_LT(in_time.start_up->laps, 1500);
+  EXPECT_THAT(in_time.detail, HasSubstr("extrapolated"));
+  const SteadyFlapping exact = orbit_of(d, 1e-9);
+  EXPECT_NEAR(in_time.metrics[Metric::frequency] / exact.metrics[Metric::frequency], 1.0, 1e-5);
+  // Towards a speed of balance omega' = -(omega - omega_0)/T: within 1 % of it after several T = J R/K^2.
+  const double T = 1e-3 * 9.0 / square(0.01);
+  EXPECT_GT(in_time.start_up->time_to_steady, 0.5 * T);
+  EXPECT_LT(in_time.start_up->time_to_steady, 10.0 * T);
+}
+
+TEST(Statuses, AgreeOnWideVehicles) {
+  constexpr std::uint32_t of_each = 8;
+  int flapping = 0, others = 0;
+  for (int box = 0; box < int(wide_box_names.size()); ++box) {
+    std::vector<EnsembleMember> members;
+    std::vector<RunResult> orbits;
+    std::vector<std::uint32_t> numbers;
+    for (std::uint32_t n = 1000; n < 1000 + of_each; ++n) {
+      const WideVehicle v = wide_vehicle(WideBox(box), n);
+      const bool direct = v.design.transmission.type == TransmissionType::direct;
+      if (v.design.supply.type == SupplyType::sine && !direct) continue;
+      RunOptions options;
+      options.condition = v.condition;
+      orbits.push_back(run_design(v.design, options));
+      options.method = Method::transient;
+      const RunResult in_time = run_design(v.design, options);
+      EXPECT_EQ(orbits.back().status, in_time.status)
+          << wide_box_names[std::size_t(box)] << ' ' << n << ": " << orbits.back().detail << " / " << in_time.detail;
+      EXPECT_NE(in_time.status, FlappingStatus::undecided) << in_time.detail;
+      (in_time.status == FlappingStatus::flapping ? flapping : others) += 1;
+      if (in_time.status == FlappingStatus::flapping && v.design.supply.type != SupplyType::pwm) {
+        EXPECT_NEAR(orbits.back().metrics[Metric::frequency] / in_time.metrics[Metric::frequency], 1.0, 1e-3);
+      }
+      members.push_back({resolve(v.design, v.condition), reporting_of(v.design)});
+      numbers.push_back(n);
+    }
+    std::vector<EnsembleOutcome> outcomes(members.size());
+    solve_ensemble(members, {}, start_up_in_time(), outcomes);
+    for (std::size_t k = 0; k < outcomes.size(); ++k) {
+      EXPECT_EQ(outcomes[k].status, orbits[k].status) << wide_box_names[std::size_t(box)] << ' ' << numbers[k];
+    }
+  }
+  EXPECT_GT(flapping, 40);
+  EXPECT_GT(others, 5);
+}
+
+TEST(Statuses, DoNotDependOnTheTolerance) {
+  for (const WideBox box : {WideBox::crank_near_rod, WideBox::near_jam, WideBox::strong_springs}) {
+    for (std::uint32_t n = 2000; n < 2008; ++n) {
+      const WideVehicle v = wide_vehicle(box, n);
+      const FlappingStatus expected = orbit_of(v.design, 1e-6).status;
+      for (const double tolerance : {1e-2, 1e-4, 1e-9, 1e-11}) {
+        const SteadyFlapping found = orbit_of(v.design, tolerance);
+        EXPECT_EQ(found.status, expected) << n << " at " << tolerance << ": " << found.detail;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace wingbeat

@@ -1,0 +1,345 @@
+// Batched solver, orbit search and simulation in time against each other on the ten wide boxes of vehicle/wide_boxes.hpp.
+//   check_wide [COUNT]            vehicles of each box, 500 unless given
+//     --box NAME                  that box alone
+//     --vehicle N                 that vehicle of the box alone, with its file and every verdict
+//     --seed S  --threads T
+// Exit status 1 if any two statuses, or the orbits reached, differ.
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "vehicle/wide_boxes.hpp"
+#include "wingbeat/study/ensemble.hpp"
+#include "wingbeat/study/run.hpp"
+
+using namespace wingbeat;
+
+namespace {
+
+constexpr double tolerance = 1e-6, exact = 1e-9;
+
+struct Answer {
+  bool asked = false;
+  bool decided = true;
+  FlappingStatus status = FlappingStatus::stalled;
+  Metrics<double> metrics{};
+  std::string detail;
+  double seconds = 0.0;
+  bool scalar = false;
+
+  const char* name() const { return asked ? name_of(status) : "-"; }
+};
+
+struct Comparison {
+  Answer batched, orbit, transient, reference;
+  bool any_flapping() const { return reference.asked && reference.status == FlappingStatus::flapping; }
+};
+
+template <class F>
+double seconds_of(const F& f) {
+  const auto now = [] {  // of this thread: others may want the processor, too
+    timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+  };
+  const double start = now();
+  f();
+  return now() - start;
+}
+
+Answer by_run(const WideVehicle& vehicle, Method method, double tolerance_wanted) {
+  Answer answer;
+  answer.asked = true;
+  RunOptions options;
+  options.condition = vehicle.condition;
+  options.method = method;
+  options.tolerance = tolerance_wanted;
+  RunResult result;
+  answer.seconds = seconds_of([&] { result = run_design(vehicle.design, options); });
+  answer.decided = result.status != FlappingStatus::undecided;
+  answer.status = result.status;
+  answer.metrics = result.metrics;
+  answer.detail = result.detail;
+  return answer;
+}
+
+/// What an error of a metric is measured by: the metric, but for those that may vanish.
+double scale_of(Metric metric, const Metrics<double>& m) {
+  switch (metric) {
+    case Metric::power_residual:
+    case Metric::power_loss: return std::max(std::abs(m[metric]), std::abs(m[Metric::power_motor]));
+    case Metric::current_mean: return std::max(std::abs(m[metric]), 0.01 * std::abs(m[Metric::current_peak]));
+    case Metric::angle_of_attack_min: return std::max(90.0, std::abs(m[metric]));
+    case Metric::crank_speed_min: return std::abs(m[Metric::crank_speed_max]);
+    case Metric::lift_mean: return std::abs(m[Metric::lift_peak]);
+    case Metric::lift_to_weight:
+      return m[Metric::lift_mean] == 0.0 ? 1.0 : std::abs(m[Metric::lift_peak] * m[metric] / m[Metric::lift_mean]);
+    default: return std::abs(m[metric]);
+  }
+}
+
+/// Largest relative error of the metrics, the Floquet multiplier aside; infinite where only one of two is absent.
+double largest_error(const Metrics<double>& got, const Metrics<double>& expected, const char** where = nullptr) {
+  double largest = 0.0;
+  for (int k = 0; k < metric_count; ++k) {
+    const Metric metric = Metric(k);
+    if (metric == Metric::floquet_multiplier_max) continue;
+    const double difference = std::abs(got[metric] - expected[metric]), scale = scale_of(metric, expected);
+    const bool one_absent = std::isnan(got[metric]) != std::isnan(expected[metric]);
+    if (!one_absent && !(difference > largest * scale)) continue;
+    largest = !one_absent && scale > 0.0 ? difference / scale : INFINITY;
+    if (where) *where = metric_info(metric).key;
+  }
+  return largest;
+}
+
+bool on_a_sine(const Design<double>& d) {
+  return d.supply.type == SupplyType::sine && d.transmission.type != TransmissionType::direct;
+}
+
+/// As options of wingbeat run.
+void print_design(const WideVehicle& vehicle) {
+  const Design<double>& d = vehicle.design;
+  const auto set = [](const char* key, double value) { std::printf(" --set %s=%.17g", key, value); };
+  const auto choose = [](const char* key, const char* value) { std::printf(" --set %s=%s", key, value); };
+  constexpr const char* supplies[] = {"constant", "sine", "pwm", "battery"};
+  choose("supply.type", supplies[int(d.supply.type)]);
+  if (d.supply.type == SupplyType::battery) {
+    const Battery<double>& b = d.supply.battery;
+    set("supply.cells", b.cells), set("supply.cell_voltage", b.cell_voltage);
+    set("supply.internal_resistance", b.internal_resistance), set("supply.capacity", b.capacity);
+    set("supply.charge", b.charge);
+  } else {
+    set(d.supply.type == SupplyType::sine ? "supply.amplitude" : "supply.voltage", d.supply.voltage);
+    if (d.supply.type != SupplyType::constant) set("supply.frequency", d.supply.frequency);
+    if (d.supply.type == SupplyType::pwm) set("supply.duty", d.supply.duty);
+  }
+  const Motor<double>& m = d.motor.constants;
+  set("motor.armature_resistance", m.armature_resistance), set("motor.armature_inductance", m.armature_inductance);
+  set("motor.torque_constant", m.torque_constant), set("motor.inertia", m.inertia);
+  set("motor.viscous_damping", m.viscous_damping), set("motor.friction_torque", m.friction_torque);
+  const auto& t = d.transmission;
+  if (t.type == TransmissionType::slider_crank) {
+    set("transmission.crank_radius", t.crank_radius), set("transmission.rod_length", t.rod_length);
+    set("transmission.hinge_offset", *t.hinge_offset);
+    choose("transmission.formulation", t.formulation == Formulation::rod_force ? "rod-force" : "virtual-work");
+  }
+  constexpr const char* laws[] = {"none", "load-proportional", "viscous", "quadratic", "constant"};
+  constexpr const char* coefficients[] = {"", "radius", "damping", "coefficient", "torque"};
+  choose("friction.type", laws[int(d.friction.law)]);
+  if (d.friction.law != FrictionLaw::none) {
+    set((std::string("friction.") + coefficients[int(d.friction.law)]).c_str(), d.friction.coefficient);
+  }
+  if (d.spring.stiffness) set("spring.stiffness", *d.spring.stiffness);
+  if (d.spring.resonance) set("spring.resonance", *d.spring.resonance);
+  set("wing.inertia", d.wing.inertia);
+  std::printf(" --set 'wing.planform={shape=\"moments\", s2=%.17g, s3=%.17g}'", d.wing.planform.s2, d.wing.planform.s3);
+  set("aerodynamics.pitch_coefficient", d.aerodynamics.pitch_coefficient);
+  if (d.aerodynamics.angle_of_attack_min) {
+    set("aerodynamics.angle_of_attack_min", degrees_per_radian * *d.aerodynamics.angle_of_attack_min);
+  }
+  constexpr const char* conditions[] = {"air", "vacuum", "wingless"};
+  std::printf(" --condition %s%s\n", conditions[int(vehicle.condition)],
+              d.aerodynamics.coefficients.table ? " (and a table of coefficients)" : "");
+}
+
+struct Counts {
+  int vehicles = 0, by_status[5] = {}, batched_other = 0, orbit_other = 0, batched_differs = 0, orbit_differs = 0, undecided = 0, averages = 0;
+  int flapping = 0, batched_outside = 0, orbit_outside = 0, transient_outside = 0, by_lanes = 0;
+  double orbit_seconds = 0.0, transient_seconds = 0.0, batched_seconds = 0.0;
+};
+
+bool differs(const Answer& a, const Answer& b) {
+  return a.asked && b.asked && (a.decided != b.decided || (a.decided && a.status != b.status));
+}
+
+/// Both flap, at frequencies that differ by more than a thousandth: on different orbits.
+bool on_another_orbit(const Answer& a, const Answer& b) {
+  if (!a.asked || !b.asked || a.status != FlappingStatus::flapping || b.status != FlappingStatus::flapping) return false;
+  return !(std::abs(a.metrics[Metric::frequency] / b.metrics[Metric::frequency] - 1.0) < 1e-3);
+}
+
+void print_header() {
+  std::printf("%-17s %5s | %-34s | %-15s | %-15s | %-21s | %s\n", "", "", "by simulation in time", "status differs",
+              "another orbit", "metrics off by > 1e-6", "processor time, largest");
+  std::printf("%-17s %5s | %5s %6s %5s %4s %10s | %7s %7s | %7s %7s | %7s %6s %6s | %10s %8s %10s\n", "box", "count", "flap",
+              "stall", "lock", "jam", "undecided", "batched", "orbit", "batched", "orbit", "batched", "orbit", "time",
+              "batch, mean", "orbit", "simulation");
+}
+
+void print_row(const std::string& name, const Counts& c) {
+  std::printf("%-17s %5d | %5d %6d %5d %4d %10d | %7d %7d | %7d %7d | %7d %6d %6d | %8.2f ms %6.3f s %8.2f s\n",
+              name.c_str(), c.vehicles, c.by_status[0], c.by_status[1], c.by_status[2], c.by_status[3], c.by_status[4],
+              c.batched_differs, c.orbit_differs, c.batched_other, c.orbit_other, c.batched_outside, c.orbit_outside,
+              c.transient_outside, 1e3 * c.batched_seconds / std::max(1, c.vehicles), c.orbit_seconds,
+              c.transient_seconds);
+}
+
+void add(Counts& to, const Counts& c) {
+  to.vehicles += c.vehicles;
+  for (int k = 0; k < 5; ++k) to.by_status[k] += c.by_status[k];
+  to.batched_differs += c.batched_differs;
+  to.orbit_differs += c.orbit_differs;
+  to.batched_other += c.batched_other;
+  to.orbit_other += c.orbit_other;
+  to.undecided += c.undecided;
+  to.batched_outside += c.batched_outside;
+  to.orbit_outside += c.orbit_outside;
+  to.transient_outside += c.transient_outside;
+  to.batched_seconds += c.batched_seconds;
+  to.orbit_seconds = std::max(to.orbit_seconds, c.orbit_seconds);
+  to.transient_seconds = std::max(to.transient_seconds, c.transient_seconds);
+}
+
+struct Arguments {
+  int count = 500, only_box = -1, only_vehicle = -1, threads = int(std::thread::hardware_concurrency());
+  std::uint32_t seed = 12;
+};
+
+Arguments read_arguments(int argc, char** argv) {
+  Arguments a;
+  for (int k = 1; k < argc; ++k) {
+    const std::string_view word = argv[k];
+    const char* value = k + 1 < argc ? argv[k + 1] : nullptr;
+    const auto number = [&] { return value ? std::atoi(argv[++k]) : (std::fprintf(stderr, "%s needs a number\n", argv[k]), std::exit(2), 0); };
+    if (word == "--box") {
+      for (std::size_t b = 0; value && b < wide_box_names.size(); ++b) {
+        if (wide_box_names[b] == value) a.only_box = int(b);
+      }
+      if (a.only_box < 0) std::fprintf(stderr, "--box: none of that name\n"), std::exit(2);
+      ++k;
+    } else if (word == "--vehicle") {
+      a.only_vehicle = number();
+    } else if (word == "--seed") {
+      a.seed = std::uint32_t(number());
+    } else if (word == "--threads") {
+      a.threads = number();
+    } else if ((a.count = std::atoi(argv[k])) < 1) {
+      std::fprintf(stderr, "check_wide: what is \"%s\"?\n", argv[k]), std::exit(2);
+    }
+  }
+  return a;
+}
+
+Counts check_box(WideBox box, const Arguments& arguments) {
+  const bool one = arguments.only_vehicle >= 0;
+  const std::size_t count = one ? 1 : std::size_t(arguments.count);
+  const auto number_of = [&](std::size_t n) { return std::uint32_t(one ? arguments.only_vehicle : int(n)); };
+  std::vector<WideVehicle> vehicles(count);
+  for (std::size_t n = 0; n < count; ++n) {
+    vehicles[n] = wide_vehicle(box, number_of(n), arguments.seed);
+    validate(vehicles[n].design);
+  }
+  std::vector<Comparison> found(count);
+
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t n = next++; n < count; n = next++) {
+      Comparison& c = found[n];
+      c.transient = by_run(vehicles[n], Method::transient, tolerance);
+      if (on_a_sine(vehicles[n].design)) continue;
+      c.orbit = by_run(vehicles[n], Method::orbit, tolerance);
+      if (c.orbit.status == FlappingStatus::flapping) c.reference = by_run(vehicles[n], Method::orbit, exact);
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int t = 1; t < arguments.threads; ++t) threads.emplace_back(work);
+  work();
+  for (std::thread& t : threads) t.join();
+
+  std::vector<EnsembleMember> members;
+  std::vector<std::size_t> member_of;
+  for (std::size_t n = 0; n < count; ++n) {
+    if (on_a_sine(vehicles[n].design)) continue;
+    members.push_back({resolve(vehicles[n].design, vehicles[n].condition), reporting_of(vehicles[n].design)});
+    member_of.push_back(n);
+  }
+  std::vector<EnsembleOutcome> outcomes(members.size());
+  Counts c;
+  c.batched_seconds = seconds_of([&] { solve_ensemble(members, {}, start_up_in_time(), outcomes); });
+  for (std::size_t k = 0; k < outcomes.size(); ++k) {
+    Answer& a = found[member_of[k]].batched;
+    a.asked = true;
+    a.status = outcomes[k].status;
+    a.decided = a.status != FlappingStatus::undecided;
+    a.metrics = outcomes[k].metrics;
+    a.scalar = outcomes[k].scalar;
+  }
+
+  c.vehicles = int(count);
+  for (std::size_t n = 0; n < count; ++n) {
+    const Comparison& v = found[n];
+    ++c.by_status[std::size_t(v.transient.status)];
+    c.undecided += !v.transient.decided;
+    const bool batched_differs = differs(v.batched, v.transient), orbit_differs = differs(v.orbit, v.transient);
+    const bool averages = vehicles[n].design.supply.type == SupplyType::pwm;  // laps share no period with the supply
+    const bool batched_other = !averages && on_another_orbit(v.batched, v.transient);
+    const bool orbit_other = !averages && on_another_orbit(v.orbit, v.transient);
+    c.batched_other += batched_other;
+    c.orbit_other += orbit_other;
+    c.batched_differs += batched_differs;
+    c.orbit_differs += orbit_differs;
+    c.orbit_seconds = std::max(c.orbit_seconds, v.orbit.seconds);
+    c.transient_seconds = std::max(c.transient_seconds, v.transient.seconds);
+    const auto outside = [&](const Answer& a) {
+      return v.any_flapping() && a.asked && a.decided && a.status == FlappingStatus::flapping &&
+             !(largest_error(a.metrics, v.reference.metrics) <= tolerance);
+    };
+    c.batched_outside += outside(v.batched);
+    c.orbit_outside += outside(v.orbit);
+    c.transient_outside += !averages && outside(v.transient);
+    const bool slow = v.orbit.seconds > 0.5 || v.transient.seconds > 5.0;
+    if (one || batched_differs || orbit_differs || batched_other || orbit_other || !v.transient.decided || slow) {
+      std::printf("%s %u: batched %s%s, orbit %s (%.3f s), transient %s (%.2f s)\n    orbit: %s\n    transient: %s\n",
+                  std::string(wide_box_names[std::size_t(box)]).c_str(), number_of(n), v.batched.name(),
+                  v.batched.scalar ? " (recomputed)" : "", v.orbit.name(), v.orbit.seconds, v.transient.name(),
+                  v.transient.seconds, v.orbit.detail.c_str(), v.transient.detail.c_str());
+    }
+    if (one) {
+      print_design(vehicles[n]);
+      if (v.any_flapping()) {
+        for (const auto& [name, answer] : {std::pair{"batched", &v.batched}, {"orbit", &v.orbit}, {"transient", &v.transient}}) {
+          const char* where = "";
+          const double error = largest_error(answer->metrics, v.reference.metrics, &where);
+          std::printf("# %s: largest error %.2g, of %s\n", name, error, where);
+        }
+      }
+      for (const auto& [name, answer] : {std::pair{"orbit", &v.orbit}, {"transient", &v.transient}}) {
+        const Metrics<double>& m = answer->metrics;
+        std::printf("# %s: %.8g Hz, crank speed %.8g to %.8g rad/s, multiplier %.6g\n", name, m[Metric::frequency],
+                    m[Metric::crank_speed_min], m[Metric::crank_speed_max], m[Metric::floquet_multiplier_max]);
+      }
+    }
+    std::fflush(stdout);
+  }
+  return c;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Arguments arguments = read_arguments(argc, argv);
+  std::vector<std::pair<std::string, Counts>> rows;
+  Counts total;
+  const auto start = std::chrono::steady_clock::now();
+  {
+    for (int b = 0; b < int(wide_box_names.size()); ++b) {
+      if (arguments.only_box >= 0 && b != arguments.only_box) continue;
+      rows.emplace_back(wide_box_names[std::size_t(b)], check_box(WideBox(b), arguments));
+      add(total, rows.back().second);
+    }
+  }
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  print_header();
+  for (const auto& [name, counts] : rows) print_row(name, counts);
+  if (rows.size() > 1) print_row("all", total);
+  std::printf("%.0f s on %d threads\n", seconds, arguments.threads);
+  return total.batched_differs + total.orbit_differs + total.batched_other + total.orbit_other > 0 ? 1 : 0;
+}
