@@ -20,6 +20,13 @@ bool solve_linear(int n, double* matrix, double* right_hand_side) {
   return b.allFinite();
 }
 
+bool solve_linear(int n, double* matrix, int count, double* right_hand_sides) {
+  const Eigen::PartialPivLU<RowMajor> lu(Eigen::Map<RowMajor>(matrix, n, n));
+  Eigen::Map<RowMajor> B(right_hand_sides, n, count);
+  B = lu.solve(B).eval();
+  return B.allFinite();
+}
+
 bool invert(int n, double* matrix) {
   Eigen::Map<RowMajor> A(matrix, n, n);
   const Eigen::PartialPivLU<RowMajor> lu(A);
@@ -27,6 +34,14 @@ bool invert(int n, double* matrix) {
   A = lu.inverse().eval();
   return A.allFinite();
 }
+
+double determinant(int n, const double* matrix) {
+  if (n == 1) return matrix[0];
+  if (n == 2) return matrix[0] * matrix[3] - matrix[1] * matrix[2];
+  return Eigen::Map<const RowMajor>(matrix, n, n).determinant();
+}
+
+double norm(int n, const double* matrix) { return Eigen::Map<const Eigen::VectorXd>(matrix, n * n).norm(); }
 
 double spectral_radius(int n, const double* matrix) {
   if (n == 1) return std::abs(matrix[0]);

@@ -255,7 +255,7 @@ TEST(Lap, MonodromyOfTheLinearOscillatorIsItsMatrixExponential) {
   for (const Method method : {Method::explicit_pair, Method::radau}) {
     Lap<LinearOscillator<double>> lap;
     run_lap<false>(system, {0.3, -0.2}, {.method = method, .tolerance = 1e-11}, lap);
-    const auto matrix = monodromy(system.cast<Jet<2>>(), lap);
+    const auto matrix = monodromy(system, system.cast<Jet<2>>(), lap);
     for (std::size_t n = 0; n < 4; ++n) EXPECT_NEAR(matrix[n], exact[n], 1e-9) << n;
   }
 }

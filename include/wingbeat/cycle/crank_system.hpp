@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <concepts>
 
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/cycle/metrics.hpp"
@@ -60,6 +61,23 @@ struct CrankSystem {
       scale[1] = abs(y[1]) + S(0.1) * current_scale;
     }
     return scale;
+  }
+
+  /// How many times smaller than what limits their errors (`scale`) the integrals of a lap are: metrics are to be accurate
+  /// relative to themselves. A mean lift below a thousandth of its peak need not be.
+  double cancellation(const Quadrature& totals, const Quadrature& scale) const
+    requires std::same_as<S, double>
+  {
+    constexpr double usual = 2.0, most = 1e3;
+    double largest = 1.0;
+    // Near its speed without load a motor's current is the small difference of two large voltages.
+    const double charge = std::abs(totals[std::size_t(Integral::current)]);
+    const double drop = circuit_resistance(vehicle) * charge, back_emf = two_pi * vehicle.motor.torque_constant;
+    largest = std::max(largest, back_emf / (usual * drop + back_emf / most));
+    for (const std::size_t q : controlled_integrals) {
+      if (scale[q] > 0.0) largest = std::max(largest, scale[q] / (usual * std::abs(totals[q]) + scale[q] / most));
+    }
+    return largest;
   }
 
   S current(const S&, const State& y) const {

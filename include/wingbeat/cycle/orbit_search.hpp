@@ -67,8 +67,7 @@ class OrbitSearch {
     if (std::isfinite(summary_.floquet_multiplier_max)) return summary_.floquet_multiplier_max;
     if (summary_.newton_steps == 0) return 0.0;
     constexpr int n = int(std::tuple_size_v<State>);
-    const auto matrix = solve::monodromy(system_.template cast<Jet<n>>(), lap_);
-    return solve::spectral_radius(n, matrix.data());
+    return solve::monodromy_product(system_, system_.template cast<Jet<n>>(), lap_).spectral_radius();
   }
 
   const System& system() const { return system_; }

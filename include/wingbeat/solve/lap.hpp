@@ -63,6 +63,9 @@ struct Lap {
   Method method = Method::explicit_pair;
   double stop = 0.0;         ///< where the lap ended [same unit as the period]
   double largest_step = 0.0; ///< first guess for the next lap's steps
+  double error_sum = 0.0;    ///< of the steps' estimated errors, relative
+  typename System::Switches switch_scale{};      ///< largest magnitudes of the switches
+  typename System::Quadrature integral_scale{};  ///< what the integrals' errors were limited by a share of
 };
 
 struct LapOptions {
@@ -213,11 +216,18 @@ class LapDriver {
           flip_here(crossed);
           continue;
         }
-        x1 = x_ + step;
         flip = true;
         flipped = crossed;
+        // Another switch that changed its sign before this one was seen at its end alone.
+        for (std::size_t other = 0; other < switch_count; ++other) {
+          const std::size_t earlier = crossed_switch(last, flipped);
+          if (earlier == switch_count || !locate(earlier, step, result, last)) break;
+          flipped = earlier;
+        }
+        x1 = x_ + step;
       }
       note_others(step, result, last);
+      lap_.error_sum += error * options_.tolerance;
       accept(x1, step, result, last);
       if (flip) {
         flip_here(flipped);
@@ -240,6 +250,7 @@ class LapDriver {
     lap_.switches.clear();
     lap_.steps.clear();
     lap_.steps.reserve(64);
+    lap_.error_sum = 0.0;
     x_ = 0.0;
     y_ = start;
     if constexpr (requires { system_.start_signs(start); }) {
@@ -263,6 +274,8 @@ class LapDriver {
     lap_.status = status;
     lap_.stop = x_;
     lap_.end = y_;
+    lap_.switch_scale = switch_scale_;
+    lap_.integral_scale = integral_scale_;
   }
 
   void remember_switch_scale(const Rates<System>& rates) {
@@ -330,7 +343,7 @@ class LapDriver {
       suspected = suspected || (k != ended_on && result.lowest[k] < -1e-6 * switch_scale_[k]);
     }
     if (!suspected || step < 4.0 * position_tolerance_) return false;
-    for (const double t : {0.5, 0.25, 0.75}) {
+    for (const double t : {0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875, 0.9375}) {
       const State y = hermite<System>(y_, first_.dy, result.y, last.dy, step, t);
       const Rates<System> inside = system_.template rates<false>(x_ + t * step, y, signs_);
       for (std::size_t k = 0; k < located_; ++k) {

@@ -7,8 +7,17 @@ namespace wingbeat::solve {
 /// False if A is singular to working precision.
 bool solve_linear(int n, double* matrix, double* right_hand_side);
 
+/// The same for `count` right-hand sides, the columns of a row-major n x count matrix.
+bool solve_linear(int n, double* matrix, int count, double* right_hand_sides);
+
 /// Replaces a row-major n x n matrix by its inverse; false if it is singular to working precision.
 bool invert(int n, double* matrix);
+
+/// Determinant of a row-major n x n matrix.
+double determinant(int n, const double* matrix);
+
+/// Frobenius norm of a row-major n x n matrix.
+double norm(int n, const double* matrix);
 
 /// Largest modulus of the eigenvalues of a row-major n x n matrix.
 double spectral_radius(int n, const double* matrix);

@@ -9,8 +9,11 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include "wingbeat/core/jet.hpp"
+#include "wingbeat/solve/floquet.hpp"
 #include "wingbeat/solve/lap.hpp"
 #include "wingbeat/solve/linear.hpp"
 
@@ -39,24 +42,11 @@ struct PeriodicSummary {
   int laps = 0;           ///< laps integrated, those with derivatives included
   int newton_steps = 0;
   int steps = 0;          ///< integration steps of the final lap
-  double residual = 0.0;  ///< largest |y(period) - y(0)| over its error scale
+  double residual = 0.0;  ///< largest distance of the lap's start from the orbit's, over its error scale
+  double error_estimate = 0.0;  ///< of the orbit and its integrals, relative
   double stop = 0.0;      ///< where the last lap ended, if it did not complete
   double floquet_multiplier_max = std::numeric_limits<double>::quiet_NaN();
 };
-
-/// The monodromy matrix d y(period) / d y(0), row-major, of a recorded lap; `jets` is the system with Jet<states> scalars.
-template <class JetSystem, class System>
-auto monodromy(const JetSystem& jets, const Lap<System>& lap) {
-  constexpr std::size_t n = std::tuple_size_v<typename System::State>;
-  typename JetSystem::State start;
-  for (std::size_t j = 0; j < n; ++j) start[j] = Jet<int(n)>(lap.steps.front().y[j], int(j));
-  const typename JetSystem::State end = repeat_lap<false>(jets, start, lap);
-  std::array<double, n * n> matrix;
-  for (std::size_t row = 0; row < n; ++row) {
-    for (std::size_t column = 0; column < n; ++column) matrix[row * n + column] = end[row].v[Eigen::Index(column)];
-  }
-  return matrix;
-}
 
 namespace detail {
 
@@ -69,9 +59,11 @@ double scaled_distance(const System& system, const typename System::State& a, co
 }
 
 /// Runs the recorded steps again from the lap's own end, until the solution has merged with the recorded one.
-/// Returns the scaled residual of the closed orbit, at most `tolerance` if it merged before the end.
+/// Returns the scaled residual of the closed orbit, at most `tolerance` if it merged before the end. `grazes` becomes true
+/// where a switch has the wrong sign on the way, deeper than by an error of `position_error` in where it changes: it has
+/// changed twice on a step that the lap recorded without.
 template <class System>
-double merge_lap(const System& system, Lap<System>& lap, double tolerance) {
+double merge_lap(const System& system, Lap<System>& lap, double tolerance, double position_error, bool& grazes) {
   typename System::State y = lap.end;
   double apart = scaled_distance(system, y, lap.steps.front().y);
   for (std::size_t n = 0; n < lap.steps.size() && apart > tolerance; ++n) {
@@ -87,6 +79,9 @@ double merge_lap(const System& system, Lap<System>& lap, double tolerance) {
     if (!result.admissible) return std::numeric_limits<double>::infinity();
     step.dq = result.dq;
     y = result.y;
+    for (std::size_t k = 0; k < result.lowest.size(); ++k) {
+      grazes = grazes || result.lowest[k] < -position_error * lap.switch_scale[k];
+    }
     const bool last = n + 1 == lap.steps.size();
     apart = scaled_distance(system, y, last ? lap.end : lap.steps[n + 1].y);
     if (last) lap.end = y;
@@ -104,24 +99,67 @@ constexpr bool contracts_slowly() {
   }
 }
 
-/// Moves y, the end of a lap, to the fixed point of the linearised lap map. False, y unchanged, where that is not
-/// trustworthy.
-template <class System, class JetSystem>
-bool newton_step(const System& system, const JetSystem& jets, const Lap<System>& lap, typename System::State& y) {
-  constexpr std::size_t n = std::tuple_size_v<typename System::State>;
-  std::array<double, n * n> matrix = monodromy(jets, lap);
-  typename System::State moved;
-  for (std::size_t row = 0; row < n; ++row) {
-    moved[row] = lap.end[row] - lap.steps.front().y[row];
-    for (std::size_t column = 0; column < n; ++column) {
-      matrix[row * n + column] = (row == column ? 1.0 : 0.0) - matrix[row * n + column];
+/// (1 - M)^-1 of a lap map's derivative M: what moves the start of a lap onto the orbit, and magnifies a lap's errors.
+template <class System>
+class LapInverse {
+ public:
+  using State = typename System::State;
+  static constexpr std::size_t n = std::tuple_size_v<State>;
+
+  /// The derivative is that of `lap`.
+  LapInverse(const System& system, const Lap<System>& lap)
+      : inverse_(monodromy(system, system.template cast<Jet<int(n)>>(), lap)) {
+    for (std::size_t k = 0; k < n * n; ++k) inverse_[k] = (k % (n + 1) == 0 ? 1.0 : 0.0) - inverse_[k];
+    good_ = invert(int(n), inverse_.data());
+    if (!good_) return;
+    const State scale = system.error_scale(lap.steps.front().y);
+    for (std::size_t row = 0; row < n; ++row) {
+      double sum = 0.0;
+      for (std::size_t column = 0; column < n; ++column) {
+        sum += std::abs(inverse_[row * n + column]) * scale[column] / scale[row];
+      }
+      amplification_ = std::max(amplification_, sum);
     }
   }
-  if (!solve_linear(int(n), matrix.data(), moved.data())) return false;
-  for (std::size_t row = 0; row < n; ++row) moved[row] += lap.steps.front().y[row];
-  if (!system.admissible(moved) || !(scaled_distance(system, y, moved) < 0.5)) return false;
-  y = moved;
-  return true;
+
+  /// How much further from the orbit a lap's start may be than its end is from its start, at least 1; infinite where the
+  /// lap map has no isolated fixed point to working precision.
+  double amplification() const { return good_ ? amplification_ : std::numeric_limits<double>::infinity(); }
+
+  /// Moves y, the end of the lap, to the fixed point of the linearised lap map. False, y unchanged, where that is not
+  /// trustworthy.
+  bool move(const System& system, const Lap<System>& lap, State& y) const {
+    if (!good_) return false;
+    const State& start = lap.steps.front().y;
+    State moved = start;
+    for (std::size_t row = 0; row < n; ++row) {
+      for (std::size_t column = 0; column < n; ++column) {
+        moved[row] += inverse_[row * n + column] * (lap.end[column] - start[column]);
+      }
+    }
+    if (!system.admissible(moved) || !(scaled_distance(system, y, moved) < 0.5)) return false;
+    y = moved;
+    return true;
+  }
+
+ private:
+  std::array<double, n * n> inverse_;
+  bool good_ = false;
+  double amplification_ = 1.0;
+};
+
+/// What laps' integrals must be more accurate than the steps' own scale by, for metrics that are small differences.
+template <class System>
+double cancellation(const System& system, const Lap<System>& lap) {
+  if constexpr (requires(typename System::Quadrature totals) { system.cancellation(totals, totals); }) {
+    typename System::Quadrature totals{};
+    for (const Step<System>& step : lap.steps) {
+      for (std::size_t q = 0; q < totals.size(); ++q) totals[q] += step.dq[q];
+    }
+    return system.cancellation(totals, lap.integral_scale);
+  } else {
+    return 1.0;
+  }
 }
 
 }  // namespace detail
@@ -134,9 +172,10 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   using State = typename System::State;
   constexpr std::size_t n = std::tuple_size_v<State>;
   constexpr double slow_contraction = 0.1;
+  constexpr double tightest = 2e-14, rounding = 3e-15;
   // Local errors add up over a lap: this leaves the metrics of all but the oddest vehicles within the tolerance.
-  const double fine = std::clamp(0.35 * options.tolerance, 1e-13, 1e-3);
-  const double closed = 0.1 * options.tolerance;
+  const double fine = std::clamp(0.15 * options.tolerance, 1e-13, 1e-3);
+  double closed = 0.1 * options.tolerance;
 
   PeriodicSummary summary;
   const auto failed = [&](LapStatus status) {
@@ -150,9 +189,14 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   lap.switches.clear();
   lap.largest_step = 0.0;
 
-  const std::array<double, 3> tolerances = {std::max(fine, 1e-2), std::max(10.0 * fine, 1e-7), fine};
+  std::array<double, 3> tolerances = {std::max(fine, 1e-2), std::max(10.0 * fine, 1e-7), fine};
   State y = guess;
   double residual = 1.0, before_tolerance = tolerances[0];
+  // Errors of a lap are left in the orbit 1 / (1 - multiplier) times: unless laps have been seen to contract quickly, the
+  // lap map's derivative tells.
+  bool contracts = false, moved_by_newton = true, known = false;
+  double amplification = 1.0, cancellation = 1.0, off = 1.0;
+  int repeats = 0;
   for (std::size_t level = options.near ? 1 : 0; summary.laps < options.max_laps;) {
     // Coarse laps need only the switches that bend the solution itself.
     const bool is_fine = level + 1 == tolerances.size();
@@ -170,44 +214,107 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
     const double before = residual;
     residual = detail::scaled_distance(system, lap.end, y);
     if (!std::isfinite(residual)) break;
+    if (!moved_by_newton && before > 3.0 * before_tolerance) contracts = contracts || residual < slow_contraction * before;
+    moved_by_newton = false;
+    const State start = y;
     y = lap.end;
 
+    const bool slow = detail::contracts_slowly<System>() || amplification > 1.0 + slow_contraction;
     // A fine lap closes by merging if its start was close enough for its switches to stay where they are.
-    constexpr double near = detail::contracts_slowly<System>() ? 3e-3 : 0.1;
-    if (is_fine && residual < near * std::sqrt(options.tolerance)) {
+    const double near = (slow ? 3e-3 : 0.1) * std::sqrt(options.tolerance);
+    off = residual;
+    bool grazes = false;
+    const double position_error = 0.7 * detail::switch_tolerance(lap_options.tolerance);
+    if (is_fine && slow) {
+      const detail::LapInverse<System> inverse(system, lap);
+      ++summary.laps;
+      amplification = inverse.amplification();
+      const auto move_on = [&] {
+        State moved = lap.end;
+        const bool good = inverse.move(system, lap, moved);
+        off = detail::scaled_distance(system, lap.steps.front().y, moved);
+        return std::pair{good, moved};
+      };
+      auto [good, moved] = move_on();
+      if (good && off < near) {
+        for (double previous = 1.0; good && off > closed && off < 0.5 * previous;) {
+          previous = off;
+          lap.end = moved;
+          ++summary.newton_steps;
+          residual = detail::merge_lap(system, lap, std::max(closed / amplification, rounding),
+                                       position_error, grazes);
+          ++summary.laps;
+          std::tie(good, moved) = move_on();
+        }
+        // The last digits of a lap are rounding, whatever that makes of the orbit.
+        if (off <= closed || residual <= 5.0 * rounding) summary.status = PeriodicStatus::converged;
+      }
+      if (summary.status != PeriodicStatus::converged && good) {
+        y = moved;
+        moved_by_newton = true;
+        ++summary.newton_steps;
+        continue;
+      }
+    } else if (is_fine && residual < near) {
       for (double previous = 1.0; residual > closed && residual < 0.5 * previous;) {
         previous = residual;
-        if constexpr (detail::contracts_slowly<System>()) {
-          if (detail::newton_step(system, system.template cast<Jet<int(n)>>(), lap, lap.end)) ++summary.newton_steps;
-        }
-        residual = detail::merge_lap(system, lap, closed);
+        residual = detail::merge_lap(system, lap, closed, position_error, grazes);
         ++summary.laps;
       }
-      if (residual <= closed) {
-        summary.status = PeriodicStatus::converged;
-        break;
-      }
+      off = residual;
+      if (residual <= closed) summary.status = PeriodicStatus::converged;
       y = lap.end;
     }
-    // What the coarser of the two laps got wrong says nothing about the contraction.
-    const bool slow = summary.laps > 1 && residual > slow_contraction * before && residual > before_tolerance;
-    before_tolerance = lap_options.tolerance;
-    if (slow && residual < 0.5) {
-      if (detail::newton_step(system, system.template cast<Jet<int(n)>>(), lap, y)) ++summary.newton_steps;
-      ++summary.laps;
+    if (summary.status == PeriodicStatus::converged && grazes && repeats++ < 2) {
+      summary.status = PeriodicStatus::not_converged;
+      y = lap.steps.front().y;
+      continue;
     }
-    if (!is_fine && residual < 0.1) ++level;
+    if (summary.status == PeriodicStatus::converged) {
+      const double needed = detail::cancellation(system, lap);
+      if (!(needed > 1.5 * cancellation) || tolerances[2] <= tightest) break;
+      // Metrics that are small differences of what was controlled: once more, with tighter steps.
+      cancellation = needed;
+      closed = 0.1 * options.tolerance / cancellation;
+      summary.status = PeriodicStatus::not_converged;
+      tolerances[2] = std::max(fine / (amplification * cancellation), tightest);
+      y = lap.steps.front().y;
+      continue;
+    }
+
+    // What the coarser of the two laps got wrong says nothing about the contraction.
+    const bool stalls = summary.laps > 1 && residual > slow_contraction * before && residual > before_tolerance;
+    before_tolerance = lap_options.tolerance;
+    const bool closes = residual < 0.1;
+    const bool ask = level + 2 == tolerances.size() && closes && !contracts && !known;
+    if ((stalls && residual < 0.5) || ask) {
+      const detail::LapInverse<System> inverse(system, lap);
+      ++summary.laps;
+      known = ask;
+      if (ask) {
+        amplification = std::min(inverse.amplification(), 1e6);
+        tolerances[2] = std::max(fine / amplification, tightest);
+      }
+      if ((stalls || amplification > 1.0 + slow_contraction) && inverse.move(system, lap, y)) {
+        ++summary.newton_steps;
+        moved_by_newton = true;
+        // The fine lap may start from here only if the step was small.
+        if (ask && detail::scaled_distance(system, start, y) > 0.1) continue;
+      }
+    }
+    if (!is_fine && closes) ++level;
   }
-  summary.residual = residual;
+  summary.residual = off;
   summary.steps = int(lap.steps.size());
   if (summary.status != PeriodicStatus::converged) {
     summary.message = "laps did not close";
     return summary;
   }
   summary.message = "orbit closed";
+  summary.error_estimate = amplification * cancellation * lap.error_sum + cancellation * off;
   if (options.stability) {
-    const std::array<double, n * n> matrix = monodromy(system.template cast<Jet<int(n)>>(), lap);
-    summary.floquet_multiplier_max = spectral_radius(int(n), matrix.data());
+    summary.floquet_multiplier_max =
+        monodromy_product(system, system.template cast<Jet<int(n)>>(), lap).spectral_radius();
   }
   return summary;
 }

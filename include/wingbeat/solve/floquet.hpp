@@ -1,0 +1,174 @@
+// The lap map's derivative along a recorded lap, and its Floquet multipliers: a product of one factor for each step that
+// neither overflows nor underflows.
+//
+// A factor is the derivative of the step itself where the step resolves the flow's own decay. Where it does not - a mode
+// that decays quickly and is not excited lets an error control take steps far beyond the method's stability - the
+// derivative of an explicit step grows where the flow's falls; there the variational equation is solved along the step by
+// Radau IIA.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "wingbeat/core/jet.hpp"
+#include "wingbeat/solve/lap.hpp"
+#include "wingbeat/solve/linear.hpp"
+
+namespace wingbeat::solve {
+
+/// A product of n x n matrices, exp(log_scale) times `scaled`, with the logarithm of its determinant's magnitude.
+template <std::size_t n>
+struct MatrixProduct {
+  std::array<double, n * n> scaled;  ///< row-major, of largest entry 1
+  double log_scale = 0.0;
+  double log_determinant = 0.0;
+
+  MatrixProduct() {
+    for (std::size_t k = 0; k < n * n; ++k) scaled[k] = k % (n + 1) == 0 ? 1.0 : 0.0;
+  }
+
+  /// Multiplies by a factor from the left.
+  void append(const std::array<double, n * n>& factor) {
+    const std::array<double, n * n> before = scaled;
+    double largest = 0.0;
+    for (std::size_t row = 0; row < n; ++row) {
+      for (std::size_t column = 0; column < n; ++column) {
+        double sum = 0.0;
+        for (std::size_t k = 0; k < n; ++k) sum += factor[row * n + k] * before[k * n + column];
+        scaled[row * n + column] = sum;
+        largest = std::max(largest, std::abs(sum));
+      }
+    }
+    log_determinant += std::log(std::abs(determinant(int(n), factor.data())));
+    if (!(largest > 0.0)) {
+      log_scale = -std::numeric_limits<double>::infinity();
+      return;
+    }
+    log_scale += std::log(largest);
+    for (double& entry : scaled) entry /= largest;
+  }
+
+  /// The product itself: 0 or infinity where that is beyond the range of numbers.
+  std::array<double, n * n> matrix() const {
+    std::array<double, n * n> result = scaled;
+    const double scale = std::exp(log_scale);
+    for (double& entry : result) entry = entry == 0.0 ? 0.0 : entry * scale;
+    return result;
+  }
+
+  /// Largest modulus of its eigenvalues.
+  double spectral_radius() const {
+    if (std::isinf(log_scale)) return 0.0;
+    if constexpr (n == 2) {
+      // A complex pair's modulus is the root of the determinant, which the sum of logarithms knows without cancellation.
+      const double half_difference = 0.5 * (scaled[0] - scaled[3]);
+      if (half_difference * half_difference + scaled[1] * scaled[2] < 0.0) return std::exp(0.5 * log_determinant);
+    }
+    return solve::spectral_radius(int(n), scaled.data()) * std::exp(log_scale);
+  }
+};
+
+namespace detail {
+
+/// The flow's derivative over a recorded explicit step, by `pieces` implicit steps on the variational equation.
+template <class JetSystem, class System>
+auto stiff_factor(const System& system, const JetSystem& jets, const Lap<System>& lap, const Step<System>& step,
+                  int pieces) {
+  constexpr std::size_t n = std::tuple_size_v<typename System::State>;
+  constexpr std::size_t stages = RadauTableau::stages, unknowns = stages * n;
+  const RadauTableau& tableau = radau_tableau();
+  const typename JetSystem::Signs signs = signs_of<JetSystem>(step);
+  const double h = step.h / pieces;
+  std::array<double, n * n> factor;
+  for (std::size_t k = 0; k < n * n; ++k) factor[k] = k % (n + 1) == 0 ? 1.0 : 0.0;
+  for (int piece = 0; piece < pieces; ++piece) {
+    std::array<double, unknowns * unknowns> matrix;
+    std::array<double, unknowns * n> course;  // of the derivative at the stages
+    for (std::size_t j = 0; j < stages; ++j) {
+      const double x = step.x + (piece + tableau.c[j]) * h;
+      const typename System::State at = evaluate_inside<false>(system, lap, step, x).y;
+      typename JetSystem::State y;
+      for (std::size_t k = 0; k < n; ++k) y[k] = typename JetSystem::Real(at[k], int(k));
+      const Rates<JetSystem> rates = jets.template rates<false>(typename JetSystem::Real(x), y, signs);
+      for (std::size_t i = 0; i < stages; ++i) {
+        for (std::size_t k = 0; k < n * n; ++k) {
+          const std::size_t row = i * n + k / n, column = j * n + k % n;
+          matrix[row * unknowns + column] =
+              (row == column ? 1.0 : 0.0) - h * tableau.a[i][j] * rates.dy[k / n].v[Eigen::Index(k % n)];
+        }
+      }
+      std::copy(factor.begin(), factor.end(), course.begin() + std::ptrdiff_t(j * n * n));
+    }
+    solve_linear(int(unknowns), matrix.data(), int(n), course.data());
+    std::copy(course.end() - std::ptrdiff_t(n * n), course.end(), factor.begin());
+  }
+  return factor;
+}
+
+}  // namespace detail
+
+/// The derivative d y(period) / d y(0) of a recorded lap; `jets` is the system with Jet<states> scalars.
+template <class JetSystem, class System>
+auto monodromy_product(const System& system, const JetSystem& jets, const Lap<System>& lap) {
+  constexpr std::size_t n = std::tuple_size_v<typename System::State>;
+  using Real = typename JetSystem::Real;
+  using State = typename JetSystem::State;
+  constexpr double resolved = 2.0;  // decay rate times step up to which a step's derivative is the flow's
+  constexpr int most_pieces = 4;
+
+  const auto decay = [&](const Rates<JetSystem>& rates, double h) {
+    std::array<double, n * n> jacobian;
+    for (std::size_t k = 0; k < n * n; ++k) jacobian[k] = h * rates.dy[k / n].v[Eigen::Index(k % n)];
+    return n <= 2 ? spectral_radius(int(n), jacobian.data()) : norm(int(n), jacobian.data());
+  };
+  const auto start_of = [&](std::size_t k) {
+    State y;
+    for (std::size_t j = 0; j < n; ++j) y[j] = Real(lap.steps[k].y[j], int(j));
+    carry_over<false>(jets, lap.steps, k, y, nullptr);
+    return y;
+  };
+  const auto rates_at_start = [&](std::size_t k, const State& y) {
+    return jets.template rates<false>(Real(lap.steps[k].x), y, signs_of<JetSystem>(lap.steps[k]));
+  };
+
+  MatrixProduct<n> product;
+  State y = start_of(0);
+  Rates<JetSystem> first = rates_at_start(0, y);
+  for (std::size_t k = 0; k < lap.steps.size(); ++k) {
+    const Step<System>& step = lap.steps[k];
+    const bool last = k + 1 == lap.steps.size();
+    const State next_y = last ? y : start_of(k + 1);
+    const Rates<JetSystem> next = last ? first : rates_at_start(k + 1, next_y);
+    double quickest = 0.0;
+    if (lap.method == Method::explicit_pair) {
+      quickest = std::max(decay(first, step.h), last ? 0.0 : decay(next, step.h));
+    }
+    const auto append_derivatives = [&](const State& of) {
+      std::array<double, n * n> factor;
+      for (std::size_t m = 0; m < n * n; ++m) factor[m] = of[m / n].v[Eigen::Index(m % n)];
+      product.append(factor);
+    };
+    if (quickest > resolved) {
+      append_derivatives(y);
+      const int pieces = std::min(int(std::ceil(quickest / resolved)), most_pieces);
+      product.append(detail::stiff_factor(system, jets, lap, step, pieces));
+    } else {
+      const typename JetSystem::Signs signs = signs_of<JetSystem>(step);
+      append_derivatives(take_step<false>(lap.method, jets, Real(step.x), y, Real(step.h), signs, first).y);
+    }
+    y = next_y;
+    first = next;
+  }
+  return product;
+}
+
+/// The same as a row-major matrix.
+template <class JetSystem, class System>
+auto monodromy(const System& system, const JetSystem& jets, const Lap<System>& lap) {
+  return monodromy_product(system, jets, lap).matrix();
+}
+
+}  // namespace wingbeat::solve
