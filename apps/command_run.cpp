@@ -148,7 +148,7 @@ int run(const Arguments& arguments) {
     const double ratio = quantity("--lift-to-weight", arguments.lift_to_weight, "1");
     if (!(ratio > 0.0)) throw InputError("--lift-to-weight", 0, 0, "", "must be > 0");
     if (!design.mass) throw InputError("--lift-to-weight", 0, 0, "", "needs vehicle.mass, which the vehicle does not give");
-    options.lift = ratio * *design.mass * standard_gravity;
+    options.lift = ratio * *total_mass(design) * standard_gravity;
   }
   if (!arguments.voltage.empty()) apply_voltage(design.supply, arguments.voltage);
   Output waveforms("--waveforms", arguments.waveforms, arguments.vehicle);
@@ -163,7 +163,9 @@ int run(const Arguments& arguments) {
     const std::string asked = !arguments.frequency.empty() ? "--frequency " + arguments.frequency
                               : !arguments.lift.empty()    ? "--lift " + arguments.lift
                                                            : "--lift-to-weight " + arguments.lift_to_weight;
-    throw InputError(asked, 0, 0, "", result.search->detail);
+    const bool leaves = result.detail.find("inside the domain of validity") != std::string::npos;
+    throw InputError(asked, 0, 0, "",
+                     result.search->detail + (leaves ? "; --allow-extrapolation searches beyond" : ""));
   }
   const bool flaps = result.status == FlappingStatus::flapping;
   const bool has_metrics = std::isfinite(result.metrics[Metric::frequency]);
@@ -236,23 +238,23 @@ void add_run(CLI::App& program, Action& action) {
   command->add_option("--tolerance", a->tolerance, "Relative accuracy of every metric, 1e-12 to 1e-2 (default 1e-6)")
       ->type_name("NUMBER");
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
-                    "Search for a lift outside the model's domain too (docs/domain.md)");
+                    "Search for a frequency or a lift outside the model's domain too (docs/targets.md)");
   command->add_flag("--json", a->json, "Print one JSON object (SI) instead of a table");
   command->add_option("--waveforms", a->waveforms, "Write one cycle to FILE.csv or FILE.nc")->type_name("FILE");
   command->add_option("--plot", a->plot, "Plot one cycle to FILE.svg, .pdf or .png")->type_name("FILE");
   command->add_option("--plot-power", a->plot_power, "Plot the power breakdown to FILE.svg, .pdf or .png")
       ->type_name("FILE");
-  command->footer(fmt::format(
+  command->footer(
       "Example:\n"
       "  wingbeat run data/designs/friction2022.toml --frequency \"22 Hz\" \\\n"
       "    --set friction.radius=\"2 mm\" --plot cycle.svg\n\n"
-      "--frequency searches up to {:g} times the voltage that turns the unloaded motor that fast, --lift up to {:g}\n"
-      "times supply.voltage. With a pwm supply the orbit and the searches see the mean voltage; --frequency changes\n"
-      "its voltage, --lift its duty. The charge of a battery gives its voltage, so neither is for batteries. A direct\n"
-      "drive takes --frequency as that of its sine; a crank on a sine needs --method transient, which also reports\n"
-      "the start-up.\n\n"
-      "Exit status: 0 steady flapping, 2 bad input or usage, 3 the vehicle does not flap, 1 anything else.",
-      frequency_search_span, frequency_search_span * lift_search_start));
+      "--frequency finds the voltage for a flapping frequency, --lift the lowest one for a mean lift. Both keep to the\n"
+      "domain of validity (angles of attack from 0 to 90 deg and more) unless --allow-extrapolation; a refusal says how\n"
+      "far it reaches. With a pwm supply the orbit and the searches see the mean voltage; --frequency changes its\n"
+      "voltage, --lift its duty. The charge of a battery gives its voltage, so neither is for batteries. A direct drive\n"
+      "takes --frequency as that of its sine and --lift by its amplitude; a crank on a sine needs --method transient,\n"
+      "which also reports the start-up.\n\n"
+      "Exit status: 0 steady flapping, 2 bad input or usage, 3 the vehicle does not flap, 1 anything else.");
   command->callback([a, &action] { action = [a] { return run(*a); }; });
 }
 

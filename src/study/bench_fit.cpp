@@ -1118,6 +1118,7 @@ std::vector<FrictionCandidate> compare_friction(const BenchFit& fit,
         if (!springs) design.spring = {};
         RunOptions options;
         options.frequency = frequency;
+        options.allow_extrapolation = true;
         const RunResult run = run_design(design, options);
         if (run.status == FlappingStatus::flapping) {
           (springs ? candidate.power_springs_on : candidate.power_springs_off) = run.metrics[Metric::power_electrical];

@@ -73,6 +73,7 @@ CycleCase cycle_of(const SpringPair& pair, const FlappingCase& which, std::optio
   RunOptions options;
   options.tolerance = 1e-9;
   options.frequency = frequency;
+  options.allow_extrapolation = true;
   options.waveform_rows = rows;
   CycleCase result{which, run_design(design, options), {}};
   const CrankGeometry<double> geometry = geometry_of(resolve(result.run.design).crank);

@@ -129,6 +129,23 @@ void set_duty(Supply<double>& supply, double mean, double lift) {
   supply.duty = duty;
 }
 
+FrequencySearch find_voltage(const Vehicle<double>& vehicle, const Supply<double>& supply, const RunOptions& options) {
+  SteadyOptions steady;
+  steady.tolerance = options.tolerance;
+  const SearchRange range = options.allow_extrapolation ? SearchRange::extrapolation : SearchRange::domain;
+  if (!options.lift) {
+    return find_voltage_for_frequency(vehicle, *options.frequency, steady, start_up_in_time(), range);
+  }
+  LiftSearchOptions where;
+  where.range = range;
+  if (supply.voltage > 0.0) where.nominal = supply.voltage;
+  FrequencySearch search = find_voltage_for_lift(vehicle, *options.lift, steady, start_up_in_time(), where);
+  if (supply.type == SupplyType::pwm && search.closest_voltage > supply.voltage) {
+    search.detail += format("; a duty of 1 gives %.4g V", supply.voltage);
+  }
+  return search;
+}
+
 void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunResult& result) {
   SteadyOptions steady;
   steady.tolerance = options.tolerance;
@@ -239,15 +256,11 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
   const bool driven = options.frequency && set_drive_frequency(result.design, *options.frequency);
   Vehicle<double> vehicle = resolve(result.design, options.condition);
   if ((options.frequency && !driven) || options.lift) {
-    SteadyOptions steady;
-    steady.tolerance = options.tolerance;
-    const double nominal = supply.voltage > 0.0 ? supply.voltage : 1.0;
-    result.search =
-        options.lift ? find_voltage_for_lift(vehicle, *options.lift, nominal, steady, start_up_in_time())
-                     : find_voltage_for_frequency(vehicle, *options.frequency, steady, start_up_in_time());
+    result.search = find_voltage(vehicle, supply, options);
     if (result.search->outcome != FrequencyOutcome::reached) {
       result.status = result.search->status;
       result.detail = result.search->detail;
+      result.settled = result.status != FlappingStatus::undecided;
       return result;
     }
     if (options.lift && supply.type == SupplyType::pwm) {

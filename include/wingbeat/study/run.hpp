@@ -25,7 +25,7 @@ struct RunOptions {
   std::optional<double> frequency = {};
   /// [N]; given instead of the frequency: the same for the mean lift, which a pwm supply reaches by its duty.
   std::optional<double> lift = {};
-  bool allow_extrapolation = false; ///< a search for a lift may leave the model's domain
+  bool allow_extrapolation = false; ///< a search for a frequency or a lift may leave the model's domain
   int waveform_rows = 0;            ///< instants of one cycle to return, both ends included; 0: none
 };
 
