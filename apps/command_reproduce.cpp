@@ -1,4 +1,4 @@
-// wingbeat reproduce PAPER: a paper's figures and statements, remade and judged.
+// wingbeat reproduce PAPER: a paper's figures and statements, reproduced and assessed.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -39,9 +39,9 @@ int run(const Arguments& arguments) {
   const ReproduceResult result = reproduce_paper(paper, options);
   if (terminal) fmt::print(stderr, "\r{:<78}\r", "");
   if (arguments.json) {
-    print(json_claims(result.file, result.judgement));
+    print(json_claims(result.file, result.assessment));
   } else {
-    print(text_claims(result.file, result.judgement) + fmt::format("{} figures written to {}; open {}\n",
+    print(text_claims(result.file, result.assessment) + fmt::format("{} figures written to {}; open {}\n",
                                                                    result.figures, arguments.output,
                                                                    (options.output / "report.html").string()));
   }
@@ -51,23 +51,23 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 void add_reproduce(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("reproduce", "Remake a paper's figures and judge its statements");
+  CLI::App* command = program.add_subcommand("reproduce", "Reproduce a paper's figures and assess its statements");
   const auto a = std::make_shared<Arguments>();
   command->add_option("paper", a->paper, "Which paper: friction2022")->required()->type_name("PAPER");
   command->add_option("-o,--output", a->output, "Folder to be written: new, empty, or of an earlier reproduction")
       ->required()
       ->type_name("DIR");
-  command->add_flag("--coarse", a->coarse, "Few points on each curve: a check in seconds; the judgement is the same");
-  command->add_flag("--json", a->json, "Print the judgement as one JSON object instead of a table");
+  command->add_flag("--coarse", a->coarse, "Few points on each curve: a check in seconds; the assessment is the same");
+  command->add_flag("--json", a->json, "Print the assessment as one JSON object instead of a table");
   command->add_option("--threads", a->threads, "Use at most so many threads (default: one for each core)")
       ->type_name("N")
       ->check(CLI::PositiveNumber);
   command->footer(
       "Example:\n"
       "  wingbeat reproduce friction2022 -o friction2022-reproduced\n\n"
-      "Writes every figure as SVG and PDF, its data as CSV and NetCDF, the judged statements as CSV and JSON, and\n"
+      "Writes every figure as SVG and PDF, its data as CSV and NetCDF, the assessed statements as CSV and JSON, and\n"
       "report.html, which shows and explains all of it (docs/reproduce.md).\n\n"
-      "Exit status: 0 done, whatever the verdicts, 2 bad input or usage, 1 anything else.");
+      "Exit status: 0 done, whatever the outcomes, 2 bad input or usage, 1 anything else.");
   command->callback([a, &action] { action = [a] { return run(*a); }; });
 }
 

@@ -1,4 +1,4 @@
-// A paper reproduced into a folder: figures, the data behind them, judged statements, one report.
+// A paper reproduced into a folder: figures, the data behind them, assessed statements, one report.
 #pragma once
 
 #include <filesystem>
@@ -37,7 +37,7 @@ void prepare_reproduction_folder(const std::filesystem::path& folder, std::strin
 /// Throws InputError as prepare_reproduction_folder does, std::runtime_error where a file cannot be stored or drawn.
 struct ReproduceResult {
   PublishedFile file;
-  Judgement judgement;
+  Assessment assessment;
   int figures = 0;
 };
 ReproduceResult reproduce_paper(const KnownPaper& paper, const ReproduceOptions& options);

@@ -105,9 +105,10 @@ ReproduceResult reproduce_paper(const KnownPaper& paper, const ReproduceOptions&
     file.write(content);
     file.commit();
   };
-  put(notice, first_line(paper.name) +
-                  "Open report.html. figure-*: each figure as SVG and PDF, its data as CSV and NetCDF (.nc).\n"
-                  "claims.csv, claims.json: every statement judged. Running the command again replaces these files.\n");
+  put(notice,
+      first_line(paper.name) +
+          "Open report.html. figure-*: each figure as SVG and PDF, its data as CSV and NetCDF (.nc).\n"
+          "claims.csv, claims.json: every statement assessed. Running the command again replaces these files.\n");
   const auto progress = [&](double share, const std::string& what) {
     if (options.progress) options.progress(share, what);
   };
@@ -120,12 +121,13 @@ ReproduceResult reproduce_paper(const KnownPaper& paper, const ReproduceOptions&
   computing.coarse = options.coarse;
   const Reproduction computed =
       reproduce(pair, computing, options.for_each, [&](double share) { progress(0.2 * share, "computing"); });
-  result.judgement =
-      judge(result.file, options.for_each, [&](double share) { progress(0.2 + 0.1 * share, "judging statements"); });
+  result.assessment =
+      assess(result.file, options.for_each, [&](double share) { progress(0.2 + 0.1 * share, "assessing statements"); });
 
-  const Material material{result.file, pair, computed, result.judgement};
+  const Material material{result.file, pair, computed, result.assessment};
   std::vector<Sheet> sheets = mechanism_sheets(material);
-  for (const auto& more : {paper_sheets(material), friction_sheets(material), energy_sheets(material)}) {
+  for (const auto& more :
+       {paper_sheets(material), section5_sheets(material), friction_sheets(material), energy_sheets(material)}) {
     sheets.insert(sheets.end(), more.begin(), more.end());
   }
   result.figures = int(sheets.size());
@@ -162,8 +164,8 @@ ReproduceResult reproduce_paper(const KnownPaper& paper, const ReproduceOptions&
     data.commit();
     if (!s.animation.empty()) put(s.id + "-moving.svg", s.animation);
   }
-  put("claims.csv", csv_claims(result.judgement));
-  put("claims.json", json_claims(result.file, result.judgement));
+  put("claims.csv", csv_claims(result.assessment));
+  put("claims.json", json_claims(result.file, result.assessment));
   put("report.html", report_html(material, sheets, options.version,
                                  [&](const Sheet& s) { return drawings[std::size_t(&s - sheets.data())]; }));
   progress(1.0, "done");
