@@ -227,6 +227,7 @@ void add_run(CLI::App& program, Action& action) {
   command->add_option("--plot", a->plot, "Plot one cycle to FILE.svg, .pdf or .png")->type_name("FILE");
   command->add_option("--plot-power", a->plot_power, "Plot the power breakdown to FILE.svg, .pdf or .png")
       ->type_name("FILE");
+  add_force(*command, a->force);
   command->footer(fmt::format(
       "Example:\n"
       "  wingbeat run data/designs/friction2022.toml --frequency \"22 Hz\" \\\n"

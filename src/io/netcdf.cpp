@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <hdf5.h>
 #include <netcdf.h>
 #include <unistd.h>
 
@@ -48,13 +49,16 @@ std::string reason_of(int status, const std::string& file) {
 }  // namespace
 
 NetcdfFile::NetcdfFile(const std::filesystem::path& file) : file_(file.string()) {
+  // Nor would it survive the files that an error left open, at the end of the program.
+  static const auto once = H5dont_atexit();
+  (void)once;
   const PlainName name(file_, O_RDWR | O_CREAT);
   const int status = nc_create(name.get(), NC_NETCDF4 | NC_CLOBBER, &id_);
   if (status != NC_NOERR) throw NetcdfError(fmt::format("{}: cannot create the file: {}", file_, reason_of(status, file_)));
 }
 
 NetcdfFile::~NetcdfFile() {
-  if (id_ >= 0) nc_close(id_);
+  if (id_ >= 0 && !failed_) nc_close(id_);
 }
 
 NetcdfFile::Dimension NetcdfFile::define_dimension(const std::string& name, std::size_t length) {
@@ -214,6 +218,7 @@ void NetcdfFile::close() {
 
 void NetcdfFile::check(int status, const std::string& action) const {
   if (status == NC_NOERR) return;
+  failed_ = true;
   // Of a full disk HDF5 says nothing; the system does.
   const bool by_system = status == NC_EHDFERR && (errno == ENOSPC || errno == EDQUOT || errno == EFBIG || errno == EIO);
   throw NetcdfError(fmt::format("{}: cannot {}: {}", file_, action,

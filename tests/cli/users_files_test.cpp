@@ -36,8 +36,8 @@ class UsersFiles : public Program {
           "[[parameter]]\nkey = \"supply.voltage\"\nlower = \"3 V\"\nupper = \"8 V\"\n"
           "[[constraint]]\nmetric = \"lift_to_weight\"\nat_least = 1\n");
     write("tolerance.toml",
-          "[study]\nvehicle = \"vehicle.toml\"\n[sampling]\ncount = 64\n"
-          "[[parameter]]\nkey = \"friction.radius\"\nnormal = { deviation = \"0.1 mm\" }\n");
+          "[study]\nvehicle = \"vehicle.toml\"\n[samples]\ncount = 64\n"
+          "[[parameter]]\nkey = \"friction.radius\"\ndistribution = \"normal\"\nrelative_deviation = 0.03\n");
     write("sweep.toml",
           "[study]\nvehicle = \"vehicle.toml\"\n[[axis]]\nkey = \"supply.voltage\"\nfrom = 2\nto = 4\ncount = 3\n");
   }
@@ -241,14 +241,17 @@ TEST_F(UsersFiles, FileNamesMayHoldLineBreaksAndBackslashes) {
 TEST_F(UsersFiles, ADiskWithoutRoomIsCalledThat) {
   rlimit before{};
   ::getrlimit(RLIMIT_FSIZE, &before);
-  const rlimit none{4096, before.rlim_max};
-  ::setrlimit(RLIMIT_FSIZE, &none);
-  const Outcome set = run({"run", plain, "--waveforms", path("w.nc")});
-  const Outcome text = run({"run", plain, "--waveforms", path("w.csv")});
-  ::setrlimit(RLIMIT_FSIZE, &before);
-  for (const Outcome& o : {set, text}) {
-    EXPECT_EQ(o.status, 1);
-    EXPECT_THAT(o.err, HasSubstr("File too large"));
+  // From no room at all to room for nearly all, so that creating, writing and closing each meet the end of it.
+  for (const rlim_t room : {0, 2048, 8192, 16384, 40000}) {
+    for (const char* name : {"w.nc", "w.csv"}) {
+      ::unlink(path("stderr.txt").c_str());
+      const rlimit limited{std::max<rlim_t>(room, 512), before.rlim_max};
+      ::setrlimit(RLIMIT_FSIZE, &limited);
+      const Outcome o = run({"run", plain, "--json", "--waveforms", path(name)}, "", "/dev/null");
+      ::setrlimit(RLIMIT_FSIZE, &before);
+      EXPECT_EQ(o.status, 1) << name << " " << room;
+      EXPECT_THAT(o.err, HasSubstr("File too large")) << name << " " << room;
+    }
   }
   EXPECT_THAT(files(), IsEmpty());
 }
