@@ -14,6 +14,7 @@
 #include "command.hpp"
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/io/design_file.hpp"
+#include "wingbeat/io/file_record.hpp"
 #include "wingbeat/io/temporary_files.hpp"
 #include "wingbeat/io/units.hpp"
 
@@ -112,7 +113,7 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     complain("out of memory");
   } catch (const std::exception& error) {
-    complain(error.what());
+    complain(wingbeat::FileRecord::of_this_program().with_given_names(error.what()));
   }
   return failed;
 }

@@ -94,8 +94,22 @@ void FileRecord::withdraw(const fs::path& target) {
   std::erase_if(outputs_, [&](const Entry& e) { return e.path == target; });
 }
 
+void FileRecord::add_temporary(const fs::path& temporary, const std::string& shown) {
+  const std::lock_guard lock(mutex_);
+  temporaries_.emplace_back(temporary.string(), shown);
+}
+
+std::string FileRecord::with_given_names(std::string message) const {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [name, shown] : temporaries_) {
+    if (const auto at = message.find(name); at != std::string::npos) message.replace(at, name.size(), shown);
+  }
+  return message;
+}
+
 void FileRecord::clear() {
   const std::lock_guard lock(mutex_);
+  temporaries_.clear();
   read_.clear();
   outputs_.clear();
 }

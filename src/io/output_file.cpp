@@ -38,6 +38,7 @@ OutputFile::OutputFile(std::string option, const fs::path& path, const OutputRul
     }
   }
   remembered_ = remember_temporary(temporary_);
+  FileRecord::of_this_program().add_temporary(temporary_, option_);
   if (exists) (void)::fchmod(file, mode);
   ::close(file);
 }

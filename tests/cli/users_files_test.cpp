@@ -251,6 +251,7 @@ TEST_F(UsersFiles, ADiskWithoutRoomIsCalledThat) {
       ::setrlimit(RLIMIT_FSIZE, &before);
       EXPECT_EQ(o.status, 1) << name << " " << room;
       EXPECT_THAT(o.err, HasSubstr("File too large")) << name << " " << room;
+      EXPECT_THAT(o.err, HasSubstr("wingbeat: --waveforms " + path(name) + ": ")) << name << " " << room;
     }
   }
   EXPECT_THAT(files(), IsEmpty());

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace wingbeat {
@@ -29,6 +30,10 @@ class FileRecord {
   /// The output will not be written.
   void withdraw(const std::filesystem::path& target);
 
+  /// A file that has another name until it is complete, and a message in which it is called as the user calls it.
+  void add_temporary(const std::filesystem::path& temporary, const std::string& shown);
+  std::string with_given_names(std::string message) const;
+
   /// For a program that runs several commands one after another.
   void clear();
 
@@ -43,6 +48,7 @@ class FileRecord {
 
   mutable std::mutex mutex_;
   std::vector<Entry> read_, outputs_;
+  std::vector<std::pair<std::string, std::string>> temporaries_;
 };
 
 /// How an output may be written.
