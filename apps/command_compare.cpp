@@ -16,7 +16,7 @@ namespace {
 
 struct Arguments {
   std::string file;
-  bool json = false;
+  bool json = false, force = false;
   std::string plot_power;
 };
 
@@ -35,7 +35,7 @@ int run(const Arguments& arguments) {
   }
   const PublishedFile file = read_published(arguments.file);
   std::optional<OutputFile> plot;
-  if (format) plot.emplace("--plot-power", arguments.plot_power);
+  if (format) plot.emplace("--plot-power", arguments.plot_power, OutputRules{plot_extensions, arguments.force});
   const Comparison comparison = compare(file);
 
   bool all_flap = true;
@@ -69,6 +69,7 @@ void add_compare(CLI::App& program, Action& action) {
   command->add_flag("--json", a->json, "Print one JSON object instead of a table");
   command->add_option("--plot-power", a->plot_power, "Plot the power breakdowns to FILE.svg, .pdf or .png")
       ->type_name("FILE");
+  add_force(*command, a->force);
   command->footer(
       "Example:\n"
       "  wingbeat compare data/published/friction2022.toml\n\n"

@@ -18,18 +18,9 @@ namespace {
 struct Arguments {
   std::string vehicle, output, plot;
   std::vector<std::string> overrides;
-  bool json = false;
+  bool json = false, force = false;
   bool allow_extrapolation = false;
 };
-
-std::optional<OutputFile> reserved(const char* option, const std::string& path, const std::string& vehicle) {
-  if (path.empty()) return std::nullopt;
-  std::error_code error;
-  if (std::filesystem::equivalent(path, vehicle, error)) {
-    throw InputError(fmt::format("{} {}", option, path), 0, 0, "", "is the vehicle file itself");
-  }
-  return std::optional<OutputFile>(std::in_place, option, path);
-}
 
 int run(const Arguments& arguments) {
   std::optional<PlotFormat> format;
@@ -44,8 +35,9 @@ int run(const Arguments& arguments) {
   if (design.supply.type != SupplyType::battery) {
     throw InputError(arguments.vehicle, 0, 0, "supply.type", "only a battery runs down; expected battery");
   }
-  std::optional<OutputFile> output = reserved("-o", arguments.output, arguments.vehicle);
-  std::optional<OutputFile> plot = reserved("--plot", arguments.plot, arguments.vehicle);
+  std::optional<OutputFile> output, plot;
+  if (!arguments.output.empty()) output.emplace("-o", arguments.output, OutputRules{".nc", arguments.force});
+  if (format) plot.emplace("--plot", arguments.plot, OutputRules{plot_extensions, arguments.force});
 
   EnduranceOptions options;
   options.allow_extrapolation = arguments.allow_extrapolation;
@@ -86,6 +78,7 @@ void add_endurance(CLI::App& program, Action& action) {
   command->add_flag("--json", a->json, "Print one JSON object (SI) instead of a table");
   command->add_option("-o,--output", a->output, "Write the course of the flight (NetCDF-4)")->type_name("FILE.nc");
   command->add_option("--plot", a->plot, "Plot the flight to FILE.svg, .pdf or .png")->type_name("FILE");
+  add_force(*command, a->force);
   command->footer(
       "Example:\n  wingbeat endurance data/designs/friction2022-battery.toml --plot flight.svg\n\n"
       "The battery drains from supply.charge through steady flapping until it is empty, its terminals fall to\n"

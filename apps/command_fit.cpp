@@ -8,6 +8,7 @@
 
 #include "command.hpp"
 #include "wingbeat/io/bench_file.hpp"
+#include "wingbeat/io/design_edit.hpp"
 #include "wingbeat/io/design_file.hpp"
 #include "wingbeat/io/design_parameter.hpp"
 #include "wingbeat/io/output_file.hpp"
@@ -17,7 +18,7 @@ namespace {
 
 struct Arguments {
   std::string file, output, plot;
-  bool json = false, compare_friction = false, no_profiles = false;
+  bool json = false, compare_friction = false, no_profiles = false, force = false;
 };
 
 void show(const std::string& what) { fmt::print(stderr, "\r{:<78}", "fit: " + what); }
@@ -34,14 +35,11 @@ int run(const Arguments& arguments) {
   std::optional<OutputFile> output, covariance, plot;
   const std::filesystem::path vehicle = arguments.output;
   if (!arguments.output.empty()) {
-    std::error_code error;
-    if (std::filesystem::equivalent(arguments.output, arguments.file, error)) {
-      throw InputError("--output " + arguments.output, 0, 0, "", "is the bench file itself");
-    }
-    output.emplace("--output", vehicle);
-    covariance.emplace("--output", vehicle.parent_path() / (vehicle.stem().string() + ".covariance.toml"));
+    const OutputRules rules{".toml", arguments.force};
+    output.emplace("-o", vehicle, rules);
+    covariance.emplace("-o", vehicle.parent_path() / (vehicle.stem().string() + ".covariance.toml"), rules);
   }
-  if (format) plot.emplace("--plot", arguments.plot);
+  if (format) plot.emplace("--plot", arguments.plot, OutputRules{plot_extensions, arguments.force});
 
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
   std::function<void(const std::string&)> progress;
@@ -60,7 +58,8 @@ int run(const Arguments& arguments) {
   const std::string made_by = fmt::format("Fitted by wingbeat {} to {}", version,
                                           std::filesystem::path(arguments.file).filename().string());
   if (output) {
-    output->write(fitted_vehicle(fit, result, made_by));
+    output->write(fitted_vehicle_head(fit, result, made_by) +
+                  edited_design(vehicle_of_bench(arguments.file), vehicle, result.design));
     covariance->write(covariance_file(result, vehicle.filename().string(), made_by));
     output->commit();
     covariance->commit();
@@ -94,13 +93,14 @@ void add_fit(CLI::App& program, Action& action) {
       ->required()
       ->type_name("BENCH");
   command->add_option("-o,--output", a->output, "Write the fitted vehicle file, and FILE's .covariance.toml beside it")
-      ->type_name("FILE");
+      ->type_name("FILE.toml");
   command->add_flag("--compare-friction", a->compare_friction, "Fit every friction law to the same data and rank them");
   command->add_flag("--no-profiles", a->no_profiles,
                     "Skip the likelihood profiles: intervals from standard errors only");
   command->add_flag("--json", a->json, "Print one JSON object instead of tables");
   command->add_option("--plot", a->plot, "Plot the residuals by condition to FILE.svg, .pdf or .png")
       ->type_name("FILE");
+  add_force(*command, a->force);
   command->footer("Example:\n  wingbeat fit data/bench/flapper.toml -o fitted.toml\n\n"
                   "Exit status: 0 fitted, 1 not converged, 2 bad input or usage, 3 rows that the model cannot reach.");
   command->callback([a, &action] { action = [a] { return run(*a); }; });

@@ -14,7 +14,7 @@ namespace {
 
 struct Arguments {
   std::string paper, output;
-  bool coarse = false, json = false;
+  bool coarse = false, json = false, force = false;
   int threads = 0;
 };
 
@@ -30,6 +30,7 @@ int run(const Arguments& arguments) {
   ReproduceOptions options;
   options.output = arguments.output;
   options.coarse = arguments.coarse;
+  options.force = arguments.force;
   options.version = version;
   options.for_each = [&](std::size_t count, const std::function<void(std::size_t)>& act) {
     for_each_in_parallel(count, act, arguments.threads);
@@ -59,6 +60,7 @@ void add_reproduce(CLI::App& program, Action& action) {
       ->type_name("DIR");
   command->add_flag("--coarse", a->coarse, "Few points on each curve: a check in seconds; the assessment is the same");
   command->add_flag("--json", a->json, "Print the assessment as one JSON object instead of a table");
+  add_force(*command, a->force);
   command->add_option("--threads", a->threads, "Use at most so many threads (default: one for each core)")
       ->type_name("N")
       ->check(CLI::PositiveNumber);

@@ -29,7 +29,7 @@ struct Arguments {
   std::string condition = "air";
   std::string method = "orbit";
   std::string tolerance = "1e-6";
-  bool json = false;
+  bool json = false, force = false;
   bool allow_extrapolation = false;
   std::string waveforms, plot, plot_power;
 };
@@ -59,22 +59,9 @@ E choice(const char* option, const std::string& text, const std::pair<const char
 }
 
 /// A file to be written, its place reserved before anything is computed.
-class Output {
- public:
-  Output(const char* option, const std::string& path, const std::string& vehicle) {
-    if (path.empty()) return;
-    std::error_code error;
-    if (std::filesystem::equivalent(path, vehicle, error)) {
-      throw InputError(fmt::format("{} {}", option, path), 0, 0, "", "is the vehicle file itself");
-    }
-    file_.emplace(option, path);
-  }
-  explicit operator bool() const { return file_.has_value(); }
-  OutputFile& operator*() { return *file_; }
-
- private:
-  std::optional<OutputFile> file_;
-};
+std::optional<OutputFile> reserved(const char* option, const std::string& path, const OutputRules& rules) {
+  return path.empty() ? std::nullopt : std::optional<OutputFile>(std::in_place, option, path, rules);
+}
 
 std::optional<PlotFormat> checked_plot_format(const char* option, const std::string& path) {
   if (path.empty()) return std::nullopt;
@@ -139,9 +126,6 @@ int run(const Arguments& arguments) {
   }
   const auto cycle_format = checked_plot_format("--plot", arguments.plot);
   const auto power_format = checked_plot_format("--plot-power", arguments.plot_power);
-  if (!arguments.plot.empty() && arguments.plot == arguments.plot_power) {
-    throw InputError("--plot-power " + arguments.plot_power, 0, 0, "", "is the file of --plot");
-  }
 
   Design<double> design = read_design(arguments.vehicle, arguments.overrides);
   if (!arguments.lift_to_weight.empty()) {
@@ -151,9 +135,10 @@ int run(const Arguments& arguments) {
     options.lift = ratio * *total_mass(design) * standard_gravity;
   }
   if (!arguments.voltage.empty()) apply_voltage(design.supply, arguments.voltage);
-  Output waveforms("--waveforms", arguments.waveforms, arguments.vehicle);
-  Output cycle_plot("--plot", arguments.plot, arguments.vehicle);
-  Output power_plot("--plot-power", arguments.plot_power, arguments.vehicle);
+  const OutputRules drawing{plot_extensions, arguments.force};
+  auto waveforms = reserved("--waveforms", arguments.waveforms, {".csv .nc", arguments.force});
+  auto cycle_plot = reserved("--plot", arguments.plot, drawing);
+  auto power_plot = reserved("--plot-power", arguments.plot_power, drawing);
   if (waveforms || cycle_plot) options.waveform_rows = waveform_rows;
 
   const RunResult result = run_design(design, options);
@@ -175,9 +160,9 @@ int run(const Arguments& arguments) {
     if (options.waveform_rows > 0 && result.cycle.empty()) throw std::runtime_error("no whole cycle was recorded");
     if (waveforms) {
       if (waveforms_csv_wanted) {
-        (*waveforms).write(waveforms_csv(result.cycle));
+        waveforms->write(waveforms_csv(result.cycle));
       } else {
-        write_waveforms_netcdf((*waveforms).temporary(), result.cycle,
+        write_waveforms_netcdf(waveforms->temporary(), result.cycle,
                                {.title = fmt::format("One flapping cycle of {}",
                                                      design.name.empty() ? arguments.vehicle : design.name),
                                 .version = version,
@@ -187,16 +172,16 @@ int run(const Arguments& arguments) {
                                 .domain = name_of(result.domain),
                                 .tolerance = options.tolerance});
       }
-      (*waveforms).commit();
+      waveforms->commit();
     }
     if (cycle_plot) {
-      plot_cycle(result.cycle, result.cycle_voltage, title, *cycle_format, (*cycle_plot).temporary());
-      (*cycle_plot).commit();
+      plot_cycle(result.cycle, result.cycle_voltage, title, *cycle_format, cycle_plot->temporary());
+      cycle_plot->commit();
     }
     if (power_plot) {
       const PowerBar bar{title, energy_audit(result.metrics)};
-      plot_powers({&bar, 1}, "Where the electrical power goes", *power_format, (*power_plot).temporary());
-      (*power_plot).commit();
+      plot_powers({&bar, 1}, "Where the electrical power goes", *power_format, power_plot->temporary());
+      power_plot->commit();
     }
   }
 
@@ -244,6 +229,7 @@ void add_run(CLI::App& program, Action& action) {
   command->add_option("--plot", a->plot, "Plot one cycle to FILE.svg, .pdf or .png")->type_name("FILE");
   command->add_option("--plot-power", a->plot_power, "Plot the power breakdown to FILE.svg, .pdf or .png")
       ->type_name("FILE");
+  add_force(*command, a->force);
   command->footer(
       "Example:\n"
       "  wingbeat run data/designs/friction2022.toml --frequency \"22 Hz\" \\\n"

@@ -27,6 +27,7 @@ struct Arguments {
   std::string study, output;
   std::string tolerance, isa;
   int threads = 0;
+  bool force = false;
   bool allow_extrapolation = false;
   std::string plot;
   std::vector<std::string> plot_metrics;
@@ -34,16 +35,17 @@ struct Arguments {
 
 volatile std::sig_atomic_t interrupted = 0;
 
-void on_signal(int) { interrupted = 1; }
+void on_signal(int signal) {
+  if (interrupted) remove_temporaries_and_end(signal);
+  interrupted = 1;
+}
 
 /// The first signal ends the sweep after the chunks under way, the second at once.
 void catch_signals() {
   struct sigaction action {};
   action.sa_handler = on_signal;
-  action.sa_flags = int(SA_RESETHAND) | SA_RESTART;
+  action.sa_flags = SA_RESTART;
   for (const int signal : {SIGINT, SIGTERM}) ::sigaction(signal, &action, nullptr);
-  // A file above the limit of the shell is an error of writing like a full disk.
-  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 std::string duration(double seconds) {
@@ -189,6 +191,7 @@ int sweep_on_rank_0(const Arguments& arguments, Ranks* ranks) {
   options.version = version;
   options.threads = arguments.threads;
   options.ranks = ranks;
+  options.force = arguments.force;
   options.stop = [] { return interrupted != 0; };
   const bool on_terminal = ::isatty(STDERR_FILENO) == 1;
   if (on_terminal) options.progress = show_progress;
@@ -204,7 +207,7 @@ int sweep_on_rank_0(const Arguments& arguments, Ranks* ranks) {
     const std::string option = "--plot " + arguments.plot;
     if (!format) throw InputError(option, 0, 0, "", "the name must end in .svg, .pdf or .png");
     drawn = metrics_to_plot(study, arguments.plot_metrics, option);
-    plot.emplace("--plot", arguments.plot);
+    plot.emplace("--plot", arguments.plot, OutputRules{plot_extensions, arguments.force});
   }
   const SweepResult result = run_sweep(study, options);
   if (on_terminal) clear_progress();
@@ -269,6 +272,7 @@ void add_sweep(CLI::App& program, Action& action) {
       ->delimiter(',')
       ->needs(plot)
       ->type_name("METRICS");
+  add_force(*command, a->force);
   command->footer(
       "Example:\n"
       "  wingbeat sweep data/studies/crank-radius.toml -o crank-radius.nc --plot crank-radius.svg\n\n"

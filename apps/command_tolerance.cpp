@@ -18,7 +18,7 @@ namespace {
 struct Arguments {
   std::string study, output, plot, plot_metric;
   int threads = 0;
-  bool json = false;
+  bool json = false, force = false;
   bool allow_extrapolation = false;
 };
 
@@ -46,8 +46,8 @@ int run(const Arguments& arguments) {
     }
   }
   std::optional<OutputFile> output, plot;
-  if (!arguments.output.empty()) output.emplace("-o", arguments.output);
-  if (format) plot.emplace("--plot", arguments.plot);
+  if (!arguments.output.empty()) output.emplace("-o", arguments.output, OutputRules{".nc", arguments.force});
+  if (format) plot.emplace("--plot", arguments.plot, OutputRules{plot_extensions, arguments.force});
 
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
   std::function<void(const SweepProgress&)> progress;
@@ -93,6 +93,7 @@ void add_tolerance(CLI::App& program, Action& action) {
   command->add_option("--plot-metric", a->plot_metric, "Which one (default: lift to weight, else mean lift)")
       ->needs(plot)
       ->type_name("METRIC");
+  add_force(*command, a->force);
   command->footer("Example:\n  wingbeat tolerance data/studies/tolerance-hover.toml --plot tolerance.svg\n\n"
                   "Exit status: 0 done, 2 bad input or usage, 3 no vehicle flaps, 1 anything else.");
   command->callback([a, &action] { action = [a] { return run(*a); }; });

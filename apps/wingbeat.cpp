@@ -14,6 +14,8 @@
 #include "command.hpp"
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/io/design_file.hpp"
+#include "wingbeat/io/file_record.hpp"
+#include "wingbeat/io/temporary_files.hpp"
 #include "wingbeat/io/units.hpp"
 
 namespace wingbeat::app {
@@ -32,6 +34,10 @@ void complain(std::string_view sentence) {
   for (const char c : sentence) line += c == '\n' ? ' ' : c;
   line += '\n';
   std::fputs(line.c_str(), stderr);
+}
+
+void add_force(CLI::App& command, bool& force) {
+  command.add_flag("--force", force, "Replace existing files that wingbeat did not write; never a file that is read");
 }
 
 namespace {
@@ -92,6 +98,9 @@ int main(int argc, char** argv) {
   const bool output_open = fill_standard_streams();
   // A reader that went away is an error of writing like any other.
   std::signal(SIGPIPE, SIG_IGN);
+  // So is a file above the limit of the shell.
+  std::signal(SIGXFSZ, SIG_IGN);
+  wingbeat::remove_temporaries_on_signals();
   try {
     if (!output_open) throw std::runtime_error("standard output is closed");
     return run(argc, argv);
@@ -104,7 +113,7 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     complain("out of memory");
   } catch (const std::exception& error) {
-    complain(error.what());
+    complain(wingbeat::FileRecord::of_this_program().with_given_names(error.what()));
   }
   return failed;
 }

@@ -477,6 +477,14 @@ BenchLog parse_log(std::string_view text, const std::string& file_name, const Lo
   return LogReader(file_name, request).read(text);
 }
 
+std::filesystem::path vehicle_of_bench(const std::filesystem::path& file) {
+  const TomlNode tree = parse_toml_tree(read_text_file(file), file.string());
+  const TomlNode* bench = tree.find("bench");
+  const TomlNode* vehicle = bench ? bench->find("vehicle") : nullptr;
+  if (!vehicle) throw InputError(file.string(), 0, 0, "bench.vehicle", "missing; expected the name of a vehicle file");
+  return file.parent_path() / vehicle->text;
+}
+
 BenchFit read_bench(const std::filesystem::path& file) { return BenchReader(file).read(); }
 
 }  // namespace wingbeat

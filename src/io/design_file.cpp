@@ -17,6 +17,7 @@
 #include "table_csv.hpp"
 #include "toml_document.hpp"
 #include "wingbeat/io/design_keys.hpp"
+#include "wingbeat/io/file_record.hpp"
 #include "wingbeat/io/units.hpp"
 
 namespace wingbeat {
@@ -332,6 +333,7 @@ std::string read_text_file(const std::filesystem::path& file) {
   if (stream.bad()) refuse("cannot be read");
   text.resize(std::size_t(stream.gcount()));
   if (text.size() > largest) refuse("larger than 4 MB, which no vehicle file or table is");
+  FileRecord::of_this_program().add_read(file);
   return text;
 }
 

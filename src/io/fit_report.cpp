@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "report_tools.hpp"
+#include "design_write.hpp"
 #include "wingbeat/io/bench_file.hpp"
 #include "wingbeat/io/design_file.hpp"
 #include "wingbeat/io/plot_panels.hpp"
@@ -232,7 +233,7 @@ std::string json_fit(const BenchFit& fit, const FitResult& r, std::span<const Fr
   return json.dump(2) + "\n";
 }
 
-std::string fitted_vehicle(const BenchFit& fit, const FitResult& r, const std::string& made_by) {
+std::string fitted_vehicle_head(const BenchFit& fit, const FitResult& r, const std::string& made_by) {
   std::string text = fmt::format("# {}\n", one_line(made_by, 200));
   for (const FittedParameter& p : r.parameters) {
     if (p.value) {
@@ -245,7 +246,7 @@ std::string fitted_vehicle(const BenchFit& fit, const FitResult& r, const std::s
     text += fmt::format("# not reached: {} ({})\n", one_line(row_name(fit, u.log, u.row), 120),
                         given_text(fit, u.log, u.row));
   }
-  return text + "\n" + write_design(r.design);
+  return text + "\n";
 }
 
 std::string covariance_file(const FitResult& r, const std::string& vehicle_name, const std::string& made_by) {
@@ -255,7 +256,7 @@ std::string covariance_file(const FitResult& r, const std::string& vehicle_name,
   }
   std::string text =
       fmt::format("# {}\n# Covariance of the fitted parameters, SI units, normal approximation.\n\nvehicle = {}\n",
-                  one_line(made_by, 200), in_quotes(vehicle_name));
+                  one_line(made_by, 200), toml_text(vehicle_name));
   for (const std::size_t k : known) {
     const FittedParameter& p = r.parameters[k];
     text += fmt::format("\n[[parameter]]\nkey = \"{}\"\nunit = \"{}\"\nvalue = {:#}\nstandard_error = {:#}\n", p.key,

@@ -30,6 +30,7 @@ class OptimiseReader : public detail::StudySections {
       refuse(*metrics, "study.metrics", "has no place here: the objective and the constraints say which are wanted");
     }
     study.design = read_vehicle(folder_);
+    file.vehicle_file = folder_ / vehicle_file();
     study.options.condition = read_condition();
     EnsembleOptions accuracy;
     accuracy.tolerance = study.options.tolerance;

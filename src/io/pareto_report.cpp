@@ -92,16 +92,22 @@ std::vector<std::pair<std::string, std::size_t>> columns_of(const ParetoStudy& s
 
 }  // namespace
 
+std::vector<std::string> pick_names(std::span<const ParetoObjective> objectives, std::size_t even) {
+  std::vector<std::string> names;
+  for (const ParetoObjective& o : objectives) names.push_back(fmt::format("end-{}", metric_info(o.metric).key));
+  names.push_back("knee");
+  for (std::size_t n = 1; n <= even; ++n) names.push_back(fmt::format("even-{}", n));
+  return names;
+}
+
 std::vector<std::pair<std::string, std::size_t>> named_picks(const ParetoStudy& study, const ParetoResult& result) {
   std::vector<std::pair<std::string, std::size_t>> picks;
   if (result.front.empty()) return picks;
-  for (std::size_t m = 0; m < study.objectives.size(); ++m) {
-    picks.emplace_back(fmt::format("end-{}", metric_info(study.objectives[m].metric).key), result.picks.ends[m]);
-  }
-  picks.emplace_back("knee", result.picks.knee);
-  for (std::size_t n = 0; n < result.picks.even.size(); ++n) {
-    picks.emplace_back(fmt::format("even-{}", n + 1), result.picks.even[n]);
-  }
+  std::vector<std::size_t> places = result.picks.ends;
+  places.push_back(result.picks.knee);
+  places.insert(places.end(), result.picks.even.begin(), result.picks.even.end());
+  const std::vector<std::string> names = pick_names(study.objectives, result.picks.even.size());
+  for (std::size_t n = 0; n < names.size(); ++n) picks.emplace_back(names[n], places[n]);
   return picks;
 }
 

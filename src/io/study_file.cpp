@@ -13,6 +13,7 @@
 #include "study_sections.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/io/design_keys.hpp"
+#include "wingbeat/io/file_record.hpp"
 #include "wingbeat/io/units.hpp"
 
 namespace wingbeat {
@@ -632,6 +633,7 @@ std::string read_table_file(const fs::path& file) {
   const std::size_t got = stream ? std::fread(text.data(), 1, text.size(), stream) : 0;
   if (stream) std::fclose(stream);
   if (got != text.size()) throw InputError(file.string(), 0, 0, "", "cannot be read");
+  FileRecord::of_this_program().add_read(file);
   return text;
 }
 

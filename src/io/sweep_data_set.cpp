@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "wingbeat/io/file_record.hpp"
 #include "wingbeat/io/netcdf.hpp"
 #include "wingbeat/io/units.hpp"
 
@@ -255,6 +256,7 @@ Study read_study_in_data_set(const fs::path& path) {
   if (!fs::exists(path, error)) refuse("no such file");
   try {
     const NetcdfReader file(path);
+    FileRecord::of_this_program().add_read(path);
     StudyInput input;
     const auto study = file.attribute("study"), vehicle = file.attribute("vehicle"),
                tolerance = file.attribute("tolerance");
@@ -274,22 +276,27 @@ Study read_study_in_data_set(const fs::path& path) {
   }
 }
 
-Standing standing_of(const fs::path& path, std::uint64_t fingerprint, const std::string& option) {
+Standing standing_of(const fs::path& path, std::uint64_t fingerprint, const std::string& option,
+                     bool force) {
   const auto refuse = [&](const std::string& reason) {
     throw InputError(fmt::format("{} {}", option, path.string()), 0, 0, "",
-                     reason + "; it is left as it is: move it away, or give another name");
+                     reason + "; it is left as it is: give another name, or --force to replace it");
   };
   std::error_code error;
   const auto status = fs::status(path, error);
   if (!fs::exists(status)) return Standing::nothing;
   if (fs::is_directory(status)) throw InputError(fmt::format("{} {}", option, path.string()), 0, 0, "", "is a folder");
-  if (!fs::is_regular_file(status)) refuse("is not a regular file");
+  if (!fs::is_regular_file(status)) {
+    throw InputError(fmt::format("{} {}", option, path.string()), 0, 0, "", "is not a regular file");
+  }
   std::optional<std::string> found;
   try {
     found = NetcdfReader(path).attribute(fingerprint_attribute);
   } catch (const NetcdfError&) {
+    if (force) return Standing::nothing;
     refuse("exists and cannot be read as a data set (foreign, damaged or cut off)");
   }
+  if (force && (!found || *found != fmt::format("{:016x}", fingerprint))) return Standing::nothing;
   if (!found) refuse("exists and is no data set of wingbeat sweep");
   if (*found != fmt::format("{:016x}", fingerprint)) {
     refuse("holds another sweep (another study, vehicle, option or version of the program)");

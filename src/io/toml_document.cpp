@@ -453,6 +453,12 @@ std::string kind_of(const TomlNode& node) {
   return node.text;
 }
 
+bool are_alternatives(std::string_view one, std::string_view other) {
+  return std::any_of(std::begin(alternatives), std::end(alternatives), [&](const auto& pair) {
+    return pair == std::pair(one, other) || pair == std::pair(other, one);
+  });
+}
+
 const Value* Document::find(std::string_view path) const {
   const auto found = values.find(path);
   return found == values.end() ? nullptr : &found->second;

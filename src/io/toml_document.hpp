@@ -74,6 +74,9 @@ TomlNode parse_toml_tree(std::string_view text, std::string_view file_name);
 /// "a number", "an array": what a node is, for messages.
 std::string kind_of(const TomlNode& node);
 
+/// True for two keys of which a vehicle may have one, such as transmission.hinge_offset and .stroke_amplitude.
+bool are_alternatives(std::string_view one, std::string_view other);
+
 /// Throws InputError for text that is not TOML and for unknown keys.
 Document parse_document(std::string_view text, std::string_view file_name);
 

@@ -188,8 +188,8 @@ TEST_F(Files, NoNameIsTakenForACommand) {
 
 TEST_F(Files, WithoutGnuplotItSaysWhatToInstall) {
   std::ofstream(path("old.svg")) << "old";
-  const Outcome o = run({"run", plain, "--json", "--plot", path("old.svg")}, path("nowhere"));
-  EXPECT_EQ(o.status, 1);
+  const Outcome o = run({"run", plain, "--json", "--force", "--plot", path("old.svg")}, path("nowhere"));
+  EXPECT_EQ(o.status, 1) << o.err;
   EXPECT_THAT(o.err, HasSubstr("apt-get install gnuplot-nox"));
   EXPECT_EQ(read(path("old.svg")), "old");
   EXPECT_THAT(files(), ElementsAre("old.svg"));
@@ -197,9 +197,9 @@ TEST_F(Files, WithoutGnuplotItSaysWhatToInstall) {
 
 TEST_F(Files, AGoodFileSurvivesAFailedRun) {
   std::ofstream(path("w.csv")) << "old";
-  EXPECT_EQ(run({"run", springs, "--voltage", "0.3 V", "--waveforms", path("w.csv")}).status, 3);
+  EXPECT_EQ(run({"run", springs, "--voltage", "0.3 V", "--force", "--waveforms", path("w.csv")}).status, 3);
   EXPECT_EQ(read(path("w.csv")), "old");
-  EXPECT_EQ(run({"run", plain, "--waveforms", path("w.csv"), "--set", "motor.inertia=0"}).status, 2);
+  EXPECT_EQ(run({"run", plain, "--force", "--waveforms", path("w.csv"), "--set", "motor.inertia=0"}).status, 2);
   EXPECT_EQ(read(path("w.csv")), "old");
   EXPECT_THAT(files(), ElementsAre("w.csv"));
 }
@@ -208,7 +208,7 @@ TEST_F(Files, LinksAndModesStay) {
   std::ofstream(path("real.csv")) << "old";
   ::chmod(path("real.csv").c_str(), 0640);
   fs::create_symlink("real.csv", path("link.csv"));
-  ASSERT_EQ(run({"run", plain, "--waveforms", path("link.csv")}).status, 0);
+  ASSERT_EQ(run({"run", plain, "--force", "--waveforms", path("link.csv")}).status, 0);
   EXPECT_TRUE(fs::is_symlink(path("link.csv")));
   EXPECT_THAT(read(path("real.csv")), testing::StartsWith("time_s,"));
   struct stat found {};
@@ -223,7 +223,7 @@ TEST_F(Files, PlacesThatCannotBeWrittenAreRefused) {
   EXPECT_THAT(run({"run", plain, "--waveforms", path("pipe.csv")}).err, HasSubstr("not a regular file"));
   fs::copy_file(plain, path("vehicle.csv"));
   EXPECT_THAT(run({"run", path("vehicle.csv"), "--waveforms", path("vehicle.csv")}).err,
-              HasSubstr("is the vehicle file itself"));
+              HasSubstr("is a file that this command reads, which is never overwritten"));
   if (::geteuid() != 0) {
     std::ofstream(path("kept.csv")) << "old";
     fs::permissions(path("kept.csv"), fs::perms::owner_read);

@@ -241,15 +241,21 @@ TEST_F(Reproduce, FoldersOfSomethingElseAreLeftAlone) {
   const Outcome foreign = run({"reproduce", "friction2022", "--coarse", "-o", path("mine")});
   EXPECT_EQ(foreign.status, 2);
   EXPECT_EQ(foreign.err,
-            "wingbeat: -o " + path("mine") + ": holds files of something else; name a new or an empty folder\n");
+            "wingbeat: -o " + path("mine") + ": holds files of something else; name a new or an empty folder, or --force "
+            "to write among them\n");
   EXPECT_EQ(read(path("mine/report.html")), "mine");
 
   fs::create_directory(path("empty"));
   ASSERT_EQ(run({"reproduce", "friction2022", "--coarse", "-o", path("empty")}).status, 0);
   std::ofstream(path("empty/notes.txt")) << "my notes";
   const std::string before = read(path("empty/figure-04.csv"));
-  std::ofstream(path("empty/figure-04.csv")) << "spoilt";
   ASSERT_EQ(run({"reproduce", "friction2022", "--coarse", "-o", path("empty")}).status, 0);
+  std::ofstream(path("empty/figure-04.csv")) << "changed by hand";
+  const Outcome changed = run({"reproduce", "friction2022", "--coarse", "-o", path("empty")});
+  EXPECT_EQ(changed.status, 2);
+  EXPECT_THAT(changed.err, HasSubstr("figure-04.csv: exists and was not written by wingbeat"));
+  EXPECT_EQ(read(path("empty/figure-04.csv")), "changed by hand");
+  ASSERT_EQ(run({"reproduce", "friction2022", "--coarse", "--force", "-o", path("empty")}).status, 0);
   EXPECT_EQ(read(path("empty/notes.txt")), "my notes");
   EXPECT_EQ(read(path("empty/figure-04.csv")), before);
 }

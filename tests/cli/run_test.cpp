@@ -273,7 +273,7 @@ TEST_F(Run, BadInputIsOneSentenceOnStandardErrorAndStatus2) {
       {{"run", plain, "--waveforms", path("w.txt")}, "must end in .csv or .nc"},
       {{"run", plain, "--plot", path("p.bmp")}, "must end in .svg, .pdf or .png"},
       {{"run", plain, "--plot-power", path("p")}, "must end in .svg, .pdf or .png"},
-      {{"run", plain, "--plot", path("p.svg"), "--plot-power", path("p.svg")}, "is the file of --plot"},
+      {{"run", plain, "--plot", path("p.svg"), "--plot-power", path("p.svg")}, "is also the file of --plot"},
       {{"run", plain, "--plot", path("no/such/p.svg")}, "there is no folder"},
       {{"compare"}, "file is required"},
       {{"compare", plain}, "unknown key"},

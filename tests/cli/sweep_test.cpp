@@ -91,7 +91,7 @@ class Sweep : public Program {
   static long chunks_in(const std::string& journal, long columns) {
     struct stat found {};
     if (::stat(journal.c_str(), &found) != 0) return 0;
-    return (long(found.st_size) - 48 - 8 * (columns + 1)) / 16;
+    return (long(found.st_size) - 48 - 8 * (columns + 2)) / 16;
   }
   Outcome shell(const std::string& command) const {
     const std::string whole = command + " >" + path("stdout.txt") + " 2>" + path("stderr.txt");

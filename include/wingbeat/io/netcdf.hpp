@@ -35,7 +35,8 @@ class NetcdfFile {
   explicit NetcdfFile(const std::filesystem::path& file);
   NetcdfFile(const NetcdfFile&) = delete;
   NetcdfFile& operator=(const NetcdfFile&) = delete;
-  /// Closes without a word; call close() to learn whether everything was written.
+  /// Closes without a word; call close() to learn whether everything was written. After an error nothing is closed: HDF5
+  /// does not survive the second meeting with a full disk.
   ~NetcdfFile();
 
   Dimension define_dimension(const std::string& name, std::size_t length);
@@ -75,6 +76,7 @@ class NetcdfFile {
 
   std::string file_;
   int id_ = -1;
+  mutable bool failed_ = false;
 };
 
 /// A NetCDF file open for reading. Every member throws NetcdfError.

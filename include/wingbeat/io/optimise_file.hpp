@@ -21,6 +21,7 @@ struct MotorCandidate {
 
 struct OptimiseFile {
   std::string title;
+  std::filesystem::path vehicle_file;
   OptimiseStudy study;
   std::vector<MotorCandidate> motors;  ///< empty: the vehicle's own motor alone
   std::vector<DiscreteParameter> choices;

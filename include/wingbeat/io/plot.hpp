@@ -13,6 +13,8 @@ namespace wingbeat {
 
 enum class PlotFormat { svg, pdf, png };
 
+/// As OutputRules wants them.
+inline constexpr const char* plot_extensions = ".svg .pdf .png";
 /// By the extension; empty for any other.
 std::optional<PlotFormat> plot_format(const std::filesystem::path& file);
 

@@ -24,6 +24,7 @@ const KnownPaper& known_paper(std::string_view name);
 struct ReproduceOptions {
   std::filesystem::path output;  ///< the folder
   bool coarse = false;
+  bool force = false;   ///< replaces files that the program did not write
   std::string version;  ///< of the program
   ForEach for_each;
   std::function<void(double share, const std::string& what)> progress;  ///< called by one thread at a time
@@ -31,7 +32,8 @@ struct ReproduceOptions {
 
 /// A folder that may be written to: new, empty, or one that this command wrote before. Creates it. Throws InputError
 /// for every other, and where it cannot be written.
-void prepare_reproduction_folder(const std::filesystem::path& folder, std::string_view paper);
+/// That a file in it would be replaced that is not the program's, or was changed since, is refused unless `force`.
+void prepare_reproduction_folder(const std::filesystem::path& folder, std::string_view paper, bool force = false);
 
 /// Computes and writes everything. Files of the same names from an earlier run are replaced, others in the folder stay.
 /// Throws InputError as prepare_reproduction_folder does, std::runtime_error where a file cannot be stored or drawn.

@@ -42,8 +42,10 @@ Study read_study_in_data_set(const std::filesystem::path& file);
 
 /// What stands under the name of an output: nothing, this very sweep, or something that must not be overwritten.
 enum class Standing { nothing, same_sweep };
-/// Throws InputError for anything else, with the reason; `option` is what the path was given for.
-Standing standing_of(const std::filesystem::path& file, std::uint64_t fingerprint, const std::string& option);
+/// Throws InputError for anything else, with the reason, unless `force` says that it may be replaced, which makes it
+/// nothing; `option` is what the path was given for.
+Standing standing_of(const std::filesystem::path& file, std::uint64_t fingerprint, const std::string& option,
+                     bool force);
 
 /// Bytes of the data set, nearly.
 std::uint64_t data_set_size(const Study& study);
