@@ -122,7 +122,7 @@ class Reader {
     }
     if (value.kind != Value::Kind::text) wrong(value, path, quantity_example(unit));
     try {
-      return parse_quantity(value.text, unit);
+      return parse_quantity(value.text, unit, SpeedConstant::inverted);
     } catch (const UnitError& error) {
       value.origin.refuse(std::string(path), error.what());
     }
