@@ -5,9 +5,11 @@
 #include <memory>
 
 #include "command.hpp"
+#include "options.hpp"
 #include "wingbeat/io/claims.hpp"
 #include "wingbeat/io/optimise_file.hpp"
 #include "wingbeat/io/reproduce.hpp"
+#include "wingbeat/io/written_files.hpp"
 
 namespace wingbeat::app {
 namespace {
@@ -38,6 +40,8 @@ int run(const Arguments& arguments) {
   if (terminal) options.progress = show;
   const ReproduceResult result = reproduce_paper(paper, options);
   if (terminal) fmt::print(stderr, "\r{:<78}\r", "");
+  take_written();  // the folder stands for its files
+  note_written(arguments.output);
   if (arguments.json) {
     print(json_claims(result.file, result.judgement));
   } else {
@@ -59,9 +63,7 @@ void add_reproduce(CLI::App& program, Action& action) {
       ->type_name("DIR");
   command->add_flag("--coarse", a->coarse, "Few points on each curve: a check in seconds; the judgement is the same");
   command->add_flag("--json", a->json, "Print the judgement as one JSON object instead of a table");
-  command->add_option("--threads", a->threads, "Use at most so many threads (default: one for each core)")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber);
+  add_threads(command, a->threads);
   command->footer(
       "Example:\n"
       "  wingbeat reproduce friction2022 -o friction2022-reproduced\n\n"

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "command.hpp"
+#include "options.hpp"
 #include "wingbeat/io/design_file.hpp"
 #include "wingbeat/io/output_file.hpp"
 #include "wingbeat/io/plot.hpp"
@@ -213,10 +214,8 @@ int run(const Arguments& arguments) {
 void add_run(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("run", "Find the steady flapping of one vehicle and report its metrics");
   const auto a = std::make_shared<Arguments>();
-  command->add_option("vehicle", a->vehicle, "Vehicle file (TOML)")->required()->type_name("VEHICLE");
-  command->add_option("--set", a->overrides, "Replace a key of the vehicle file; repeatable")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  add_input(command, a->vehicle, "vehicle", "Vehicle file (TOML)", "VEHICLE");
+  add_set(command, a->overrides);
   CLI::Option* voltage =
       command->add_option("--voltage", a->voltage, "Supply voltage (pwm: while switched on), as \"3 V\"")
           ->type_name("QUANTITY");
@@ -237,14 +236,14 @@ void add_run(CLI::App& program, Action& action) {
       ->type_name("NUMBER");
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
                     "Search for a lift outside the model's domain too (docs/domain.md)");
-  command->add_flag("--json", a->json, "Print one JSON object (SI) instead of a table");
+  add_json(command, a->json);
   command->add_option("--waveforms", a->waveforms, "Write one cycle to FILE.csv or FILE.nc")->type_name("FILE");
   command->add_option("--plot", a->plot, "Plot one cycle to FILE.svg, .pdf or .png")->type_name("FILE");
   command->add_option("--plot-power", a->plot_power, "Plot the power breakdown to FILE.svg, .pdf or .png")
       ->type_name("FILE");
   command->footer(fmt::format(
       "Example:\n"
-      "  wingbeat run data/designs/friction2022.toml --frequency \"22 Hz\" \\\n"
+      "  wingbeat run friction2022 --frequency \"22 Hz\" \\\n"
       "    --set friction.radius=\"2 mm\" --plot cycle.svg\n\n"
       "--frequency searches up to {:g} times the voltage that turns the unloaded motor that fast, --lift up to {:g}\n"
       "times supply.voltage. With a pwm supply the orbit and the searches see the mean voltage; --frequency changes\n"
@@ -253,7 +252,12 @@ void add_run(CLI::App& program, Action& action) {
       "the start-up.\n\n"
       "Exit status: 0 steady flapping, 2 bad input or usage, 3 the vehicle does not flap, 1 anything else.",
       frequency_search_span, frequency_search_span * lift_search_start));
-  command->callback([a, &action] { action = [a] { return run(*a); }; });
+  command->callback([a, &action] {
+    action = [a] {
+      a->vehicle = find_input(a->vehicle, InputKind::vehicle).string();
+      return run(*a);
+    };
+  });
 }
 
 }  // namespace wingbeat::app

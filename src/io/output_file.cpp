@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "wingbeat/io/design_file.hpp"
+#include "wingbeat/io/written_files.hpp"
 
 namespace wingbeat {
 namespace fs = std::filesystem;
@@ -74,6 +75,7 @@ void OutputFile::commit() {
     throw std::runtime_error(fmt::format("{}: {}", option_, std::strerror(errno)));
   }
   committed_ = true;
+  note_written(option_.substr(option_.find(' ') + 1));
 }
 
 }  // namespace wingbeat

@@ -14,7 +14,7 @@ namespace wingbeat {
 
 /// A fit as its bench file describes it, logs read. Vehicle file and logs are sought beside it. Throws InputError with
 /// file, line and reason.
-BenchFit read_bench(const std::filesystem::path& file);
+BenchFit read_bench(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 
 /// One log: a header that names each column with its unit, rows growing strictly in what was set on the bench.
 /// `log` brings the condition and, of a waveform log, the operating point in `given_value`. `measured` restricts the
