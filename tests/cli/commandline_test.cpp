@@ -323,7 +323,7 @@ TEST_F(CommandLine, JsonOfASweepIsOneObject) {
 
 TEST_F(CommandLine, UnitsThatPeopleType) {
   const Json plain_run = run({"run", plain, "--json"}).json();
-  for (const char* set : {"motor.torque_constant=10 mNm/A", "motor.inertia=1.5e-3 gcm2", "friction.radius=2.5mm",
+  for (const char* set : {"motor.torque_constant=10 mNm/A", "motor.inertia=1.5 gcm2", "friction.radius=2.5mm",
                           "motor.torque_constant=954.929658551372 rpm/V"}) {
     const Json json = run({"run", plain, "--json", "--set", set}).json();
     EXPECT_NEAR(json["frequency_hz"].get<double>() / plain_run["frequency_hz"].get<double>(), 1.0, 1e-9) << set;

@@ -104,7 +104,7 @@ TEST_F(Fit, UnknownParametersAreNoNumbers) {
 }
 
 TEST_F(Fit, HelpShowsAnExampleThatRuns) {
-  EXPECT_THAT(run({"fit", "--help"}).out, HasSubstr("wingbeat fit data/bench/flapper.toml -o fitted.toml"));
+  EXPECT_THAT(run({"fit", "--help"}).out, HasSubstr("wingbeat fit flapper -o fitted.toml"));
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ TEST_F(IdentifyMotor, AnIncompleteSheetIsRefusedByName) {
 }
 
 TEST_F(IdentifyMotor, HelpShowsAnExampleThatRuns) {
-  EXPECT_THAT(run({"identify-motor", "--help"}).out, HasSubstr("wingbeat identify-motor data/motors/0816K003SR.toml"));
+  EXPECT_THAT(run({"identify-motor", "--help"}).out, HasSubstr("wingbeat identify-motor 0816K003SR -o"));
 }
 
 }  // namespace
