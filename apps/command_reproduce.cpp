@@ -40,9 +40,9 @@ int run(const Arguments& arguments) {
   if (terminal) options.progress = show;
   const ReproduceResult result = reproduce_paper(paper, options);
   if (terminal) fmt::print(stderr, "\r{:<78}\r", "");
-  take_written();  // the folder stands for its files
-  note_written(arguments.output);
+  take_written();  // the folder stands for its files, and the text names it
   if (arguments.json) {
+    note_written(arguments.output);
     print(json_claims(result.file, result.judgement));
   } else {
     print(text_claims(result.file, result.judgement) + fmt::format("{} figures written to {}; open {}\n",

@@ -100,7 +100,7 @@ class Reproduce : public Program {
 
 TEST_F(Reproduce, EveryFigureIsThereWithItsData) {
   ASSERT_EQ(outcome().status, 0) << outcome().err;
-  EXPECT_THAT(outcome().err, testing::MatchesRegex("wrote [^\n]*\n"));
+  EXPECT_THAT(outcome().err, IsEmpty());
   std::vector<std::string> names;
   for (const int n : {1, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22}) {
     names.push_back((n < 10 ? "figure-0" : "figure-") + std::to_string(n));
