@@ -33,5 +33,8 @@ void add_tolerance(CLI::App& program, Action& action);
 void add_optimise(CLI::App& program, Action& action);
 void add_endurance(CLI::App& program, Action& action);
 void add_reproduce(CLI::App& program, Action& action);
+void add_new(CLI::App& program, Action& action);
+void add_keys(CLI::App& program, Action& action);
+void add_metrics(CLI::App& program, Action& action);
 
 }  // namespace wingbeat::app

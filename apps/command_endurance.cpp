@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "command.hpp"
+#include "options.hpp"
 #include "wingbeat/io/design_file.hpp"
 #include "wingbeat/io/endurance_report.hpp"
 #include "wingbeat/io/output_file.hpp"
@@ -69,22 +70,25 @@ int run(const Arguments& arguments) {
 void add_endurance(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("endurance", "How long its battery flies a vehicle");
   const auto a = std::make_shared<Arguments>();
-  command->add_option("vehicle", a->vehicle, "Vehicle file (TOML) with a battery")->required()->type_name("VEHICLE");
-  command->add_option("--set", a->overrides, "Replace a key of the vehicle file; repeatable")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
                     "Flight outside the model's domain may hover (docs/domain.md)");
-  command->add_flag("--json", a->json, "Print one JSON object (SI) instead of a table");
+  add_input(command, a->vehicle, "vehicle", "Vehicle file (TOML) with a battery", "VEHICLE");
+  add_set(command, a->overrides);
+  add_json(command, a->json);
   command->add_option("-o,--output", a->output, "Write the course of the flight (NetCDF-4)")->type_name("FILE.nc");
   command->add_option("--plot", a->plot, "Plot the flight to FILE.svg, .pdf or .png")->type_name("FILE");
   add_force(*command, a->force);
   command->footer(
-      "Example:\n  wingbeat endurance data/designs/friction2022-battery.toml --plot flight.svg\n\n"
+      "Example:\n  wingbeat endurance friction2022-battery --plot flight.svg\n\n"
       "The battery drains from supply.charge through steady flapping until it is empty, its terminals fall to\n"
       "supply.cutoff_voltage, or it no longer turns the crank.\n\n"
       "Exit status: 0 done, 2 bad input or usage, 3 the battery cannot start the vehicle, 1 anything else.");
-  command->callback([a, &action] { action = [a] { return run(*a); }; });
+  command->callback([a, &action] {
+    action = [a] {
+      a->vehicle = find_input(a->vehicle, InputKind::vehicle).string();
+      return run(*a);
+    };
+  });
 }
 
 }  // namespace wingbeat::app

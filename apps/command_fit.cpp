@@ -5,8 +5,11 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "command.hpp"
+#include "options.hpp"
 #include "wingbeat/io/bench_file.hpp"
 #include "wingbeat/io/design_edit.hpp"
 #include "wingbeat/io/design_file.hpp"
@@ -17,6 +20,7 @@ namespace wingbeat::app {
 namespace {
 
 struct Arguments {
+  std::vector<std::string> overrides;
   std::string file, output, plot;
   bool json = false, compare_friction = false, no_profiles = false, force = false;
 };
@@ -30,7 +34,7 @@ int run(const Arguments& arguments) {
     format = plot_format(arguments.plot);
     if (!format) throw InputError("--plot " + arguments.plot, 0, 0, "", "the name must end in .svg, .pdf or .png");
   }
-  BenchFit fit = read_bench(arguments.file);
+  BenchFit fit = read_bench(arguments.file, arguments.overrides);
   fit.profiles = !arguments.no_profiles;
   std::optional<OutputFile> output, covariance, plot;
   const std::filesystem::path vehicle = arguments.output;
@@ -89,21 +93,25 @@ int run(const Arguments& arguments) {
 void add_fit(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("fit", "Fit a vehicle's parameters to bench measurements");
   const auto a = std::make_shared<Arguments>();
-  command->add_option("bench", a->file, "Bench file (TOML): vehicle, logs, free parameters")
-      ->required()
-      ->type_name("BENCH");
+  add_input(command, a->file, "bench", "Bench file (TOML): vehicle, logs, free parameters", "BENCH");
+  add_set(command, a->overrides);
   command->add_option("-o,--output", a->output, "Write the fitted vehicle file, and FILE's .covariance.toml beside it")
       ->type_name("FILE.toml");
   command->add_flag("--compare-friction", a->compare_friction, "Fit every friction law to the same data and rank them");
   command->add_flag("--no-profiles", a->no_profiles,
                     "Skip the likelihood profiles: intervals from standard errors only");
-  command->add_flag("--json", a->json, "Print one JSON object instead of tables");
+  add_json(command, a->json);
   command->add_option("--plot", a->plot, "Plot the residuals by condition to FILE.svg, .pdf or .png")
       ->type_name("FILE");
   add_force(*command, a->force);
-  command->footer("Example:\n  wingbeat fit data/bench/flapper.toml -o fitted.toml\n\n"
+  command->footer("Example:\n  wingbeat fit flapper -o fitted.toml\n\n"
                   "Exit status: 0 fitted, 1 not converged, 2 bad input or usage, 3 rows that the model cannot reach.");
-  command->callback([a, &action] { action = [a] { return run(*a); }; });
+  command->callback([a, &action] {
+    action = [a] {
+      a->file = find_input(a->file, InputKind::bench).string();
+      return run(*a);
+    };
+  });
 }
 
 }  // namespace wingbeat::app

@@ -8,9 +8,12 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "command.hpp"
 #include "wingbeat/io/design_edit.hpp"
+#include "options.hpp"
 #include "wingbeat/io/design_file.hpp"
 #include "wingbeat/io/evolution_module.hpp"
 #include "wingbeat/io/optimise_data.hpp"
@@ -24,6 +27,7 @@ namespace wingbeat::app {
 namespace {
 
 struct Arguments {
+  std::vector<std::string> overrides;
   std::string study, output, plot, designs;
   int threads = 0;
   bool json = false, force = false;
@@ -123,7 +127,7 @@ int run(const Arguments& arguments) {
   if (!arguments.plot.empty() && !plot_format(arguments.plot)) {
     throw InputError("--plot " + arguments.plot, 0, 0, "", "the name must end in .svg, .pdf or .png");
   }
-  OptimiseFile file = read_optimise_study(arguments.study);
+  OptimiseFile file = read_optimise_study(arguments.study, arguments.overrides);
   file.study.allow_extrapolation |= arguments.allow_extrapolation;
   const ForEach for_each = [&](std::size_t count, const std::function<void(std::size_t)>& act) {
     for_each_in_parallel(count, act, arguments.threads);
@@ -187,9 +191,8 @@ int run(const Arguments& arguments) {
 void add_optimise(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("optimise", "Find the best design within bounds and constraints");
   const auto a = std::make_shared<Arguments>();
-  command->add_option("study", a->study, "Study file (TOML): objective, parameters, constraints, motors")
-      ->required()
-      ->type_name("STUDY");
+  add_input(command, a->study, "study", "Study file (TOML): objective, parameters, constraints, motors", "STUDY");
+  add_set(command, a->overrides);
   command->add_option("-o,--output", a->output,
                       "Write the optimum as a vehicle file, or what was found on the way, and any front, as FILE.nc (NetCDF-4)")
       ->type_name("FILE");
@@ -199,14 +202,17 @@ void add_optimise(CLI::App& program, Action& action) {
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
                     "Search outside the model's domain too (docs/domain.md)");
   add_force(*command, a->force);
-  command->add_flag("--json", a->json, "Print one JSON object instead of tables");
-  command->add_option("--threads", a->threads, "Use at most so many threads (default: one for each core)")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber);
-  command->footer("Example:\n  wingbeat optimise data/studies/optimise-hover.toml -o hover.toml\n"
-                  "  wingbeat optimise data/studies/optimise-pareto.toml --plot front.svg --designs front\n\n"
+  add_json(command, a->json);
+  add_threads(command, a->threads);
+  command->footer("Example:\n  wingbeat optimise optimise-hover -o hover.toml\n"
+                  "  wingbeat optimise optimise-pareto --plot front.svg --designs front\n\n"
                   "Exit status: 0 found, 2 bad input or usage, 3 no design within the constraints, 1 anything else.");
-  command->callback([a, &action] { action = [a] { return run(*a); }; });
+  command->callback([a, &action] {
+    action = [a] {
+      a->study = find_input(a->study, InputKind::study).string();
+      return run(*a);
+    };
+  });
 }
 
 }  // namespace wingbeat::app

@@ -5,9 +5,11 @@
 #include <memory>
 
 #include "command.hpp"
+#include "options.hpp"
 #include "wingbeat/io/claims.hpp"
 #include "wingbeat/io/optimise_file.hpp"
 #include "wingbeat/io/reproduce.hpp"
+#include "wingbeat/io/written_files.hpp"
 
 namespace wingbeat::app {
 namespace {
@@ -39,7 +41,9 @@ int run(const Arguments& arguments) {
   if (terminal) options.progress = show;
   const ReproduceResult result = reproduce_paper(paper, options);
   if (terminal) fmt::print(stderr, "\r{:<78}\r", "");
+  take_written();  // the folder stands for its files, and the text names it
   if (arguments.json) {
+    note_written(arguments.output);
     print(json_claims(result.file, result.assessment));
   } else {
     print(text_claims(result.file, result.assessment) + fmt::format("{} figures written to {}; open {}\n",
@@ -60,10 +64,8 @@ void add_reproduce(CLI::App& program, Action& action) {
       ->type_name("DIR");
   command->add_flag("--coarse", a->coarse, "Few points on each curve: a check in seconds; the assessment is the same");
   command->add_flag("--json", a->json, "Print the assessment as one JSON object instead of a table");
+  add_threads(command, a->threads);
   add_force(*command, a->force);
-  command->add_option("--threads", a->threads, "Use at most so many threads (default: one for each core)")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber);
   command->footer(
       "Example:\n"
       "  wingbeat reproduce friction2022 -o friction2022-reproduced\n\n"

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "command.hpp"
+#include "options.hpp"
 #include "wingbeat/io/design_file.hpp"
 #include "wingbeat/io/output_file.hpp"
 #include "wingbeat/io/plot.hpp"
@@ -200,10 +201,8 @@ int run(const Arguments& arguments) {
 void add_run(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("run", "Find the steady flapping of one vehicle and report its metrics");
   const auto a = std::make_shared<Arguments>();
-  command->add_option("vehicle", a->vehicle, "Vehicle file (TOML)")->required()->type_name("VEHICLE");
-  command->add_option("--set", a->overrides, "Replace a key of the vehicle file; repeatable")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  add_input(command, a->vehicle, "vehicle", "Vehicle file (TOML)", "VEHICLE");
+  add_set(command, a->overrides);
   CLI::Option* voltage =
       command->add_option("--voltage", a->voltage, "Supply voltage (pwm: while switched on), as \"3 V\"")
           ->type_name("QUANTITY");
@@ -224,7 +223,7 @@ void add_run(CLI::App& program, Action& action) {
       ->type_name("NUMBER");
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
                     "Search for a frequency or a lift outside the model's domain too (docs/targets.md)");
-  command->add_flag("--json", a->json, "Print one JSON object (SI) instead of a table");
+  add_json(command, a->json);
   command->add_option("--waveforms", a->waveforms, "Write one cycle to FILE.csv or FILE.nc")->type_name("FILE");
   command->add_option("--plot", a->plot, "Plot one cycle to FILE.svg, .pdf or .png")->type_name("FILE");
   command->add_option("--plot-power", a->plot_power, "Plot the power breakdown to FILE.svg, .pdf or .png")
@@ -232,7 +231,7 @@ void add_run(CLI::App& program, Action& action) {
   add_force(*command, a->force);
   command->footer(
       "Example:\n"
-      "  wingbeat run data/designs/friction2022.toml --frequency \"22 Hz\" \\\n"
+      "  wingbeat run friction2022 --frequency \"22 Hz\" \\\n"
       "    --set friction.radius=\"2 mm\" --plot cycle.svg\n\n"
       "--frequency finds the voltage for a flapping frequency, --lift the lowest one for a mean lift. Both keep to the\n"
       "domain of validity (angles of attack from 0 to 90 deg and more) unless --allow-extrapolation; a refusal says how\n"
@@ -241,7 +240,12 @@ void add_run(CLI::App& program, Action& action) {
       "takes --frequency as that of its sine and --lift by its amplitude; a crank on a sine needs --method transient,\n"
       "which also reports the start-up.\n\n"
       "Exit status: 0 steady flapping, 2 bad input or usage, 3 the vehicle does not flap, 1 anything else.");
-  command->callback([a, &action] { action = [a] { return run(*a); }; });
+  command->callback([a, &action] {
+    action = [a] {
+      a->vehicle = find_input(a->vehicle, InputKind::vehicle).string();
+      return run(*a);
+    };
+  });
 }
 
 }  // namespace wingbeat::app

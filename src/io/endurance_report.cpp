@@ -143,6 +143,12 @@ std::string json_endurance(const EnduranceResult& result) {
     }
     for (const EnduranceRow& row : f.rows) history["domain"].push_back(name_of(row.domain));
     json["history"] = history;
+  } else {
+    for (const char* key : {"charge_initial", "charge_final", "charge_drawn_c", "energy_chemical_j",
+                            "energy_electrical_j", "energy_internal_j", "energy_aerodynamic_j", "current_mean_a", "power_electrical_w",
+                            "power_aerodynamic_w", "lift_mean_n", "efficiency_system", "initial", "final", "history"}) {
+      json[key] = nullptr;
+    }
   }
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -214,7 +214,7 @@ std::string json_fit(const BenchFit& fit, const FitResult& r, std::span<const Fr
                               {"quantity", name_of(fit.logs[p.log].columns[p.column])},
                               {"measured", p.measured}, {"fitted", number_or_null(p.fitted)}, {"deviation", p.deviation}});
   }
-  if (!candidates.empty()) json["friction"] = Json::array();
+  json["friction"] = candidates.empty() ? Json(nullptr) : Json::array();
   for (const FrictionCandidate& c : candidates) {
     Json left = Json::object();
     for (const auto& [name, rms] : c.left_out) left[name] = number_or_null(rms);

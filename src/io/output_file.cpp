@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "wingbeat/io/design_file.hpp"
+#include "wingbeat/io/written_files.hpp"
 
 namespace wingbeat {
 namespace fs = std::filesystem;
@@ -79,6 +80,7 @@ void OutputFile::commit() {
   committed_ = true;
   forget_temporary(remembered_);
   record.written(target_);
+  note_written(option_.substr(option_.find(' ') + 1));
 }
 
 }  // namespace wingbeat

@@ -13,6 +13,7 @@
 
 #include "wingbeat/io/design_keys.hpp"
 #include "wingbeat/io/design_parameter.hpp"
+#include "wingbeat/io/input_file.hpp"
 #include "wingbeat/io/report.hpp"
 #include "wingbeat/io/units.hpp"
 
@@ -334,10 +335,11 @@ PublishedFile parse_published(std::string_view text, std::string_view name,
   return Reader(text, name, design_named).read();
 }
 
-PublishedFile read_published(const std::filesystem::path& file) {
+PublishedFile read_published(const std::filesystem::path& file, std::span<const std::string> overrides) {
   const std::string text = read_text_file(file);
-  return parse_published(text, file.string(),
-                         [&](const std::string& design) { return read_design(file.parent_path() / design); });
+  return parse_published(text, input_name(file), [&](const std::string& design) {
+    return read_design(find_vehicle(file.parent_path(), design), overrides);
+  });
 }
 
 const char* name_of(Basis basis) { return bases[std::size_t(basis)].first; }
@@ -423,14 +425,11 @@ std::string json_comparison(const PublishedFile& file, const Comparison& compari
   for (const ComparedValue& v : comparison.values) {
     const PublishedValue& p = v.published;
     Json entry;
-    if (p.voltage) entry["voltage_v"] = *p.voltage;
-    if (p.frequency) entry["frequency_hz"] = *p.frequency;
+    entry["voltage_v"] = p.voltage ? Json(*p.voltage) : Json(nullptr);
+    entry["frequency_hz"] = p.frequency ? Json(*p.frequency) : Json(nullptr);
     entry["metric"] = metric_info(p.metric).key;
-    if (p.relative_to) {
-      entry["ratio"] = {p.design, *p.relative_to};
-    } else {
-      entry["design"] = p.design;
-    }
+    entry["design"] = p.relative_to ? Json(nullptr) : Json(p.design);
+    entry["ratio"] = p.relative_to ? Json{p.design, *p.relative_to} : Json(nullptr);
     entry["published"] = p.published;
     entry["computed"] = number(v.computed);
     entry["deviation"] = number(v.deviation);

@@ -165,7 +165,9 @@ TEST_F(Optimise, SeveralObjectivesGiveAFront) {
     const Outcome text = run({"optimise", file, "-o", path("front.nc"), "--plot", path("front.svg"), "--designs",
                               path("designs")});
     ASSERT_EQ(text.status, 0) << text.err;
-    EXPECT_EQ(text.err, "");
+    EXPECT_THAT(text.err, testing::StartsWith("wrote " + path("front.nc") + "\nwrote " + path("front.svg") + "\nwrote " +
+                                              path("designs") + "/"));
+    EXPECT_EQ(count_of(text.err, "\n"), count_of(text.err, "wrote "));
     EXPECT_THAT(text.out, HasSubstr("hypervolume "));
     EXPECT_THAT(text.out, HasSubstr("knee"));
     EXPECT_THAT(read(path("front.svg")), HasSubstr("mean electrical input power (W)"));

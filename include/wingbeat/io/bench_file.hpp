@@ -14,7 +14,7 @@ namespace wingbeat {
 
 /// A fit as its bench file describes it, logs read. Vehicle file and logs are sought beside it. Throws InputError with
 /// file, line and reason.
-BenchFit read_bench(const std::filesystem::path& file);
+BenchFit read_bench(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 
 /// The vehicle file that it names.
 std::filesystem::path vehicle_of_bench(const std::filesystem::path& file);
