@@ -147,8 +147,9 @@ int run(const Arguments& arguments) {
   if (!arguments.lift_to_weight.empty()) {
     const double ratio = quantity("--lift-to-weight", arguments.lift_to_weight, "1");
     if (!(ratio > 0.0)) throw InputError("--lift-to-weight", 0, 0, "", "must be > 0");
-    if (!design.mass) throw InputError("--lift-to-weight", 0, 0, "", "needs vehicle.mass, which the vehicle does not give");
-    options.lift = ratio * *design.mass * standard_gravity;
+    const std::optional<double> mass = total_mass(design);
+    if (!mass) throw InputError("--lift-to-weight", 0, 0, "", "needs vehicle.mass, which the vehicle does not give");
+    options.lift = ratio * *mass * standard_gravity;
   }
   if (!arguments.voltage.empty()) apply_voltage(design.supply, arguments.voltage);
   Output waveforms("--waveforms", arguments.waveforms, arguments.vehicle);
@@ -178,8 +179,9 @@ int run(const Arguments& arguments) {
         write_waveforms_netcdf((*waveforms).temporary(), result.cycle,
                                {.title = fmt::format("One flapping cycle of {}",
                                                      design.name.empty() ? arguments.vehicle : design.name),
+                                .command = "run",
                                 .version = version,
-                                .input = write_design(result.design),
+                                .vehicle = write_design(result.design),
                                 .condition = name_of(options.condition),
                                 .method = name_of(options.method),
                                 .domain = name_of(result.domain),
@@ -188,7 +190,7 @@ int run(const Arguments& arguments) {
       (*waveforms).commit();
     }
     if (cycle_plot) {
-      plot_cycle(result.cycle, result.cycle_voltage, title, *cycle_format, (*cycle_plot).temporary());
+      plot_cycle(result.cycle, title, *cycle_format, (*cycle_plot).temporary());
       (*cycle_plot).commit();
     }
     if (power_plot) {

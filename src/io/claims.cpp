@@ -106,7 +106,7 @@ Answer answer_to(const PublishedFile& file, const PublishedTrend& t) {
     case Kind::spring_resonance:
       return {std::sqrt(vehicle.spring.stiffness / vehicle.wing_inertia) / two_pi, ""};
     case Kind::weight:
-      return {design.mass.value_or(absent) * standard_gravity, ""};
+      return {total_mass(design).value_or(absent) * standard_gravity, ""};
     default:
       return {};
   }

@@ -92,15 +92,14 @@ std::string title_of(const Study& study) { return study.title.empty() ? "Sweep o
 /// Texts longer than an attribute should be go into a variable of characters.
 void write_input(NetcdfFile& file, const Study& study, std::string_view version) {
   const Sweep& sweep = study.sweep;
-  file.set_attribute("Conventions", "CF-1.8");
-  file.set_attribute("title", title_of(study));
-  file.set_attribute("source", fmt::format("wingbeat {} sweep", version));
-  file.set_attribute("wingbeat_version", version);
-  file.set_attribute("study", study.input.study);
+  write_provenance(file, {.title = title_of(study),
+                          .command = "sweep",
+                          .version = std::string(version),
+                          .vehicle = study.input.vehicle,
+                          .study = study.input.study,
+                          .tolerance = sweep.options.tolerance});
   file.set_attribute("study_name", study.input.study_name);
-  file.set_attribute("vehicle", study.input.vehicle);
   if (!study.input.table.empty()) file.set_attribute("samples_name", study.input.table_name);
-  file.set_attribute("tolerance", fmt::format("{}", sweep.options.tolerance));
   for (const auto& [name, isa] : instruction_sets) {
     if (isa == sweep.options.isa) file.set_attribute("instruction_set", name);
   }
@@ -149,7 +148,7 @@ std::vector<std::uint64_t> prepare_data_set(const fs::path& path, const Study& s
       } else {
         variable = file.define_dense(q.name, {dimensions[a]}, q.unit, meaning);
       }
-      file.set_attribute(variable, "wingbeat_key", q.key);
+      file.set_key(variable, q.key);
       if (q.name != axis.name) auxiliary += (auxiliary.empty() ? "" : " ") + q.name;
       coordinates[a].push_back(variable);
     }

@@ -436,7 +436,7 @@ std::vector<Sheet> paper_sheets(const Material& m) {
     figure.into(s);
     sheets.push_back(std::move(s));
   }
-  const double weight = m.pair[0].mass.value_or(absent) * standard_gravity;
+  const double weight = total_mass(m.pair[0]).value_or(absent) * standard_gravity;
   for (const Formulation formulation : {rod_force, virtual_work}) {
     Sheet s =
         sheet(22, fmt::format("Lift and efficiency against voltage, {}", wingbeat::name_of(formulation)), "section5");

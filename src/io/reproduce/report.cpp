@@ -328,7 +328,7 @@ std::string question(const Material& m) {
 std::string hover_answer(const Material& m) {
   std::string html = "<p><b>Does it hover at 5 V?</b> With the best crank between 3 and 14 mm, its radius in "
                      "brackets:</p>\n<ul>\n";
-  const double weight = m.pair[0].mass.value_or(absent) * standard_gravity;
+  const double weight = total_mass(m.pair[0]).value_or(absent) * standard_gravity;
   for (std::size_t f = 0; f < 2; ++f) {
     std::string yes, no;
     for (const Claim& c : m.judgement.claims) {
@@ -368,7 +368,7 @@ std::string parameters(const Material& m) {
   row("spring of one hinge k", fmt::format("{:.4g} N m/rad", v.spring.stiffness), "Table 2");
   row("friction radius mu r_e", readable(v.friction.radius, "m"), "Table 2");
   row("pitch coefficient C_alpha", fmt::format("{:.4g} s", v.wings.pitch_coefficient), "Table 2");
-  row("mass", fmt::format("{:.4g} g", 1e3 * d.mass.value_or(absent)), "Table 2");
+  row("mass", fmt::format("{:.4g} g", 1e3 * total_mass(d).value_or(absent)), "Table 2");
   row("chord moment S_2", fmt::format("{:.4g} m4", v.wings.s2), "<b>calibrated</b>, not published");
   row("chord moment S_3", fmt::format("{:.4g} m5", v.wings.s3), "<b>calibrated</b>, not published");
   return html + "</tbody></table></div>\n";
