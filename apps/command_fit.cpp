@@ -59,7 +59,7 @@ int run(const Arguments& arguments) {
 
   const std::string made_by = fmt::format("Fitted by wingbeat {} to {}", version,
                                           std::filesystem::path(arguments.file).filename().string());
-  if (output) {
+  if (output && result.misfit.empty()) {
     output->write(fitted_vehicle(fit, result, made_by));
     covariance->write(covariance_file(result, vehicle.filename().string(), made_by));
     output->commit();
@@ -73,6 +73,11 @@ int run(const Arguments& arguments) {
     print(json_fit(fit, result, candidates));
   } else {
     print(text_fit(fit, result) + (candidates.empty() ? "" : text_friction(candidates)));
+  }
+  if (!result.misfit.empty()) {
+    complain("the model does not describe the data: " + result.misfit +
+             (output ? "; no vehicle file was written" : ""));
+    return does_not_flap;
   }
   if (!result.converged) {
     complain("the fit did not converge: " + result.message);
@@ -102,7 +107,8 @@ void add_fit(CLI::App& program, Action& action) {
   command->add_option("--plot", a->plot, "Plot the residuals by condition to FILE.svg, .pdf or .png")
       ->type_name("FILE");
   command->footer("Example:\n  wingbeat fit data/bench/flapper.toml -o fitted.toml\n\n"
-                  "Exit status: 0 fitted, 1 not converged, 2 bad input or usage, 3 rows that the model cannot reach.");
+                  "Exit status: 0 fitted, 1 not converged, 2 bad input or usage, 3 the model does not describe the data, or\n"
+                  "cannot reach some rows.");
   command->callback([a, &action] { action = [a] { return run(*a); }; });
 }
 
