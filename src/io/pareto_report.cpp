@@ -149,9 +149,13 @@ std::string text_front(const OptimiseFile& file, const ParetoStudy& study, const
                  r.evaluated.size(), std::count(r.feasible.begin(), r.feasible.end(), true));
   fmt::format_to(out, "front of {} designs; hypervolume {:.6g} {} up to\n  {}\n", r.front.size(), r.hypervolume,
                  hypervolume_unit(study), reference_text(study, r));
-  fmt::format_to(out, "  after the screening {:.1f} % of it, after half of the generations {:.2f} %\n\n",
-                 100.0 * r.history.front() / r.hypervolume,
-                 100.0 * r.history[r.history.size() / 2] / r.hypervolume);
+  if (r.hypervolume > 0.0) {
+    fmt::format_to(out, "  after the screening {:.1f} % of it, after half of the generations {:.2f} %\n\n",
+                   100.0 * r.history.front() / r.hypervolume,
+                   100.0 * r.history[r.history.size() / 2] / r.hypervolume);
+  } else {
+    fmt::format_to(out, "  no design is better than the reference in every objective: choose a reference that is worse\n\n");
+  }
 
   const auto columns = columns_of(study, r);
   const std::size_t fit = 6;  // beside the names

@@ -251,8 +251,10 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
   table.metric("mean lift", Metric::lift_mean, "N");
   table.metric("peak lift", Metric::lift_peak, "N");
   if (std::isfinite(m[Metric::lift_to_weight])) {
+    // A voltage found for hovering gives the weight to within the tolerance.
+    const bool hovers = m[Metric::lift_to_weight] >= 1.0 - 10.0 * options.tolerance;
     table.line("mean lift / weight", fmt::format("{:.4g}", m[Metric::lift_to_weight]),
-               m[Metric::lift_to_weight] >= 1.0 ? "can hover" : "below weight: cannot hover");
+               hovers ? "can hover" : "below weight: cannot hover");
   }
 
   table.group("Mechanism and wings");

@@ -33,6 +33,7 @@ class Digester {
     for (std::size_t m = 0; m < kept.size(); ++m) {
       if (kept[m] == Metric::lift_mean) lift_ = int(m);
       if (kept[m] == Metric::efficiency_system) efficiency_ = int(m);
+      if (kept[m] == Metric::lift_to_weight) weight_ = int(m);
     }
   }
 
@@ -50,17 +51,17 @@ class Digester {
   const SweepDigest& digest() const { return digest_; }
 
  private:
-  void best(std::optional<SweepDigest::Best>& best, const SweepColumns& columns, int metric) const {
+  void best(SweepBest& best, const SweepColumns& columns, int metric) const {
     const auto& values = columns.metrics[std::size_t(metric)];
     for (std::size_t row = 0; row < values.size(); ++row) {
-      if (!std::isfinite(values[row]) || !columns.counts(row, allow_extrapolation_)) continue;
-      if (!best || values[row] > best->value) best = {columns.first + row, values[row]};
+      if (!columns.counts(row, allow_extrapolation_)) continue;
+      best.offer(columns.first + row, values[row], weight_ < 0 ? absent : columns.metrics[std::size_t(weight_)][row]);
     }
   }
 
   SweepDigest digest_;
   bool allow_extrapolation_;
-  int lift_ = -1, efficiency_ = -1;
+  int lift_ = -1, efficiency_ = -1, weight_ = -1;
 };
 
 struct CloseHdf5 {
@@ -240,7 +241,8 @@ SweepDigest digest_of(const fs::path& path, const Study& study) {
     file.read_run("recomputed", columns.first, columns.recomputed);
     file.read_run("domain", columns.first, columns.domain);
     for (std::size_t m = 0; m < kept.size(); ++m) {
-      const bool wanted = kept[m] == Metric::lift_mean || kept[m] == Metric::efficiency_system;
+      const bool wanted = kept[m] == Metric::lift_mean || kept[m] == Metric::efficiency_system ||
+                          kept[m] == Metric::lift_to_weight;
       if (wanted) file.read_run(metric_info(kept[m]).key, columns.first, columns.metrics[m]);
     }
     digester.add(columns);

@@ -43,11 +43,17 @@ class DataSets : public Program {
       nc_type type = 0;
       ASSERT_EQ(nc_inq_var(id, v, name, &type, nullptr, nullptr, nullptr), NC_NOERR);
       EXPECT_NE(text(v, "long_name"), "") << name;
-      if (type != NC_CHAR) EXPECT_NE(text(v, "units"), "") << name;
+      if (type != NC_CHAR) {
+        EXPECT_NE(text(v, "units"), "") << name;
+      }
       EXPECT_STRNE(name, "time");
       const std::string unit = text(v, "units");
-      if (std::string(name).ends_with("_nm")) EXPECT_EQ(unit, "N m") << name;
-      if (std::string(name) == "time_s") EXPECT_EQ(unit, "s");
+      if (std::string(name).ends_with("_nm")) {
+        EXPECT_EQ(unit, "N m") << name;
+      }
+      if (std::string(name) == "time_s") {
+        EXPECT_EQ(unit, "s");
+      }
     }
     nc_close(id);
   }
