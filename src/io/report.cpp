@@ -254,7 +254,9 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
     // A voltage found for hovering gives the weight to within the tolerance.
     const bool hovers = m[Metric::lift_to_weight] >= 1.0 - 10.0 * options.tolerance;
     table.line("mean lift / weight", fmt::format("{:.4g}", m[Metric::lift_to_weight]),
-               hovers ? "can hover" : "below weight: cannot hover");
+               !hovers               ? "below weight: cannot hover"
+               : result.domain.any() ? "outside the model's domain: not claimed"
+                                     : "can hover");
   }
 
   table.group("Mechanism and wings");
