@@ -61,7 +61,7 @@ int run(const Arguments& arguments) {
 
   const std::string made_by = fmt::format("Fitted by wingbeat {} to {}", version,
                                           std::filesystem::path(arguments.file).filename().string());
-  if (output) {
+  if (output && result.misfit.empty()) {
     output->write(fitted_vehicle_head(fit, result, made_by) +
                   edited_design(vehicle_of_bench(arguments.file), vehicle, result.design));
     covariance->write(covariance_file(result, vehicle.filename().string(), made_by));
@@ -76,6 +76,11 @@ int run(const Arguments& arguments) {
     print(json_fit(fit, result, candidates));
   } else {
     print(text_fit(fit, result) + (candidates.empty() ? "" : text_friction(candidates)));
+  }
+  if (!result.misfit.empty()) {
+    complain("the model does not describe the data: " + result.misfit +
+             (output ? "; no vehicle file was written" : ""));
+    return does_not_flap;
   }
   if (!result.converged) {
     complain("the fit did not converge: " + result.message);
@@ -105,7 +110,8 @@ void add_fit(CLI::App& program, Action& action) {
       ->type_name("FILE");
   add_force(*command, a->force);
   command->footer("Example:\n  wingbeat fit flapper -o fitted.toml\n\n"
-                  "Exit status: 0 fitted, 1 not converged, 2 bad input or usage, 3 rows that the model cannot reach.");
+                  "Exit status: 0 fitted, 1 not converged, 2 bad input or usage, 3 the model does not describe the data, or\n"
+                  "cannot reach some rows.");
   command->callback([a, &action] {
     action = [a] {
       a->file = find_input(a->file, InputKind::bench).string();

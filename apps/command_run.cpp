@@ -132,8 +132,9 @@ int run(const Arguments& arguments) {
   if (!arguments.lift_to_weight.empty()) {
     const double ratio = quantity("--lift-to-weight", arguments.lift_to_weight, "1");
     if (!(ratio > 0.0)) throw InputError("--lift-to-weight", 0, 0, "", "must be > 0");
-    if (!design.mass) throw InputError("--lift-to-weight", 0, 0, "", "needs vehicle.mass, which the vehicle does not give");
-    options.lift = ratio * *total_mass(design) * standard_gravity;
+    const std::optional<double> mass = total_mass(design);
+    if (!mass) throw InputError("--lift-to-weight", 0, 0, "", "needs vehicle.mass, which the vehicle does not give");
+    options.lift = ratio * *mass * standard_gravity;
   }
   if (!arguments.voltage.empty()) apply_voltage(design.supply, arguments.voltage);
   const OutputRules drawing{plot_extensions, arguments.force};
@@ -166,8 +167,9 @@ int run(const Arguments& arguments) {
         write_waveforms_netcdf(waveforms->temporary(), result.cycle,
                                {.title = fmt::format("One flapping cycle of {}",
                                                      design.name.empty() ? arguments.vehicle : design.name),
+                                .command = "run",
                                 .version = version,
-                                .input = write_design(result.design),
+                                .vehicle = write_design(result.design),
                                 .condition = name_of(options.condition),
                                 .method = name_of(options.method),
                                 .domain = name_of(result.domain),
@@ -176,7 +178,7 @@ int run(const Arguments& arguments) {
       waveforms->commit();
     }
     if (cycle_plot) {
-      plot_cycle(result.cycle, result.cycle_voltage, title, *cycle_format, cycle_plot->temporary());
+      plot_cycle(result.cycle, title, *cycle_format, cycle_plot->temporary());
       cycle_plot->commit();
     }
     if (power_plot) {

@@ -153,13 +153,15 @@ std::string summary(const Study& study, const SweepResult& result) {
                    grouped(digest.outside), 100.0 * double(digest.outside) / double(sweep.size()), limits);
     if (sweep.allow_extrapolation) fmt::format_to(out, "extrapolation is allowed: designs outside the domain may be best\n");
   }
-  const auto best = [&](const char* what, const std::optional<SweepDigest::Best>& b, const std::string& value) {
-    if (b) fmt::format_to(out, "{}\n", wrapped(fmt::format("{}: {}, {}", what, value, description(sweep, b->index)), 88, 2));
+  const auto best = [&](const char* what, const SweepBest& b, const auto& value) {
+    if (!b.design()) return;
+    fmt::format_to(out, "{}\n",
+                   wrapped(fmt::format("{}: {}, {}{}", what, value(b.design()->value), description(sweep, b.design()->index),
+                                       b.carries_weight() ? " (of those that carry their weight)" : ""),
+                           88, 2));
   };
-  if (digest.lift) best("most mean lift", digest.lift, readable(digest.lift->value, "N"));
-  if (digest.efficiency) {
-    best("best efficiency", digest.efficiency, fmt::format("{:.2f} %", 100.0 * digest.efficiency->value));
-  }
+  best("maximum mean lift", digest.lift, [](double lift) { return readable(lift, "N"); });
+  best("maximum efficiency", digest.efficiency, [](double share) { return fmt::format("{:.2f} %", 100.0 * share); });
   return text;
 }
 

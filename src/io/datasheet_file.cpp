@@ -148,6 +148,7 @@ std::string motor_section(const MotorIdentification& motor, const MotorDatasheet
                                  sheet.name.empty() ? "Motor of a data sheet" : one_line(sheet.name, 100), made_by);
   for (const Contradiction& c : motor.contradictions) text += fmt::format("# On the sheet, {}.\n", sentence(c));
   for (const std::string& remark : motor.remarks) text += fmt::format("# {}.\n", remark);
+  if (sheet.gear_efficiency) text += fmt::format("# Of the sheet, not of this section: gear_efficiency = {}\n", *sheet.gear_efficiency);
   text += "\n[motor]\n";
   for (const Constant& c : constants) {
     text += fmt::format("{} = \"{} {}\"\n", c.key, *(motor.*c.value).value, c.unit);
@@ -196,6 +197,8 @@ std::string json_identification(const MotorIdentification& motor, const MotorDat
   Json json;
   json["name"] = sheet.name;
   json["complete"] = motor.complete();
+  json["birge_ratio"] = motor.birge_ratio;
+  json["gear_efficiency"] = number(sheet.gear_efficiency);
   for (const Constant& c : constants) {
     const IdentifiedConstant& x = motor.*c.value;
     json["motor"][std::string(c.key)] = {{"value", number(x.value)},

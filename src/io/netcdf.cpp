@@ -299,13 +299,19 @@ void NetcdfReader::check(int status, const std::string& action) const {
 }
 
 void write_provenance(NetcdfFile& file, const Provenance& provenance) {
-  file.set_attribute("title", provenance.title);
-  file.set_attribute("wingbeat_version", provenance.version);
-  file.set_attribute("input", provenance.input);
-  file.set_attribute("condition", provenance.condition);
-  file.set_attribute("method", provenance.method);
-  if (!provenance.domain.empty()) file.set_attribute("domain", provenance.domain);
-  file.set_attribute("tolerance", fmt::format("{}", provenance.tolerance));
+  const auto set = [&](const char* name, const std::string& text) {
+    if (!text.empty()) file.set_attribute(name, text);
+  };
+  set("Conventions", "CF-1.8");
+  set("title", provenance.title);
+  set("source", fmt::format("wingbeat {} {}", provenance.version, provenance.command));
+  set("wingbeat_version", provenance.version);
+  set("vehicle", provenance.vehicle);
+  set("study", provenance.study);
+  set("condition", provenance.condition);
+  set("method", provenance.method);
+  set("domain", provenance.domain);
+  if (provenance.tolerance > 0.0) set("tolerance", fmt::format("{}", provenance.tolerance));
 }
 
 }  // namespace wingbeat

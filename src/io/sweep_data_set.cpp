@@ -34,6 +34,7 @@ class Digester {
     for (std::size_t m = 0; m < kept.size(); ++m) {
       if (kept[m] == Metric::lift_mean) lift_ = int(m);
       if (kept[m] == Metric::efficiency_system) efficiency_ = int(m);
+      if (kept[m] == Metric::lift_to_weight) weight_ = int(m);
     }
   }
 
@@ -51,17 +52,17 @@ class Digester {
   const SweepDigest& digest() const { return digest_; }
 
  private:
-  void best(std::optional<SweepDigest::Best>& best, const SweepColumns& columns, int metric) const {
+  void best(SweepBest& best, const SweepColumns& columns, int metric) const {
     const auto& values = columns.metrics[std::size_t(metric)];
     for (std::size_t row = 0; row < values.size(); ++row) {
-      if (!std::isfinite(values[row]) || !columns.counts(row, allow_extrapolation_)) continue;
-      if (!best || values[row] > best->value) best = {columns.first + row, values[row]};
+      if (!columns.counts(row, allow_extrapolation_)) continue;
+      best.offer(columns.first + row, values[row], weight_ < 0 ? absent : columns.metrics[std::size_t(weight_)][row]);
     }
   }
 
   SweepDigest digest_;
   bool allow_extrapolation_;
-  int lift_ = -1, efficiency_ = -1;
+  int lift_ = -1, efficiency_ = -1, weight_ = -1;
 };
 
 struct CloseHdf5 {
@@ -93,15 +94,14 @@ std::string title_of(const Study& study) { return study.title.empty() ? "Sweep o
 /// Texts longer than an attribute should be go into a variable of characters.
 void write_input(NetcdfFile& file, const Study& study, std::string_view version) {
   const Sweep& sweep = study.sweep;
-  file.set_attribute("Conventions", "CF-1.8");
-  file.set_attribute("title", title_of(study));
-  file.set_attribute("source", fmt::format("wingbeat {} sweep", version));
-  file.set_attribute("wingbeat_version", version);
-  file.set_attribute("study", study.input.study);
+  write_provenance(file, {.title = title_of(study),
+                          .command = "sweep",
+                          .version = std::string(version),
+                          .vehicle = study.input.vehicle,
+                          .study = study.input.study,
+                          .tolerance = sweep.options.tolerance});
   file.set_attribute("study_name", study.input.study_name);
-  file.set_attribute("vehicle", study.input.vehicle);
   if (!study.input.table.empty()) file.set_attribute("samples_name", study.input.table_name);
-  file.set_attribute("tolerance", fmt::format("{}", sweep.options.tolerance));
   for (const auto& [name, isa] : instruction_sets) {
     if (isa == sweep.options.isa) file.set_attribute("instruction_set", name);
   }
@@ -150,7 +150,7 @@ std::vector<std::uint64_t> prepare_data_set(const fs::path& path, const Study& s
       } else {
         variable = file.define_dense(q.name, {dimensions[a]}, q.unit, meaning);
       }
-      file.set_attribute(variable, "wingbeat_key", q.key);
+      file.set_key(variable, q.key);
       if (q.name != axis.name) auxiliary += (auxiliary.empty() ? "" : " ") + q.name;
       coordinates[a].push_back(variable);
     }
@@ -242,7 +242,8 @@ SweepDigest digest_of(const fs::path& path, const Study& study) {
     file.read_run("recomputed", columns.first, columns.recomputed);
     file.read_run("domain", columns.first, columns.domain);
     for (std::size_t m = 0; m < kept.size(); ++m) {
-      const bool wanted = kept[m] == Metric::lift_mean || kept[m] == Metric::efficiency_system;
+      const bool wanted = kept[m] == Metric::lift_mean || kept[m] == Metric::efficiency_system ||
+                          kept[m] == Metric::lift_to_weight;
       if (wanted) file.read_run(metric_info(kept[m]).key, columns.first, columns.metrics[m]);
     }
     digester.add(columns);

@@ -16,13 +16,17 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
+const std::string direct = data + "/designs/direct-drive.toml";
+
 const char* const header =
     "time_s,crank_angle_rad,crank_speed_rad_per_s,current_a,stroke_angle_rad,flapping_velocity_rad_per_s,"
-    "angle_of_attack_deg,lift_n,aero_moment_nm,rod_force_n,motor_torque_nm,friction_torque_nm";
+    "angle_of_attack_deg,lift_n,aero_moment_nm,rod_force_n,motor_torque_nm,friction_torque_nm,"
+    "voltage_v,power_electrical_w,power_motor_w,power_friction_w,power_aerodynamic_w,spring_moment_nm,inertial_moment_nm";
 
 using Columns = std::map<std::string, std::vector<double>>;
 
-Columns read_csv(const std::string& file) {
+/// An empty cell, of what the vehicle does not have, is left out of the columns.
+Columns read_csv(const std::string& file, bool with_gaps = false) {
   std::istringstream in(read(file));
   std::string line, cell;
   std::getline(in, line);
@@ -33,7 +37,8 @@ Columns read_csv(const std::string& file) {
   while (std::getline(in, line)) {
     std::size_t k = 0;
     for (std::istringstream cells(line); std::getline(cells, cell, ',');) {
-      columns[names.at(k++)].push_back(std::stod(cell));
+      const std::string& name = names.at(k++);
+      if (!with_gaps || !cell.empty()) columns[name].push_back(std::stod(cell));
     }
     EXPECT_EQ(k, names.size());
   }
@@ -65,9 +70,16 @@ class Files : public Program {
     EXPECT_NEAR(time_mean(c, c.at("current_a")) / json["current_mean_a"].get<double>(), 1.0, 1e-4);
     EXPECT_NEAR(largest(c.at("rod_force_n")) / json["rod_force_peak_n"].get<double>(), 1.0, 1e-3);
     EXPECT_NEAR(largest(c.at("lift_n")) / json["lift_peak_n"].get<double>(), 1.0, 1e-3);
-    std::vector<double> motor(361);
-    for (std::size_t k = 0; k < 361; ++k) motor[k] = c.at("motor_torque_nm")[k] * c.at("crank_speed_rad_per_s")[k];
+    for (const char* power : {"power_electrical_w", "power_motor_w", "power_friction_w", "power_aerodynamic_w"}) {
+      EXPECT_NEAR(time_mean(c, c.at(power)) / json[power].get<double>(), 1.0, 1e-3) << power;
+    }
+    std::vector<double> motor(361), square(361);
+    for (std::size_t k = 0; k < 361; ++k) {
+      motor[k] = c.at("motor_torque_nm")[k] * c.at("crank_speed_rad_per_s")[k];
+      square[k] = c.at("current_a")[k] * c.at("current_a")[k];
+    }
     EXPECT_NEAR(time_mean(c, motor) / json["power_motor_w"].get<double>(), 1.0, 1e-3);
+    EXPECT_NEAR(std::sqrt(time_mean(c, square)) / json["current_rms_a"].get<double>(), 1.0, 1e-4);
     for (const auto& [name, y] : c) {
       if (name == "time_s" || name == "crank_angle_rad") continue;
       EXPECT_NEAR(y.front(), y.back(), 1e-4 * largest(y)) << name;
@@ -81,6 +93,32 @@ TEST_F(Files, CsvHoldsOneCycleThatGivesBackTheMetrics) {
     ASSERT_EQ(o.status, 0) << o.err;
     expect_consistent(read_csv(path("w.csv")), o.json());
     EXPECT_THAT(files(), ElementsAre("w.csv"));
+  }
+}
+
+TEST_F(Files, WaveformsHoldVoltageAndTheMomentsOfTheWings) {
+  const std::vector<std::string> vehicles[] = {{springs}, {springs, "--method", "transient"}, {direct}};
+  for (const auto& vehicle : vehicles) {
+    std::vector<std::string> arguments = {"run", "--json", "--waveforms", path("w.csv")};
+    arguments.insert(arguments.end(), vehicle.begin(), vehicle.end());
+    const Outcome o = run(arguments);
+    ASSERT_EQ(o.status, 0) << o.err;
+    const bool is_direct = vehicle.front() == direct;
+    const Columns c = read_csv(path("w.csv"), is_direct);
+    const double stiffness = is_direct ? 0.0 : 2.0 * 1.377e-3;
+    double most = 0.0, volts = 0.0;
+    for (std::size_t k = 0; k < c.at("time_s").size(); ++k) {
+      if (!is_direct) {
+        EXPECT_NEAR(c.at("spring_moment_nm")[k], stiffness * c.at("stroke_angle_rad")[k], 1e-12);
+      }
+      EXPECT_NEAR(c.at("power_electrical_w")[k], c.at("voltage_v")[k] * c.at("current_a")[k], 1e-12);
+      volts = std::max(volts, std::abs(c.at("voltage_v")[k]));
+      most = std::max(most, std::abs(c.at("inertial_moment_nm")[k]));
+    }
+    EXPECT_NEAR(volts / o.json()["voltage_v"].get<double>(), 1.0, 1e-4);
+    // Over a cycle the stroke velocity returns: the inertial moment has no mean.
+    EXPECT_GT(most, 1e-4);
+    EXPECT_NEAR(time_mean(c, c.at("inertial_moment_nm")) / most, 0.0, 2e-3);
   }
 }
 
@@ -123,7 +161,7 @@ TEST_F(Files, NetcdfHoldsWhatCsvHolds) {
   EXPECT_THAT(text(NC_GLOBAL, "title"), HasSubstr("One flapping cycle"));
   EXPECT_THAT(run({"--version"}).out, HasSubstr(text(NC_GLOBAL, "wingbeat_version")));
   // The input can be run again as it stands, overrides included.
-  std::ofstream(path("again.toml")) << text(NC_GLOBAL, "input");
+  std::ofstream(path("again.toml")) << text(NC_GLOBAL, "vehicle");
   nc_close(file);
   EXPECT_EQ(run({"run", path("again.toml"), "--json"}).out, o.out);
 }

@@ -207,6 +207,15 @@ TEST_F(Optimise, ThreeObjectivesAndMotors) {
   EXPECT_EQ(json["motors"][0]["solved"].get<int>() + json["motors"][1]["solved"].get<int>(), 64 + 16 * 5);
 }
 
+TEST_F(Optimise, AReferenceThatNothingBeatsIsSaid) {
+  const std::string strict = "[[objective]]\nmaximise = \"lift_mean_n\"\nreference = \"90 mN\"\n"
+                             "[[objective]]\nminimise = \"power_electrical_w\"\nreference = \"1 mW\"\n";
+  const Outcome o = run({"optimise", study(strict + short_search + voltage)});
+  EXPECT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("no design is better than the reference in every objective"));
+  EXPECT_THAT(o.out, testing::Not(HasSubstr("nan")));
+}
+
 TEST_F(Optimise, AFrontThatIsNotThereIsStatusThree) {
   const std::string low = "[[parameter]]\nkey = \"supply.voltage\"\nlower = \"0.1 V\"\nupper = \"0.5 V\"\n";
   const Outcome outcome = run({"optimise", study(two + short_search + low), "-o", path("front.nc")});

@@ -31,6 +31,7 @@ const std::vector<std::string> contract_keys = {"status",
                                                 "frequency_hz",
                                                 "current_mean_a",
                                                 "current_peak_a",
+                                                "current_rms_a",
                                                 "power_electrical_w",
                                                 "power_motor_w",
                                                 "power_motor_reference_w",
@@ -96,6 +97,16 @@ TEST_F(Run, TableNamesStatusMetricsAndBooks) {
     EXPECT_LE(line.size(), 90U) << line;
     EXPECT_TRUE(line.empty() || line.back() != ' ') << line;
   }
+}
+
+TEST_F(Run, LiftBelowTheWeightIsSaidNotToHover) {
+  EXPECT_THAT(run({"run", plain}).out, HasSubstr("below weight: cannot hover"));
+  const Outcome light = run({"run", plain, "--set", "vehicle.mass=0.5 g"});
+  EXPECT_THAT(light.out, HasSubstr("   can hover"));
+  // Every mass stated for itself is carried too, also where a lift over weight is asked for.
+  const std::vector<std::string> heavy = {"--set", "vehicle.mass=0.5 g", "--set", "motor.mass=1 g"};
+  const Json json = run({"run", plain, "--json", "--lift-to-weight", "0.5", heavy[0], heavy[1], heavy[2], heavy[3]}).json();
+  EXPECT_NEAR(json["lift_to_weight"].get<double>(), 0.5, 1e-6);
 }
 
 TEST_F(Run, SetReplacesKeysInOrder) {

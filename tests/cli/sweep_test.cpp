@@ -267,6 +267,20 @@ TEST_F(Sweep, NoRoomIsAnErrorThatKeepsNothingHalf) {
   EXPECT_THAT(files(), ElementsAre("long.toml"));
 }
 
+TEST_F(Sweep, WhereNothingFlapsThePlotShowsTheStatuses) {
+  const std::string stuck = "[set]\nmotor.friction_torque = \"20 mN m\"\n";
+  const std::string volts = "[[axis]]\nkey = \"supply.voltage\"\nfrom = \"0.5 V\"\nto = \"3 V\"\ncount = 6\n";
+  const Outcome lines = run({"sweep", study(stuck + volts), "-o", path("o.nc"), "--plot", path("o.svg")});
+  EXPECT_EQ(lines.status, 0);
+  EXPECT_THAT(lines.err, IsEmpty());
+  EXPECT_THAT(read(path("o.svg")), HasSubstr("nothing flaps: 6 stalled"));
+  const std::string crank = "[[axis]]\nkey = \"transmission.crank_radius\"\nfrom = \"4 mm\"\nto = \"5 mm\"\ncount = 3\n";
+  const Outcome contours = run({"sweep", study(stuck + volts + crank), "-o", path("p.nc"), "--plot", path("p.svg")});
+  EXPECT_EQ(contours.status, 0);
+  EXPECT_THAT(contours.err, IsEmpty());
+  EXPECT_THAT(read(path("p.svg")), HasSubstr("nothing flaps: 18 stalled"));
+}
+
 TEST_F(Sweep, ADataSetCanBeRunAgain) {
   std::ofstream(path("d.csv")) << "supply.voltage [V],motor.torque_constant [N m/A]\n3,0.01\n2.5,0.011\n";
   const std::string s = study("title = \"again\"\n[set]\nfriction.radius = \"1 mm\"\n[[axis]]\n"
@@ -346,6 +360,35 @@ TEST_F(Sweep, PlotsAreDrawn) {
   for (const char* text : {"crank radius (mm)", "supply voltage (V)", "circle: best", "grey: does not flap",
                            "dashed: lift = weight"}) {
     EXPECT_THAT(contours, HasSubstr(text));
+  }
+}
+
+// The most efficient designs do not carry their weight: report and plots pass them over alike.
+TEST_F(Sweep, ReportAndPlotsAgreeAboutTheBestDesign) {
+  const auto after = [](const std::string& text, const std::string& label) {
+    const auto at = text.rfind(label);
+    return at == std::string::npos ? NAN : std::stod(text.substr(at + label.size()));
+  };
+  const std::string volts = "[[axis]]\nkey = \"supply.voltage\"\nfrom = 1\nto = 8\ncount = 15\n";
+  const std::string crank = "[[axis]]\nkey = \"transmission.crank_radius\"\nfrom = \"4 mm\"\nto = \"6 mm\"\ncount = 5\n";
+  for (const std::string& axes : {volts, volts + crank}) {
+    const std::string s = study(axes);
+    const Outcome o = run({"sweep", s, "-o", path("o.nc"), "--plot", path("o.svg"), "--plot-metrics", "efficiency_system"});
+    ASSERT_EQ(o.status, 0) << o.err;
+    const wingbeat::NetcdfReader file(path("o.nc"));
+    const auto efficiency = file.read("efficiency_system"), weight = file.read("lift_to_weight");
+    double best = 0.0, most = 0.0;
+    for (std::size_t n = 0; n < efficiency.size(); ++n) {
+      if (!std::isfinite(efficiency[n])) continue;
+      most = std::max(most, efficiency[n]);
+      if (weight[n] >= 1.0) best = std::max(best, efficiency[n]);
+    }
+    ASSERT_GT(best, 0.0);
+    EXPECT_GT(most, 1.1 * best);
+    EXPECT_NEAR(after(o.out, "maximum efficiency: "), 100.0 * best, 0.01);
+    EXPECT_THAT(o.out, HasSubstr("weight)"));
+    EXPECT_NEAR(after(read(path("o.svg")), "circle: best "), 100.0 * best, 0.01);
+    fs::remove(path("o.nc"));
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "wingbeat/io/study_file.hpp"
 #include "wingbeat/io/sweep_journal.hpp"
+#include "wingbeat/study/sweep_best.hpp"
 
 namespace wingbeat {
 
@@ -18,12 +19,8 @@ struct SweepDigest {
   std::uint64_t recomputed = 0;                             ///< by the scalar solver
   std::uint64_t outside = 0;                                ///< flapping, but outside the model's domain
   std::array<std::uint64_t, domain_limit_count> beyond{};   ///< of those, by DomainLimit
-  struct Best {
-    std::uint64_t index;
-    double value;
-  };
-  std::optional<Best> lift;        ///< most lift_mean [N], if kept, of what counts
-  std::optional<Best> efficiency;  ///< most efficiency_system [1], if kept, of what counts
+  SweepBest lift;        ///< by lift_mean [N], if kept
+  SweepBest efficiency;  ///< by efficiency_system [1], if kept
 };
 
 /// Stands for everything that a data set depends on: study, vehicle, options, instruction set, version.

@@ -41,7 +41,6 @@ struct RunResult {
   std::string domain_detail;   ///< the same in words with numbers; empty inside
   std::vector<std::string> warnings;  ///< what a reader of the metrics should know beside the domain
   std::vector<WaveformRow> cycle;
-  std::vector<double> cycle_voltage;       ///< terminal voltage of each row [V]
   solve::PeriodicSummary orbit;            ///< of Method::orbit
   std::optional<TransientResult> start_up; ///< of Method::transient
   std::optional<FrequencySearch> search;   ///< where a frequency or a lift was asked for

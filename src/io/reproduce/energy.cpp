@@ -179,7 +179,7 @@ std::vector<Sheet> energy_sheets(const Material& m) {
     double stored_sum = 0.0, returned_sum = 0.0;
     for (std::size_t n = 0; n < rows.size(); ++n) {
       time.push_back(rows[n].time - rows.front().time);
-      electrical.push_back(c->run.cycle_voltage[n] * rows[n].current);
+      electrical.push_back(rows[n].power_electrical);
       output.push_back(rows[n].motor_torque * rows[n].crank_speed);
       aero.push_back(rows[n].aero_moment * rows[n].flapping_velocity);
       stored.push_back(c->stored_power[n]);

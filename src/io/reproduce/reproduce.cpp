@@ -205,8 +205,9 @@ ReproduceResult reproduce_paper(const KnownPaper& paper, const ReproduceOptions&
   }
   result.figures = int(sheets.size());
   Provenance provenance;
+  provenance.command = "reproduce";
   provenance.version = options.version;
-  provenance.input = write_design(pair[1]);
+  provenance.vehicle = write_design(pair[1]);
   provenance.condition = "air";
   provenance.method = "orbit";
   provenance.tolerance = 1e-7;
