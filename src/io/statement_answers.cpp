@@ -261,7 +261,7 @@ Answer answer_to(const PublishedFile& file, const PublishedTrend& t) {
       return of_number(std::sqrt(vehicle.spring.stiffness / vehicle.wing_inertia) / two_pi, t, false);
     }
     case Kind::weight:
-      return of_number(file.designs.at(t.design).mass.value_or(absent) * standard_gravity, t, false);
+      return of_number(total_mass(file.designs.at(t.design)).value_or(absent) * standard_gravity, t, false);
     case Kind::best_friction_law:
       break;
   }

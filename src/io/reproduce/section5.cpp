@@ -76,7 +76,7 @@ std::string hovers(const Reproduction& r, const TrendSet& set, Formulation formu
 Sheet voltage_sheet(const Material& m, Formulation formulation, bool hold_stroke) {
   const Reproduction& r = m.computed;
   const TrendSet& set = hold_stroke ? r.supply_fixed_stroke : r.supply_fixed_hinge;
-  const double weight = m.pair[0].mass.value_or(absent) * standard_gravity;
+  const double weight = total_mass(m.pair[0]).value_or(absent) * standard_gravity;
   const char* reading = readings[hold_stroke ? 1 : 0];
   Sheet s =
       sheet(22, fmt::format("Lift and efficiency against voltage, {}, {}", wingbeat::name_of(formulation), reading),

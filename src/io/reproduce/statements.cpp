@@ -224,7 +224,7 @@ std::string parameters_html(const Material& m) {
       "section 4, where it is printed in N/m");
   row("friction radius <i>μ r</i><sub>e</sub>", fmt::format("{:.4g} mm", 1e3 * v.friction.radius), "Table 2");
   row("pitch coefficient <i>C</i><sub>α</sub>", fmt::format("{:.4g} ms", 1e3 * v.wings.pitch_coefficient), "Table 2");
-  row("mass", fmt::format("{:.4g} g", 1e3 * d.mass.value_or(absent)), "section 5");
+  row("mass", fmt::format("{:.4g} g", 1e3 * total_mass(d).value_or(absent)), "section 5");
   row(fmt::format("chord moment {}", s2).c_str(), scientific(v.wings.s2, 3, "m<sup>4</sup>"),
       "calibrated, not published");
   row(fmt::format("chord moment {}", s3).c_str(), scientific(v.wings.s3, 3, "m<sup>5</sup>"),
@@ -307,7 +307,7 @@ std::string readings_html(const Material& m) {
       by_radii && by_count     ? "<b>The numbers support the stroke held</b>, which figure 22 is drawn with first."
       : !by_radii && !by_count ? "<b>The numbers support the hinge offset held.</b>"
                                : "The numbers do not decide.");
-  const double weight = m.pair[0].mass.value_or(absent) * standard_gravity;
+  const double weight = total_mass(m.pair[0]).value_or(absent) * standard_gravity;
   html += fmt::format(
       "<p><b>Does it hover at 5 V?</b> {:.2f} mN are needed. Maximum mean lift with the best crank between 3 and 14 "
       "mm:</p>\n<ul>\n",
