@@ -133,6 +133,7 @@ int run(const Arguments& arguments) {
     const double ratio = quantity("--lift-to-weight", arguments.lift_to_weight, "1");
     if (!(ratio > 0.0)) throw InputError("--lift-to-weight", 0, 0, "", "must be > 0");
     const std::optional<double> mass = total_mass(design);
+    if (!mass) throw InputError("--lift-to-weight", 0, 0, "", "needs vehicle.mass, which the vehicle does not give");
     options.lift = ratio * *mass * standard_gravity;
   }
   if (!arguments.voltage.empty()) apply_voltage(design.supply, arguments.voltage);
