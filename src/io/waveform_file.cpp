@@ -43,7 +43,8 @@ std::string waveforms_csv(std::span<const WaveformRow> rows) {
   for (const WaveformRow& row : rows) {
     for (const WaveformColumn& c : columns) {
       if (&c != columns.data()) text += ',';
-      if (const double x = row.*c.value; std::isfinite(x)) fmt::format_to(out, "{}", x);
+      // Without a negative zero, which 0 N m/rad times a negative angle gives.
+      if (const double x = row.*c.value; std::isfinite(x)) fmt::format_to(out, "{}", x == 0.0 ? 0.0 : x);
     }
     text += '\n';
   }

@@ -200,7 +200,7 @@ class Flight {
 
   /// Chebyshev's interpolation of at_voltage() between two voltages, bisected until its last coefficients vanish: a
   /// discharge curve of many rows then costs no more orbits than its ends.
-  void tabulate(double low, double high, int depth = 0) {
+  void tabulate(double low, double high, double tail_before = HUGE_VAL, int depth = 0) {
     Piece piece{low, high, {}};
     std::array<Totals, Piece::count> samples;
     constexpr int last = Piece::count - 1;
@@ -226,12 +226,14 @@ class Flight {
     }
     constexpr int deepest = 24;
     const double middle = 0.5 * (low + high);
-    if (!finite || tail <= 0.1 * options_.tolerance || depth == deepest || !(middle > low && middle < high)) {
+    // Halves of a kink or a root bring the tail down, halves of what is left of the orbits' own errors do not.
+    const bool noise = depth > 1 && tail > 0.9 * tail_before;
+    if (!finite || tail <= 0.1 * options_.tolerance || noise || depth == deepest || !(middle > low && middle < high)) {
       pieces_.push_back(piece);
       return;
     }
-    tabulate(low, middle, depth + 1);
-    tabulate(middle, high, depth + 1);
+    tabulate(low, middle, tail, depth + 1);
+    tabulate(middle, high, tail, depth + 1);
   }
 
   /// Integrals from charge b up to a: Gauss's rule of 3 points within Kronrod's of 7 (Kronrod 1965), bisected until

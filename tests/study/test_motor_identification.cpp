@@ -260,7 +260,7 @@ TEST(MotorIdentification, GrossContradictionsAreRefused) {
   // A point of the performance curve has no second way of its own.
   s = exact_sheet(motor, 3.0);
   s.points.push_back({{}, 3e-4, 0.05 * (2.1e-3 * 3.0 / 5.4 - 3e-4) / (2.1e-3 * 2.1e-3 / 5.4 + 3e-9), {}, {}});
-  EXPECT_THAT(identify_motor(s).missing, testing::ElementsAre(HasSubstr("point 1 speed")));
+  EXPECT_THAT(identify_motor(s).missing, testing::ElementsAre(HasSubstr(") and the rest of the sheet (")));
 }
 
 TEST(MotorIdentification, GearEfficiencyIsKeptOrSaidNotToBeUsed) {
