@@ -61,7 +61,7 @@ int write_new(const NewArguments& a) {
   }
   const std::string stem = one_line(file.stem().string());
   const bool plain = stem.find_first_of("\"\\") == std::string::npos;
-  OutputFile output("new", file);
+  OutputFile output("new", file, {".toml", false});
   output.write(starting_vehicle(type, plain ? stem : "new vehicle"));
   output.commit();
   return done;

@@ -57,7 +57,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     damage(file, parts[4]);
     return fuzz::reads_or_refuses([&] {
       const Study study = read_study_in_data_set(file);
-      (void)standing_of(file, fingerprint(study, "0"), "-o");
+      (void)standing_of(file, fingerprint(study, "0"), "-o", false);
       (void)digest_of(file, study);
     });
   } catch (const NetcdfError&) {

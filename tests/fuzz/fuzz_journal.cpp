@@ -56,7 +56,7 @@ const std::filesystem::path& data_path() {
 
 const Sound& sound() {
   static const Sound made = [] {
-    SweepJournal journal(journal_path(), data_path(), fingerprint, layout, place_of(layout.columns()), prepare);
+    SweepJournal journal(journal_path(), data_path(), false, fingerprint, layout, place_of(layout.columns()), prepare);
     for (const std::uint64_t chunk : {0, 3, 1, 6}) journal.append(chunk, chunk_bytes(chunk));
     return Sound{content_of(journal_path()), content_of(data_path())};
   }();
@@ -82,7 +82,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::put("sweep.nc.journal", damaged.journal);
   fuzz::put("sweep.nc.part", damaged.data_set);
   try {
-    SweepJournal journal(journal_path(), data_path(), fingerprint, layout, place_of(layout.columns()), prepare);
+    SweepJournal journal(journal_path(), data_path(), false, fingerprint, layout, place_of(layout.columns()), prepare);
     const std::string now = content_of(data_path());
     for (std::uint64_t chunk = 0; chunk < layout.chunks(); ++chunk) {
       if (!journal.holds(chunk)) continue;
