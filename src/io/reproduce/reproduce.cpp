@@ -78,7 +78,7 @@ namespace {
 
 /// The name a file of a reproduction has.
 bool is_piece(const std::string& name) {
-  const std::string_view begins[] = {"figure-", "friction-laws.", "energy-flow.", "power-cycle-", "claims.", "report.html"};
+  const std::string_view begins[] = {"figure-", "friction-laws.", "energy-flow", "power-cycle-", "claims.", "report.html"};
   return name == notice || std::any_of(std::begin(begins), std::end(begins), [&](auto b) { return name.starts_with(b); });
 }
 
