@@ -19,6 +19,9 @@ void print(std::string_view text);
 /// One line on standard error, after "wingbeat: ".
 void complain(std::string_view sentence);
 
+/// The option of every command that writes files.
+void add_force(CLI::App& command, bool& force);
+
 /// Each adds one command; its action, which gives the exit status, is stored in `action` when the command is parsed.
 using Action = std::function<int()>;
 void add_run(CLI::App& program, Action& action);
@@ -30,5 +33,8 @@ void add_tolerance(CLI::App& program, Action& action);
 void add_optimise(CLI::App& program, Action& action);
 void add_endurance(CLI::App& program, Action& action);
 void add_reproduce(CLI::App& program, Action& action);
+void add_new(CLI::App& program, Action& action);
+void add_keys(CLI::App& program, Action& action);
+void add_metrics(CLI::App& program, Action& action);
 
 }  // namespace wingbeat::app

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "command.hpp"
+#include "options.hpp"
 #include "wingbeat/io/design_file.hpp"
 #include "wingbeat/io/output_file.hpp"
 #include "wingbeat/io/plot.hpp"
@@ -15,8 +16,9 @@ namespace wingbeat::app {
 namespace {
 
 struct Arguments {
+  std::vector<std::string> overrides;
   std::string file;
-  bool json = false;
+  bool json = false, force = false;
   std::string plot_power;
 };
 
@@ -33,9 +35,9 @@ int run(const Arguments& arguments) {
       throw InputError("--plot-power " + arguments.plot_power, 0, 0, "", "the name must end in .svg, .pdf or .png");
     }
   }
-  const PublishedFile file = read_published(arguments.file);
+  const PublishedFile file = read_published(arguments.file, arguments.overrides);
   std::optional<OutputFile> plot;
-  if (format) plot.emplace("--plot-power", arguments.plot_power);
+  if (format) plot.emplace("--plot-power", arguments.plot_power, OutputRules{plot_extensions, arguments.force});
   const Comparison comparison = compare(file);
 
   bool all_flap = true;
@@ -65,16 +67,23 @@ int run(const Arguments& arguments) {
 void add_compare(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("compare", "Compute published values and show ours beside them");
   const auto a = std::make_shared<Arguments>();
-  command->add_option("file", a->file, "File of published values (TOML)")->required()->type_name("FILE");
-  command->add_flag("--json", a->json, "Print one JSON object instead of a table");
+  add_input(command, a->file, "file", "File of published values (TOML)", "FILE");
+  add_set(command, a->overrides);
+  add_json(command, a->json);
   command->add_option("--plot-power", a->plot_power, "Plot the power breakdowns to FILE.svg, .pdf or .png")
       ->type_name("FILE");
+  add_force(*command, a->force);
   command->footer(
       "Example:\n"
-      "  wingbeat compare data/published/friction2022.toml\n\n"
+      "  wingbeat compare friction2022\n\n"
       "Exit status: 0 all values within their tolerances, 1 some are not, 2 bad input or usage, 3 a vehicle does not\n"
       "flap.");
-  command->callback([a, &action] { action = [a] { return run(*a); }; });
+  command->callback([a, &action] {
+    action = [a] {
+      a->file = find_input(a->file, InputKind::published).string();
+      return run(*a);
+    };
+  });
 }
 
 }  // namespace wingbeat::app

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "command.hpp"
+#include "options.hpp"
 #include "wingbeat/io/design_file.hpp"
 #include "wingbeat/io/endurance_report.hpp"
 #include "wingbeat/io/output_file.hpp"
@@ -18,18 +19,9 @@ namespace {
 struct Arguments {
   std::string vehicle, output, plot;
   std::vector<std::string> overrides;
-  bool json = false;
+  bool json = false, force = false;
   bool allow_extrapolation = false;
 };
-
-std::optional<OutputFile> reserved(const char* option, const std::string& path, const std::string& vehicle) {
-  if (path.empty()) return std::nullopt;
-  std::error_code error;
-  if (std::filesystem::equivalent(path, vehicle, error)) {
-    throw InputError(fmt::format("{} {}", option, path), 0, 0, "", "is the vehicle file itself");
-  }
-  return std::optional<OutputFile>(std::in_place, option, path);
-}
 
 int run(const Arguments& arguments) {
   std::optional<PlotFormat> format;
@@ -44,8 +36,9 @@ int run(const Arguments& arguments) {
   if (design.supply.type != SupplyType::battery) {
     throw InputError(arguments.vehicle, 0, 0, "supply.type", "only a battery runs down; expected battery");
   }
-  std::optional<OutputFile> output = reserved("-o", arguments.output, arguments.vehicle);
-  std::optional<OutputFile> plot = reserved("--plot", arguments.plot, arguments.vehicle);
+  std::optional<OutputFile> output, plot;
+  if (!arguments.output.empty()) output.emplace("-o", arguments.output, OutputRules{".nc", arguments.force});
+  if (format) plot.emplace("--plot", arguments.plot, OutputRules{plot_extensions, arguments.force});
 
   EnduranceOptions options;
   options.allow_extrapolation = arguments.allow_extrapolation;
@@ -55,8 +48,9 @@ int run(const Arguments& arguments) {
     write_endurance(result,
                     {.title = fmt::format("Flight to the end of the battery of {}",
                                           design.name.empty() ? arguments.vehicle : design.name),
+                     .command = "endurance",
                      .version = version,
-                     .input = write_design(design),
+                     .vehicle = write_design(design),
                      .condition = "air",
                      .method = "orbit",
                      .tolerance = options.tolerance},
@@ -77,21 +71,25 @@ int run(const Arguments& arguments) {
 void add_endurance(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("endurance", "How long its battery flies a vehicle");
   const auto a = std::make_shared<Arguments>();
-  command->add_option("vehicle", a->vehicle, "Vehicle file (TOML) with a battery")->required()->type_name("VEHICLE");
-  command->add_option("--set", a->overrides, "Replace a key of the vehicle file; repeatable")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
                     "Flight outside the model's domain may hover (docs/domain.md)");
-  command->add_flag("--json", a->json, "Print one JSON object (SI) instead of a table");
+  add_input(command, a->vehicle, "vehicle", "Vehicle file (TOML) with a battery", "VEHICLE");
+  add_set(command, a->overrides);
+  add_json(command, a->json);
   command->add_option("-o,--output", a->output, "Write the course of the flight (NetCDF-4)")->type_name("FILE.nc");
   command->add_option("--plot", a->plot, "Plot the flight to FILE.svg, .pdf or .png")->type_name("FILE");
+  add_force(*command, a->force);
   command->footer(
-      "Example:\n  wingbeat endurance data/designs/friction2022-battery.toml --plot flight.svg\n\n"
+      "Example:\n  wingbeat endurance friction2022-battery --plot flight.svg\n\n"
       "The battery drains from supply.charge through steady flapping until it is empty, its terminals fall to\n"
       "supply.cutoff_voltage, or it no longer turns the crank.\n\n"
       "Exit status: 0 done, 2 bad input or usage, 3 the battery cannot start the vehicle, 1 anything else.");
-  command->callback([a, &action] { action = [a] { return run(*a); }; });
+  command->callback([a, &action] {
+    action = [a] {
+      a->vehicle = find_input(a->vehicle, InputKind::vehicle).string();
+      return run(*a);
+    };
+  });
 }
 
 }  // namespace wingbeat::app

@@ -5,9 +5,13 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "command.hpp"
+#include "options.hpp"
 #include "wingbeat/io/bench_file.hpp"
+#include "wingbeat/io/design_edit.hpp"
 #include "wingbeat/io/design_file.hpp"
 #include "wingbeat/io/design_parameter.hpp"
 #include "wingbeat/io/output_file.hpp"
@@ -16,8 +20,9 @@ namespace wingbeat::app {
 namespace {
 
 struct Arguments {
+  std::vector<std::string> overrides;
   std::string file, output, plot;
-  bool json = false, compare_friction = false, no_profiles = false;
+  bool json = false, compare_friction = false, no_profiles = false, force = false;
 };
 
 void show(const std::string& what) { fmt::print(stderr, "\r{:<78}", "fit: " + what); }
@@ -29,19 +34,16 @@ int run(const Arguments& arguments) {
     format = plot_format(arguments.plot);
     if (!format) throw InputError("--plot " + arguments.plot, 0, 0, "", "the name must end in .svg, .pdf or .png");
   }
-  BenchFit fit = read_bench(arguments.file);
+  BenchFit fit = read_bench(arguments.file, arguments.overrides);
   fit.profiles = !arguments.no_profiles;
   std::optional<OutputFile> output, covariance, plot;
   const std::filesystem::path vehicle = arguments.output;
   if (!arguments.output.empty()) {
-    std::error_code error;
-    if (std::filesystem::equivalent(arguments.output, arguments.file, error)) {
-      throw InputError("--output " + arguments.output, 0, 0, "", "is the bench file itself");
-    }
-    output.emplace("--output", vehicle);
-    covariance.emplace("--output", vehicle.parent_path() / (vehicle.stem().string() + ".covariance.toml"));
+    const OutputRules rules{".toml", arguments.force};
+    output.emplace("-o", vehicle, rules);
+    covariance.emplace("-o", vehicle.parent_path() / (vehicle.stem().string() + ".covariance.toml"), rules);
   }
-  if (format) plot.emplace("--plot", arguments.plot);
+  if (format) plot.emplace("--plot", arguments.plot, OutputRules{plot_extensions, arguments.force});
 
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
   std::function<void(const std::string&)> progress;
@@ -59,8 +61,9 @@ int run(const Arguments& arguments) {
 
   const std::string made_by = fmt::format("Fitted by wingbeat {} to {}", version,
                                           std::filesystem::path(arguments.file).filename().string());
-  if (output) {
-    output->write(fitted_vehicle(fit, result, made_by));
+  if (output && result.misfit.empty()) {
+    output->write(fitted_vehicle_head(fit, result, made_by) +
+                  edited_design(vehicle_of_bench(arguments.file), vehicle, result.design));
     covariance->write(covariance_file(result, vehicle.filename().string(), made_by));
     output->commit();
     covariance->commit();
@@ -73,6 +76,11 @@ int run(const Arguments& arguments) {
     print(json_fit(fit, result, candidates));
   } else {
     print(text_fit(fit, result) + (candidates.empty() ? "" : text_friction(candidates)));
+  }
+  if (!result.misfit.empty()) {
+    complain("the model does not describe the data: " + result.misfit +
+             (output ? "; no vehicle file was written" : ""));
+    return does_not_flap;
   }
   if (!result.converged) {
     complain("the fit did not converge: " + result.message);
@@ -90,20 +98,26 @@ int run(const Arguments& arguments) {
 void add_fit(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("fit", "Fit a vehicle's parameters to bench measurements");
   const auto a = std::make_shared<Arguments>();
-  command->add_option("bench", a->file, "Bench file (TOML): vehicle, logs, free parameters")
-      ->required()
-      ->type_name("BENCH");
+  add_input(command, a->file, "bench", "Bench file (TOML): vehicle, logs, free parameters", "BENCH");
+  add_set(command, a->overrides);
   command->add_option("-o,--output", a->output, "Write the fitted vehicle file, and FILE's .covariance.toml beside it")
-      ->type_name("FILE");
+      ->type_name("FILE.toml");
   command->add_flag("--compare-friction", a->compare_friction, "Fit every friction law to the same data and rank them");
   command->add_flag("--no-profiles", a->no_profiles,
                     "Skip the likelihood profiles: intervals from standard errors only");
-  command->add_flag("--json", a->json, "Print one JSON object instead of tables");
+  add_json(command, a->json);
   command->add_option("--plot", a->plot, "Plot the residuals by condition to FILE.svg, .pdf or .png")
       ->type_name("FILE");
-  command->footer("Example:\n  wingbeat fit data/bench/flapper.toml -o fitted.toml\n\n"
-                  "Exit status: 0 fitted, 1 not converged, 2 bad input or usage, 3 rows that the model cannot reach.");
-  command->callback([a, &action] { action = [a] { return run(*a); }; });
+  add_force(*command, a->force);
+  command->footer("Example:\n  wingbeat fit flapper -o fitted.toml\n\n"
+                  "Exit status: 0 fitted, 1 not converged, 2 bad input or usage, 3 the model does not describe the data, or\n"
+                  "cannot reach some rows.");
+  command->callback([a, &action] {
+    action = [a] {
+      a->file = find_input(a->file, InputKind::bench).string();
+      return run(*a);
+    };
+  });
 }
 
 }  // namespace wingbeat::app

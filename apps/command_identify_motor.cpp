@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "command.hpp"
+#include "options.hpp"
 #include "wingbeat/io/datasheet_file.hpp"
 #include "wingbeat/io/design_file.hpp"
 #include "wingbeat/io/output_file.hpp"
@@ -17,7 +18,7 @@ namespace {
 struct Arguments {
   std::string file, output, frequency;
   std::vector<std::string> fallbacks;
-  bool json = false;
+  bool json = false, force = false;
 };
 
 int run(const Arguments& arguments) {
@@ -42,13 +43,7 @@ int run(const Arguments& arguments) {
     }
   }
   std::optional<OutputFile> output;
-  if (!arguments.output.empty()) {
-    std::error_code error;
-    if (std::filesystem::equivalent(arguments.output, arguments.file, error)) {
-      throw InputError("--output " + arguments.output, 0, 0, "", "is the data sheet itself");
-    }
-    output.emplace("--output", arguments.output);
-  }
+  if (!arguments.output.empty()) output.emplace("-o", arguments.output, OutputRules{".toml", arguments.force});
   const MotorIdentification motor = identify_motor(sheet, frequency);
   print(arguments.json ? json_identification(motor, sheet) : text_identification(motor, sheet));
   if (!motor.complete()) {
@@ -59,7 +54,7 @@ int run(const Arguments& arguments) {
   if (output) {
     output->write(motor_section(motor, sheet,
                                 fmt::format("Identified by wingbeat {} identify-motor from {}", version,
-                                            std::filesystem::path(arguments.file).filename().string())));
+                                            one_line(std::filesystem::path(arguments.file).filename().string(), 200))));
     output->commit();
   }
   return done;
@@ -70,8 +65,8 @@ int run(const Arguments& arguments) {
 void add_identify_motor(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("identify-motor", "Find a motor's constants from its data sheet");
   const auto a = std::make_shared<Arguments>();
-  command->add_option("datasheet", a->file, "Data sheet (TOML)")->required()->type_name("DATASHEET");
-  command->add_option("-o,--output", a->output, "Write the [motor] section of a vehicle file")->type_name("FILE");
+  add_input(command, a->file, "datasheet", "Data sheet (TOML)", "DATASHEET");
+  command->add_option("-o,--output", a->output, "Write the [motor] section of a vehicle file")->type_name("FILE.toml");
   command->add_option("--frequency", a->frequency, "Flapping frequency in mind, for the inductance's effect")
       ->type_name("QUANTITY");
   command
@@ -79,10 +74,16 @@ void add_identify_motor(CLI::App& program, Action& action) {
                    "Assume what the sheet lacks: inertia=solid-steel-cylinder or viscous_damping=typical; repeatable")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
-  command->add_flag("--json", a->json, "Print one JSON object instead of a table");
-  command->footer("Example:\n  wingbeat identify-motor data/motors/0816K003SR.toml -o motor.toml\n\n"
+  add_force(*command, a->force);
+  add_json(command, a->json);
+  command->footer("Example:\n  wingbeat identify-motor 0816K003SR -o motor.toml\n\n"
                   "Exit status: 0 identified, 2 bad input, or the sheet does not determine the motor.");
-  command->callback([a, &action] { action = [a] { return run(*a); }; });
+  command->callback([a, &action] {
+    action = [a] {
+      a->file = find_input(a->file, InputKind::datasheet).string();
+      return run(*a);
+    };
+  });
 }
 
 }  // namespace wingbeat::app

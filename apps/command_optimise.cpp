@@ -2,47 +2,82 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "command.hpp"
+#include "wingbeat/io/design_edit.hpp"
+#include "options.hpp"
 #include "wingbeat/io/design_file.hpp"
 #include "wingbeat/io/evolution_module.hpp"
 #include "wingbeat/io/optimise_data.hpp"
 #include "wingbeat/io/optimise_file.hpp"
 #include "wingbeat/io/output_file.hpp"
 #include "wingbeat/io/pareto_report.hpp"
+#include "wingbeat/io/units.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat::app {
 namespace {
 
 struct Arguments {
+  std::vector<std::string> overrides;
   std::string study, output, plot, designs;
   int threads = 0;
-  bool json = false;
+  bool json = false, force = false;
   bool allow_extrapolation = false;
 };
 
 bool is_data_set(const std::string& name) { return std::filesystem::path(name).extension() == ".nc"; }
 
+/// The study's, for a comment.
+std::string file_name(const Arguments& arguments) {
+  return one_line(std::filesystem::path(arguments.study).filename().string(), 200);
+}
+
+/// Refuses before the search what write_designs() would meet after it.
+void check_designs(const Arguments& arguments, const OptimiseFile& file) {
+  namespace fs = std::filesystem;
+  const auto refuse = [&](const std::string& why) { throw InputError("--designs " + arguments.designs, 0, 0, "", why); };
+  const fs::path folder = arguments.designs;
+  std::error_code error;
+  if (!fs::exists(folder, error)) {
+    fs::path above = fs::absolute(folder, error);
+    while (!above.empty() && !fs::exists(above, error) && above != above.parent_path()) above = above.parent_path();
+    if (!fs::is_directory(above, error)) refuse(fmt::format("cannot be made: {} is no folder", above.string()));
+    if (::access(above.c_str(), W_OK | X_OK) != 0) refuse(fmt::format("cannot be made: {}", std::strerror(errno)));
+    return;
+  }
+  if (!fs::is_directory(folder, error)) refuse("is a file, not a folder");
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) refuse(fmt::format("cannot be written: {}", std::strerror(errno)));
+  for (const std::string& name : pick_names(file.objectives, file.designs)) {
+    checked_output("--designs", folder / (name + ".toml"), {".toml", arguments.force});
+  }
+}
+
 /// Writes the picked designs of a front into a folder, which is made where it is not there.
-void write_designs(const std::string& folder, const Arguments& arguments, const ParetoStudy& study,
-                   const ParetoResult& result) {
+void write_designs(const std::string& folder, const Arguments& arguments, const OptimiseFile& optimise,
+                   const ParetoStudy& study, const ParetoResult& result) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw InputError("--designs " + folder, 0, 0, "", "cannot be made: " + error.message());
   for (const auto& [name, place] : named_picks(study, result)) {
     const ParetoDesign& design = result.front[place];
     std::string head = fmt::format("# {} of the front found by wingbeat {} optimise {}:\n#", name, version,
-                                   std::filesystem::path(arguments.study).filename().string());
+                                   file_name(arguments));
     for (const ParetoObjective& o : study.objectives) {
       head += fmt::format(" {} = {:.6g}", metric_info(o.metric).key, design.metrics[o.metric]);
     }
-    if (study.vehicles.size() > 1) head += fmt::format("\n# Motor: {}", study.vehicles[design.vehicle].name);
-    OutputFile file("--designs", std::filesystem::path(folder) / (name + ".toml"));
-    file.write(head + "\n\n" + write_design(vehicle_of(study, design)));
+    if (study.vehicles.size() > 1) head += fmt::format("\n# Motor: {}", one_line(study.vehicles[design.vehicle].name));
+    const std::filesystem::path path = std::filesystem::path(folder) / (name + ".toml");
+    OutputFile file("--designs", path, {".toml", arguments.force});
+    file.write(head + "\n\n" + edited_design(optimise.vehicle_file, path, vehicle_of(study, design)));
     file.commit();
   }
 }
@@ -55,10 +90,10 @@ int run_front(const Arguments& arguments, const OptimiseFile& file, const ForEac
   }
   std::optional<PlotFormat> format;
   std::optional<OutputFile> output, plot;
-  if (!arguments.output.empty()) output.emplace("-o", arguments.output);
+  if (!arguments.output.empty()) output.emplace("-o", arguments.output, OutputRules{".nc", arguments.force});
   if (!arguments.plot.empty()) {
     format = plot_format(arguments.plot);
-    plot.emplace("--plot", arguments.plot);
+    plot.emplace("--plot", arguments.plot, OutputRules{plot_extensions, arguments.force});
   }
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
   std::function<void(std::uint64_t, std::uint64_t)> progress;
@@ -68,6 +103,7 @@ int run_front(const Arguments& arguments, const OptimiseFile& file, const ForEac
       fmt::print(stderr, "\r{:<78}", fmt::format("optimise: {:.0f} % of {} designs", percent, all));
     };
   }
+  if (!arguments.designs.empty()) check_designs(arguments, file);
   const ParetoStudy study = pareto_study(file);
   const ParetoResult result = pareto_front(study, load_evolution(), start_up_in_time(), for_each, progress);
   if (terminal) fmt::print(stderr, "\r{:<78}\r", "");
@@ -80,7 +116,9 @@ int run_front(const Arguments& arguments, const OptimiseFile& file, const ForEac
     plot_front(study, result, file.title, *format, plot->temporary());
     plot->commit();
   }
-  if (found && !arguments.designs.empty()) write_designs(arguments.designs, arguments, study, result);
+  if (found && !arguments.designs.empty()) {
+    write_designs(arguments.designs, arguments, file, study, result);
+  }
   print(arguments.json ? json_front(file, study, result) : text_front(file, study, result));
   return found ? done : does_not_flap;
 }
@@ -89,7 +127,7 @@ int run(const Arguments& arguments) {
   if (!arguments.plot.empty() && !plot_format(arguments.plot)) {
     throw InputError("--plot " + arguments.plot, 0, 0, "", "the name must end in .svg, .pdf or .png");
   }
-  OptimiseFile file = read_optimise_study(arguments.study);
+  OptimiseFile file = read_optimise_study(arguments.study, arguments.overrides);
   file.study.allow_extrapolation |= arguments.allow_extrapolation;
   const ForEach for_each = [&](std::size_t count, const std::function<void(std::size_t)>& act) {
     for_each_in_parallel(count, act, arguments.threads);
@@ -99,8 +137,10 @@ int run(const Arguments& arguments) {
     throw InputError("--designs " + arguments.designs, 0, 0, "", "one objective has one best design; -o writes it");
   }
   std::optional<OutputFile> output, plot;
-  if (!arguments.output.empty()) output.emplace("-o", arguments.output);
-  if (!arguments.plot.empty()) plot.emplace("--plot", arguments.plot);
+  if (!arguments.output.empty()) output.emplace("-o", arguments.output, OutputRules{".toml .nc", arguments.force});
+  if (!arguments.plot.empty()) {
+    plot.emplace("--plot", arguments.plot, OutputRules{plot_extensions, arguments.force});
+  }
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
   const auto show = [&](const std::string& what) {
     if (terminal) fmt::print(stderr, "\r{:<78}", what.empty() ? "" : "optimise: " + what);
@@ -130,11 +170,11 @@ int run(const Arguments& arguments) {
     output->commit();
   } else if (output && best) {
     std::string head = fmt::format("# Found by wingbeat {} optimise {}: {} = {:.6g}\n", version,
-                                   std::filesystem::path(arguments.study).filename().string(),
+                                   file_name(arguments),
                                    metric_info(file.study.objective).key,
                                    best->result.point.metrics[file.study.objective]);
-    if (best->motor) head += fmt::format("# Motor: {}\n", best->motor->model);
-    output->write(head + "\n" + write_design(best->result.design));
+    if (best->motor) head += fmt::format("# Motor: {}\n", one_line(best->motor->model));
+    output->write(head + "\n" + edited_design(file.vehicle_file, arguments.output, best->result.design));
     output->commit();
   }
   if (plot && best) {
@@ -151,9 +191,8 @@ int run(const Arguments& arguments) {
 void add_optimise(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("optimise", "Find the best design within bounds and constraints");
   const auto a = std::make_shared<Arguments>();
-  command->add_option("study", a->study, "Study file (TOML): objective, parameters, constraints, motors")
-      ->required()
-      ->type_name("STUDY");
+  add_input(command, a->study, "study", "Study file (TOML): objective, parameters, constraints, motors", "STUDY");
+  add_set(command, a->overrides);
   command->add_option("-o,--output", a->output,
                       "Write the optimum as a vehicle file, or what was found on the way, and any front, as FILE.nc (NetCDF-4)")
       ->type_name("FILE");
@@ -162,14 +201,18 @@ void add_optimise(CLI::App& program, Action& action) {
       ->type_name("FOLDER");
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
                     "Search outside the model's domain too (docs/domain.md)");
-  command->add_flag("--json", a->json, "Print one JSON object instead of tables");
-  command->add_option("--threads", a->threads, "Use at most so many threads (default: one for each core)")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber);
-  command->footer("Example:\n  wingbeat optimise data/studies/optimise-hover.toml -o hover.toml\n"
-                  "  wingbeat optimise data/studies/optimise-pareto.toml --plot front.svg --designs front\n\n"
+  add_force(*command, a->force);
+  add_json(command, a->json);
+  add_threads(command, a->threads);
+  command->footer("Example:\n  wingbeat optimise optimise-hover -o hover.toml\n"
+                  "  wingbeat optimise optimise-pareto --plot front.svg --designs front\n\n"
                   "Exit status: 0 found, 2 bad input or usage, 3 no design within the constraints, 1 anything else.");
-  command->callback([a, &action] { action = [a] { return run(*a); }; });
+  command->callback([a, &action] {
+    action = [a] {
+      a->study = find_input(a->study, InputKind::study).string();
+      return run(*a);
+    };
+  });
 }
 
 }  // namespace wingbeat::app

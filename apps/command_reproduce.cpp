@@ -1,20 +1,22 @@
-// wingbeat reproduce PAPER: a paper's figures and statements, remade and judged.
+// wingbeat reproduce PAPER: a paper's figures and statements, reproduced and assessed.
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <memory>
 
 #include "command.hpp"
+#include "options.hpp"
 #include "wingbeat/io/claims.hpp"
 #include "wingbeat/io/optimise_file.hpp"
 #include "wingbeat/io/reproduce.hpp"
+#include "wingbeat/io/written_files.hpp"
 
 namespace wingbeat::app {
 namespace {
 
 struct Arguments {
   std::string paper, output;
-  bool coarse = false, json = false;
+  bool coarse = false, json = false, force = false;
   int threads = 0;
 };
 
@@ -30,6 +32,7 @@ int run(const Arguments& arguments) {
   ReproduceOptions options;
   options.output = arguments.output;
   options.coarse = arguments.coarse;
+  options.force = arguments.force;
   options.version = version;
   options.for_each = [&](std::size_t count, const std::function<void(std::size_t)>& act) {
     for_each_in_parallel(count, act, arguments.threads);
@@ -38,10 +41,12 @@ int run(const Arguments& arguments) {
   if (terminal) options.progress = show;
   const ReproduceResult result = reproduce_paper(paper, options);
   if (terminal) fmt::print(stderr, "\r{:<78}\r", "");
+  take_written();  // the folder stands for its files, and the text names it
   if (arguments.json) {
-    print(json_claims(result.file, result.judgement));
+    note_written(arguments.output);
+    print(json_claims(result.file, result.assessment));
   } else {
-    print(text_claims(result.file, result.judgement) + fmt::format("{} figures written to {}; open {}\n",
+    print(text_claims(result.file, result.assessment) + fmt::format("{} figures written to {}; open {}\n",
                                                                    result.figures, arguments.output,
                                                                    (options.output / "report.html").string()));
   }
@@ -51,23 +56,22 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 void add_reproduce(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("reproduce", "Remake a paper's figures and judge its statements");
+  CLI::App* command = program.add_subcommand("reproduce", "Reproduce a paper's figures and assess its statements");
   const auto a = std::make_shared<Arguments>();
   command->add_option("paper", a->paper, "Which paper: friction2022")->required()->type_name("PAPER");
   command->add_option("-o,--output", a->output, "Folder to be written: new, empty, or of an earlier reproduction")
       ->required()
       ->type_name("DIR");
-  command->add_flag("--coarse", a->coarse, "Few points on each curve: a check in seconds; the judgement is the same");
-  command->add_flag("--json", a->json, "Print the judgement as one JSON object instead of a table");
-  command->add_option("--threads", a->threads, "Use at most so many threads (default: one for each core)")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber);
+  command->add_flag("--coarse", a->coarse, "Few points on each curve: a check in seconds; the assessment is the same");
+  command->add_flag("--json", a->json, "Print the assessment as one JSON object instead of a table");
+  add_threads(command, a->threads);
+  add_force(*command, a->force);
   command->footer(
       "Example:\n"
       "  wingbeat reproduce friction2022 -o friction2022-reproduced\n\n"
-      "Writes every figure as SVG and PDF, its data as CSV and NetCDF, the judged statements as CSV and JSON, and\n"
+      "Writes every figure as SVG and PDF, its data as CSV and NetCDF, the assessed statements as CSV and JSON, and\n"
       "report.html, which shows and explains all of it (docs/reproduce.md).\n\n"
-      "Exit status: 0 done, whatever the verdicts, 2 bad input or usage, 1 anything else.");
+      "Exit status: 0 done, whatever the outcomes, 2 bad input or usage, 1 anything else.");
   command->callback([a, &action] { action = [a] { return run(*a); }; });
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "command.hpp"
+#include "options.hpp"
 #include "wingbeat/io/design_file.hpp"
 #include "wingbeat/io/output_file.hpp"
 #include "wingbeat/io/plot.hpp"
@@ -29,7 +30,7 @@ struct Arguments {
   std::string condition = "air";
   std::string method = "orbit";
   std::string tolerance = "1e-6";
-  bool json = false;
+  bool json = false, force = false;
   bool allow_extrapolation = false;
   std::string waveforms, plot, plot_power;
 };
@@ -59,22 +60,9 @@ E choice(const char* option, const std::string& text, const std::pair<const char
 }
 
 /// A file to be written, its place reserved before anything is computed.
-class Output {
- public:
-  Output(const char* option, const std::string& path, const std::string& vehicle) {
-    if (path.empty()) return;
-    std::error_code error;
-    if (std::filesystem::equivalent(path, vehicle, error)) {
-      throw InputError(fmt::format("{} {}", option, path), 0, 0, "", "is the vehicle file itself");
-    }
-    file_.emplace(option, path);
-  }
-  explicit operator bool() const { return file_.has_value(); }
-  OutputFile& operator*() { return *file_; }
-
- private:
-  std::optional<OutputFile> file_;
-};
+std::optional<OutputFile> reserved(const char* option, const std::string& path, const OutputRules& rules) {
+  return path.empty() ? std::nullopt : std::optional<OutputFile>(std::in_place, option, path, rules);
+}
 
 std::optional<PlotFormat> checked_plot_format(const char* option, const std::string& path) {
   if (path.empty()) return std::nullopt;
@@ -139,21 +127,20 @@ int run(const Arguments& arguments) {
   }
   const auto cycle_format = checked_plot_format("--plot", arguments.plot);
   const auto power_format = checked_plot_format("--plot-power", arguments.plot_power);
-  if (!arguments.plot.empty() && arguments.plot == arguments.plot_power) {
-    throw InputError("--plot-power " + arguments.plot_power, 0, 0, "", "is the file of --plot");
-  }
 
   Design<double> design = read_design(arguments.vehicle, arguments.overrides);
   if (!arguments.lift_to_weight.empty()) {
     const double ratio = quantity("--lift-to-weight", arguments.lift_to_weight, "1");
     if (!(ratio > 0.0)) throw InputError("--lift-to-weight", 0, 0, "", "must be > 0");
-    if (!design.mass) throw InputError("--lift-to-weight", 0, 0, "", "needs vehicle.mass, which the vehicle does not give");
-    options.lift = ratio * *design.mass * standard_gravity;
+    const std::optional<double> mass = total_mass(design);
+    if (!mass) throw InputError("--lift-to-weight", 0, 0, "", "needs vehicle.mass, which the vehicle does not give");
+    options.lift = ratio * *mass * standard_gravity;
   }
   if (!arguments.voltage.empty()) apply_voltage(design.supply, arguments.voltage);
-  Output waveforms("--waveforms", arguments.waveforms, arguments.vehicle);
-  Output cycle_plot("--plot", arguments.plot, arguments.vehicle);
-  Output power_plot("--plot-power", arguments.plot_power, arguments.vehicle);
+  const OutputRules drawing{plot_extensions, arguments.force};
+  auto waveforms = reserved("--waveforms", arguments.waveforms, {".csv .nc", arguments.force});
+  auto cycle_plot = reserved("--plot", arguments.plot, drawing);
+  auto power_plot = reserved("--plot-power", arguments.plot_power, drawing);
   if (waveforms || cycle_plot) options.waveform_rows = waveform_rows;
 
   const RunResult result = run_design(design, options);
@@ -163,7 +150,9 @@ int run(const Arguments& arguments) {
     const std::string asked = !arguments.frequency.empty() ? "--frequency " + arguments.frequency
                               : !arguments.lift.empty()    ? "--lift " + arguments.lift
                                                            : "--lift-to-weight " + arguments.lift_to_weight;
-    throw InputError(asked, 0, 0, "", result.search->detail);
+    const bool leaves = result.detail.find("inside the domain of validity") != std::string::npos;
+    throw InputError(asked, 0, 0, "",
+                     result.search->detail + (leaves ? "; --allow-extrapolation searches beyond" : ""));
   }
   const bool flaps = result.status == FlappingStatus::flapping;
   const bool has_metrics = std::isfinite(result.metrics[Metric::frequency]);
@@ -173,28 +162,29 @@ int run(const Arguments& arguments) {
     if (options.waveform_rows > 0 && result.cycle.empty()) throw std::runtime_error("no whole cycle was recorded");
     if (waveforms) {
       if (waveforms_csv_wanted) {
-        (*waveforms).write(waveforms_csv(result.cycle));
+        waveforms->write(waveforms_csv(result.cycle));
       } else {
-        write_waveforms_netcdf((*waveforms).temporary(), result.cycle,
+        write_waveforms_netcdf(waveforms->temporary(), result.cycle,
                                {.title = fmt::format("One flapping cycle of {}",
                                                      design.name.empty() ? arguments.vehicle : design.name),
+                                .command = "run",
                                 .version = version,
-                                .input = write_design(result.design),
+                                .vehicle = write_design(result.design),
                                 .condition = name_of(options.condition),
                                 .method = name_of(options.method),
                                 .domain = name_of(result.domain),
                                 .tolerance = options.tolerance});
       }
-      (*waveforms).commit();
+      waveforms->commit();
     }
     if (cycle_plot) {
-      plot_cycle(result.cycle, result.cycle_voltage, title, *cycle_format, (*cycle_plot).temporary());
-      (*cycle_plot).commit();
+      plot_cycle(result.cycle, title, *cycle_format, cycle_plot->temporary());
+      cycle_plot->commit();
     }
     if (power_plot) {
       const PowerBar bar{title, energy_audit(result.metrics)};
-      plot_powers({&bar, 1}, "Where the electrical power goes", *power_format, (*power_plot).temporary());
-      (*power_plot).commit();
+      plot_powers({&bar, 1}, "Where the electrical power goes", *power_format, power_plot->temporary());
+      power_plot->commit();
     }
   }
 
@@ -213,10 +203,8 @@ int run(const Arguments& arguments) {
 void add_run(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("run", "Find the steady flapping of one vehicle and report its metrics");
   const auto a = std::make_shared<Arguments>();
-  command->add_option("vehicle", a->vehicle, "Vehicle file (TOML)")->required()->type_name("VEHICLE");
-  command->add_option("--set", a->overrides, "Replace a key of the vehicle file; repeatable")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  add_input(command, a->vehicle, "vehicle", "Vehicle file (TOML)", "VEHICLE");
+  add_set(command, a->overrides);
   CLI::Option* voltage =
       command->add_option("--voltage", a->voltage, "Supply voltage (pwm: while switched on), as \"3 V\"")
           ->type_name("QUANTITY");
@@ -236,24 +224,30 @@ void add_run(CLI::App& program, Action& action) {
   command->add_option("--tolerance", a->tolerance, "Relative accuracy of every metric, 1e-12 to 1e-2 (default 1e-6)")
       ->type_name("NUMBER");
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
-                    "Search for a lift outside the model's domain too (docs/domain.md)");
-  command->add_flag("--json", a->json, "Print one JSON object (SI) instead of a table");
+                    "Search for a frequency or a lift outside the model's domain too (docs/targets.md)");
+  add_json(command, a->json);
   command->add_option("--waveforms", a->waveforms, "Write one cycle to FILE.csv or FILE.nc")->type_name("FILE");
   command->add_option("--plot", a->plot, "Plot one cycle to FILE.svg, .pdf or .png")->type_name("FILE");
   command->add_option("--plot-power", a->plot_power, "Plot the power breakdown to FILE.svg, .pdf or .png")
       ->type_name("FILE");
-  command->footer(fmt::format(
+  add_force(*command, a->force);
+  command->footer(
       "Example:\n"
-      "  wingbeat run data/designs/friction2022.toml --frequency \"22 Hz\" \\\n"
+      "  wingbeat run friction2022 --frequency \"22 Hz\" \\\n"
       "    --set friction.radius=\"2 mm\" --plot cycle.svg\n\n"
-      "--frequency searches up to {:g} times the voltage that turns the unloaded motor that fast, --lift up to {:g}\n"
-      "times supply.voltage. With a pwm supply the orbit and the searches see the mean voltage; --frequency changes\n"
-      "its voltage, --lift its duty. The charge of a battery gives its voltage, so neither is for batteries. A direct\n"
-      "drive takes --frequency as that of its sine; a crank on a sine needs --method transient, which also reports\n"
-      "the start-up.\n\n"
-      "Exit status: 0 steady flapping, 2 bad input or usage, 3 the vehicle does not flap, 1 anything else.",
-      frequency_search_span, frequency_search_span * lift_search_start));
-  command->callback([a, &action] { action = [a] { return run(*a); }; });
+      "--frequency finds the voltage for a flapping frequency, --lift the lowest one for a mean lift. Both keep to the\n"
+      "domain of validity (angles of attack from 0 to 90 deg and more) unless --allow-extrapolation; a refusal says how\n"
+      "far it reaches. With a pwm supply the orbit and the searches see the mean voltage; --frequency changes its\n"
+      "voltage, --lift its duty. The charge of a battery gives its voltage, so neither is for batteries. A direct drive\n"
+      "takes --frequency as that of its sine and --lift by its amplitude; a crank on a sine needs --method transient,\n"
+      "which also reports the start-up.\n\n"
+      "Exit status: 0 steady flapping, 2 bad input or usage, 3 the vehicle does not flap, 1 anything else.");
+  command->callback([a, &action] {
+    action = [a] {
+      a->vehicle = find_input(a->vehicle, InputKind::vehicle).string();
+      return run(*a);
+    };
+  });
 }
 
 }  // namespace wingbeat::app

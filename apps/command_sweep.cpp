@@ -8,10 +8,12 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
 #include "command.hpp"
+#include "options.hpp"
 #include "wingbeat/io/design_file.hpp"
 #include "wingbeat/io/output_file.hpp"
 #include "wingbeat/io/plot.hpp"
@@ -19,31 +21,36 @@
 #include "wingbeat/io/sweep_plot.hpp"
 #include "wingbeat/io/sweep_run.hpp"
 #include "wingbeat/io/units.hpp"
+#include "wingbeat/io/written_files.hpp"
 
 namespace wingbeat::app {
 namespace {
 
 struct Arguments {
+  std::vector<std::string> overrides;
   std::string study, output;
   std::string tolerance, isa;
   int threads = 0;
+  bool force = false;
   bool allow_extrapolation = false;
+  bool json = false;
   std::string plot;
   std::vector<std::string> plot_metrics;
 };
 
 volatile std::sig_atomic_t interrupted = 0;
 
-void on_signal(int) { interrupted = 1; }
+void on_signal(int signal) {
+  if (interrupted) remove_temporaries_and_end(signal);
+  interrupted = 1;
+}
 
 /// The first signal ends the sweep after the chunks under way, the second at once.
 void catch_signals() {
   struct sigaction action {};
   action.sa_handler = on_signal;
-  action.sa_flags = int(SA_RESETHAND) | SA_RESTART;
+  action.sa_flags = SA_RESTART;
   for (const int signal : {SIGINT, SIGTERM}) ::sigaction(signal, &action, nullptr);
-  // A file above the limit of the shell is an error of writing like a full disk.
-  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 std::string duration(double seconds) {
@@ -146,19 +153,63 @@ std::string summary(const Study& study, const SweepResult& result) {
                    grouped(digest.outside), 100.0 * double(digest.outside) / double(sweep.size()), limits);
     if (sweep.allow_extrapolation) fmt::format_to(out, "extrapolation is allowed: designs outside the domain may be best\n");
   }
-  const auto best = [&](const char* what, const std::optional<SweepDigest::Best>& b, const std::string& value) {
-    if (b) fmt::format_to(out, "{}\n", wrapped(fmt::format("{}: {}, {}", what, value, description(sweep, b->index)), 88, 2));
+  const auto best = [&](const char* what, const SweepBest& b, const auto& value) {
+    if (!b.design()) return;
+    fmt::format_to(out, "{}\n",
+                   wrapped(fmt::format("{}: {}, {}{}", what, value(b.design()->value), description(sweep, b.design()->index),
+                                       b.carries_weight() ? " (of those that carry their weight)" : ""),
+                           88, 2));
   };
-  if (digest.lift) best("most mean lift", digest.lift, readable(digest.lift->value, "N"));
-  if (digest.efficiency) {
-    best("best efficiency", digest.efficiency, fmt::format("{:.2f} %", 100.0 * digest.efficiency->value));
-  }
+  best("maximum mean lift", digest.lift, [](double lift) { return readable(lift, "N"); });
+  best("maximum efficiency", digest.efficiency, [](double share) { return fmt::format("{:.2f} %", 100.0 * share); });
   return text;
 }
 
+/// The summary as one JSON object: numbers of designs by status, and the best ones with their swept values [SI].
+std::string json_summary(const Study& study, const SweepResult& result, const Arguments& arguments) {
+  using Json = nlohmann::ordered_json;
+  const Sweep& sweep = study.sweep;
+  Json json;
+  json["title"] = study.title.empty() ? Json(nullptr) : Json(study.title);
+  json["data_set"] = arguments.output;
+  json["plot"] = arguments.plot.empty() ? Json(nullptr) : Json(arguments.plot);
+  json["designs"] = sweep.size();
+  json["axes"] = Json::array();
+  for (const SweepAxis& axis : sweep.axes) json["axes"].push_back({{"name", axis.name}, {"count", axis.count}});
+  json["computed"] = result.progress.computed;
+  json["resumed"] = result.resumed;
+  json["computing_time_s"] = result.progress.seconds;
+  json["recomputed"] = result.digest.recomputed;
+  for (int s = 0; s < sweep_status_count; ++s) {
+    json["status"][name_of(SweepStatus(s))] = result.digest.designs[std::size_t(s)];
+  }
+  const auto best = [&](const std::optional<SweepDigest::Best>& found, Metric metric) {
+    if (!found) return Json(nullptr);
+    Json entry;
+    entry["index"] = found->index;
+    entry[metric_info(metric).key] = found->value;
+    const auto place = places(sweep, found->index);
+    for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
+      const SweepAxis& axis = sweep.axes[a];
+      for (std::size_t q = 0; q < axis.quantities.size(); ++q) {
+        const SweptQuantity& quantity = axis.quantities[q];
+        const bool choice = quantity.kind == SweptQuantity::Kind::choice;
+        entry["parameters"][quantity.key] = choice ? Json(quantity.labels[place[a]]) : Json(axis.value(q, place[a]));
+      }
+    }
+    return entry;
+  };
+  json["max_lift_mean"] = best(result.digest.lift, Metric::lift_mean);
+  json["max_efficiency_system"] = best(result.digest.efficiency, Metric::efficiency_system);
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 Study study_of(const Arguments& arguments) {
-  Study study = std::filesystem::path(arguments.study).extension() == ".nc" ? read_study_in_data_set(arguments.study)
-                                                                            : read_study(arguments.study);
+  const bool data_set = std::filesystem::path(arguments.study).extension() == ".nc";
+  if (data_set && !arguments.overrides.empty()) {
+    throw InputError("--set", 0, 0, "", "a data set of an earlier sweep is computed again as it is; give its study file");
+  }
+  Study study = data_set ? read_study_in_data_set(arguments.study) : read_study(arguments.study, arguments.overrides);
   study.sweep.allow_extrapolation |= arguments.allow_extrapolation;
   EnsembleOptions& options = study.sweep.options;
   if (!arguments.tolerance.empty()) {
@@ -179,7 +230,6 @@ Study study_of(const Arguments& arguments) {
     if (!is_available(known->second)) throw InputError(option, 0, 0, "", "this processor cannot run it");
     options.isa = known->second;
   }
-  if (arguments.threads < 0) throw InputError("--threads", 0, 0, "", "must be >= 1");
   return study;
 }
 
@@ -189,6 +239,7 @@ int sweep_on_rank_0(const Arguments& arguments, Ranks* ranks) {
   options.version = version;
   options.threads = arguments.threads;
   options.ranks = ranks;
+  options.force = arguments.force;
   options.stop = [] { return interrupted != 0; };
   const bool on_terminal = ::isatty(STDERR_FILENO) == 1;
   if (on_terminal) options.progress = show_progress;
@@ -204,7 +255,7 @@ int sweep_on_rank_0(const Arguments& arguments, Ranks* ranks) {
     const std::string option = "--plot " + arguments.plot;
     if (!format) throw InputError(option, 0, 0, "", "the name must end in .svg, .pdf or .png");
     drawn = metrics_to_plot(study, arguments.plot_metrics, option);
-    plot.emplace("--plot", arguments.plot);
+    plot.emplace("--plot", arguments.plot, OutputRules{plot_extensions, arguments.force});
   }
   const SweepResult result = run_sweep(study, options);
   if (on_terminal) clear_progress();
@@ -216,13 +267,13 @@ int sweep_on_rank_0(const Arguments& arguments, Ranks* ranks) {
   }
   std::string text = summary(study, result);
   const bool was_there = result.outcome == SweepResult::Outcome::was_finished;
-  text += fmt::format("{} {}\n", arguments.output, was_there ? "holds this sweep already: nothing to compute" : "written");
+  if (was_there) text += fmt::format("{} holds this sweep already: nothing to compute\n", arguments.output);
+  else note_written(arguments.output);
   if (plot) {
     plot_sweep(study, options.output, drawn, *format, plot->temporary());
     plot->commit();
-    text += fmt::format("{} written\n", arguments.plot);
   }
-  print(text);
+  print(arguments.json ? json_summary(study, result, arguments) : text);
   return done;
 }
 
@@ -247,35 +298,40 @@ int sweep(const Arguments& arguments) {
 void add_sweep(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("sweep", "Compute very many vehicles into one data set");
   const auto a = std::make_shared<Arguments>();
-  command->add_option("study", a->study, "Study file (TOML), or a data set of an earlier sweep (.nc)")
-      ->required()
-      ->type_name("STUDY");
+  add_input(command, a->study, "study", "Study file (TOML), or a data set of an earlier sweep (.nc)", "STUDY");
+  add_set(command, a->overrides);
   command->add_option("-o,--output", a->output, "Data set to be written (NetCDF-4)")->required()->type_name("FILE.nc");
   command->add_option("--tolerance", a->tolerance, "Relative accuracy of every metric, instead of the study's")
       ->type_name("NUMBER");
-  command->add_option("--threads", a->threads, "Use at most so many threads (default: one for each core)")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber);
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
                     "Designs outside the model's domain may be best (docs/domain.md)");
+  add_json(command, a->json);
+  add_threads(command, a->threads);
   command->add_option("--isa", a->isa, "Instructions: sse2, avx2 or avx512 (default: the widest there is)")
       ->type_name("NAME");
   CLI::Option* plot =
       command->add_option("--plot", a->plot, "Draw lines over one axis, contours over two, to FILE.svg, .pdf or .png")
           ->type_name("FILE");
   command
-      ->add_option("--plot-metrics", a->plot_metrics,
+      ->add_option("--plot-metric", a->plot_metrics,
                    "What to draw, as lift_mean_n,frequency_hz (default: mean lift and system efficiency)")
       ->delimiter(',')
       ->needs(plot)
-      ->type_name("METRICS");
+      ->type_name("METRIC,...");
+  command->add_option("--plot-metrics", a->plot_metrics)->delimiter(',')->needs(plot)->group("");  // the old spelling
+  add_force(*command, a->force);
   command->footer(
       "Example:\n"
-      "  wingbeat sweep data/studies/crank-radius.toml -o crank-radius.nc --plot crank-radius.svg\n\n"
+      "  wingbeat sweep crank-radius -o crank-radius.nc --plot crank-radius.svg\n\n"
       "Study files: docs/sweep.md. Stopped by Ctrl-C, or killed, the same command resumes. On several machines:\n"
       "  mpirun -n 8 wingbeat sweep STUDY.toml -o FILE.nc\n\n"
       "Exit status: 0 done, 2 bad input or usage, 1 anything else, a sweep that was stopped included.");
-  command->callback([a, &action] { action = [a] { return sweep(*a); }; });
+  command->callback([a, &action] {
+    action = [a] {
+      a->study = find_input(a->study, InputKind::study).string();
+      return sweep(*a);
+    };
+  });
 }
 
 }  // namespace wingbeat::app

@@ -5,8 +5,11 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "command.hpp"
+#include "options.hpp"
 #include "wingbeat/io/output_file.hpp"
 #include "wingbeat/io/sweep_run.hpp"
 #include "wingbeat/io/tolerance_file.hpp"
@@ -16,9 +19,10 @@ namespace wingbeat::app {
 namespace {
 
 struct Arguments {
+  std::vector<std::string> overrides;
   std::string study, output, plot, plot_metric;
   int threads = 0;
-  bool json = false;
+  bool json = false, force = false;
   bool allow_extrapolation = false;
 };
 
@@ -36,7 +40,7 @@ int run(const Arguments& arguments) {
   if (!arguments.output.empty() && std::filesystem::path(arguments.output).extension() != ".nc") {
     throw InputError("-o " + arguments.output, 0, 0, "", "the name must end in .nc");
   }
-  ToleranceStudy study = read_tolerance_study(arguments.study);
+  ToleranceStudy study = read_tolerance_study(arguments.study, arguments.overrides);
   study.allow_extrapolation |= arguments.allow_extrapolation;
   const std::string option = "--plot-metric " + arguments.plot_metric;
   if (!arguments.plot_metric.empty()) {
@@ -46,8 +50,8 @@ int run(const Arguments& arguments) {
     }
   }
   std::optional<OutputFile> output, plot;
-  if (!arguments.output.empty()) output.emplace("-o", arguments.output);
-  if (format) plot.emplace("--plot", arguments.plot);
+  if (!arguments.output.empty()) output.emplace("-o", arguments.output, OutputRules{".nc", arguments.force});
+  if (format) plot.emplace("--plot", arguments.plot, OutputRules{plot_extensions, arguments.force});
 
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
   std::function<void(const SweepProgress&)> progress;
@@ -79,23 +83,28 @@ int run(const Arguments& arguments) {
 void add_tolerance(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("tolerance", "What uncertain parameters do to a vehicle's metrics");
   const auto a = std::make_shared<Arguments>();
-  command->add_option("study", a->study, "Study file (TOML): vehicle, distributions")->required()->type_name("STUDY");
+  add_input(command, a->study, "study", "Study file (TOML): vehicle, distributions", "STUDY");
+  add_set(command, a->overrides);
   command->add_option("-o,--output", a->output, "Write samples, metrics and indices (NetCDF-4)")->type_name("FILE.nc");
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
                     "Samples outside the model's domain count and may hover (docs/domain.md)");
-  command->add_flag("--json", a->json, "Print one JSON object instead of tables");
-  command->add_option("--threads", a->threads, "Use at most so many threads (default: one for each core)")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber);
+  add_json(command, a->json);
+  add_threads(command, a->threads);
   CLI::Option* plot =
       command->add_option("--plot", a->plot, "Draw a metric's distribution and sources to FILE.svg, .pdf or .png")
           ->type_name("FILE");
   command->add_option("--plot-metric", a->plot_metric, "Which one (default: lift to weight, else mean lift)")
       ->needs(plot)
       ->type_name("METRIC");
-  command->footer("Example:\n  wingbeat tolerance data/studies/tolerance-hover.toml --plot tolerance.svg\n\n"
+  add_force(*command, a->force);
+  command->footer("Example:\n  wingbeat tolerance tolerance-hover --plot tolerance.svg\n\n"
                   "Exit status: 0 done, 2 bad input or usage, 3 no vehicle flaps, 1 anything else.");
-  command->callback([a, &action] { action = [a] { return run(*a); }; });
+  command->callback([a, &action] {
+    action = [a] {
+      a->study = find_input(a->study, InputKind::study).string();
+      return run(*a);
+    };
+  });
 }
 
 }  // namespace wingbeat::app

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -12,9 +13,13 @@
 #include <string>
 
 #include "command.hpp"
+#include "options.hpp"
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/io/design_file.hpp"
+#include "wingbeat/io/file_record.hpp"
+#include "wingbeat/io/temporary_files.hpp"
 #include "wingbeat/io/units.hpp"
+#include "wingbeat/io/written_files.hpp"
 
 namespace wingbeat::app {
 
@@ -34,6 +39,10 @@ void complain(std::string_view sentence) {
   std::fputs(line.c_str(), stderr);
 }
 
+void add_force(CLI::App& command, bool& force) {
+  command.add_flag("--force", force, "Replace existing files that wingbeat did not write; never a file that is read");
+}
+
 namespace {
 
 /// A file opened later must not land on the number of a stream that the caller has closed.
@@ -48,7 +57,7 @@ int run(int argc, char** argv) {
   program.set_version_flag("--version", fmt::format("wingbeat {} ({}, {} build)", WINGBEAT_VERSION, WINGBEAT_COMPILER,
                                                     WINGBEAT_BUILD_TYPE));
   program.require_subcommand(1);
-  program.footer("Example:\n  wingbeat run data/designs/friction2022.toml\n\n"
+  program.footer("Example:\n  wingbeat run friction2022\n\n"
                  "Exit status: 0 done, 1 something failed, 2 bad input or usage, 3 the vehicle does not flap.");
   program.get_formatter()->column_width(34);
   Action action;
@@ -61,9 +70,12 @@ int run(int argc, char** argv) {
   add_optimise(program, action);
   add_endurance(program, action);
   add_reproduce(program, action);
+  add_new(program, action);
+  add_keys(program, action);
+  add_metrics(program, action);
   const auto named = [&](const CLI::App* command) { return command->get_name() == argv[1]; };
   if (argc > 1 && argv[1][0] != '-' && program.get_subcommands([&](CLI::App* c) { return named(c); }).empty()) {
-    complain(fmt::format("there is no command {}; see wingbeat --help", in_quotes(argv[1])));
+    complain(unknown_command(program, argv[1]));
     return bad_input;
   }
   try {
@@ -76,11 +88,15 @@ int run(int argc, char** argv) {
     print(text);
     return done;
   } catch (const CLI::ParseError& error) {
-    std::string help = "wingbeat";
-    for (const CLI::App* command : program.get_subcommands()) help += " " + command->get_name();
-    complain(fmt::format("{} (see {} --help)", error.what(), help));
+    complain(usage_complaint(program, error));
     return bad_input;
   }
+  // Said last and in any case, on standard error: standard output is the result's.
+  struct TellWritten {
+    ~TellWritten() {
+      for (const std::string& name : take_written()) fmt::print(stderr, "wrote {}\n", one_line(name, 1000));
+    }
+  } const tell;
   return action();
 }
 
@@ -92,11 +108,17 @@ int main(int argc, char** argv) {
   const bool output_open = fill_standard_streams();
   // A reader that went away is an error of writing like any other.
   std::signal(SIGPIPE, SIG_IGN);
+  // So is a file above the limit of the shell.
+  std::signal(SIGXFSZ, SIG_IGN);
+  wingbeat::remove_temporaries_on_signals();
   try {
     if (!output_open) throw std::runtime_error("standard output is closed");
     return run(argc, argv);
   } catch (const wingbeat::InputError& error) {
     complain(error.what());
+    constexpr std::size_t most = 30;
+    for (std::size_t n = 0; n < std::min(most, error.others().size()); ++n) complain(error.others()[n].what());
+    if (error.others().size() > most) complain(fmt::format("and {} errors more", error.others().size() - most));
     return bad_input;
   } catch (const wingbeat::ParameterError& error) {
     complain(error.what());
@@ -104,7 +126,7 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     complain("out of memory");
   } catch (const std::exception& error) {
-    complain(error.what());
+    complain(wingbeat::FileRecord::of_this_program().with_given_names(error.what()));
   }
   return failed;
 }

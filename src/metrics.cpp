@@ -8,6 +8,7 @@ const std::array<MetricInfo, metric_count>& metric_table() {
       {"frequency_hz", "Hz", "flapping frequency"},
       {"current_mean_a", "A", "mean current"},
       {"current_peak_a", "A", "peak current"},
+      {"current_rms_a", "A", "root mean square of the current"},
       {"power_electrical_w", "W", "mean electrical input power"},
       {"power_motor_w", "W", "mean motor output power"},
       {"power_motor_reference_w", "W", "bench estimate of the motor output power"},

@@ -12,25 +12,40 @@ WaveformRow row_inside(const Recorded& recorded, const solve::Step<decltype(Reco
   const auto& system = recorded.system;
   const auto result = solve::evaluate_inside<true>(system, recorded.lap, step, theta);
   const Motion<double> m = system.motion(theta, result.y, step.signs);
-  const double speed = std::abs(m.stroke_velocity);
-  WaveformRow row;
-  row.time = start_time + result.dq[std::size_t(Integral::time)];
-  row.crank_angle = system.shaft_angle(theta, result.y);
-  row.crank_speed = system.shaft_speed(result.y);
   pace = system.pace(result.y);
-  row.current = m.current;
-  row.stroke_angle = system.stroke_angle(m, result.y);
-  row.flapping_velocity = m.stroke_velocity;
-  row.angle_of_attack_deg = degrees_per_radian * angle_of_attack(system.vehicle.wings, speed);
-  row.lift = lift_force(system.vehicle.wings, speed);
-  row.aero_moment = m.aero_moment;
-  row.rod_force = system.has_rod ? m.rod_force : absent;
-  row.motor_torque = m.motor_torque;
-  row.friction_torque = m.friction_torque;
-  return row;
+  return waveform_row(system.vehicle, m, start_time + result.dq[std::size_t(Integral::time)],
+                      system.shaft_angle(theta, result.y), system.shaft_speed(result.y),
+                      system.stroke_angle(m, result.y));
 }
 
 }  // namespace
+
+WaveformRow waveform_row(const Vehicle<double>& v, const Motion<double>& m, double time, double shaft_angle,
+                         double shaft_speed, double stroke_angle) {
+  const double speed = std::abs(m.stroke_velocity);
+  const double spring_moment = v.wing_count * spring_loads(v.spring, stroke_angle).moment;
+  WaveformRow row;
+  row.time = time;
+  row.crank_angle = shaft_angle;
+  row.crank_speed = shaft_speed;
+  row.current = m.current;
+  row.stroke_angle = stroke_angle;
+  row.flapping_velocity = m.stroke_velocity;
+  row.angle_of_attack_deg = degrees_per_radian * angle_of_attack(v.wings, speed);
+  row.lift = lift_force(v.wings, speed);
+  row.aero_moment = m.aero_moment;
+  row.rod_force = v.transmission == TransmissionType::direct ? absent : m.rod_force;
+  row.motor_torque = m.motor_torque;
+  row.friction_torque = m.friction_torque;
+  row.voltage = m.voltage;
+  row.power_electrical = m.voltage * m.current;
+  row.power_motor = m.motor_torque * shaft_speed;
+  row.power_friction = m.friction_torque * shaft_speed;
+  row.power_aerodynamic = m.aero_moment * m.stroke_velocity;
+  row.spring_moment = spring_moment;
+  row.inertial_moment = v.wing_count * v.wing_inertia * m.stroke_acceleration;
+  return row;
+}
 
 bool CycleRecord::empty() const {
   return std::visit([](const auto& recorded) { return recorded.lap.steps.empty(); }, laps_);

@@ -9,11 +9,13 @@
 #include <utility>
 
 #include "csv_cells.hpp"
+#include "input_errors.hpp"
 #include "toml_fields.hpp"
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/io/design_file.hpp"
 #include "wingbeat/io/design_keys.hpp"
 #include "wingbeat/io/design_parameter.hpp"
+#include "wingbeat/io/input_file.hpp"
 #include "wingbeat/io/units.hpp"
 
 namespace wingbeat {
@@ -269,27 +271,31 @@ E chosen(const TomlFields& fields, std::string_view key, const std::pair<std::st
 
 class BenchReader {
  public:
-  explicit BenchReader(const std::filesystem::path& file)
+  BenchReader(const std::filesystem::path& file, std::span<const std::string> overrides)
       : path_(file),
-        name_(file.string()),
+        overrides_(overrides),
+        name_(input_name(file)),
         tree_(parse_toml_tree(read_text_file(file), name_)),
         root_(name_, "", tree_) {}
 
   BenchFit read() {
     const std::string_view sections[] = {"bench", "fit", "parameter", "deviation", "log"};
-    root_.known_keys(sections);
+    errors_.attempt([&] { root_.known_keys(sections); });
     const auto bench = root_.table("bench");
     if (!bench) root_.refuse("bench", "missing section [bench] with the name of a vehicle file");
     const std::string_view bench_keys[] = {"vehicle", "title", "source"};
-    bench->known_keys(bench_keys);
-    const std::string vehicle = bench->needed_text("vehicle", "the name of a vehicle file");
-    bench->text("title");
-    bench->text("source");
+    errors_.attempt([&] { bench->known_keys(bench_keys); });
+    errors_.attempt([&] { bench->text("title"), bench->text("source"); });
     BenchFit fit;
-    fit.design = read_design(path_.parent_path() / vehicle);
-    read_options(fit);
-    read_parameters(fit);
-    read_logs(fit);
+    errors_.attempt([&] { read_options(fit); });
+    const bool has_vehicle = errors_.attempt([&] {
+      const std::string vehicle = bench->needed_text("vehicle", "the name of a vehicle file");
+      fit.design = read_design(find_vehicle(path_.parent_path(), vehicle), overrides_);
+    });
+    if (!has_vehicle) errors_.refuse();  // the rest is read for this vehicle
+    errors_.attempt([&] { read_parameters(fit); });
+    errors_.attempt([&] { read_logs(fit); });
+    errors_.refuse();
     read_deviations(fit);
     return fit;
   }
@@ -304,6 +310,10 @@ class BenchReader {
     fit.loss_scale = options->quantity("loss_scale", "1").value_or(fit.loss_scale);
     if (!(fit.loss_scale > 0.0)) options->refuse(options->at("loss_scale"), "loss_scale", "must be > 0");
     fit.starts = options->count("starts", 1).value_or(1);
+    if (fit.starts > most_fit_starts) {
+      options->refuse(options->at("starts"), "starts",
+                      fmt::format("must be at most {}, got {}; every start is a whole fit", most_fit_starts, fit.starts));
+    }
     fit.seed = std::uint64_t(options->count("seed", 0).value_or(1));
     fit.tolerance = options->quantity("tolerance", "1").value_or(fit.tolerance);
     if (!(fit.tolerance >= 1e-12 && fit.tolerance <= 1e-3)) {
@@ -311,8 +321,8 @@ class BenchReader {
     }
   }
 
-  void read_parameters(BenchFit& fit) const {
-    for (const TomlFields& p : root_.tables("parameter")) {
+  void read_parameters(BenchFit& fit) {
+    const auto read_one = [&](const TomlFields& p) {
       const std::string_view keys[] = {"key", "lower", "upper", "start"};
       p.known_keys(keys);
       const std::string key = p.needed_text("key", "a number of the vehicle file, such as \"friction.radius\"");
@@ -345,15 +355,24 @@ class BenchReader {
       for (const FreeParameter& before : fit.parameters) {
         if (before.parameter.key == key) p.refuse(p.at("key"), "key", fmt::format("{} is given twice", key));
       }
+      if (start) {
+        for (const std::string& assignment : overrides_) {
+          if (!assignment.starts_with(key + "=")) continue;
+          throw InputError("--set " + one_line(assignment, 120), 0, 0, key,
+                           "has no effect: the bench file gives its start");
+        }
+      }
       fit.parameters.push_back(free);
-    }
-    if (fit.parameters.empty())
+    };
+    const auto sections = root_.tables("parameter");
+    for (const TomlFields& p : sections) errors_.attempt([&] { read_one(p); });
+    if (sections.empty())
       root_.refuse("parameter", "missing: which parameters are free? Give [[parameter]] sections");
   }
 
-  void read_logs(BenchFit& fit) const {
+  void read_logs(BenchFit& fit) {
     const bool has_springs = fit.design.spring.stiffness || fit.design.spring.resonance;
-    for (const TomlFields& l : root_.tables("log")) {
+    const auto read_one = [&](const TomlFields& l) {
       const std::string_view keys[] = {"file", "condition", "springs", "given", "measured", "voltage", "frequency"};
       l.known_keys(keys);
       const std::string file = l.needed_text("file", "the name of a CSV file");
@@ -391,8 +410,10 @@ class BenchReader {
       }
       fit.logs.push_back(parse_log(text, path.string(), request));
       check_columns(l, fit);
-    }
-    if (fit.logs.empty()) root_.refuse("log", "missing: what was measured? Give [[log]] sections");
+    };
+    const auto sections = root_.tables("log");
+    for (const TomlFields& l : sections) errors_.attempt([&] { read_one(l); });
+    if (sections.empty()) root_.refuse("log", "missing: what was measured? Give [[log]] sections");
   }
 
   void check_columns(const TomlFields& l, const BenchFit& fit) const {
@@ -466,6 +487,8 @@ class BenchReader {
   }
 
   std::filesystem::path path_;
+  std::span<const std::string> overrides_;
+  InputErrors errors_;
   std::string name_;
   TomlNode tree_;
   TomlFields root_;
@@ -477,6 +500,16 @@ BenchLog parse_log(std::string_view text, const std::string& file_name, const Lo
   return LogReader(file_name, request).read(text);
 }
 
-BenchFit read_bench(const std::filesystem::path& file) { return BenchReader(file).read(); }
+std::filesystem::path vehicle_of_bench(const std::filesystem::path& file) {
+  const TomlNode tree = parse_toml_tree(read_text_file(file), file.string());
+  const TomlNode* bench = tree.find("bench");
+  const TomlNode* vehicle = bench ? bench->find("vehicle") : nullptr;
+  if (!vehicle) throw InputError(file.string(), 0, 0, "bench.vehicle", "missing; expected the name of a vehicle file");
+  return find_vehicle(file.parent_path(), vehicle->text);
+}
+
+BenchFit read_bench(const std::filesystem::path& file, std::span<const std::string> overrides) {
+  return BenchReader(file, overrides).read();
+}
 
 }  // namespace wingbeat

@@ -7,8 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "input_errors.hpp"
 #include "toml_fields.hpp"
 #include "wingbeat/core/status.hpp"
+#include "wingbeat/io/input_file.hpp"
 #include "wingbeat/io/report.hpp"
 #include "wingbeat/io/units.hpp"
 
@@ -69,12 +71,13 @@ MotorDatasheet parse_datasheet(std::string_view text, const std::string& file_na
   const TomlNode tree = parse_toml_tree(text, file_name);
   const TomlFields root(file_name, "", tree);
   const std::string_view sections[] = {"datasheet", "deviation", "fallback"};
-  root.known_keys(sections);
+  InputErrors errors;
+  errors.attempt([&] { root.known_keys(sections); });
   const auto sheet = root.table("datasheet");
   if (!sheet) root.refuse("datasheet", "missing section [datasheet] with what the maker publishes");
   std::vector<std::string_view> known = {"name", "source", "note", "shaft", "gear_ratio", "gear_efficiency", "point"};
   for (const Field& f : fields) known.push_back(f.key);
-  sheet->known_keys(known);
+  errors.attempt([&] { sheet->known_keys(known); });
 
   MotorDatasheet s;
   s.name = sheet->text("name").value_or("");
@@ -84,17 +87,22 @@ MotorDatasheet parse_datasheet(std::string_view text, const std::string& file_na
   s.shaft = sheet->choice("shaft", shafts, "motor") == "output" ? Shaft::output : Shaft::motor;
   s.gear_ratio = sheet->quantity("gear_ratio", "1").value_or(1.0);
   s.gear_efficiency = sheet->quantity("gear_efficiency", "1");
-  for (const Field& f : fields) s.*f.value = sheet->quantity(f.key, f.unit);
-  if (s.shaft == Shaft::output && !sheet->has("gear_ratio")) {
-    sheet->refuse("gear_ratio", "missing; values at the output shaft need the ratio (1 without a gearbox)");
-  }
+  for (const Field& f : fields) errors.attempt([&] { s.*f.value = sheet->quantity(f.key, f.unit); });
+  errors.attempt([&] {
+    if (s.shaft == Shaft::output && !sheet->has("gear_ratio")) {
+      sheet->refuse("gear_ratio", "missing; values at the output shaft need the ratio (1 without a gearbox)");
+    }
+  });
   std::vector<std::string_view> point_keys;
   for (const Field& f : point_fields) point_keys.push_back(f.key);
   for (const TomlFields& p : sheet->tables("point")) {
-    p.known_keys(point_keys);
-    s.points.push_back({p.quantity("voltage", "V"), p.quantity("torque", "N m"), p.quantity("speed", "rad/s"),
-                        p.quantity("current", "A"), p.quantity("efficiency", "1")});
+    errors.attempt([&] {
+      p.known_keys(point_keys);
+      s.points.push_back({p.quantity("voltage", "V"), p.quantity("torque", "N m"), p.quantity("speed", "rad/s"),
+                          p.quantity("current", "A"), p.quantity("efficiency", "1")});
+    });
   }
+  errors.refuse();
   if (const auto deviation = root.table("deviation")) {
     std::vector<std::string_view> names = {"default", "point"};
     for (const Field& f : fields) names.push_back(f.key);
@@ -131,7 +139,7 @@ MotorDatasheet parse_datasheet(std::string_view text, const std::string& file_na
 }
 
 MotorDatasheet read_datasheet(const std::filesystem::path& file) {
-  return parse_datasheet(read_text_file(file), file.string());
+  return parse_datasheet(read_text_file(file), input_name(file));
 }
 
 std::string motor_section(const MotorIdentification& motor, const MotorDatasheet& sheet, const std::string& made_by) {
@@ -140,6 +148,7 @@ std::string motor_section(const MotorIdentification& motor, const MotorDatasheet
                                  sheet.name.empty() ? "Motor of a data sheet" : one_line(sheet.name, 100), made_by);
   for (const Contradiction& c : motor.contradictions) text += fmt::format("# On the sheet, {}.\n", sentence(c));
   for (const std::string& remark : motor.remarks) text += fmt::format("# {}.\n", remark);
+  if (sheet.gear_efficiency) text += fmt::format("# Of the sheet, not of this section: gear_efficiency = {}\n", *sheet.gear_efficiency);
   text += "\n[motor]\n";
   for (const Constant& c : constants) {
     text += fmt::format("{} = \"{} {}\"\n", c.key, *(motor.*c.value).value, c.unit);
@@ -188,6 +197,8 @@ std::string json_identification(const MotorIdentification& motor, const MotorDat
   Json json;
   json["name"] = sheet.name;
   json["complete"] = motor.complete();
+  json["birge_ratio"] = motor.birge_ratio;
+  json["gear_efficiency"] = number(sheet.gear_efficiency);
   for (const Constant& c : constants) {
     const IdentifiedConstant& x = motor.*c.value;
     json["motor"][std::string(c.key)] = {{"value", number(x.value)},

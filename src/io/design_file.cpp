@@ -14,9 +14,12 @@
 #include <utility>
 #include <vector>
 
+#include "input_errors.hpp"
 #include "table_csv.hpp"
 #include "toml_document.hpp"
 #include "wingbeat/io/design_keys.hpp"
+#include "wingbeat/io/file_record.hpp"
+#include "wingbeat/io/input_file.hpp"
 #include "wingbeat/io/units.hpp"
 
 namespace wingbeat {
@@ -39,32 +42,64 @@ constexpr CsvColumn coefficient_columns[] = {{"alpha", "rad"}, {"cl", "1"}, {"cd
 
 class Reader {
  public:
-  Reader(const Document& document, const TableLoader& load_table) : document_(document), load_table_(load_table) {}
+  Reader(const Document& document, const TableLoader& load_table)
+      : document_(document), load_table_(load_table), errors_(document.errors) {}
 
+  /// Reads on after an error, so that all of them are told.
   Design<double> read() {
     Design<double> d{};
     require_sections();
-    if (const Value* name = document_.find("vehicle.name")) d.name = text_of(*name, "vehicle.name", "a text");
-    d.supply.type = choice("supply.type", supply_types);
-    d.transmission.type = choice("transmission.type", transmission_types);
-    read_formulation(d.transmission);
-    d.friction.law = choice("friction.type", friction_laws);
-    if (!document_.has_section("wing.planform")) {
+    attempt([&] {
+      if (const Value* name = document_.find("vehicle.name")) d.name = text_of(*name, "vehicle.name", "a text");
+    });
+    read_choice("supply.type", supply_types, d.supply.type);
+    read_choice("transmission.type", transmission_types, d.transmission.type);
+    attempt([&] { read_formulation(d.transmission); });
+    read_choice("friction.type", friction_laws, d.friction.law);
+    attempt([&] {
+      if (document_.has_section("wing.planform")) return;
+      absent_.push_back("wing.planform");
       missing("wing.planform",
               "a table such as { shape = \"semi-ellipse\", length = \"63 mm\", root_chord = \"25 mm\" }");
-    }
-    d.wing.planform.shape = choice("wing.planform.shape", planform_shapes);
+    });
+    read_choice("wing.planform.shape", planform_shapes, d.wing.planform.shape);
     check_alternatives();
-    read_coefficients(d.aerodynamics);
+    attempt([&] { read_coefficients(d.aerodynamics); });
     read_numbers(d);
-    if (d.supply.type == SupplyType::battery) read_discharge_curve(d.supply.battery);
-    if (d.wing.planform.shape == PlanformShape::tabulated) read_chords(d.wing.planform);
+    attempt([&] {
+      if (d.supply.type == SupplyType::battery) read_discharge_curve(d.supply.battery);
+    });
+    attempt([&] {
+      if (d.wing.planform.shape == PlanformShape::tabulated) read_chords(d.wing.planform);
+    });
+    errors_.refuse(missing_);
     check(d);
     return d;
   }
 
  private:
-  void require_sections() const {
+  /// Thrown instead of an error that follows from one that is told already.
+  struct Told {};
+
+  template <class Do>
+  void attempt(const Do& act) {
+    try {
+      errors_.attempt(act);
+    } catch (const Told&) {
+    }
+  }
+
+  /// True if a misspelt or misplaced key, which is told already, was to be this one.
+  bool known_to_be_wrong(std::string_view path) const {
+    const auto leaf = [](std::string_view p) { return p.substr(p.rfind('.') + 1); };
+    const auto section = [](std::string_view p) { return p.substr(0, p.size() - p.substr(p.rfind('.') + 1).size()); };
+    const std::string_view name[] = {leaf(path)};
+    return std::any_of(document_.spoiled.begin(), document_.spoiled.end(), [&](const std::string& wrong) {
+      return wrong == path || (section(wrong) == section(path) && !nearest_name(leaf(wrong), name).empty());
+    });
+  }
+
+  void require_sections() {
     constexpr std::pair<std::string_view, std::string_view> required[] = {
         {"supply", "the voltage at the motor terminals"},
         {"motor", "the motor's constants"},
@@ -73,16 +108,28 @@ class Reader {
         {"wing", "the wings' number, inertia and planform"},
         {"aerodynamics", "air density, pitch coefficient and force coefficients"}};
     for (const auto& [section, holds] : required) {
-      if (!document_.has_section(section)) {
-        document_.locate(section).refuse(std::string(section), fmt::format("missing section [{}]: {}", section, holds));
-      }
+      if (document_.has_section(section)) continue;
+      absent_.push_back(section);
+      if (known_to_be_wrong(section)) continue;
+      missing_.attempt([&, s = section, h = holds] {
+        document_.locate(s).refuse(std::string(s), fmt::format("missing section [{}]: {}", s, h));
+      });
     }
   }
 
+  /// Told after the errors that stand in the file.
   [[noreturn]] void missing(std::string_view path, std::string_view expected) const {
+    const bool follows = std::any_of(absent_.begin(), absent_.end(), [&](std::string_view section) {
+      return path.starts_with(section) && path.size() > section.size() && path[section.size()] == '.';
+    });
+    if (follows || known_to_be_wrong(path)) throw Told{};
     const auto dot = path.rfind('.');
     const std::string section(path.substr(0, dot));
-    document_.locate(section).refuse(std::string(path), fmt::format("missing in [{}]; expected {}", section, expected));
+    missing_.attempt([&] {
+      document_.locate(section).refuse(std::string(path),
+                                       fmt::format("missing in [{}]; expected {}", section, expected));
+    });
+    throw Told{};
   }
 
   [[noreturn]] void wrong(const Value& value, std::string_view path, std::string_view expected) const {
@@ -110,6 +157,20 @@ class Reader {
     wrong(*document_.find(path), path, find_key<double>(path)->range);
   }
 
+  /// A choice on which other keys depend: what depends on one that cannot be read is passed over.
+  template <class E, std::size_t N>
+  void read_choice(std::string_view path, const std::pair<std::string_view, E> (&names)[N], E& result) {
+    unread_.push_back(path);
+    attempt([&] {
+      result = choice(path, names);
+      unread_.pop_back();
+    });
+  }
+
+  bool is_unread(std::string_view path) const {
+    return std::find(unread_.begin(), unread_.end(), path) != unread_.end();
+  }
+
   [[noreturn]] void unsupported(std::string_view path, std::string_view given) const {
     document_.locate(path).refuse(std::string(path), fmt::format("{} is not supported yet; expected {}", given,
                                                                  find_key<double>(path)->range));
@@ -122,7 +183,7 @@ class Reader {
     }
     if (value.kind != Value::Kind::text) wrong(value, path, quantity_example(unit));
     try {
-      return parse_quantity(value.text, unit);
+      return parse_quantity(value.text, unit, SpeedConstant::inverted);
     } catch (const UnitError& error) {
       value.origin.refuse(std::string(path), error.what());
     }
@@ -132,6 +193,7 @@ class Reader {
   bool belongs(const KeyText& key) const {
     if (key.only_with.empty()) return true;
     const Requirement requirement = requirement_of(key.only_with);
+    if (is_unread(requirement.key)) return false;
     const Value* choice = document_.find(requirement.key);
     if (choice && requirement.allows(choice->text)) return true;
     if (const Value* value = document_.find(key.path)) {
@@ -149,26 +211,39 @@ class Reader {
     const std::string_view path = "transmission.formulation";
     if (document_.find(path)) {
       transmission.formulation = choice(path, formulations);
-    } else if (transmission.type == TransmissionType::slider_crank) {
+    } else if (transmission.type == TransmissionType::slider_crank && !is_unread("transmission.type")) {
       missing(path, "rod-force or virtual-work: virtual-work conserves power and is the choice for a new vehicle, "
                     "rod-force is equation (1) of the 2022 paper as printed");
     }
   }
 
-  void read_numbers(Design<double>& d) const {
+  void read_numbers(Design<double>& d) {
     for (const auto& key : vehicle_keys<double>()) {
-      if (!belongs(key) || !key.set) continue;
-      if (const Value* value = document_.find(key.path)) {
-        const double number = number_of(*value, key.path, key.unit);
-        if (!key.set(d, number)) value->origin.refuse(std::string(key.path), "has no place in this vehicle");
-      } else if (key.fallback == "required") {
-        missing(key.path, quantity_example(key.unit));
-      }
+      attempt([&] {
+        if (!belongs(key) || !key.set) return;
+        if (const Value* value = document_.find(key.path)) {
+          const double number = number_of(*value, key.path, key.unit);
+          if (!key.set(d, number)) value->origin.refuse(std::string(key.path), "has no place in this vehicle");
+          check_sign(*value, key, number);
+        } else if (key.fallback == "required") {
+          missing(key.path, quantity_example(key.unit));
+        }
+      });
     }
   }
 
-  void check_alternatives() const {
-    const auto is = [&](std::string_view path, std::string_view text) { return document_.find(path)->text == text; };
+  /// The ranges that need no other key, each at its own line; validate() sees to the rest.
+  static void check_sign(const Value& value, const KeyText& key, double number) {
+    const bool fits = key.range == "> 0" ? number > 0.0 : key.range == ">= 0" ? number >= 0.0 : true;
+    if (fits) return;
+    const std::string expected = fmt::format("must be {}", key.range);
+    value.origin.refuse(std::string(key.path), range_message(expected.c_str(), std::string(key.unit).c_str(), number));
+  }
+
+  void check_alternatives() {
+    const auto is = [&](std::string_view path, std::string_view text) {
+      return !is_unread(path) && document_.find(path)->text == text;
+    };
     const bool tabulated = is("wing.planform.shape", "tabulated");
     const bool outline = is("wing.planform.shape", "semi-ellipse") || is("wing.planform.shape", "rectangle");
     const bool direct = is("transmission.type", "direct");
@@ -176,7 +251,8 @@ class Reader {
     const bool ratio = document_.find("spring.resonance_ratio");
     // Alternatives of a direct drive alone are not offered to others.
     const std::tuple<std::string_view, std::string_view, bool, bool> pairs[] = {
-        {"transmission.hinge_offset", "transmission.stroke_amplitude", !direct, true},
+        {"transmission.hinge_offset", "transmission.stroke_amplitude", !direct && !is_unread("transmission.type"),
+         true},
         {"spring.stiffness", "spring.resonance", document_.has_section("spring") && !ratio, true},
         {"spring.stiffness", "spring.resonance_ratio", false, true},
         {"spring.resonance", "spring.resonance_ratio", false, true},
@@ -186,19 +262,24 @@ class Reader {
         {"wing.planform.file", "wing.planform.chords", tabulated, true},
         {"supply.cell_voltage", "supply.discharge_curve", is("supply.type", "battery"), true}};
     for (const auto& [one, other, required, offered] : pairs) {
-      const Value* first = document_.find(one);
-      const Value* second = document_.find(other);
-      const auto leaf = [](std::string_view path) { return path.substr(path.rfind('.') + 1); };
-      if (first && second) {
-        second->origin.refuse(std::string(other), fmt::format("give {} or {}, not both", leaf(one), leaf(other)));
-      }
-      if (required && !first && !second) {
-        const std::string_view unit = find_key<double>(one)->unit;
-        missing(one, unit.empty() ? std::string("the name of a CSV file, or chords instead")
-                     : offered     ? fmt::format("{}, or {} instead", quantity_example(unit), leaf(other))
-                                   : quantity_example(unit));
-      }
+      attempt([&, one = one, other = other, required = required, offered = offered] {
+        check_alternative(one, other, required, offered);
+      });
     }
+  }
+
+  void check_alternative(std::string_view one, std::string_view other, bool required, bool offered) const {
+    const Value* first = document_.find(one);
+    const Value* second = document_.find(other);
+    const auto leaf = [](std::string_view path) { return path.substr(path.rfind('.') + 1); };
+    if (first && second) {
+      second->origin.refuse(std::string(other), fmt::format("give {} or {}, not both", leaf(one), leaf(other)));
+    }
+    if (!required || first || second || known_to_be_wrong(other)) return;
+    const std::string_view unit = find_key<double>(one)->unit;
+    missing(one, unit.empty() ? std::string("the name of a CSV file, or chords instead")
+                 : offered     ? fmt::format("{}, or {} instead", quantity_example(unit), leaf(other))
+                               : quantity_example(unit));
   }
 
   void read_coefficients(AerodynamicsDesign<double>& a) const {
@@ -301,6 +382,10 @@ class Reader {
 
   const Document& document_;
   const TableLoader& load_table_;
+  InputErrors errors_;
+  mutable InputErrors missing_;
+  std::vector<std::string_view> absent_;  ///< sections
+  std::vector<std::string_view> unread_;  ///< choices
 };
 
 }  // namespace
@@ -314,6 +399,7 @@ InputError::InputError(std::string file, int line, int column, std::string key, 
 
 std::string read_text_file(const std::filesystem::path& file) {
   constexpr std::size_t largest = 4u << 20;
+  if (file == "-") return standard_input();
   const std::string name = file.string();
   const auto refuse = [&](const std::string& message) { throw InputError(name, 0, 0, "", message); };
   if (name.find('\0') != std::string::npos) throw InputError(one_line(name), 0, 0, "", "not a file name");
@@ -332,19 +418,20 @@ std::string read_text_file(const std::filesystem::path& file) {
   if (stream.bad()) refuse("cannot be read");
   text.resize(std::size_t(stream.gcount()));
   if (text.size() > largest) refuse("larger than 4 MB, which no vehicle file or table is");
+  FileRecord::of_this_program().add_read(file);
   return text;
 }
 
 Design<double> parse_design(std::string_view text, std::string_view file_name, std::span<const std::string> overrides,
                             const TableLoader& load_table) {
   Document document = parse_document(text, file_name);
-  apply_overrides(document, overrides);
+  document.errors.attempt([&] { apply_overrides(document, overrides); });
   return Reader(document, load_table).read();
 }
 
 Design<double> read_design(const std::filesystem::path& file, std::span<const std::string> overrides) {
   const std::filesystem::path folder = file.parent_path();
-  return parse_design(read_text_file(file), file.string(), overrides,
+  return parse_design(read_text_file(file), input_name(file), overrides,
                       [&](const std::string& name) { return read_text_file(folder / name); });
 }
 

@@ -67,23 +67,26 @@ std::string_view nearest_name(std::string_view given, std::span<const std::strin
   return nearest.distance <= std::max<std::size_t>(2, given.size() / 3) ? nearest.path : std::string_view{};
 }
 
-std::string unknown_key_message(std::string_view path) {
+std::string nearest_key(std::string_view path) {
   constexpr std::size_t longest = 80;
+  if (path.size() > longest) return {};
+  Nearest nearest;
+  for (const auto& key : vehicle_keys<double>()) {
+    nearest.offer(key.path, edit_distance(path, key.path));
+    // The right name in the wrong section.
+    if (leaf_of(key.path) == leaf_of(path)) nearest.offer(key.path, 2);
+  }
+  for (const std::string_view section : sections()) nearest.offer(section, edit_distance(path, section));
+  const bool near = nearest.distance <= std::max<std::size_t>(2, leaf_of(path).size() / 3);
+  return near ? std::string(nearest.path) : std::string();
+}
+
+std::string unknown_key_message(std::string_view path) {
   const std::string_view parent = parent_of(path);
   const bool top = parent.empty();
-  Nearest nearest;
-  if (path.size() <= longest) {
-    for (const auto& key : vehicle_keys<double>()) {
-      nearest.offer(key.path, edit_distance(path, key.path));
-      // The right name in the wrong section.
-      if (leaf_of(key.path) == leaf_of(path)) nearest.offer(key.path, 2);
-    }
-    for (const std::string_view section : sections()) nearest.offer(section, edit_distance(path, section));
-  }
-  if (nearest.distance <= std::max<std::size_t>(2, leaf_of(path).size() / 3)) {
-    const bool section = is_section(nearest.path) && !find_key<double>(nearest.path);
-    return "unknown key; did you mean " +
-           (section && top ? "[" + std::string(nearest.path) + "]" : std::string(nearest.path)) + "?";
+  if (const std::string near = nearest_key(path); !near.empty()) {
+    const bool section = is_section(near) && !find_key<double>(near);
+    return "unknown key; did you mean " + (section && top ? "[" + near + "]" : near) + "?";
   }
   std::string known;
   if (!top && is_section(parent)) {

@@ -143,6 +143,12 @@ std::string json_endurance(const EnduranceResult& result) {
     }
     for (const EnduranceRow& row : f.rows) history["domain"].push_back(name_of(row.domain));
     json["history"] = history;
+  } else {
+    for (const char* key : {"charge_initial", "charge_final", "charge_drawn_c", "energy_chemical_j",
+                            "energy_electrical_j", "energy_internal_j", "energy_aerodynamic_j", "current_mean_a", "power_electrical_w",
+                            "power_aerodynamic_w", "lift_mean_n", "efficiency_system", "initial", "final", "history"}) {
+      json[key] = nullptr;
+    }
   }
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -170,7 +176,7 @@ std::string text_endurance(const Design<double>& design, const EnduranceResult& 
   line("endurance", duration(f.time), minutes(f.time));
   switch (result.hover) {
     case Hover::unknown: line("hover", "-", "the vehicle file gives no mass"); break;
-    case Hover::never: line("hover", "never", "lift is below the weight from the start"); break;
+    case Hover::never: line("hover", "never", "below weight from the start: cannot hover"); break;
     case Hover::outside: line("hover", "not claimed", "lift exceeds the weight, but outside the model's domain"); break;
     case Hover::kept: line("hover", "to the end", "lift exceeds the weight throughout"); break;
     case Hover::lost: {
@@ -210,8 +216,8 @@ std::string text_endurance(const Design<double>& design, const EnduranceResult& 
   fmt::format_to(out, "  {:<22}{:>14}{:>14}{:>14}\n", "system efficiency", percent(first.metrics[Metric::efficiency_system]),
                  percent(f.efficiency), percent(f.last.metrics[Metric::efficiency_system]));
   course("mean lift", Metric::lift_mean, "N", f.lift);
-  if (design.mass) {
-    const double weight = *design.mass * standard_gravity;
+  if (const auto mass = total_mass(design)) {
+    const double weight = *mass * standard_gravity;
     fmt::format_to(out, "  {:<22}{:>14.4g}{:>14.4g}{:>14.4g}\n", "mean lift / weight", first.metrics[Metric::lift_to_weight],
                    f.lift / weight, f.last.metrics[Metric::lift_to_weight]);
   }
@@ -223,10 +229,11 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
                     const std::filesystem::path& file) {
   if (!(result.endurance() > 0.0)) throw std::runtime_error("no flight to plot");
   const auto& rows = result.rows;
-  const double weight = design.mass ? *design.mass * standard_gravity : absent;
+  const bool weighed = total_mass(design).has_value();
+  const double weight = total_mass(design).value_or(absent) * standard_gravity;
   const bool in_minutes = result.endurance() >= 300.0;
   const double time_scale = in_minutes ? 1.0 / 60.0 : 1.0;
-  double lift_most = design.mass ? weight : 0.0, power_most = 0.0;
+  double lift_most = weighed ? weight : 0.0, power_most = 0.0;
   for (const EnduranceRow& r : rows) {
     lift_most = std::max(lift_most, r.metrics[Metric::lift_mean]);
     power_most = std::max(power_most, r.metrics[Metric::power_electrical]);
@@ -273,13 +280,13 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
 
   panel(0, fmt::format("lift ({})", lift_in_newton ? "N" : "mN"), lift_scale * lift_most);
   figure.key_entry(left, key_height, blue_solid, "mean lift");
-  if (design.mass) {
+  if (weighed) {
     figure.key_entry(left + 0.22, key_height, vermillion_dashed,
                      fmt::format("weight, {:.4g} {}", lift_scale * weight, lift_in_newton ? "N" : "mN"));
     if (result.hover_lost) figure.key_entry(left + 0.56, key_height, "dt (3,3) lw 0.8 lc rgb '#404040'", "hover lost");
   }
   figure.add("plot $flight using 1:2 with lines {}", blue_solid);
-  if (design.mass) figure.add(", {} with lines {}", lift_scale * weight, vermillion_dashed);
+  if (weighed) figure.add(", {} with lines {}", lift_scale * weight, vermillion_dashed);
   figure.add("\n");
 
   panel(1, power_in_watt ? "power (W)" : "power (mW)", power_scale * power_most);
@@ -306,11 +313,10 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
 void write_endurance(const EnduranceResult& result, const Provenance& provenance, const std::filesystem::path& path) {
   if (result.rows.empty()) throw std::runtime_error("no flight to write");
   NetcdfFile file(path);
-  const NetcdfFile::Dimension time = file.define_dimension("time", result.rows.size());
+  const NetcdfFile::Dimension time = file.define_dimension("time_s", result.rows.size());
   std::vector<NetcdfFile::Variable> variables;
   for (const Column& c : columns) {
-    const bool is_time = c.value == &EnduranceRow::time;
-    variables.push_back(file.define_variable(is_time ? "time" : c.key, {time}, c.unit, c.long_name));
+    variables.push_back(file.define_variable(c.key, {time}, c.unit, c.long_name));
   }
   for (const MetricInfo& m : metric_table()) variables.push_back(file.define_variable(m.key, {time}, m.unit, m.long_name));
   const auto domain = file.define_dense("domain", {time}, "1", "limits of the model's domain that are exceeded",

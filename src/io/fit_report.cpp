@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "report_tools.hpp"
+#include "design_write.hpp"
 #include "wingbeat/io/bench_file.hpp"
 #include "wingbeat/io/design_file.hpp"
 #include "wingbeat/io/plot_panels.hpp"
@@ -29,42 +30,9 @@ std::string short_number(double x, int digits = 4) {
   return std::isfinite(x) ? fmt::format("{:.{}g}", x, digits) : "-";
 }
 
-}  // namespace
-
-std::string text_fit(const BenchFit& fit, const FitResult& r) {
+/// Correlations, what the data determine, and which condition contributes what.
+std::string identifiability(const FitResult& r) {
   std::string text;
-  int rows = 0;
-  for (const BenchLog& log : fit.logs) rows += int(log.rows.size());
-  const auto counted = [](std::size_t n, const char* what) {
-    return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
-  };
-  text += fmt::format("{}, {} with {} in {}; {}\n", counted(fit.parameters.size(), "parameter"),
-                      counted(std::size_t(rows), "row"), counted(r.points.size(), "measured value"),
-                      counted(fit.logs.size(), "log"), r.converged ? "converged" : "NOT converged: " + r.message);
-  if (fit.starts > 1) {
-    text += fmt::format("{} of {} starts end in this least, {} in a higher one\n", r.starts_converged, fit.starts,
-                        r.starts_elsewhere);
-  }
-  if (r.degrees_of_freedom > 0) {
-    text += fmt::format("chi square {:.1f} with {} degrees of freedom, AICc {:.1f}\n", r.chi_square,
-                        r.degrees_of_freedom, r.aicc);
-  }
-  text += fmt::format("\n{:<32}{:>11}{:>9}  {:^22}  unit\n", "Parameter", "value", "+-", "95 % interval");
-  for (const FittedParameter& p : r.parameters) {
-    if (!p.value) {
-      text += fmt::format("{:<32}{:>11}  {}\n", p.key, "unknown", p.reason);
-      continue;
-    }
-    const bool profiled = std::isfinite(p.profile_lower_95) && std::isfinite(p.profile_upper_95);
-    text += fmt::format("{:<32}{:>11.4e}{:>9.1e}  {:>10.3e} .. {:<9.3e}{} {}{}\n", p.key, *p.value, p.standard_error,
-                        profiled ? p.profile_lower_95 : p.lower_95, profiled ? p.profile_upper_95 : p.upper_95,
-                        profiled ? "" : "*", p.unit, p.at_bound ? "  AT ITS BOUND" : "");
-  }
-  const bool starred = std::any_of(r.parameters.begin(), r.parameters.end(), [](const FittedParameter& p) {
-    return p.value && !(std::isfinite(p.profile_lower_95) && std::isfinite(p.profile_upper_95));
-  });
-  if (starred) text += "* from the standard error; the others from the likelihood's profile\n";
-
   text += "\nCorrelation\n";
   for (std::size_t a = 0; a < r.parameters.size(); ++a) {
     if (!r.parameters[a].value) continue;
@@ -90,6 +58,66 @@ std::string text_fit(const BenchFit& fit, const FitResult& r) {
   for (const ConditionShare& c : r.conditions)
     text += fmt::format("{:>17}", fmt::format("{}; {}", c.points, short_number(c.rms, 3)));
   text += "\n";
+  return text;
+}
+
+std::string residuals_by_quantity(const FitResult& r) {
+  std::string text = fmt::format("\n{:<40}{:>8}{:>18}{:>20}\n", "Residuals", "values", "rms / deviation", "measured / fitted");
+  for (const QuantityResiduals& q : r.quantities) {
+    text += fmt::format("  {:<38}{:>8}{:>18}{:>20}\n", name_of(q.quantity), q.values, short_number(q.rms, 3),
+                        short_number(q.measured_over_fitted, 4));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string text_fit(const BenchFit& fit, const FitResult& r) {
+  std::string text;
+  int rows = 0;
+  for (const BenchLog& log : fit.logs) rows += int(log.rows.size());
+  const auto counted = [](std::size_t n, const char* what) {
+    return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+  };
+  if (!r.misfit.empty()) {
+    text += wrapped(fmt::format("MISFIT: the model does not describe the data: {}. The values below are the closest found "
+                                "and no estimates; no intervals follow from them.", r.misfit), 88, 2) + "\n";
+  }
+  text += fmt::format("{}, {} with {} in {}; {}\n", counted(fit.parameters.size(), "parameter"),
+                      counted(std::size_t(rows), "row"), counted(r.points.size(), "measured value"),
+                      counted(fit.logs.size(), "log"),
+                      r.converged ? r.misfit.empty() ? "converged" : "the search converged" : "NOT converged: " + r.message);
+  if (fit.starts > 1) {
+    text += fmt::format("{} of {} starts end in this least, {} in a higher one\n", r.starts_converged, fit.starts,
+                        r.starts_elsewhere);
+  }
+  if (r.degrees_of_freedom > 0) {
+    text += fmt::format("chi square {:.1f} with {} degrees of freedom, AICc {:.1f}\n", r.chi_square,
+                        r.degrees_of_freedom, r.aicc);
+  }
+  text += fmt::format("\n{:<32}{:>11}{:>9}  {:^22}  unit\n", "Parameter", "value", "+-", "95 % interval");
+  for (const FittedParameter& p : r.parameters) {
+    if (!p.value) {
+      text += fmt::format("{:<32}{:>11}  {}\n", p.key, "unknown", p.reason);
+      continue;
+    }
+    if (!std::isfinite(p.standard_error)) {
+      text += fmt::format("{:<32}{:>11.4e}{:>9}  {:^22}  {}{}\n", p.key, *p.value, "-", "-", p.unit,
+                          p.at_bound ? "  AT ITS BOUND" : "");
+      continue;
+    }
+    const bool profiled = std::isfinite(p.profile_lower_95) && std::isfinite(p.profile_upper_95);
+    text += fmt::format("{:<32}{:>11.4e}{:>9.1e}  {:>10.3e} .. {:<9.3e}{} {}{}\n", p.key, *p.value, p.standard_error,
+                        profiled ? p.profile_lower_95 : p.lower_95, profiled ? p.profile_upper_95 : p.upper_95,
+                        profiled ? "" : "*", p.unit, p.at_bound ? "  AT ITS BOUND" : "");
+  }
+  const bool starred = std::any_of(r.parameters.begin(), r.parameters.end(), [](const FittedParameter& p) {
+    return p.value && std::isfinite(p.standard_error) &&
+           !(std::isfinite(p.profile_lower_95) && std::isfinite(p.profile_upper_95));
+  });
+  if (starred) text += "* from the standard error; the others from the likelihood's profile\n";
+
+  text += r.misfit.empty() ? identifiability(r) : residuals_by_quantity(r);
   if (!r.estimated_deviations.empty()) {
     text += "\nStandard deviations estimated from the residuals\n";
     for (const auto& [q, d] : r.estimated_deviations) {
@@ -159,8 +187,10 @@ std::string json_fit(const BenchFit& fit, const FitResult& r, std::span<const Fr
   Json json;
   json["converged"] = r.converged;
   json["message"] = r.message;
+  json["misfit"] = r.misfit.empty() ? Json(nullptr) : Json(r.misfit);
   json["chi_square"] = r.chi_square;
   json["degrees_of_freedom"] = r.degrees_of_freedom;
+  json["p_value"] = number_or_null(r.p_value);
   json["aicc"] = number_or_null(r.aicc);
   json["starts"] = {{"same_least", r.starts_converged}, {"higher", r.starts_elsewhere}};
   json["parameters"] = Json::array();
@@ -213,7 +243,7 @@ std::string json_fit(const BenchFit& fit, const FitResult& r, std::span<const Fr
                               {"quantity", name_of(fit.logs[p.log].columns[p.column])},
                               {"measured", p.measured}, {"fitted", number_or_null(p.fitted)}, {"deviation", p.deviation}});
   }
-  if (!candidates.empty()) json["friction"] = Json::array();
+  json["friction"] = candidates.empty() ? Json(nullptr) : Json::array();
   for (const FrictionCandidate& c : candidates) {
     Json left = Json::object();
     for (const auto& [name, rms] : c.left_out) left[name] = number_or_null(rms);
@@ -232,7 +262,7 @@ std::string json_fit(const BenchFit& fit, const FitResult& r, std::span<const Fr
   return json.dump(2) + "\n";
 }
 
-std::string fitted_vehicle(const BenchFit& fit, const FitResult& r, const std::string& made_by) {
+std::string fitted_vehicle_head(const BenchFit& fit, const FitResult& r, const std::string& made_by) {
   std::string text = fmt::format("# {}\n", one_line(made_by, 200));
   for (const FittedParameter& p : r.parameters) {
     if (p.value) {
@@ -245,7 +275,7 @@ std::string fitted_vehicle(const BenchFit& fit, const FitResult& r, const std::s
     text += fmt::format("# not reached: {} ({})\n", one_line(row_name(fit, u.log, u.row), 120),
                         given_text(fit, u.log, u.row));
   }
-  return text + "\n" + write_design(r.design);
+  return text + "\n";
 }
 
 std::string covariance_file(const FitResult& r, const std::string& vehicle_name, const std::string& made_by) {
@@ -255,7 +285,7 @@ std::string covariance_file(const FitResult& r, const std::string& vehicle_name,
   }
   std::string text =
       fmt::format("# {}\n# Covariance of the fitted parameters, SI units, normal approximation.\n\nvehicle = {}\n",
-                  one_line(made_by, 200), in_quotes(vehicle_name));
+                  one_line(made_by, 200), toml_text(vehicle_name));
   for (const std::size_t k : known) {
     const FittedParameter& p = r.parameters[k];
     text += fmt::format("\n[[parameter]]\nkey = \"{}\"\nunit = \"{}\"\nvalue = {:#}\nstandard_error = {:#}\n", p.key,

@@ -1,7 +1,10 @@
 #include "wingbeat/io/netcdf.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <hdf5.h>
 #include <netcdf.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -10,12 +13,52 @@
 
 namespace wingbeat {
 
+namespace {
+
+/// An open file under a name that netCDF takes as it stands: a backslash in a path it makes a slash.
+class PlainName {
+ public:
+  PlainName(const std::string& file, int flags) : name_(file) {
+    if (file.find('\\') == std::string::npos) return;
+    open_ = ::open(file.c_str(), flags | O_CLOEXEC, 0666);
+    if (open_ >= 0) name_ = fmt::format("/proc/self/fd/{}", open_);
+  }
+  PlainName(const PlainName&) = delete;
+  PlainName& operator=(const PlainName&) = delete;
+  ~PlainName() {
+    if (open_ >= 0) ::close(open_);
+  }
+  const char* get() const { return name_.c_str(); }
+
+ private:
+  std::string name_;
+  int open_ = -1;
+};
+
+/// Why a file cannot be created. netCDF answers "Permission denied" whatever the reason; the system knows better.
+std::string reason_of(int status, const std::string& file) {
+  constexpr off_t room = 65536;
+  const int there = ::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  if (there < 0) return std::strerror(errno);
+  const int reason = ::posix_fallocate(there, 0, room);
+  (void)!::ftruncate(there, 0);
+  ::close(there);
+  return reason != 0 ? std::strerror(reason) : nc_strerror(status);
+}
+
+}  // namespace
+
 NetcdfFile::NetcdfFile(const std::filesystem::path& file) : file_(file.string()) {
-  check(nc_create(file_.c_str(), NC_NETCDF4 | NC_CLOBBER, &id_), "create the file");
+  // Nor would it survive the files that an error left open, at the end of the program.
+  static const auto once = H5dont_atexit();
+  (void)once;
+  const PlainName name(file_, O_RDWR | O_CREAT);
+  const int status = nc_create(name.get(), NC_NETCDF4 | NC_CLOBBER, &id_);
+  if (status != NC_NOERR) throw NetcdfError(fmt::format("{}: cannot create the file: {}", file_, reason_of(status, file_)));
 }
 
 NetcdfFile::~NetcdfFile() {
-  if (id_ >= 0) nc_close(id_);
+  if (id_ >= 0 && !failed_) nc_close(id_);
 }
 
 NetcdfFile::Dimension NetcdfFile::define_dimension(const std::string& name, std::size_t length) {
@@ -175,6 +218,7 @@ void NetcdfFile::close() {
 
 void NetcdfFile::check(int status, const std::string& action) const {
   if (status == NC_NOERR) return;
+  failed_ = true;
   // Of a full disk HDF5 says nothing; the system does.
   const bool by_system = status == NC_EHDFERR && (errno == ENOSPC || errno == EDQUOT || errno == EFBIG || errno == EIO);
   throw NetcdfError(fmt::format("{}: cannot {}: {}", file_, action,
@@ -182,7 +226,8 @@ void NetcdfFile::check(int status, const std::string& action) const {
 }
 
 NetcdfReader::NetcdfReader(const std::filesystem::path& file) : file_(file.string()) {
-  check(nc_open(file_.c_str(), NC_NOWRITE, &id_), "open the file");
+  const PlainName name(file_, O_RDONLY);
+  check(nc_open(name.get(), NC_NOWRITE, &id_), "open the file");
 }
 
 NetcdfReader::~NetcdfReader() { nc_close(id_); }
@@ -254,13 +299,19 @@ void NetcdfReader::check(int status, const std::string& action) const {
 }
 
 void write_provenance(NetcdfFile& file, const Provenance& provenance) {
-  file.set_attribute("title", provenance.title);
-  file.set_attribute("wingbeat_version", provenance.version);
-  file.set_attribute("input", provenance.input);
-  file.set_attribute("condition", provenance.condition);
-  file.set_attribute("method", provenance.method);
-  if (!provenance.domain.empty()) file.set_attribute("domain", provenance.domain);
-  file.set_attribute("tolerance", fmt::format("{}", provenance.tolerance));
+  const auto set = [&](const char* name, const std::string& text) {
+    if (!text.empty()) file.set_attribute(name, text);
+  };
+  set("Conventions", "CF-1.8");
+  set("title", provenance.title);
+  set("source", fmt::format("wingbeat {} {}", provenance.version, provenance.command));
+  set("wingbeat_version", provenance.version);
+  set("vehicle", provenance.vehicle);
+  set("study", provenance.study);
+  set("condition", provenance.condition);
+  set("method", provenance.method);
+  set("domain", provenance.domain);
+  if (provenance.tolerance > 0.0) set("tolerance", fmt::format("{}", provenance.tolerance));
 }
 
 }  // namespace wingbeat

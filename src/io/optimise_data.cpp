@@ -39,7 +39,9 @@ void write_best(NetcdfFile& data, const OptimiseStudy& study, const OptimiseResu
       const DesignParameter& p = study.parameters[k].parameter;
       std::vector<double> values;
       for (std::size_t n = 0; n < count; ++n) values.push_back(value(n, k));
-      data.write(data.define_variable(prefix + variable_name(p.key), along, p.unit, meaning_of(p) + of), values);
+      const auto variable = data.define_variable(prefix + variable_name(p.key), along, p.unit, meaning_of(p) + of);
+      data.set_key(variable, p.key);
+      data.write(variable, values);
     }
   };
   for (int m = 0; m < metric_count; ++m) {
@@ -134,12 +136,12 @@ void write_optimum(const OptimiseFile& file, std::span<const MotorTrial> trials,
   const MetricInfo& objective = metric_info(study.objective);
   const MotorTrial* best = best_trial(file, trials);
   NetcdfFile data(output);
-  data.set_attribute("Conventions", "CF-1.8");
-  data.set_attribute("title", file.title.empty() ? "optimum" : file.title);
-  data.set_attribute("source", "wingbeat " + version);
-  data.set_attribute("study", input);
-  data.set_attribute("vehicle", write_design(best ? best->result.design : study.design));
-  data.set_attribute("condition", name_of(study.options.condition));
+  write_provenance(data, {.title = file.title.empty() ? "optimum" : file.title,
+                          .command = "optimise",
+                          .version = version,
+                          .vehicle = write_design(best ? best->result.design : study.design),
+                          .study = input,
+                          .condition = name_of(study.options.condition)});
   data.set_attribute("objective", (study.maximise ? "maximise " : "minimise ") + std::string(objective.key));
 
   const auto trial = data.define_dimension("trial", trials.size());

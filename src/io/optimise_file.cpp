@@ -18,26 +18,35 @@ using detail::Kind;
 
 class OptimiseReader : public detail::StudySections {
  public:
-  OptimiseReader(const fs::path& file, std::string_view text)
-      : StudySections(file.string(), text, {"objective", "parameter", "constraint", "motors", "search"}, {"condition"}),
+  OptimiseReader(const fs::path& file, std::string_view text, std::span<const std::string> overrides)
+      : StudySections(input_name(file), text, overrides, {"objective", "parameter", "constraint", "motors", "search"},
+                      {"condition"}),
         folder_(file.parent_path()) {}
 
   OptimiseFile read() {
     OptimiseFile file;
     OptimiseStudy& study = file.study;
-    file.title = read_title();
-    if (const TomlNode* metrics = study_->find("metrics")) {
-      refuse(*metrics, "study.metrics", "has no place here: the objective and the constraints say which are wanted");
-    }
-    study.design = read_vehicle(folder_);
-    study.options.condition = read_condition();
-    EnsembleOptions accuracy;
-    accuracy.tolerance = study.options.tolerance;
-    read_tolerance(accuracy);
-    study.options.tolerance = accuracy.tolerance;
-    study.allow_extrapolation = read_allow_extrapolation();
-    study.options.frequency = read_frequency(study.design);
-    if (const TomlNode* motors = root_.find("motors")) read_motors(*motors, file);
+    attempt([&] { file.title = read_title(); });
+    attempt([&] {
+      if (const TomlNode* metrics = study_->find("metrics")) {
+        refuse(*metrics, "study.metrics", "has no place here: the objective and the constraints say which are wanted");
+      }
+    });
+    attempt([&] { study.options.condition = read_condition(); });
+    attempt([&] {
+      EnsembleOptions accuracy;
+      accuracy.tolerance = study.options.tolerance;
+      read_tolerance(accuracy);
+      study.options.tolerance = accuracy.tolerance;
+    });
+    attempt([&] { study.allow_extrapolation = read_allow_extrapolation(); });
+    if (!attempt([&] { study.design = read_vehicle(folder_); })) finish();  // the rest is read for this vehicle
+    file.vehicle_file = find_vehicle(folder_, vehicle_file());
+    attempt([&] { study.options.frequency = read_frequency(study.design); });
+    const bool motors_read = attempt([&] {
+      if (const TomlNode* motors = root_.find("motors")) read_motors(*motors, file);
+    });
+    if (!motors_read) finish();
     // The keys of a catalogue's motors are those of its first usable one.
     Design<double> base = study.design;
     for (const MotorCandidate& motor : file.motors) {
@@ -47,10 +56,13 @@ class OptimiseReader : public detail::StudySections {
       }
     }
     several_ = root_.find("objective") && root_.find("objective")->kind == Kind::array;
-    if (several_) read_objectives(file, base);
-    else read_objective(study, base);
-    read_parameters(file, base);
-    read_constraints(study, base);
+    attempt([&] {
+      if (several_) read_objectives(file, base);
+      else read_objective(study, base);
+    });
+    attempt([&] { read_parameters(file, base); });
+    attempt([&] { read_constraints(study, base); });
+    finish();
     check_size(file);
     return file;
   }
@@ -206,13 +218,14 @@ class OptimiseReader : public detail::StudySections {
     std::vector<std::pair<const DesignParameter*, double>> given;
     study.parameters.reserve(list.items.size());
     file.choices.reserve(list.items.size());
-    for (const TomlNode& node : sections_of("parameter")) {
+    const auto read_one = [&](const TomlNode& node) {
       known_keys(node, "parameter", {"key", "lower", "upper", "scale", "values"});
       const TomlNode& key = need(node, "parameter", "key", "a vehicle-file key");
       const DesignParameter parameter = parameter_named(key, "parameter.key", design);
       if (!used.insert(parameter.key).second) {
         refuse(key, "parameter.key", fmt::format("{} is given already", parameter.key));
       }
+      no_override_of(parameter.key, "has no effect: the study varies it");
       if (const TomlNode* values = node.find("values")) {
         file.choices.push_back({parameter, values_of(node, *values, parameter)});
         const std::vector<double>& list_of = file.choices.back().values;
@@ -225,8 +238,12 @@ class OptimiseReader : public detail::StudySections {
         given.emplace_back(&study.parameters.back().parameter, study.parameters.back().lower);
       }
       given.back().first->set(all, given.back().second);
+    };
+    bool all_read = true;
+    for (const TomlNode& node : sections_of("parameter")) {
+      if (!attempt([&] { read_one(node); })) all_read = false;
     }
-    for (std::size_t k = 0; k < given.size(); ++k) {
+    for (std::size_t k = 0; all_read && k < given.size(); ++k) {
       const auto found = given[k].first->value(all);
       if (!found || *found != given[k].second) {
         refuse(list.items[k], "parameter.key",
@@ -253,7 +270,7 @@ class OptimiseReader : public detail::StudySections {
   }
 
   void read_constraints(OptimiseStudy& study, const Design<double>& design) {
-    for (const TomlNode& node : sections_of("constraint")) {
+    const auto read_one = [&](const TomlNode& node) {
       known_keys(node, "constraint", {"metric", "at_least", "at_most"});
       const TomlNode& name = need(node, "constraint", "metric", "the name of a metric");
       const Metric metric = metric_named(name, "constraint.metric", design);
@@ -265,7 +282,8 @@ class OptimiseReader : public detail::StudySections {
       if (low && high && !(study.constraints.back().limit > study.constraints.rbegin()[1].limit)) {
         refuse(*high, "constraint.at_most", "must exceed constraint.at_least");
       }
-    }
+    };
+    for (const TomlNode& node : sections_of("constraint")) attempt([&] { read_one(node); });
   }
 
   // ---- [motors]
@@ -469,7 +487,9 @@ ParetoStudy pareto_study(const OptimiseFile& file) {
   return study;
 }
 
-OptimiseFile read_optimise_study(const fs::path& file) { return OptimiseReader(file, read_text_file(file)).read(); }
+OptimiseFile read_optimise_study(const fs::path& file, std::span<const std::string> overrides) {
+  return OptimiseReader(file, read_text_file(file), overrides).read();
+}
 
 void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& act, int threads) {
   std::optional<tbb::global_control> limit;

@@ -65,8 +65,13 @@ Json result_json(const OptimiseFile& file, const OptimiseResult& r) {
   json["allow_extrapolation"] = study.allow_extrapolation;
   if (r.outcome != Outcome::found) {
     json["reason"] = explanation(study, r);
+    for (const char* key : {"domain", "limited_by_domain", "value", "parameters", "metrics", "active", "directions", "starts",
+                            "evaluations"}) {
+      json[key] = nullptr;
+    }
     return json;
   }
+  json["reason"] = nullptr;
   json["domain"] = name_of(r.point.domain);
   json["limited_by_domain"] =
       std::any_of(r.active.begin(), r.active.end(), [](const ActiveLimit& a) { return a.domain; });

@@ -92,16 +92,22 @@ std::vector<std::pair<std::string, std::size_t>> columns_of(const ParetoStudy& s
 
 }  // namespace
 
+std::vector<std::string> pick_names(std::span<const ParetoObjective> objectives, std::size_t even) {
+  std::vector<std::string> names;
+  for (const ParetoObjective& o : objectives) names.push_back(fmt::format("end-{}", metric_info(o.metric).key));
+  names.push_back("knee");
+  for (std::size_t n = 1; n <= even; ++n) names.push_back(fmt::format("even-{}", n));
+  return names;
+}
+
 std::vector<std::pair<std::string, std::size_t>> named_picks(const ParetoStudy& study, const ParetoResult& result) {
   std::vector<std::pair<std::string, std::size_t>> picks;
   if (result.front.empty()) return picks;
-  for (std::size_t m = 0; m < study.objectives.size(); ++m) {
-    picks.emplace_back(fmt::format("end-{}", metric_info(study.objectives[m].metric).key), result.picks.ends[m]);
-  }
-  picks.emplace_back("knee", result.picks.knee);
-  for (std::size_t n = 0; n < result.picks.even.size(); ++n) {
-    picks.emplace_back(fmt::format("even-{}", n + 1), result.picks.even[n]);
-  }
+  std::vector<std::size_t> places = result.picks.ends;
+  places.push_back(result.picks.knee);
+  places.insert(places.end(), result.picks.even.begin(), result.picks.even.end());
+  const std::vector<std::string> names = pick_names(study.objectives, result.picks.even.size());
+  for (std::size_t n = 0; n < names.size(); ++n) picks.emplace_back(names[n], places[n]);
   return picks;
 }
 
@@ -149,9 +155,13 @@ std::string text_front(const OptimiseFile& file, const ParetoStudy& study, const
                  r.evaluated.size(), std::count(r.feasible.begin(), r.feasible.end(), true));
   fmt::format_to(out, "front of {} designs; hypervolume {:.6g} {} up to\n  {}\n", r.front.size(), r.hypervolume,
                  hypervolume_unit(study), reference_text(study, r));
-  fmt::format_to(out, "  after the screening {:.1f} % of it, after half of the generations {:.2f} %\n\n",
-                 100.0 * r.history.front() / r.hypervolume,
-                 100.0 * r.history[r.history.size() / 2] / r.hypervolume);
+  if (r.hypervolume > 0.0) {
+    fmt::format_to(out, "  after the screening {:.1f} % of it, after half of the generations {:.2f} %\n\n",
+                   100.0 * r.history.front() / r.hypervolume,
+                   100.0 * r.history[r.history.size() / 2] / r.hypervolume);
+  } else {
+    fmt::format_to(out, "  no design is better than the reference in every objective: choose a reference that is worse\n\n");
+  }
 
   const auto columns = columns_of(study, r);
   const std::size_t fit = 6;  // beside the names
@@ -241,13 +251,13 @@ std::string json_front(const OptimiseFile& file, const ParetoStudy& study, const
 void write_front(const ParetoStudy& study, const ParetoResult& r, const std::string& title, const std::string& input,
                  const std::string& version, const std::filesystem::path& file) {
   NetcdfFile data(file);
-  data.set_attribute("Conventions", "CF-1.8");
-  data.set_attribute("title", title.empty() ? "Pareto front" : title);
-  data.set_attribute("source", "wingbeat " + version);
-  data.set_attribute("study", input);
-  data.set_attribute("vehicle", write_design(study.vehicles[0].design));
-  data.set_attribute("condition", name_of(study.condition));
-  data.set_attribute("method", name_of(study.evolution.method));
+  write_provenance(data, {.title = title.empty() ? "Pareto front" : title,
+                          .command = "optimise",
+                          .version = version,
+                          .vehicle = write_design(study.vehicles[0].design),
+                          .study = input,
+                          .condition = name_of(study.condition),
+                          .method = name_of(study.evolution.method)});
   const auto parameters = parameters_of(study);
   const auto designs = [&](const std::string& dimension, const std::string& prefix, const char* of,
                            std::span<const ParetoDesign> list, const MetricSet& metrics) {
@@ -256,13 +266,17 @@ void write_front(const ParetoStudy& study, const ParetoResult& r, const std::str
     const auto column = [&](const std::string& name, std::string_view unit, const std::string& meaning,
                             const auto& value) {
       std::transform(list.begin(), list.end(), values.begin(), value);
-      data.write(data.define_variable(prefix + name, {along}, std::string(unit), meaning + of), values);
+      const auto variable = data.define_variable(prefix + name, {along}, std::string(unit), meaning + of);
+      data.write(variable, values);
+      return variable;
     };
     for (std::size_t k = 0; k < parameters.size(); ++k) {
       std::string name = parameters[k]->key;
       std::replace(name.begin(), name.end(), '.', '_');
-      column(name, parameters[k]->unit, std::string(find_key<double>(parameters[k]->key)->meaning),
-             [k](const ParetoDesign& d) { return d.parameters[k]; });
+      const std::string& key = parameters[k]->key;
+      data.set_key(column(name, parameters[k]->unit, std::string(find_key<double>(key)->meaning),
+                          [k](const ParetoDesign& d) { return d.parameters[k]; }),
+                   key);
     }
     for (std::size_t m = 0; m < metric_count; ++m) {
       if (!metrics[m]) continue;

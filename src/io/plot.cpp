@@ -20,9 +20,9 @@ std::optional<PlotFormat> plot_format(const std::filesystem::path& file) {
   return std::nullopt;
 }
 
-void plot_cycle(std::span<const WaveformRow> rows, std::span<const double> voltage, const std::string& title,
-                PlotFormat format, const std::filesystem::path& file) {
-  if (rows.size() < 2 || voltage.size() != rows.size()) throw std::runtime_error("no cycle to plot");
+void plot_cycle(std::span<const WaveformRow> rows, const std::string& title, PlotFormat format,
+                const std::filesystem::path& file) {
+  if (rows.size() < 2) throw std::runtime_error("no cycle to plot");
   const double period = rows.back().time - rows.front().time;
 
   // Times in a unit that leaves readable numbers.
@@ -32,7 +32,7 @@ void plot_cycle(std::span<const WaveformRow> rows, std::span<const double> volta
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (k > 0) lift_mean += 0.5 * (rows[k].lift + rows[k - 1].lift) * (rows[k].time - rows[k - 1].time) / period;
     lift_most = std::max(lift_most, std::abs(rows[k].lift));
-    power_most = std::max(power_most, std::abs(voltage[k] * rows[k].current));
+    power_most = std::max(power_most, std::abs(rows[k].power_electrical));
   }
   const bool lift_in_newton = lift_most >= 1.0, power_in_watt = power_most >= 10.0;
   const double lift_scale = lift_in_newton ? 1.0 : 1e3, power_scale = power_in_watt ? 1.0 : 1e3;
@@ -46,8 +46,7 @@ void plot_cycle(std::span<const WaveformRow> rows, std::span<const double> volta
     const WaveformRow& r = rows[k];
     figure.add("{} {} {} {} {} {} {} {}\n", time_scale * (r.time - rows.front().time),
                degrees_per_radian * r.stroke_angle, r.flapping_velocity, lift_scale * r.lift, rod ? r.rod_force : 1e3 * r.current,
-               power_scale * voltage[k] * r.current, power_scale * r.motor_torque * r.crank_speed,
-               power_scale * r.aero_moment * r.flapping_velocity);
+               power_scale * r.power_electrical, power_scale * r.power_motor, power_scale * r.power_aerodynamic);
   }
   figure.add("END\nset multiplot\nset xrange [0:{}]\n", time_scale * period);
 

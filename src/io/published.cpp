@@ -13,6 +13,7 @@
 
 #include "wingbeat/io/design_keys.hpp"
 #include "wingbeat/io/design_parameter.hpp"
+#include "wingbeat/io/input_file.hpp"
 #include "wingbeat/io/report.hpp"
 #include "wingbeat/io/units.hpp"
 
@@ -25,11 +26,24 @@ constexpr std::pair<const char*, Basis> bases[] = {
 constexpr std::pair<const char*, PublishedTrend::Kind> kinds[] = {
     {"crossing", PublishedTrend::Kind::crossing},
     {"peak-at", PublishedTrend::Kind::peak_at},
+    {"trough-at", PublishedTrend::Kind::trough_at},
     {"peak", PublishedTrend::Kind::peak},
+    {"value", PublishedTrend::Kind::value},
+    {"change", PublishedTrend::Kind::change},
+    {"difference", PublishedTrend::Kind::difference},
+    {"best-range", PublishedTrend::Kind::best_range},
+    {"power-balance", PublishedTrend::Kind::power_balance},
+    {"between", PublishedTrend::Kind::between},
+    {"steadier", PublishedTrend::Kind::steadier},
+    {"saturates", PublishedTrend::Kind::saturates},
+    {"initial-guesses", PublishedTrend::Kind::initial_guesses},
     {"constant-load-efficiency", PublishedTrend::Kind::constant_load_efficiency},
     {"spring-resonance", PublishedTrend::Kind::spring_resonance},
     {"weight", PublishedTrend::Kind::weight},
     {"best-friction-law", PublishedTrend::Kind::best_friction_law}};
+
+constexpr std::pair<const char*, PublishedTrend::Bound> bounds[] = {{"below", PublishedTrend::Bound::below},
+                                                                    {"above", PublishedTrend::Bound::above}};
 
 class Reader {
  public:
@@ -46,9 +60,10 @@ class Reader {
                        fmt::format("not TOML: {}", e.description()));
     }
     PublishedFile file;
-    known_keys(root, {"title", "source", "designs", "value", "trend"});
+    known_keys(root, {"title", "source", "tolerance", "designs", "value", "trend"});
     file.title = text_at(root, "title");
     file.source = text_at(root, "source");
+    if (root.contains("tolerance")) file.tolerance = tolerance_at(root, file);
     const toml::table* designs = need(root, "designs", "a table of vehicle files").as_table();
     if (!designs) refuse(*root.get("designs"), "designs", "expected a table of vehicle files");
     for (const auto& [key, node] : *designs) {
@@ -81,10 +96,9 @@ class Reader {
     if (t.contains("frequency")) v.frequency = quantity_at(t, "frequency", "Hz");
     v.metric = metric_at(t);
     std::tie(v.design, v.relative_to) = designs_at(t, file);
-    v.published = number_at(t, "published");
-    v.tolerance = number_at(t, "tolerance");
-    if (v.published == 0.0) refuse(*t.get("published"), "published", "0 allows no relative deviation");
-    if (!(v.tolerance > 0.0)) refuse(*t.get("tolerance"), "tolerance", "must be > 0");
+    std::tie(v.published, v.published_text) =
+        published_at(t, "published", v.relative_to ? "1" : metric_info(v.metric).unit);
+    v.tolerance = tolerance_at(t, file);
     if (t.contains("where")) v.where = text_at(t, "where");
     if (t.contains("basis")) v.basis = choice_at(t, "basis", bases);
     return v;
@@ -97,18 +111,38 @@ class Reader {
     trend.statement = text_at(t, "statement");
     trend.where = text_at(t, "where");
     trend.basis = choice_at(t, "basis", bases);
+    for (const auto& [key, text] :
+         {std::pair("reason", &trend.reason), std::pair("note", &trend.note), std::pair("erratum", &trend.erratum)}) {
+      if (t.contains(key)) *text = text_at(t, key);
+    }
+    if (t.contains("restates")) trend.restates = flag_at(t, "restates");
+    std::vector<std::string_view> keys{"kind", "statement", "where", "basis", "reason", "note", "erratum", "restates"};
+    const auto also = [&](std::initializer_list<std::string_view> more) { keys.insert(keys.end(), more); };
+    const auto is = [&](std::initializer_list<Kind> any) {
+      return std::find(any.begin(), any.end(), trend.kind) != any.end();
+    };
     if (trend.kind == Kind::best_friction_law) {
-      known_keys(t, {"kind", "statement", "where", "basis", "published_law"});
+      also({"published_law"});
+      known_keys(t, keys);
       if (t.contains("published_law")) trend.published_law = choice_at(t, "published_law", friction_laws);
       trend.unit = "1";
       return trend;
     }
-    const bool along = trend.kind == Kind::crossing || trend.kind == Kind::peak_at || trend.kind == Kind::peak;
-    if (along) {
-      known_keys(t, {"kind", "statement", "where", "basis", "published", "tolerance", "metric", "design", "ratio",
-                     "over", "from", "to", "voltage", "hold_stroke"});
+    const bool pair = is({Kind::crossing, Kind::change, Kind::difference, Kind::steadier});
+    also({pair ? "ratio" : "design"});
+    std::tie(trend.design, trend.relative_to) = designs_at(t, file);
+    if (trend.relative_to.has_value() != pair) {
+      refuse(t, "ratio", "a crossing, change or difference and steadier need a ratio, everything else a design");
+    }
+    const bool along = is({Kind::crossing, Kind::peak_at, Kind::trough_at, Kind::peak});
+    const bool at_point = is({Kind::value, Kind::change, Kind::difference});
+    if (along || at_point || trend.kind == Kind::best_range) {
+      also({"metric"});
       trend.metric = metric_at(t);
-      std::string unit = "Hz";
+    }
+    std::string unit = "Hz";
+    if (along || at_point || is({Kind::best_range, Kind::saturates})) {
+      also({"over", "hold_stroke"});
       if (t.contains("over")) {
         trend.over = text_at(t, "over");
         try {
@@ -116,32 +150,68 @@ class Reader {
         } catch (const ParameterError& e) {
           refuse(*t.get("over"), "over", e.what());
         }
-        trend.voltage = quantity_at(t, "voltage", "V");
+        if (!along) {
+          also({"at"});
+          trend.at = quantity_at(t, "at", unit.c_str());
+        }
       }
-      trend.from = quantity_at(t, "from", unit.c_str());
-      trend.to = quantity_at(t, "to", unit.c_str());
+      if (t.contains("hold_stroke")) trend.hold_stroke = flag_at(t, "hold_stroke");
+    }
+    if (along || is({Kind::best_range, Kind::between, Kind::saturates})) {
+      also({"from", "to"});
+      const std::string ranged = along || trend.kind == Kind::saturates ? unit : "Hz";
+      trend.from = quantity_at(t, "from", ranged.c_str());
+      trend.to = quantity_at(t, "to", ranged.c_str());
       if (!(trend.to > trend.from)) refuse(*t.get("to"), "to", "must be above from");
-      if (const toml::node* hold = t.get("hold_stroke")) {
-        const auto held = hold->value_exact<bool>();
-        if (!held) refuse(*hold, "hold_stroke", "expected true or false");
-        trend.hold_stroke = *held;
+    }
+    const bool held = is({Kind::power_balance, Kind::steadier});
+    if (at_point) {
+      if (t.contains("voltage") == t.contains("frequency")) refuse(t, "trend", "give one of voltage and frequency");
+      also({"voltage", "frequency"});
+      if (t.contains("voltage")) trend.voltage = quantity_at(t, "voltage", "V");
+    }
+    if (held || t.contains("frequency")) {
+      if (held) also({"frequency"});
+      trend.frequency = quantity_at(t, "frequency", "Hz");
+    }
+    if ((along && !trend.over.empty()) ||
+        is({Kind::saturates, Kind::initial_guesses, Kind::constant_load_efficiency})) {
+      also({"voltage"});
+      trend.voltage = quantity_at(t, "voltage", "V");
+    }
+    const char* metric_unit = metric_info(trend.metric).unit;
+    trend.unit = is({Kind::peak, Kind::value, Kind::difference})        ? metric_unit
+                 : is({Kind::crossing, Kind::peak_at, Kind::trough_at}) ? unit
+                 : is({Kind::best_range, Kind::spring_resonance})       ? "Hz"
+                 : trend.kind == Kind::weight                           ? "N"
+                                                                        : "1";
+    if (trend.kind == Kind::best_range) {
+      also({"published", "tolerance"});
+      const toml::node& node = need(t, "published", "two frequencies");
+      const toml::array* range = node.as_array();
+      if (!range || range->size() != 2) refuse(node, "published", "expected two frequencies");
+      const auto [low, low_text] = published_of(*range->get(0), "published", "Hz");
+      const auto [high, high_text] = published_of(*range->get(1), "published", "Hz");
+      if (!(high > low)) refuse(node, "published", "the second frequency must be above the first");
+      trend.published = low;
+      trend.published_end = high;
+      trend.published_text = fmt::format("{} to {}", low_text, high_text);
+      trend.tolerance = tolerance_at(t, file);
+    } else if (!is({Kind::between, Kind::steadier, Kind::saturates, Kind::initial_guesses})) {
+      also({"published", "tolerance", "bound"});
+      if (t.contains("published")) {
+        std::tie(trend.published, trend.published_text) = published_at(t, "published", trend.unit.c_str());
+        if (t.contains("bound")) {
+          trend.bound = choice_at(t, "bound", bounds);
+          trend.published_text = fmt::format("{} {}", text_at(t, "bound"), trend.published_text);
+        } else {
+          trend.tolerance = tolerance_at(t, file);
+        }
+      } else if (t.contains("tolerance") || t.contains("bound")) {
+        refuse(t, "published", "missing: tolerance and bound belong to it");
       }
-      trend.unit = trend.kind == Kind::peak ? metric_info(trend.metric).unit : unit;
-    } else {
-      known_keys(t, {"kind", "statement", "where", "basis", "published", "tolerance", "design", "voltage"});
-      if (trend.kind == Kind::constant_load_efficiency) trend.voltage = quantity_at(t, "voltage", "V");
-      trend.unit = trend.kind == Kind::weight ? "N" : trend.kind == Kind::spring_resonance ? "Hz" : "1";
     }
-    std::tie(trend.design, trend.relative_to) = designs_at(t, file);
-    if (trend.relative_to.has_value() != (trend.kind == Kind::crossing)) {
-      refuse(t, "ratio", "a crossing needs a ratio, everything else a design");
-    }
-    if (t.contains("published") != t.contains("tolerance")) refuse(t, "tolerance", "belongs to published");
-    if (t.contains("published")) {
-      trend.published = quantity_at(t, "published", trend.unit.c_str());
-      trend.tolerance = number_at(t, "tolerance");
-      if (!(trend.tolerance > 0.0)) refuse(*t.get("tolerance"), "tolerance", "must be > 0");
-    }
+    known_keys(t, keys);
     return trend;
   }
 
@@ -176,7 +246,7 @@ class Reader {
   [[noreturn]] void refuse(const toml::node& node, const std::string& key, const std::string& message) const {
     throw InputError(name_, int(node.source().begin.line), int(node.source().begin.column), key, message);
   }
-  void known_keys(const toml::table& t, std::initializer_list<std::string_view> keys) const {
+  void known_keys(const toml::table& t, const std::vector<std::string_view>& keys) const {
     for (const auto& [key, node] : t) {
       if (std::find(keys.begin(), keys.end(), key.str()) == keys.end()) {
         refuse(node, std::string(key.str()), fmt::format("unknown key; known here: {}", fmt::join(keys, ", ")));
@@ -202,18 +272,43 @@ class Reader {
     if (!node.is_number() || !number || !std::isfinite(*number)) refuse(node, std::string(key), "expected a number");
     return *number;
   }
-  double quantity_at(const toml::table& t, const std::string& key, const char* unit) const {
-    const toml::node& node = need(t, key, quantity_example(unit));
-    double x = 0.0;
+  bool flag_at(const toml::table& t, const char* key) const {
+    const auto flag = t.get(key)->value_exact<bool>();
+    if (!flag) refuse(*t.get(key), key, "expected true or false");
+    return *flag;
+  }
+  /// A quantity in `unit`, either a number of SI units or a text, and how it is written.
+  std::pair<double, std::string> published_of(const toml::node& node, const std::string& key, const char* unit) const {
     if (const auto text = node.value_exact<std::string>()) {
       try {
-        x = parse_quantity(*text, unit);
+        return {parse_quantity(*text, unit), *text};
       } catch (const UnitError& e) {
         refuse(node, key, e.what());
       }
-    } else {
-      x = number_at(t, key);
     }
+    const auto number = node.value<double>();
+    if (!node.is_number() || !number || !std::isfinite(*number)) refuse(node, key, "expected a number or a quantity");
+    const std::string_view of = unit;
+    return {*number, of == "1" ? fmt::format("{:g}", *number) : fmt::format("{:g} {}", *number, of)};
+  }
+  std::pair<double, std::string> published_at(const toml::table& t, const std::string& key, const char* unit) const {
+    const toml::node& node = need(t, key, "a number or a quantity");
+    const auto read = published_of(node, key, unit);
+    if (read.first == 0.0 && !t.contains("bound")) refuse(node, key, "0 allows no relative deviation");
+    return read;
+  }
+  double tolerance_at(const toml::table& t, const PublishedFile& file) const {
+    if (!t.contains("tolerance")) {
+      if (!std::isfinite(file.tolerance)) refuse(t, "tolerance", "missing here, and the file states none for all");
+      return file.tolerance;
+    }
+    const double tolerance = number_at(t, "tolerance");
+    if (!(tolerance > 0.0)) refuse(*t.get("tolerance"), "tolerance", "must be > 0");
+    return tolerance;
+  }
+  double quantity_at(const toml::table& t, const std::string& key, const char* unit) const {
+    const toml::node& node = need(t, key, quantity_example(unit));
+    const double x = published_of(node, key, unit).first;
     if (!(x > 0.0)) refuse(node, key, "must be > 0");
     return x;
   }
@@ -240,10 +335,11 @@ PublishedFile parse_published(std::string_view text, std::string_view name,
   return Reader(text, name, design_named).read();
 }
 
-PublishedFile read_published(const std::filesystem::path& file) {
+PublishedFile read_published(const std::filesystem::path& file, std::span<const std::string> overrides) {
   const std::string text = read_text_file(file);
-  return parse_published(text, file.string(),
-                         [&](const std::string& design) { return read_design(file.parent_path() / design); });
+  return parse_published(text, input_name(file), [&](const std::string& design) {
+    return read_design(find_vehicle(file.parent_path(), design), overrides);
+  });
 }
 
 const char* name_of(Basis basis) { return bases[std::size_t(basis)].first; }
@@ -299,10 +395,13 @@ std::string text_comparison(const PublishedFile& file, const Comparison& compari
     at = here;
     of = which;
     const auto value = [&](double x) {
-      return !p.relative_to ? readable(x, metric_info(p.metric).unit) : std::isfinite(x) ? fmt::format("{:#.4g}", x) : "-";
+      return !p.relative_to     ? readable(x, metric_info(p.metric).unit)
+             : std::isfinite(x) ? fmt::format("{:#.4g}", x)
+                                : "-";
     };
-    fmt::format_to(out, "    {:<33}{:>11}{:>12}{:>10} %{:>10} %  {}\n", metric_info(p.metric).long_name, value(p.published),
-                   value(v.computed), std::isfinite(v.deviation) ? fmt::format("{:+.2f}", 100.0 * v.deviation) : "-",
+    fmt::format_to(out, "    {:<33}{:>11}{:>12}{:>10} %{:>10} %  {}\n", metric_info(p.metric).long_name,
+                   p.published_text, value(v.computed),
+                   std::isfinite(v.deviation) ? fmt::format("{:+.2f}", 100.0 * v.deviation) : "-",
                    fmt::format("{:.3g}", 100.0 * p.tolerance), v.within ? "ok" : "no");
   }
   const int outside = comparison.outside();
@@ -326,14 +425,11 @@ std::string json_comparison(const PublishedFile& file, const Comparison& compari
   for (const ComparedValue& v : comparison.values) {
     const PublishedValue& p = v.published;
     Json entry;
-    if (p.voltage) entry["voltage_v"] = *p.voltage;
-    if (p.frequency) entry["frequency_hz"] = *p.frequency;
+    entry["voltage_v"] = p.voltage ? Json(*p.voltage) : Json(nullptr);
+    entry["frequency_hz"] = p.frequency ? Json(*p.frequency) : Json(nullptr);
     entry["metric"] = metric_info(p.metric).key;
-    if (p.relative_to) {
-      entry["ratio"] = {p.design, *p.relative_to};
-    } else {
-      entry["design"] = p.design;
-    }
+    entry["design"] = p.relative_to ? Json(nullptr) : Json(p.design);
+    entry["ratio"] = p.relative_to ? Json{p.design, *p.relative_to} : Json(nullptr);
     entry["published"] = p.published;
     entry["computed"] = number(v.computed);
     entry["deviation"] = number(v.deviation);

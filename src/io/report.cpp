@@ -239,6 +239,7 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
   table.metric("flapping frequency", Metric::frequency, "Hz");
   table.metric("mean current", Metric::current_mean, "A");
   table.metric("peak current", Metric::current_peak, "A");
+  table.metric("rms current", Metric::current_rms, "A");
   power_group(table, m);
 
   table.group("Efficiency");
@@ -250,7 +251,12 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
   table.metric("mean lift", Metric::lift_mean, "N");
   table.metric("peak lift", Metric::lift_peak, "N");
   if (std::isfinite(m[Metric::lift_to_weight])) {
-    table.line("mean lift / weight", fmt::format("{:.4g}", m[Metric::lift_to_weight]), "1: it can hover");
+    // A voltage found for hovering gives the weight to within the tolerance.
+    const bool hovers = m[Metric::lift_to_weight] >= 1.0 - 10.0 * options.tolerance;
+    table.line("mean lift / weight", fmt::format("{:.4g}", m[Metric::lift_to_weight]),
+               !hovers               ? "below weight: cannot hover"
+               : result.domain.any() ? "outside the model's domain: not claimed"
+                                     : "can hover");
   }
 
   table.group("Mechanism and wings");

@@ -13,6 +13,7 @@
 #include "study_sections.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/io/design_keys.hpp"
+#include "wingbeat/io/file_record.hpp"
 #include "wingbeat/io/units.hpp"
 
 namespace wingbeat {
@@ -33,7 +34,8 @@ constexpr std::string_view own_variables[] = {"status", "recomputed", "error_est
 
 class StudyReader : public detail::StudySections {
  public:
-  StudyReader(std::string name, std::string_view text) : StudySections(std::move(name), text, {"axis", "samples"}) {}
+  StudyReader(std::string name, std::string_view text, std::span<const std::string> overrides = {})
+      : StudySections(std::move(name), text, overrides, {"axis", "samples"}) {}
 
   /// The CSV of designs that the study names, or nothing.
   std::optional<std::string> table_file() const {
@@ -48,16 +50,21 @@ class StudyReader : public detail::StudySections {
     study.input = input;
     input_ = &input;
     sweep_ = &study.sweep;
-    if (const TomlNode* title = study_->find("title")) study.title = text_of(*title, "study.title", "a text");
-    read_tolerance(sweep_->options);
-    sweep_->allow_extrapolation = read_allow_extrapolation();
-    read_metrics(sweep_->options);
-    if (held_frequency_) sweep_->frequency = quantity(*held_frequency_, "study.hold.frequency", "Hz");
-    if (sweep_->frequency && !(*sweep_->frequency > 0.0)) {
-      refuse(*held_frequency_, "study.hold.frequency", "must be > 0 Hz");
-    }
-    read_axes();
-    if (const TomlNode* samples = root_.find("samples")) read_samples(*samples);
+    attempt([&] { study.title = read_title(); });
+    attempt([&] { read_tolerance(sweep_->options); });
+    attempt([&] { sweep_->allow_extrapolation = read_allow_extrapolation(); });
+    attempt([&] { read_metrics(sweep_->options); });
+    attempt([&] {
+      if (held_frequency_) sweep_->frequency = quantity(*held_frequency_, "study.hold.frequency", "Hz");
+      if (sweep_->frequency && !(*sweep_->frequency > 0.0)) {
+        refuse(*held_frequency_, "study.hold.frequency", "must be > 0 Hz");
+      }
+    });
+    attempt([&] { read_axes(); });
+    attempt([&] {
+      if (const TomlNode* samples = root_.find("samples")) read_samples(*samples);
+    });
+    finish();
     if (sweep_->axes.empty()) {
       refuse(*study_, "study", "nothing to vary; give [[axis]] sections or [samples]");
     }
@@ -84,6 +91,7 @@ class StudyReader : public detail::StudySections {
     const Key<double>* key = find_key<double>(q.key);
     if (!used_.insert(q.key).second) refuse(node, where, fmt::format("{} is varied already", q.key));
     if (set_.contains(q.key)) refuse(node, where, fmt::format("{} is given in [set] already", q.key));
+    no_override_of(q.key, "has no effect: the study varies it");
     if (q.key == "frequency") {
       q.kind = SweptQuantity::Kind::frequency;
       q.unit = "Hz";
@@ -142,7 +150,7 @@ class StudyReader : public detail::StudySections {
     if (axes->kind != Kind::array) wrong(*axes, "axis", "[[axis]] sections");
     for (const TomlNode& node : axes->items) {
       if (node.kind != Kind::table) wrong(node, "axis", "[[axis]] sections");
-      read_axis(node);
+      attempt([&] { read_axis(node); });
     }
   }
 
@@ -632,6 +640,7 @@ std::string read_table_file(const fs::path& file) {
   const std::size_t got = stream ? std::fread(text.data(), 1, text.size(), stream) : 0;
   if (stream) std::fclose(stream);
   if (got != text.size()) throw InputError(file.string(), 0, 0, "", "cannot be read");
+  FileRecord::of_this_program().add_read(file);
   return text;
 }
 
@@ -639,21 +648,28 @@ std::string read_table_file(const fs::path& file) {
 
 Study parse_study(const StudyInput& input) { return StudyReader(input.study_name, input.study).read(input); }
 
-Study read_study(const fs::path& file) {
+Study read_study(const fs::path& file, std::span<const std::string> overrides) {
   StudyInput input;
-  input.study_name = file.string();
+  input.study_name = input_name(file);
   input.study = read_text_file(file);
-  StudyReader reader(input.study_name, input.study);
+  StudyReader reader(input.study_name, input.study, overrides);
   const fs::path folder = file.parent_path();
-  const fs::path vehicle = folder / reader.vehicle_file();
-  if (!fs::exists(vehicle)) reader.refuse_file("study", "vehicle", fmt::format("there is no file {}", vehicle.string()));
-  input.vehicle = reader.vehicle_text(vehicle);
-  if (const auto table = reader.table_file()) {
+  reader.attempt([&] {
+    const fs::path vehicle = find_vehicle(folder, reader.vehicle_file());
+    if (!fs::exists(vehicle)) {
+      reader.refuse_file("study", "vehicle", fmt::format("there is no file {}", vehicle.string()));
+    }
+    input.vehicle = reader.vehicle_text(vehicle);
+  });
+  const bool all_read = reader.attempt([&] {
+    const auto table = reader.table_file();
+    if (!table) return;
     const fs::path path = folder / *table;
     if (!fs::exists(path)) reader.refuse_file("samples", "file", fmt::format("there is no file {}", path.string()));
     input.table_name = path.string();
     input.table = read_table_file(path);
-  }
+  });
+  if (!all_read) reader.finish();
   return reader.read(input);
 }
 

@@ -10,16 +10,19 @@
 #include <initializer_list>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "input_errors.hpp"
 #include "toml_document.hpp"
 #include "wingbeat/io/design_file.hpp"
 #include "wingbeat/io/design_keys.hpp"
 #include "wingbeat/io/design_parameter.hpp"
+#include "wingbeat/io/input_file.hpp"
 #include "wingbeat/io/units.hpp"
 #include "wingbeat/study/ensemble.hpp"
 
@@ -66,15 +69,27 @@ class StudySections {
  public:
   /// Everything that refuses does so in the study file unless it names another. `sections` are those it may have beside
   /// [study] and [set], `keys` those of [study] beside vehicle, title, tolerance, metrics and hold.
-  StudySections(std::string name, std::string_view text, std::initializer_list<std::string_view> sections,
-                std::initializer_list<std::string_view> keys = {})
-      : name_(std::move(name)), root_(parse_toml_tree(text, name_)) {
+  StudySections(std::string name, std::string_view text, std::span<const std::string> overrides,
+                std::initializer_list<std::string_view> sections, std::initializer_list<std::string_view> keys = {})
+      : name_(std::move(name)), root_(parse_toml_tree(text, name_)), overrides_(overrides.begin(), overrides.end()) {
     known_keys(root_, "", with({"study", "set"}, sections));
-    study_ = &need(root_, "", "study", "a section [study] with the name of a vehicle file");
-    if (study_->kind != Kind::table) wrong(*study_, "study", "a section [study]");
-    known_keys(*study_, "study", with({"vehicle", "title", "tolerance", "metrics", "hold", "allow_extrapolation"}, keys));
-    read_hold();
+    attempt([&] {
+      study_ = &need(root_, "", "study", "a section [study] with the name of a vehicle file");
+      if (study_->kind != Kind::table) wrong(*study_, "study", "a section [study]");
+      known_keys(*study_, "study",
+                 with({"vehicle", "title", "tolerance", "metrics", "hold", "allow_extrapolation"}, keys));
+    });
+    if (!study_ || study_->kind != Kind::table) finish();
+    attempt([&] { read_hold(); });
+    attempt([&] { check_overrides(); });
   }
+
+  /// Keeps an InputError for finish(), so that all of them are told; false if there was one.
+  template <class Do>
+  bool attempt(const Do& act) const {
+    return errors_.attempt(act);
+  }
+  void finish() const { errors_.refuse(); }
 
   std::string vehicle_file() const {
     const TomlNode& node = need(*study_, "study", "vehicle", "the name of a vehicle file");
@@ -86,25 +101,35 @@ class StudySections {
     refuse(*node, fmt::format("{}.{}", section, key), message);
   }
 
-  /// The vehicle file with [set] and a held voltage, complete in itself.
+  /// The vehicle file with [set], a held voltage and the overrides of the command line, complete in itself.
   std::string vehicle_text(const std::filesystem::path& file) const {
-    const Design<double> alone = read_design(file);  // its own errors come first, at its own lines
+    const Design<double> alone = read_design(file, overrides_);  // its own errors come first, at its own lines
     std::vector<std::string> overrides;
     std::vector<std::pair<Place, std::string>> origins;
-    const auto add = [&](const std::string& key, const TomlNode& value, const std::string& shown) {
+    const auto set = [&](const std::string& key, const TomlNode& value, const std::string& shown) {
       overrides.push_back(fmt::format("{}={}", key, toml_text(value)));
       origins.emplace_back(place_of(value), shown);
     };
-    for (const auto& [key, value] : set_) add(key, *value, "set." + key);
+    for (const auto& [key, value] : set_) set(key, *value, "set." + key);
     const char* voltage = alone.supply.type == SupplyType::sine ? "supply.amplitude" : "supply.voltage";
-    if (held_voltage_) add(voltage, *held_voltage_, "study.hold.voltage");
+    if (held_voltage_) set(voltage, *held_voltage_, "study.hold.voltage");
+    const std::size_t own = overrides.size();
+    overrides.insert(overrides.end(), overrides_.begin(), overrides_.end());
     try {
       return write_design(read_design(file, overrides));
     } catch (const InputError& error) {
-      for (std::size_t k = 0; k < overrides.size(); ++k) {
-        if (error.file() != "--set " + one_line(overrides[k], 120)) continue;
-        throw InputError(name_, origins[k].first.line, origins[k].first.column, origins[k].second, reason_of(error));
-      }
+      InputErrors errors;
+      const auto add = [&](const InputError& e) {
+        for (std::size_t k = 0; k < own; ++k) {
+          if (e.file() != "--set " + one_line(overrides[k], 120)) continue;
+          const auto& [place, key] = origins[k];
+          return errors.add(InputError(name_, place.line, place.column, key, reason_of(e)));
+        }
+        errors.add(e);
+      };
+      add(error);
+      for (const InputError& other : error.others()) add(other);
+      errors.refuse();
       throw;
     }
   }
@@ -142,9 +167,11 @@ class StudySections {
     for (const auto& [key, node] : table.members) {
       if (std::find(names.begin(), names.end(), key) != names.end()) continue;
       const std::string_view near = nearest_name(key, names);
-      refuse(node, within(section, key),
-             near.empty() ? fmt::format("unknown key; known here: {}", joined(names))
-                          : fmt::format("unknown key; did you mean {}?", within(section, near)));
+      if (!near.empty()) spoiled_.insert({&table, std::string(near)});
+      attempt([&, &k = key, &n = node] {
+        refuse(n, within(section, k), near.empty() ? fmt::format("unknown key; known here: {}", joined(names))
+                                                   : fmt::format("unknown key; did you mean {}?", within(section, near)));
+      });
     }
   }
 
@@ -152,6 +179,7 @@ class StudySections {
                        std::string_view expected) const {
     const TomlNode* node = table.find(key);
     if (!node) {
+      if (spoiled_.contains({&table, std::string(key)})) finish();  // misspelt, which is told already
       const Place p = table.line > 0 ? place_of(table) : Place{1, 1};
       refuse(p, within(section, key), fmt::format("missing; expected {}", expected));
     }
@@ -202,6 +230,34 @@ class StudySections {
     return text.substr(std::min(text.size(), prefix.size() + 2));
   }
 
+  // ---- --set
+
+  /// The override of the command line that gives a key, or holds or lies within a table given; null where there is none.
+  const std::string* override_of(std::string_view key) const {
+    const auto within_other = [](std::string_view path, std::string_view above) {
+      return path.starts_with(above) && (path.size() == above.size() || path[above.size()] == '.');
+    };
+    for (const std::string& assignment : overrides_) {
+      std::string_view path = std::string_view(assignment).substr(0, assignment.find('='));
+      while (path.ends_with(' ')) path.remove_suffix(1);
+      if (within_other(key, path) || within_other(path, key)) return &assignment;
+    }
+    return nullptr;
+  }
+
+  /// Refuses an override that the study would make void.
+  void no_override_of(std::string_view key, const std::string& reason) const {
+    const std::string* assignment = override_of(key);
+    if (assignment) throw InputError("--set " + one_line(*assignment, 120), 0, 0, std::string(key), reason);
+  }
+
+  void check_overrides() const {
+    for (const char* key : {"supply.voltage", "supply.amplitude"}) {
+      if (held_voltage_) no_override_of(key, "has no effect: study.hold holds the voltage");
+    }
+    if (held_frequency_) no_override_of("supply.voltage", "has no effect: study.hold holds the frequency");
+  }
+
   // ---- [study] and [set]
 
   void read_hold() {
@@ -231,7 +287,10 @@ class StudySections {
     for (const auto& [key, node] : table.members) {
       const std::string full = path.empty() ? key : path + "." + key;
       const bool known = find_key<double>(full) != nullptr;
-      if (!known && !is_section(full)) refuse(node, "set." + one_line(full), unknown_key_message(full));
+      const bool has_place = attempt([&, &n = node] {
+        if (!known && !is_section(full)) refuse(n, "set." + one_line(full), unknown_key_message(full));
+      });
+      if (!has_place) continue;
       if (!known && node.kind == Kind::table && full != "wing.planform" && full != "aerodynamics.coefficients") {
         flatten(node, full);
       } else {
@@ -274,7 +333,7 @@ class StudySections {
 
   /// The vehicle with [set], its file being sought in that folder.
   Design<double> read_vehicle(const std::filesystem::path& folder) const {
-    const std::filesystem::path vehicle = folder / vehicle_file();
+    const std::filesystem::path vehicle = find_vehicle(folder, vehicle_file());
     if (!std::filesystem::exists(vehicle)) {
       refuse_file("study", "vehicle", fmt::format("there is no file {}", vehicle.string()));
     }
@@ -370,6 +429,9 @@ class StudySections {
 
   std::string name_;
   TomlNode root_;
+  std::vector<std::string> overrides_;
+  mutable InputErrors errors_;
+  mutable std::set<std::pair<const TomlNode*, std::string>> spoiled_;  ///< keys that were misspelt
   const TomlNode* study_ = nullptr;
   const TomlNode* held_voltage_ = nullptr;
   const TomlNode* held_frequency_ = nullptr;

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "wingbeat/io/file_record.hpp"
 #include "wingbeat/io/netcdf.hpp"
 #include "wingbeat/io/units.hpp"
 
@@ -33,6 +34,7 @@ class Digester {
     for (std::size_t m = 0; m < kept.size(); ++m) {
       if (kept[m] == Metric::lift_mean) lift_ = int(m);
       if (kept[m] == Metric::efficiency_system) efficiency_ = int(m);
+      if (kept[m] == Metric::lift_to_weight) weight_ = int(m);
     }
   }
 
@@ -50,17 +52,17 @@ class Digester {
   const SweepDigest& digest() const { return digest_; }
 
  private:
-  void best(std::optional<SweepDigest::Best>& best, const SweepColumns& columns, int metric) const {
+  void best(SweepBest& best, const SweepColumns& columns, int metric) const {
     const auto& values = columns.metrics[std::size_t(metric)];
     for (std::size_t row = 0; row < values.size(); ++row) {
-      if (!std::isfinite(values[row]) || !columns.counts(row, allow_extrapolation_)) continue;
-      if (!best || values[row] > best->value) best = {columns.first + row, values[row]};
+      if (!columns.counts(row, allow_extrapolation_)) continue;
+      best.offer(columns.first + row, values[row], weight_ < 0 ? absent : columns.metrics[std::size_t(weight_)][row]);
     }
   }
 
   SweepDigest digest_;
   bool allow_extrapolation_;
-  int lift_ = -1, efficiency_ = -1;
+  int lift_ = -1, efficiency_ = -1, weight_ = -1;
 };
 
 struct CloseHdf5 {
@@ -92,15 +94,14 @@ std::string title_of(const Study& study) { return study.title.empty() ? "Sweep o
 /// Texts longer than an attribute should be go into a variable of characters.
 void write_input(NetcdfFile& file, const Study& study, std::string_view version) {
   const Sweep& sweep = study.sweep;
-  file.set_attribute("Conventions", "CF-1.8");
-  file.set_attribute("title", title_of(study));
-  file.set_attribute("source", fmt::format("wingbeat {} sweep", version));
-  file.set_attribute("wingbeat_version", version);
-  file.set_attribute("study", study.input.study);
+  write_provenance(file, {.title = title_of(study),
+                          .command = "sweep",
+                          .version = std::string(version),
+                          .vehicle = study.input.vehicle,
+                          .study = study.input.study,
+                          .tolerance = sweep.options.tolerance});
   file.set_attribute("study_name", study.input.study_name);
-  file.set_attribute("vehicle", study.input.vehicle);
   if (!study.input.table.empty()) file.set_attribute("samples_name", study.input.table_name);
-  file.set_attribute("tolerance", fmt::format("{}", sweep.options.tolerance));
   for (const auto& [name, isa] : instruction_sets) {
     if (isa == sweep.options.isa) file.set_attribute("instruction_set", name);
   }
@@ -149,7 +150,7 @@ std::vector<std::uint64_t> prepare_data_set(const fs::path& path, const Study& s
       } else {
         variable = file.define_dense(q.name, {dimensions[a]}, q.unit, meaning);
       }
-      file.set_attribute(variable, "wingbeat_key", q.key);
+      file.set_key(variable, q.key);
       if (q.name != axis.name) auxiliary += (auxiliary.empty() ? "" : " ") + q.name;
       coordinates[a].push_back(variable);
     }
@@ -241,7 +242,8 @@ SweepDigest digest_of(const fs::path& path, const Study& study) {
     file.read_run("recomputed", columns.first, columns.recomputed);
     file.read_run("domain", columns.first, columns.domain);
     for (std::size_t m = 0; m < kept.size(); ++m) {
-      const bool wanted = kept[m] == Metric::lift_mean || kept[m] == Metric::efficiency_system;
+      const bool wanted = kept[m] == Metric::lift_mean || kept[m] == Metric::efficiency_system ||
+                          kept[m] == Metric::lift_to_weight;
       if (wanted) file.read_run(metric_info(kept[m]).key, columns.first, columns.metrics[m]);
     }
     digester.add(columns);
@@ -255,6 +257,7 @@ Study read_study_in_data_set(const fs::path& path) {
   if (!fs::exists(path, error)) refuse("no such file");
   try {
     const NetcdfReader file(path);
+    FileRecord::of_this_program().add_read(path);
     StudyInput input;
     const auto study = file.attribute("study"), vehicle = file.attribute("vehicle"),
                tolerance = file.attribute("tolerance");
@@ -274,22 +277,27 @@ Study read_study_in_data_set(const fs::path& path) {
   }
 }
 
-Standing standing_of(const fs::path& path, std::uint64_t fingerprint, const std::string& option) {
+Standing standing_of(const fs::path& path, std::uint64_t fingerprint, const std::string& option,
+                     bool force) {
   const auto refuse = [&](const std::string& reason) {
     throw InputError(fmt::format("{} {}", option, path.string()), 0, 0, "",
-                     reason + "; it is left as it is: move it away, or give another name");
+                     reason + "; it is left as it is: give another name, or --force to replace it");
   };
   std::error_code error;
   const auto status = fs::status(path, error);
   if (!fs::exists(status)) return Standing::nothing;
   if (fs::is_directory(status)) throw InputError(fmt::format("{} {}", option, path.string()), 0, 0, "", "is a folder");
-  if (!fs::is_regular_file(status)) refuse("is not a regular file");
+  if (!fs::is_regular_file(status)) {
+    throw InputError(fmt::format("{} {}", option, path.string()), 0, 0, "", "is not a regular file");
+  }
   std::optional<std::string> found;
   try {
     found = NetcdfReader(path).attribute(fingerprint_attribute);
   } catch (const NetcdfError&) {
+    if (force) return Standing::nothing;
     refuse("exists and cannot be read as a data set (foreign, damaged or cut off)");
   }
+  if (force && (!found || *found != fmt::format("{:016x}", fingerprint))) return Standing::nothing;
   if (!found) refuse("exists and is no data set of wingbeat sweep");
   if (*found != fmt::format("{:016x}", fingerprint)) {
     refuse("holds another sweep (another study, vehicle, option or version of the program)");

@@ -100,10 +100,10 @@ std::uint64_t checksum(std::span<const std::byte> bytes, std::uint64_t seed) {
   return sum ^ (sum >> 32);
 }
 
-SweepJournal::SweepJournal(const std::filesystem::path& journal, const std::filesystem::path& data_set,
+SweepJournal::SweepJournal(const std::filesystem::path& journal, const std::filesystem::path& data_set, bool force,
                            std::uint64_t fingerprint, const ChunkLayout& layout, std::uint64_t size,
                            const Prepare& prepare)
-    : journal_(journal), data_set_(data_set), layout_(layout), held_(layout.chunks(), false) {
+    : journal_(journal), data_set_(data_set), force_(force), layout_(layout), held_(layout.chunks(), false) {
   try {
     lock(fingerprint, size, prepare);
     take_over();
@@ -142,9 +142,9 @@ void SweepJournal::failed(const std::filesystem::path& file, int reason) const {
 void SweepJournal::lock(std::uint64_t fingerprint, std::uint64_t size, const Prepare& prepare) {
   const bool data_there = std::filesystem::exists(data_set_);
   const bool journal_there = std::filesystem::exists(journal_);
-  if (data_there && !journal_there) {
-    refuse(data_set_, fmt::format("is there without {}, so it is not of a sweep under way; it is left as it is: move it "
-                                  "away, or give another name",
+  if (data_there && !journal_there && !force_) {
+    refuse(data_set_, fmt::format("is there without {}, so it is not of a sweep under way; it is left as it is: give "
+                                  "another name, or --force to replace it",
                                   journal_.filename().string()));
   }
   journal_file_ = ::open(journal_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
@@ -167,21 +167,30 @@ void SweepJournal::lock(std::uint64_t fingerprint, std::uint64_t size, const Pre
   Header there{};
   const ssize_t got = read_at(journal_file_, &there, sizeof there, 0);
   if (got < 0) refuse(journal_, fmt::format("cannot be read: {}", std::strerror(errno)));
-  if (std::memcmp(&there, &header, std::min(std::size_t(got), sizeof header.magic)) != 0) {
-    refuse(journal_, "is no journal of a sweep; it is left as it is: move it away, or give another name");
+  const bool same_kind = std::memcmp(&there, &header, std::min(std::size_t(got), sizeof header.magic)) == 0;
+  const bool same_sweep = std::memcmp(&there, &header, std::size_t(got)) == 0;
+  if (!same_kind && !force_) {
+    refuse(journal_, "is no journal of a sweep; it is left as it is: give another name, or --force to replace it");
   }
-  if (std::memcmp(&there, &header, std::size_t(got)) != 0) {
+  if (!same_sweep && !force_) {
     refuse(journal_, fmt::format("belongs to another sweep (another study, vehicle, option or version of the program); "
-                                 "it is left as it is: remove it and {} to begin anew, or give another name",
+                                 "it is left as it is: give another name, or --force to remove it and {} and to begin "
+                                 "anew",
                                  data_set_.filename().string()));
   }
 
-  // The places of the columns, written when the data set is prepared.
-  std::vector<std::uint64_t> places(layout_.columns() + 1);
+  // The places of the columns and the check sum of all around them, written when the data set is prepared.
+  std::vector<std::uint64_t> places(layout_.columns() + 2);
   const std::size_t length = places.size() * sizeof places[0];
-  const auto sum_of = [](std::span<const std::uint64_t> p) { return checksum(std::as_bytes(p.first(p.size() - 1)), 7); };
-  const bool prepared = data_there && read_at(journal_file_, places.data(), length, sizeof header) == ssize_t(length) &&
-                        places.back() == sum_of(places);
+  const auto sum_of = [](std::span<const std::uint64_t> p) { return checksum(std::as_bytes(p.first(p.size() - 1)), 8); };
+  const auto frame_of_file = [&] {
+    const int file = ::open(data_set_.c_str(), O_RDONLY | O_CLOEXEC);
+    const std::uint64_t sum = frame_sum(file, std::span(places).first(layout_.columns()));
+    if (file >= 0) ::close(file);
+    return sum;
+  };
+  const bool prepared = data_there && same_sweep && read_at(journal_file_, places.data(), length, sizeof header) == ssize_t(length) &&
+                        places.back() == sum_of(places) && places[layout_.columns()] == frame_of_file();
   if (!prepared) {
     const bool usable = ::ftruncate(journal_file_, 0) == 0;
     if (!usable || !write_at(journal_file_, &header, sizeof header, 0)) {
@@ -193,6 +202,7 @@ void SweepJournal::lock(std::uint64_t fingerprint, std::uint64_t size, const Pre
       reserve(size, true);
       places = prepare(data_set_);
       reserve(size, false);
+      places.push_back(frame_of_file());
       places.push_back(0);
       places.back() = sum_of(places);
       if (!write_at(journal_file_, places.data(), length, sizeof header)) failed(journal_, errno);
@@ -202,6 +212,8 @@ void SweepJournal::lock(std::uint64_t fingerprint, std::uint64_t size, const Pre
       throw;
     }
   }
+  places.pop_back();
+  frame_ = places.back();
   places.pop_back();
   places_ = std::move(places);
 }
@@ -238,7 +250,7 @@ void SweepJournal::take_over() {
 }
 
 std::uint64_t SweepJournal::record_at(std::uint64_t record) const {
-  return sizeof(Header) + 8 * (layout_.columns() + 1) + record * sizeof(Record);
+  return sizeof(Header) + 8 * (layout_.columns() + 2) + record * sizeof(Record);
 }
 
 std::uint64_t SweepJournal::designs_held() const {
@@ -269,8 +281,38 @@ void SweepJournal::append(std::uint64_t chunk, std::span<const std::byte> bytes)
   ++records_;
 }
 
+/// Of everything in the data set that is no result: its header, its attributes, the values of its axes.
+std::uint64_t SweepJournal::frame_sum(int data_file, std::span<const std::uint64_t> places) const {
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> columns;
+  for (std::size_t c = 0; c < places.size(); ++c) {
+    columns.emplace_back(places[c], places[c] + layout_.designs * layout_.bytes_of_value(c));
+  }
+  std::sort(columns.begin(), columns.end());
+  struct stat found {};
+  const std::uint64_t size = ::fstat(data_file, &found) == 0 ? std::uint64_t(found.st_size) : 0;
+  columns.emplace_back(std::max(size, columns.back().second), 0);
+  std::vector<std::byte> bytes;
+  std::uint64_t sum = 1, at = 0;
+  for (const auto& [begin, end] : columns) {
+    constexpr std::uint64_t most = 1u << 20;
+    while (at < begin) {
+      bytes.assign(std::size_t(std::min(most, begin - at)), std::byte(0));
+      (void)!read_at(data_file, bytes.data(), bytes.size(), at);
+      sum = checksum(bytes, sum);
+      at += bytes.size();
+    }
+    at = std::max(at, end);
+  }
+  return sum;
+}
+
 void SweepJournal::finish(const std::filesystem::path& name) {
   if (::fsync(data_file_) != 0) failed(data_set_, errno);
+  if (frame_sum(data_file_, places_) != frame_) {
+    throw std::runtime_error(fmt::format("{}: was damaged while the sweep ran, so it does not become {}; the same command "
+                                         "begins anew",
+                                         data_set_.string(), name.string()));
+  }
   if (::rename(data_set_.c_str(), name.c_str()) != 0) failed(name, errno);
   ::unlink(journal_.c_str());
   close();

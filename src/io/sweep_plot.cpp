@@ -11,9 +11,11 @@
 #include <utility>
 
 #include "figure.hpp"
+#include "sweep_status_plot.hpp"
 #include "wingbeat/io/design_keys.hpp"
 #include "wingbeat/io/netcdf.hpp"
 #include "wingbeat/io/units.hpp"
+#include "wingbeat/study/sweep_best.hpp"
 
 namespace wingbeat {
 namespace {
@@ -133,6 +135,22 @@ struct Field {
   }
 };
 
+/// Of every design; empty where the study does not keep it.
+std::vector<double> lift_over_weight(const Sweep& sweep, const NetcdfReader& file) {
+  if (!sweep.options.metrics[std::size_t(Metric::lift_to_weight)]) return {};
+  return file.read(metric_info(Metric::lift_to_weight).key);
+}
+
+SweepBest best_of(const Field& field, const std::vector<double>& weight, const std::vector<double>& domain,
+                  bool extrapolates) {
+  SweepBest best;
+  for (std::size_t n = 0; n < field.values.size(); ++n) {
+    if (!extrapolates && domain[n] != 0.0) continue;
+    best.offer(n, field.values[n], weight.empty() ? absent : weight[n]);
+  }
+  return best;
+}
+
 // ---- Lines
 
 constexpr const char* curve_styles[most_curves] = {
@@ -159,21 +177,45 @@ std::string curve_name(const Sweep& sweep, std::uint64_t index) {
   return name;
 }
 
+/// The axis of numbers, how far designs lie apart along it, and the first design of each curve.
+struct Curves {
+  std::size_t along = 0;
+  std::uint64_t stride = 1;
+  std::vector<std::uint64_t> first;
+
+  explicit Curves(const Sweep& sweep) {
+    for (std::size_t a = sweep.axes.size(); a-- > 0;) {
+      if (is_number(sweep.axes[a])) along = a;
+    }
+    for (std::size_t a = along + 1; a < sweep.axes.size(); ++a) stride *= sweep.axes[a].count;
+    for (std::uint64_t n = 0; n < sweep.size(); ++n) {
+      if (places(sweep, n)[along] == 0) first.push_back(n);
+    }
+  }
+};
+
+void plot_idle_lines(const Study& study, const std::vector<double>& status, PlotFormat format,
+                     const std::filesystem::path& output) {
+  const Curves of(study.sweep);
+  const Scale x(study.sweep.axes[of.along]);
+  std::vector<StatusCurve> curves;
+  for (const std::uint64_t first : of.first) {
+    StatusCurve curve{curve_name(study.sweep, first), {}};
+    for (std::size_t n = 0; n < x.at.size(); ++n) curve.status.push_back(int(status[first + n * of.stride]));
+    curves.push_back(std::move(curve));
+  }
+  plot_statuses(title_of(study), x.label(), x.range("x"), x.at, curves, format, output);
+}
+
 void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Metric> metrics, PlotFormat format,
                 const std::filesystem::path& output) {
   const Sweep& sweep = study.sweep;
-  std::size_t along = 0;
-  std::uint64_t stride = 1;
-  for (std::size_t a = sweep.axes.size(); a-- > 0;) {
-    if (is_number(sweep.axes[a])) along = a;
-  }
-  for (std::size_t a = along + 1; a < sweep.axes.size(); ++a) stride *= sweep.axes[a].count;
+  const Curves of(sweep);
+  const std::size_t along = of.along;
+  const std::uint64_t stride = of.stride;
+  const std::vector<std::uint64_t>& curves = of.first;
   const Scale x(sweep.axes[along]);
   const std::size_t count = x.at.size();
-  std::vector<std::uint64_t> curves;  // index of the first design of each
-  for (std::uint64_t n = 0; n < sweep.size(); ++n) {
-    if (places(sweep, n)[along] == 0) curves.push_back(n);
-  }
   std::vector<std::size_t> order(count);
   for (std::size_t n = 0; n < count; ++n) order[n] = n;
   std::sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) { return x.at[p] < x.at[q]; });
@@ -184,7 +226,8 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
   const double inches = head + double(metrics.size()) * panel + double(metrics.size() - 1) * gap + foot;
   Figure figure(format, 3.5, inches);
   constexpr double left = 0.125, right = 0.965;
-  bool broken = false;
+  const std::vector<double> weight = lift_over_weight(sweep, file);
+  bool broken = false, carried = false;
   const std::vector<double> status = file.read("status"), domain = file.read("domain");
   const auto inside = [&](std::uint64_t n) { return status[n] == 0.0 && domain[n] == 0.0; };
   // Places along the axis where some curve is outside the domain and none inside, as runs of `order`.
@@ -257,12 +300,10 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
     figure.add("set tmargin at screen {}\nset bmargin at screen {}\nset format x {}\n", top, top - panel / inches,
                p + 1 == metrics.size() ? "'%g'" : "''");
     figure.text(field.label(), 7.5, fmt::format("screen {},{} left", left, top + 0.22 / inches));
-    std::uint64_t best = sweep.size();
-    for (std::uint64_t n = 0; n < sweep.size(); ++n) {
-      if (!std::isfinite(field.values[n]) || (!sweep.allow_extrapolation && domain[n] != 0.0)) continue;
-      if (best == sweep.size() || field.values[n] > field.values[best]) best = n;
-    }
-    if (best < sweep.size()) {
+    const SweepBest found = best_of(field, weight, domain, sweep.allow_extrapolation);
+    if (found.design()) {
+      const std::uint64_t best = found.design()->index;
+      carried = carried || found.carries_weight();
       const std::size_t at = std::size_t(places(sweep, best)[along]);
       const std::uint64_t first = best - at * stride;
       const std::size_t curve = std::size_t(std::find(curves.begin(), curves.end(), first) - curves.begin());
@@ -274,9 +315,8 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
       figure.text(x.label(), 7.5, fmt::format("screen {},{} center", 0.5 * (left + right), 0.23 / inches));
       std::string note = broken ? "no line: does not flap" : "";
       if (leaves) note += fmt::format("{}crossed, hatched: outside the model's domain", note.empty() ? "" : "; ");
-      if (!note.empty()) {
-        figure.text(note, 6.5, fmt::format("screen {},{} right", right, 0.075 / inches));
-      }
+      if (carried) note += fmt::format("{}best sought where lift >= weight", note.empty() ? "" : "; ");
+      if (!note.empty()) figure.text(note, 6.5, fmt::format("screen {},{} right", right, 0.075 / inches));
     }
     std::string curves_drawn;
     for (std::size_t c = 0; c < curves.size(); ++c) {
@@ -499,17 +539,13 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
   const auto outside = [&](std::size_t n) { return domain[n] != 0.0; };
   const bool leaves = std::any_of(domain.begin(), domain.end(), [](double d) { return d != 0.0; });
   const auto flaps = [&](std::size_t n) { return status[n] == 0.0; };
-  const bool has_weight = study.sweep.options.metrics[std::size_t(Metric::lift_to_weight)];
-  std::vector<double> weight;
-  if (has_weight) weight = file.read(metric_info(Metric::lift_to_weight).key);
-  const bool weighed = has_weight && std::any_of(weight.begin(), weight.end(), [](double w) { return std::isfinite(w); });
-  const auto carries = [&](std::size_t n) { return weight[n] >= 1.0 && (extrapolates || !outside(n)); };
+  const std::vector<double> weight = lift_over_weight(study.sweep, file);
+  const bool weighed = std::any_of(weight.begin(), weight.end(), [](double w) { return std::isfinite(w); });
   bool carried = false;
-  for (std::size_t n = 0; n < weight.size(); ++n) carried = carried || (weighed && carries(n));
+  for (std::size_t n = 0; n < weight.size(); ++n) {
+    carried = carried || (weight[n] >= 1.0 && (extrapolates || !outside(n)));
+  }
   const bool all_flap = std::all_of(status.begin(), status.end(), [](double s) { return s == 0.0; });
-  const auto feasible = [&](std::size_t n) {
-    return flaps(n) && (extrapolates || !outside(n)) && (!carried || carries(n));
-  };
 
   const double head = 0.52, panel = 2.05, gap = 0.84, foot = 0.62;
   const double inches = head + double(metrics.size()) * panel + double(metrics.size() - 1) * gap + foot;
@@ -538,14 +574,13 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
     figure.add("unset object\n");
     const Field field(file, metrics[p]);
     double least = std::numeric_limits<double>::infinity(), most = -least;
-    std::size_t best = status.size();
-    for (std::size_t n = 0; n < status.size(); ++n) {
-      const double value = field.values[n];
+    for (const double value : field.values) {
       if (!std::isfinite(value)) continue;
       least = std::min(least, value);
       most = std::max(most, value);
-      if (feasible(n) && (best == status.size() || value > field.values[best])) best = n;
     }
+    const SweepBest found = best_of(field, weight, domain, extrapolates);
+    const std::size_t best = found.design() ? std::size_t(found.design()->index) : status.size();
     const double top = 1.0 - (head + double(p) * (panel + gap)) / inches;
     const double bottom = top - panel / inches;
     figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", top, bottom);
@@ -590,6 +625,13 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
     if (carried) {
       drawn += ", $feasible using 1:2 with lines dt 1 lw 3.2 lc rgb '#ffffff', "
                "$feasible using 1:2 with lines dt (9,4) lw 1.5 lc rgb '#000000'";
+    }
+    if (!std::isfinite(least)) {
+      std::vector<std::uint64_t> designs(sweep_status_count, 0);
+      for (const double s : status) ++designs[std::size_t(s)];
+      if (designs[0] == 0) {
+        figure.text(nothing_flaps(designs), 7.0, fmt::format("screen {},{} center", 0.5 * (left + right), 0.5 * (top + bottom)));
+      }
     }
     if (best < status.size()) {
       figure.circle(x.at[best / ny], y.at[best % ny], 0.012, "fillcolor rgb '#ffffff' fillstyle solid", "#000000");
@@ -662,7 +704,11 @@ void plot_sweep(const Study& study, const std::filesystem::path& data_set, std::
                 PlotFormat format, const std::filesystem::path& file) {
   const NetcdfReader reader(data_set);
   const auto numbers = std::count_if(study.sweep.axes.begin(), study.sweep.axes.end(), is_number);
-  if (numbers == 1) {
+  const std::vector<double> status = reader.read("status");
+  const bool nothing = std::none_of(status.begin(), status.end(), [](double s) { return s == 0.0; });
+  if (numbers == 1 && nothing) {
+    plot_idle_lines(study, status, format, file);
+  } else if (numbers == 1) {
     plot_lines(study, reader, metrics, format, file);
   } else {
     plot_contours(study, reader, metrics, format, file);

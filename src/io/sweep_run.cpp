@@ -19,6 +19,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "wingbeat/io/design_file.hpp"
+#include "wingbeat/io/file_record.hpp"
 #include "wingbeat/io/report.hpp"
 #include "wingbeat/io/sweep_journal.hpp"
 #include "wingbeat/study/run.hpp"
@@ -241,25 +243,32 @@ fs::path unfinished_file(const fs::path& output) { return output.string() + ".pa
 SweepResult run_sweep(const Study& study, const SweepRunOptions& options) {
   const std::uint64_t print = fingerprint(study, options.version);
   SweepResult result;
-  std::error_code error;
+  FileRecord& record = FileRecord::of_this_program();
   // A symbolic link keeps pointing where it did: the file behind it is made.
-  const fs::path output = fs::weakly_canonical(fs::absolute(options.output), error);
-  const std::string shown = "-o " + options.output.string();
-  if (error || !fs::is_directory(output.parent_path(), error)) {
-    throw InputError(shown, 0, 0, "", fmt::format("there is no folder {}", output.parent_path().string()));
-  }
-  if (standing_of(output, print, "-o") == Standing::same_sweep) {
+  const fs::path output = followed("-o", options.output);
+  // A data set may be named as study and output: it is not written where it holds that very sweep.
+  const bool is_input = record.name_read(output).has_value();
+  if (standing_of(output, print, "-o", options.force || is_input) == Standing::same_sweep) {
     result.outcome = SweepResult::Outcome::was_finished;
     result.progress.designs = result.progress.done = study.sweep.size();
     result.digest = digest_of(output, study);
     return result;
   }
 
+  const std::pair<fs::path, fs::path> written[] = {{options.output, output},
+                                                   {journal_file(options.output), journal_file(output)},
+                                                   {unfinished_file(options.output), unfinished_file(output)}};
+  for (const auto& [shown, file] : written) {
+    check_not_read("-o", shown, file);
+    if (const auto other = record.add_output(file, "-o")) {
+      throw InputError("-o " + shown.string(), 0, 0, "", fmt::format("is also the file of {}; give another name", *other));
+    }
+  }
   std::optional<tbb::global_control> limit;
   if (options.threads > 0) {
     limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(options.threads));
   }
-  SweepJournal journal(journal_file(output), unfinished_file(output), print, layout_of(study.sweep),
+  SweepJournal journal(journal_file(output), unfinished_file(output), options.force, print, layout_of(study.sweep),
                        data_set_size(study),
                        [&](const fs::path& file) { return prepare_data_set(file, study, options.version); });
   result.resumed = journal.designs_held();

@@ -15,24 +15,27 @@ using detail::Kind;
 
 class ToleranceReader : public detail::StudySections {
  public:
-  ToleranceReader(const fs::path& file, std::string_view text)
-      : StudySections(file.string(), text, {"samples", "parameter", "fit"}, {"condition"}),
+  ToleranceReader(const fs::path& file, std::string_view text, std::span<const std::string> overrides)
+      : StudySections(input_name(file), text, overrides, {"samples", "parameter", "fit"}, {"condition"}),
         folder_(file.parent_path()) {}
 
   ToleranceStudy read() {
     ToleranceStudy study;
     study_result_ = &study;
-    study.title = read_title();
-    study.design = read_vehicle(folder_);
-    study.condition = read_condition();
-    read_tolerance(study.options);
-    study.allow_extrapolation = read_allow_extrapolation();
-    read_metrics(study.options);
+    attempt([&] { study.title = read_title(); });
+    attempt([&] { study.condition = read_condition(); });
+    attempt([&] { read_tolerance(study.options); });
+    attempt([&] { study.allow_extrapolation = read_allow_extrapolation(); });
+    attempt([&] { read_metrics(study.options); });
+    attempt([&] { read_samples(); });
+    if (!attempt([&] { study.design = read_vehicle(folder_); })) finish();  // the rest is read for this vehicle
     if (study.design.mass) study.options.metrics.set(std::size_t(Metric::lift_to_weight));
-    study.frequency = read_frequency(study.design);
-    read_samples();
-    if (const TomlNode* fit = root_.find("fit")) read_fit(*fit);
-    read_parameters();
+    attempt([&] { study.frequency = read_frequency(study.design); });
+    attempt([&] {
+      if (const TomlNode* fit = root_.find("fit")) read_fit(*fit);
+    });
+    attempt([&] { read_parameters(); });
+    finish();
     read_correlations();
     if (study.parameters.empty()) {
       refuse(*study_, "study", "nothing is uncertain; give [[parameter]] sections or [fit]");
@@ -72,7 +75,7 @@ class ToleranceReader : public detail::StudySections {
   }
 
   void read_parameters() {
-    for (const TomlNode& node : sections_of("parameter")) read_parameter(node);
+    for (const TomlNode& node : sections_of("parameter")) attempt([&] { read_parameter(node); });
   }
 
   void read_parameter(const TomlNode& node) {
@@ -136,6 +139,9 @@ class ToleranceReader : public detail::StudySections {
       d.spread = quantity(factor, "parameter.geometric_deviation", "1");
       if (!(d.spread > 1.0)) refuse(factor, "parameter.geometric_deviation", "must be > 1");
       d.spread = std::log(d.spread);
+    }
+    if (name == "uniform" || node.find("mean") || node.find("median")) {
+      no_override_of(p.parameter.key, "has no effect: the study gives the distribution's centre");
     }
     if (!(d.share_kept() > 1e-6)) {
       refuse(node, "parameter",
@@ -300,8 +306,8 @@ class ToleranceReader : public detail::StudySections {
 
 }  // namespace
 
-ToleranceStudy read_tolerance_study(const fs::path& file) {
-  return ToleranceReader(file, read_text_file(file)).read();
+ToleranceStudy read_tolerance_study(const fs::path& file, std::span<const std::string> overrides) {
+  return ToleranceReader(file, read_text_file(file), overrides).read();
 }
 
 }  // namespace wingbeat

@@ -235,18 +235,20 @@ std::string json_tolerance(const ToleranceStudy& study, const ToleranceResult& r
 void write_tolerance(const ToleranceStudy& study, const ToleranceResult& result, const SweepColumns& columns,
                      const std::string& input, const std::string& version, const std::filesystem::path& file) {
   NetcdfFile data(file);
-  data.set_attribute("Conventions", "CF-1.8");
-  data.set_attribute("title", study.title.empty() ? "tolerance study" : study.title);
-  data.set_attribute("source", "wingbeat " + version);
-  data.set_attribute("study", input);
-  data.set_attribute("vehicle", write_design(study.design));
-  data.set_attribute("condition", name_of(study.condition));
+  write_provenance(data, {.title = study.title.empty() ? "tolerance study" : study.title,
+                          .command = "tolerance",
+                          .version = version,
+                          .vehicle = write_design(study.design),
+                          .study = input,
+                          .condition = name_of(study.condition)});
   const std::size_t base = std::size_t(base_count(study));
   const auto sample = data.define_dimension("sample", base);
   const Sweep sweep = tolerance_sweep(study);
   for (const SweptQuantity& q : sweep.axes.front().quantities) {
-    data.write(data.define_variable(q.name, {sample}, q.unit, std::string(find_key<double>(q.key)->meaning)),
-               std::span(q.values).subspan(0, base));
+    const auto variable =
+        data.define_variable(q.name, {sample}, q.unit, std::string(find_key<double>(q.key)->meaning));
+    data.set_key(variable, q.key);
+    data.write(variable, std::span(q.values).subspan(0, base));
   }
   const auto status =
       data.define_dense("status", {sample}, "1", "what became of the vehicle", NetcdfFile::Storage::flag);

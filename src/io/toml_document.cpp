@@ -275,7 +275,7 @@ std::string segment(std::string_view key) {
   return key.size() <= longest ? std::string(key) : std::string(key.substr(0, longest)) + "...";
 }
 
-/// Enters tables and values into the document, and keeps the unknown key that comes first in the text.
+/// Enters tables and values into the document, and its errors for what has no place there.
 class Flattener {
  public:
   Flattener(Document& document, Origin origin) : document_(document), base_(std::move(origin)) {}
@@ -290,6 +290,9 @@ class Flattener {
   void enter(const toml::node& node, const std::string& path, const Origin& origin) {
     const bool known = find_key<double>(path) != nullptr, section = is_section(path);
     if (!known && !section) {
+      const std::string meant = nearest_key(path);
+      if (!meant.empty()) document_.spoiled.push_back(meant);
+      document_.spoiled.push_back(path);
       offend(path, origin, unknown_key_message(path));
     } else if (const toml::table* table = node.as_table(); table && section) {
       document_.sections.insert_or_assign(path, origin);
@@ -303,13 +306,10 @@ class Flattener {
                                   : path.find('.') == std::string::npos ? fmt::format("a section [{}]", path)
                                                                         : "a table";
       const bool list = node.is_array_of_tables();
+      document_.spoiled.push_back(path);
       offend(path, origin, fmt::format("expected {}, got {}", example,
                                        list ? "a list of tables" : kind_of(value_of_node(node, origin))));
     }
-  }
-
-  void refuse_offender() const {
-    if (offender_) offender_->refuse(offending_path_, offence_);
   }
 
  private:
@@ -318,17 +318,12 @@ class Flattener {
     return {base_.file, line_of(p), column_of(p), false};
   }
 
-  void offend(const std::string& path, const Origin& origin, std::string message) {
-    if (offender_ && std::pair(offender_->line, offender_->column) <= std::pair(origin.line, origin.column)) return;
-    offender_ = origin;
-    offending_path_ = path;
-    offence_ = std::move(message);
+  void offend(const std::string& path, const Origin& origin, const std::string& message) {
+    document_.errors.attempt([&] { origin.refuse(path, message); });
   }
 
   Document& document_;
   Origin base_;
-  std::optional<Origin> offender_;
-  std::string offending_path_, offence_;
 };
 
 bool at_or_below(std::string_view path, std::string_view above) {
@@ -408,7 +403,6 @@ void apply_override(Document& document, const std::string& assignment) {
   } else {
     flattener.enter(toml::value<std::string>(std::string(text)), path, origin);
   }
-  flattener.refuse_offender();
 
   const auto from_file = [](const Value& value) { return !value.origin.overridden; };
   for (const auto& [one, other] : alternatives) {
@@ -453,6 +447,12 @@ std::string kind_of(const TomlNode& node) {
   return node.text;
 }
 
+bool are_alternatives(std::string_view one, std::string_view other) {
+  return std::any_of(std::begin(alternatives), std::end(alternatives), [&](const auto& pair) {
+    return pair == std::pair(one, other) || pair == std::pair(other, one);
+  });
+}
+
 const Value* Document::find(std::string_view path) const {
   const auto found = values.find(path);
   return found == values.end() ? nullptr : &found->second;
@@ -480,7 +480,6 @@ Document parse_document(std::string_view text, std::string_view file_name) {
   const toml::table root = parse_toml(text, origin);
   Flattener flattener(document, origin);
   flattener.enter(root, "");
-  flattener.refuse_offender();
   return document;
 }
 
@@ -502,7 +501,8 @@ bool Requirement::allows(std::string_view value) const {
 }
 
 void apply_overrides(Document& document, std::span<const std::string> overrides) {
-  for (const std::string& assignment : overrides) apply_override(document, assignment);
+  InputErrors errors;
+  for (const std::string& assignment : overrides) errors.attempt([&] { apply_override(document, assignment); });
   for (const auto& key : vehicle_keys<double>()) {
     if (key.only_with.empty()) continue;
     const Requirement requirement = requirement_of(key.only_with);
@@ -513,6 +513,7 @@ void apply_overrides(Document& document, std::span<const std::string> overrides)
       document.values.erase(std::string(key.path));
     }
   }
+  errors.refuse();
 }
 
 }  // namespace wingbeat

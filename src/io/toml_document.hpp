@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "input_errors.hpp"
 #include "wingbeat/io/design_file.hpp"
 
 namespace wingbeat {
@@ -41,6 +42,8 @@ struct Document {
   int last_line = 1;
   std::map<std::string, Value, std::less<>> values;     ///< by dotted path
   std::map<std::string, Origin, std::less<>> sections;  ///< by dotted path
+  InputErrors errors;                 ///< keys that are unknown or hold what they cannot
+  std::vector<std::string> spoiled;   ///< these, and what they were to be: not to be called missing as well
 
   const Value* find(std::string_view path) const;
   bool has_section(std::string_view path) const;
@@ -74,10 +77,13 @@ TomlNode parse_toml_tree(std::string_view text, std::string_view file_name);
 /// "a number", "an array": what a node is, for messages.
 std::string kind_of(const TomlNode& node);
 
-/// Throws InputError for text that is not TOML and for unknown keys.
+/// True for two keys of which a vehicle may have one, such as transmission.hinge_offset and .stroke_amplitude.
+bool are_alternatives(std::string_view one, std::string_view other);
+
+/// Throws InputError for text that is not TOML. Unknown keys are among the document's errors.
 Document parse_document(std::string_view text, std::string_view file_name);
 
-/// Applies overrides as read_design documents it.
+/// Applies overrides as read_design documents it. Throws InputError for those that cannot be, the others being applied.
 void apply_overrides(Document& document, std::span<const std::string> overrides);
 
 /// The two sides of "KEY = VALUE|VALUE" in KeyText::only_with.

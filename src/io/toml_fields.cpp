@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "input_errors.hpp"
 #include "wingbeat/io/design_keys.hpp"
 #include "wingbeat/io/units.hpp"
 
@@ -27,13 +28,16 @@ const TomlNode& TomlFields::at(std::string_view key) const {
 }
 
 void TomlFields::known_keys(std::span<const std::string_view> keys) const {
+  InputErrors errors;
   for (const auto& [key, node] : table_.members) {
     if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
     const std::string_view near = nearest_name(key, keys);
-    refuse(node, one_line(key),
-           near.empty() ? fmt::format("unknown key; known here: {}", fmt::join(keys, ", "))
-                        : fmt::format("unknown key; did you mean {}?", near));
+    errors.attempt([&, &k = key, &n = node] {
+      refuse(n, one_line(k), near.empty() ? fmt::format("unknown key; known here: {}", fmt::join(keys, ", "))
+                                          : fmt::format("unknown key; did you mean {}?", near));
+    });
   }
+  errors.refuse();
 }
 
 std::optional<std::string> TomlFields::text(std::string_view key) const {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <udunits2.h>
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <regex>
 #include <system_error>
 #include <utility>
 
@@ -84,7 +86,8 @@ class UnitSystem {
 
   std::optional<Anatomy> dissect(const std::string& unit) {
     const std::lock_guard lock(mutex_);
-    const Unit parsed(ut_parse(system_.get(), unit.c_str(), UT_UTF8));
+    Unit parsed(ut_parse(system_.get(), unit.c_str(), UT_UTF8));
+    if (!parsed) parsed.reset(ut_parse(system_.get(), inertia_apart(unit).c_str(), UT_UTF8));
     if (!parsed) return std::nullopt;
     Anatomy result;
     if (ut_accept_visitor(parsed.get(), &visitor, &result) != UT_SUCCESS) return std::nullopt;
@@ -106,6 +109,18 @@ class UnitSystem {
     const Unit radian(ut_get_unit_by_name(system_.get(), "radian"));
     add("deg", ut_scale(pi / 180.0, radian.get()));
     add("rev", ut_scale(two_pi, radian.get()));
+    // Products as they stand in catalogues; UDUNITS puts its prefixes before them: mAh, mNm, uNm.
+    for (const auto& [symbol, definition] : products) add(symbol, ut_parse(system_.get(), definition, UT_UTF8));
+  }
+
+  static constexpr std::pair<const char*, const char*> products[] = {
+      {"Ah", "A h"},   {"Wh", "W h"},     {"Nm", "N m"},     {"Ncm", "N cm"}, {"Nmm", "N mm"},
+      {"Nms", "N m s"}, {"Vs", "V s"},     {"RPM", "rpm"}};
+
+  /// "gcm2" as "g cm2". No symbol can say this: UDUNITS takes the exponent for that of the whole word.
+  static std::string inertia_apart(const std::string& unit) {
+    static const std::regex together("(^|[^A-Za-z_])([kmu]?g)([cm]?m)(2|\\^2|\\*\\*2|\u00b2)(?![0-9])");
+    return std::regex_replace(unit, together, "$1$2 $3$4");
   }
 
   void add(const char* symbol, ut_unit* unit) {
@@ -118,6 +133,12 @@ class UnitSystem {
 };
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Of the signs beyond ASCII that UDUNITS reads only these are letters, which may bear an exponent.
+bool ends_in_letter(std::string_view text) {
+  constexpr std::string_view letters[] = {"\u03a9", "\u2126", "\u00c5", "\u212b"};  // ohm twice, angstrom twice
+  return std::any_of(std::begin(letters), std::end(letters), [&](auto letter) { return text.ends_with(letter); });
+}
 
 /// A number inside a unit that is no exponent. UDUNITS would multiply by it.
 bool has_stray_number(std::string_view unit) {
@@ -133,7 +154,7 @@ bool has_stray_number(std::string_view unit) {
     }
     const auto previous = static_cast<unsigned char>(unit[before - 1]);
     const bool power = previous == '^' || (previous == '*' && before > 1 && unit[before - 2] == '*');
-    if (!(std::isalpha(previous) || previous >= 0x80 || previous == ')' || power)) return true;
+    if (!(std::isalpha(previous) || previous == ')' || power || ends_in_letter(unit.substr(0, before)))) return true;
   }
   return false;
 }
@@ -181,9 +202,18 @@ struct Factor {
   double value = 1.0;
   std::string complaint;  ///< what is wrong with the unit beyond its dimension, or empty
   bool ok = true;
+  bool of_reciprocal = false;  ///< not ok, but `value` converts the reciprocal: a speed for a torque constant
 };
 
 Factor refuse(std::string complaint) { return {1.0, std::move(complaint), false}; }
+
+bool are_reciprocals(const Anatomy& a, const Anatomy& b) {
+  return a.dimension.size() == b.dimension.size() &&
+         std::all_of(a.dimension.begin(), a.dimension.end(), [&](const auto& power) {
+           const auto other = b.dimension.find(power.first);
+           return other != b.dimension.end() && other->second == -power.second;
+         });
+}
 
 Factor factor_for(const std::string& unit, std::string_view expected_unit) {
   if (unit.empty()) return {};
@@ -198,13 +228,18 @@ Factor factor_for(const std::string& unit, std::string_view expected_unit) {
   if (!expected) throw std::logic_error(fmt::format("{} is not a unit", in_quotes(expected_unit)));
 
   if (!given->plain) return refuse(fmt::format("; {} has an offset or a logarithm", in_quotes(unit)));
-  if (given->dimension != expected->dimension) return refuse("");
-  const Factor converts{given->scale / expected->scale, "", true};
   static const std::map<std::string, int> rate = {{"s", -1}};
   static const std::map<std::string, int> torque_constant = {{"kg", 1}, {"m", 2}, {"s", -2}, {"A", -1}};
+  if (expected->dimension == torque_constant && expected->angle == 0 && are_reciprocals(*given, *expected)) {
+    if (given->angle == 0) return refuse("; a speed constant names the angle, as in rpm/V or rad/s/V");
+    if (given->angle != 1) return refuse("");
+    return {given->scale * expected->scale, "; a speed constant is the reciprocal of a torque constant", false, true};
+  }
+  if (given->dimension != expected->dimension) return refuse("");
+  const Factor converts{given->scale / expected->scale, ""};
   if (expected->dimension == rate) {
     if (given->angle == expected->angle) return converts;
-    if (given->angle == 1 && expected->angle == 0) return {converts.value / two_pi, "", true};
+    if (given->angle == 1 && expected->angle == 0) return {converts.value / two_pi, ""};
     return refuse(expected->angle == 1 ? "; name the angle, as in rad/s, deg/s or rpm" : "");
   }
   if (unit.find("Hz") != std::string::npos || unit.find("hertz") != std::string::npos) {
@@ -284,7 +319,7 @@ double unit_factor(std::string_view unit, std::string_view expected_unit) {
   return factor.value;
 }
 
-double parse_quantity(std::string_view text, std::string_view expected_unit) {
+double parse_quantity(std::string_view text, std::string_view expected_unit, SpeedConstant speed_constant) {
   const auto fail = [&](std::string_view complaint) -> double {
     throw UnitError(refusal(text, expected_unit, complaint));
   };
@@ -303,6 +338,12 @@ double parse_quantity(std::string_view text, std::string_view expected_unit) {
   const std::string unit(trim(number.substr(mantissa.size())));
   if (unit.starts_with(',')) return fail("; write a decimal point, not a comma");
   const Factor factor = factor_for(unit, expected_unit);
+  if (factor.of_reciprocal) {
+    const double reciprocal = 1.0 / scaled(mantissa, value, factor.value);
+    if (!(reciprocal > 0.0 && std::isfinite(reciprocal))) return fail("; a speed constant must be > 0");
+    if (speed_constant == SpeedConstant::inverted) return reciprocal;
+    return fail(fmt::format("{}: write {:.6g} {}", factor.complaint, reciprocal, expected_unit));
+  }
   if (!factor.ok) return fail(factor.complaint);
   const double result = scaled(mantissa, value, factor.value);
   if (!std::isfinite(result)) return fail(", a number too large or too small to store");

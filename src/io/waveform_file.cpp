@@ -23,6 +23,13 @@ const std::array<WaveformColumn, waveform_column_count>& waveform_columns() {
       {"rod_force_n", "N", "rod force, positive when the crank pushes the slider up", &R::rod_force},
       {"motor_torque_nm", "N m", "motor torque on the crank", &R::motor_torque},
       {"friction_torque_nm", "N m", "friction torque on the crank", &R::friction_torque},
+      {"voltage_v", "V", "voltage at the motor terminals", &R::voltage},
+      {"power_electrical_w", "W", "electrical input power", &R::power_electrical},
+      {"power_motor_w", "W", "motor output power", &R::power_motor},
+      {"power_friction_w", "W", "friction loss", &R::power_friction},
+      {"power_aerodynamic_w", "W", "aerodynamic power", &R::power_aerodynamic},
+      {"spring_moment_nm", "N m", "moment of all hinge springs, towards stroke angle zero", &R::spring_moment},
+      {"inertial_moment_nm", "N m", "wing inertia times stroke acceleration, of all wings", &R::inertial_moment},
   }};
   return columns;
 }
@@ -36,7 +43,8 @@ std::string waveforms_csv(std::span<const WaveformRow> rows) {
   for (const WaveformRow& row : rows) {
     for (const WaveformColumn& c : columns) {
       if (&c != columns.data()) text += ',';
-      if (const double x = row.*c.value; std::isfinite(x)) fmt::format_to(out, "{}", x);
+      // Without a negative zero, which 0 N m/rad times a negative angle gives.
+      if (const double x = row.*c.value; std::isfinite(x)) fmt::format_to(out, "{}", x == 0.0 ? 0.0 : x);
     }
     text += '\n';
   }

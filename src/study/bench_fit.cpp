@@ -12,6 +12,7 @@
 #include <limits>
 #include <set>
 
+#include "fit_misfit.hpp"
 #include "least_squares.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/study/frequency_search.hpp"
@@ -199,7 +200,8 @@ class Bench {
     switch (o.quantity.metric) {
       case Metric::voltage: return point.value;
       case Metric::current_mean:
-      case Metric::current_peak: return current;
+      case Metric::current_peak:
+      case Metric::current_rms: return current;
       case Metric::power_electrical: return point.value * current;
       default: return 0.0;
     }
@@ -472,7 +474,7 @@ class Fitter {
       std::vector<double> all = x;
       for (std::size_t k = 0; k < free.size(); ++k) {
         const FreeParameter& p = fitter.fit_.parameters[free[k]];
-        all[free[k]] = p.lower + scaled[k] * (p.upper - p.lower);
+        all[free[k]] = std::clamp(p.lower + scaled[k] * (p.upper - p.lower), p.lower, p.upper);
       }
       return all;
     }
@@ -517,6 +519,7 @@ class Fitter {
 void check(const BenchFit& fit) {
   std::set<std::string> keys;
   if (fit.logs.empty()) throw ParameterError("log", "missing: there is nothing to fit to");
+  require(fit.starts >= 1 && fit.starts <= most_fit_starts, "fit.starts", "must lie between 1 and 1000", "1", fit.starts);
   for (const FreeParameter& p : fit.parameters) {
     if (!keys.insert(p.parameter.key).second) throw ParameterError(p.parameter.key, "is given twice");
     if (!(p.lower < p.upper)) throw ParameterError(p.parameter.key, "the lower bound must lie below the upper one");
@@ -697,8 +700,8 @@ void judge(const BenchFit& fit, Fitter& fitter, const std::vector<double>& x, Fi
     } else {
       f.value = x[k];
       f.standard_error = std::sqrt(covariance(Eigen::Index(k), Eigen::Index(k)));
-      f.lower_95 = x[k] - quantile * f.standard_error;
-      f.upper_95 = x[k] + quantile * f.standard_error;
+      f.lower_95 = std::max(x[k] - quantile * f.standard_error, p.lower);
+      f.upper_95 = std::min(x[k] + quantile * f.standard_error, p.upper);
     }
     result.parameters.push_back(f);
   }
@@ -878,22 +881,18 @@ FitResult run_fit(const BenchFit& fit, bool reweight, const std::function<void(c
   for (std::size_t k = 0; k < start.size(); ++k) {
     if (bench.jacobian().col(Eigen::Index(k)).cwiseAbs().maxCoeff() > 0.0) free.push_back(k);
   }
-  std::vector<std::vector<double>> starts = {start};
-  if (fit.starts > 1) {
-    const LatinHypercube samples{std::uint64_t(fit.starts - 1), fit.seed};
-    for (std::uint64_t n = 0; n < samples.count; ++n) {
-      std::vector<double> x = start;
-      for (const std::size_t k : free) {
-        x[k] = fit.parameters[k].lower + samples(n, k) * (fit.parameters[k].upper - fit.parameters[k].lower);
-      }
-      starts.push_back(x);
-    }
-  }
+  const LatinHypercube samples{std::uint64_t(std::max(fit.starts - 1, 1)), fit.seed};
   Fitter::Outcome best;
   std::vector<double> costs;
-  for (std::size_t n = 0; n < starts.size(); ++n) {
-    say(progress, format("start %zu of %zu", n + 1, starts.size()));
-    const Fitter::Outcome outcome = fitter.solve(starts[n], free);
+  for (int n = 0; n < fit.starts; ++n) {
+    say(progress, format("start %d of %d", n + 1, fit.starts));
+    std::vector<double> x = start;
+    for (const std::size_t k : free) {
+      if (n == 0) break;
+      x[k] = fit.parameters[k].lower +
+             samples(std::uint64_t(n - 1), k) * (fit.parameters[k].upper - fit.parameters[k].lower);
+    }
+    const Fitter::Outcome outcome = fitter.solve(x, free);
     costs.push_back(outcome.cost);
     if (n == 0 || outcome.cost < best.cost) best = outcome;
   }
@@ -921,7 +920,7 @@ FitResult run_fit(const BenchFit& fit, bool reweight, const std::function<void(c
     const Observation& at_o = observations[o];
     const bool is_reached = bench.predictions()[at_o.point].reached;
     result.points.push_back({at_o.log, at_o.row, at_o.column, at_o.measured,
-                             is_reached ? bench.fitted()[o] : absent, fitter.deviations()[o]});
+                             is_reached ? bench.fitted()[o] : absent, fitter.deviations()[o], fitter.weight(o)});
     if (!is_reached) continue;
     ++reached;
     result.chi_square += fitter.residual(o) * fitter.residual(o);
@@ -940,7 +939,9 @@ FitResult run_fit(const BenchFit& fit, bool reweight, const std::function<void(c
   const double k = double(free.size()) + double(result.estimated_deviations.size());
   result.aicc = reached > k + 1 ? result.deviance + 2.0 * k + 2.0 * k * (k + 1.0) / (reached - k - 1.0) : infinity;
 
-  if (fit.profiles) {
+  assess_misfit(fit, int(free.size()), result);
+  if (!result.misfit.empty()) withdraw_intervals(result);
+  if (fit.profiles && result.misfit.empty()) {
     const double quantile =
         fitter.has_estimates() ? student_95(result.degrees_of_freedom) : normal_95;
     std::vector<std::size_t> determined;
@@ -1118,6 +1119,7 @@ std::vector<FrictionCandidate> compare_friction(const BenchFit& fit,
         if (!springs) design.spring = {};
         RunOptions options;
         options.frequency = frequency;
+        options.allow_extrapolation = true;
         const RunResult run = run_design(design, options);
         if (run.status == FlappingStatus::flapping) {
           (springs ? candidate.power_springs_on : candidate.power_springs_off) = run.metrics[Metric::power_electrical];

@@ -285,19 +285,7 @@ void DirectStartUp::advance(double until) {
 
 WaveformRow DirectStartUp::row(double t, const double* y) const {
   const Motion<double> m = motion(t, y);
-  const double speed = std::abs(m.stroke_velocity);
-  return {t - double(result_.laps) * period_,
-          y[0],
-          m.stroke_velocity,
-          m.current,
-          y[0],
-          m.stroke_velocity,
-          degrees_per_radian * angle_of_attack(vehicle_.wings, speed),
-          lift_force(vehicle_.wings, speed),
-          m.aero_moment,
-          absent,
-          m.motor_torque,
-          m.friction_torque};
+  return waveform_row(vehicle_, m, t - double(result_.laps) * period_, y[0], m.stroke_velocity, y[0]);
 }
 
 void DirectStartUp::step_taken(Cvode& cvode, double from) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "wingbeat/core/math.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/study/run.hpp"
 
@@ -16,6 +17,29 @@ using detail::format;
 /// What is integrated over the charge drawn.
 enum Total { time, electrical, internal, aerodynamic, lift, total_count };
 using Totals = std::array<double, total_count>;
+
+/// The integrands between two open-circuit voltages [V].
+struct Piece {
+  static constexpr int count = 17;
+  double low, high;
+  std::array<Totals, count> coefficients;  ///< of Chebyshev's polynomials
+
+  /// Clenshaw's recurrence.
+  Totals value(double voltage) const {
+    const double x = high > low ? (2.0 * voltage - low - high) / (high - low) : 0.0;
+    Totals result;
+    for (std::size_t q = 0; q < total_count; ++q) {
+      double b1 = 0.0, b2 = 0.0;
+      for (int k = count - 1; k > 0; --k) {
+        const double b = coefficients[std::size_t(k)][q] + 2.0 * x * b1 - b2;
+        b2 = b1;
+        b1 = b;
+      }
+      result[q] = coefficients[0][q] + x * b1 - b2;
+    }
+    return result;
+  }
+};
 
 struct State {
   bool flaps = false;
@@ -55,8 +79,11 @@ class Flight {
 
  private:
   State solve(double charge, const StartUp& start_up) {
+    return solve_at(open_circuit_voltage(battery_, charge), start_up);
+  }
+  State solve_at(double voltage, const StartUp& start_up) {
     ++result_.evaluations;
-    vehicle_.voltage = open_circuit_voltage(battery_, charge);
+    vehicle_.voltage = voltage;
     const SteadyFlapping found = find_steady_flapping(vehicle_, steady_, start_up);
     const bool flaps = found.status == FlappingStatus::flapping;
     return {flaps, found.status, found.detail, found.metrics,
@@ -79,15 +106,17 @@ class Flight {
     return s.flaps && above_cutoff(s);
   }
 
-  /// Charges from the first down to `last`, the rows of the discharge curve among them: in between all is smooth.
+  /// Charges from the first down to `last`, the rows of a short discharge curve among them.
   std::vector<double> grid(double last) const {
     std::vector<double> charges;
     const double first = battery_.charge;
     for (int n = 0; n <= options_.intervals; ++n) {
       charges.push_back(n == options_.intervals ? last : first + (last - first) * n / options_.intervals);
     }
-    for (const auto& [charge, voltage] : battery_.discharge_curve) {
-      if (charge > last && charge < first) charges.push_back(charge);
+    if (battery_.discharge_curve.size() <= std::size_t(options_.intervals)) {
+      for (const auto& [charge, voltage] : battery_.discharge_curve) {
+        if (charge > last && charge < first) charges.push_back(charge);
+      }
     }
     std::sort(charges.begin(), charges.end(), std::greater<>());
     charges.erase(std::unique(charges.begin(), charges.end()), charges.end());
@@ -146,14 +175,65 @@ class Flight {
     return std::nullopt;
   }
 
-  /// What the charge between two states of charge gives for each unit of charge drawn.
-  Totals integrands(double charge) {
-    const Metrics<double>& m = at(charge).metrics;
+  /// What a charge drawn at an open-circuit voltage gives for each unit of it. Through that voltage alone the state of
+  /// charge acts on the vehicle.
+  Totals at_voltage(double voltage) {
+    const Metrics<double> m = solve_at(voltage, {}).metrics;
     const double per_current = battery_.capacity / m[Metric::current_mean];
     const double internal_power =
         m[Metric::power_copper] * vehicle_.source_resistance / vehicle_.motor.armature_resistance;
     return {per_current, m[Metric::power_electrical] * per_current, internal_power * per_current,
             m[Metric::power_aerodynamic] * per_current, m[Metric::lift_mean] * per_current};
+  }
+
+  Totals integrands(double charge) {
+    const double voltage = open_circuit_voltage(battery_, charge);
+    // Rounding may put a voltage a little outside the range of the table.
+    std::size_t k = 0, end = pieces_.size() - 1;
+    while (k < end) {
+      const std::size_t middle = (k + end) / 2;
+      if (voltage > pieces_[middle].high) k = middle + 1;
+      else end = middle;
+    }
+    return pieces_[k].value(voltage);
+  }
+
+  /// Chebyshev's interpolation of at_voltage() between two voltages, bisected until its last coefficients vanish: a
+  /// discharge curve of many rows then costs no more orbits than its ends.
+  void tabulate(double low, double high, double tail_before = HUGE_VAL, int depth = 0) {
+    Piece piece{low, high, {}};
+    std::array<Totals, Piece::count> samples;
+    constexpr int last = Piece::count - 1;
+    for (int n = 0; n <= last; ++n) {
+      samples[std::size_t(n)] = at_voltage(0.5 * (low + high) + 0.5 * (high - low) * std::cos(pi * n / last));
+    }
+    double tail = 0.0;
+    bool finite = true;
+    for (std::size_t q = 0; q < total_count; ++q) {
+      for (int k = 0; k <= last; ++k) {
+        double sum = 0.0;
+        for (int n = 0; n <= last; ++n) {
+          const double end = n == 0 || n == last ? 0.5 : 1.0;
+          sum += end * samples[std::size_t(n)][q] * std::cos(pi * ((k * n) % (2 * last)) / last);
+        }
+        piece.coefficients[std::size_t(k)][q] = (k == 0 || k == last ? 1.0 : 2.0) / last * sum;
+        finite = finite && std::isfinite(sum);
+      }
+      const double size = std::abs(piece.coefficients[0][q]);
+      for (int k = last - 2; k <= last; ++k) {
+        if (size > 0.0) tail = std::max(tail, std::abs(piece.coefficients[std::size_t(k)][q]) / size);
+      }
+    }
+    constexpr int deepest = 24;
+    const double middle = 0.5 * (low + high);
+    // Halves of a kink or a root bring the tail down, halves of what is left of the orbits' own errors do not.
+    const bool noise = depth > 1 && tail > 0.9 * tail_before;
+    if (!finite || tail <= 0.1 * options_.tolerance || noise || depth == deepest || !(middle > low && middle < high)) {
+      pieces_.push_back(piece);
+      return;
+    }
+    tabulate(low, middle, tail, depth + 1);
+    tabulate(middle, high, tail, depth + 1);
   }
 
   /// Integrals from charge b up to a: Gauss's rule of 3 points within Kronrod's of 7 (Kronrod 1965), bisected until
@@ -185,12 +265,39 @@ class Flight {
     return fine;
   }
 
+  /// integral() from b up to a in parts: the open-circuit voltage is smooth between the rows of the discharge curve alone.
+  Totals integral_between_rows(double b, double a) {
+    const auto& curve = battery_.discharge_curve;
+    auto row = std::upper_bound(curve.begin(), curve.end(), b, [](double c, const auto& r) { return c < r.first; });
+    Totals sum{};
+    for (double from = b; from < a;) {
+      const double to = row != curve.end() && row->first < a ? row++->first : a;
+      const Totals piece = integral(from, to);
+      for (std::size_t q = 0; q < total_count; ++q) sum[q] += piece[q];
+      from = to;
+    }
+    return sum;
+  }
+
+  void tabulate_between(double last) {
+    const double high = open_circuit_voltage(battery_, battery_.charge);
+    const double low = battery_.discharge_curve.empty() ? high : open_circuit_voltage(battery_, last);
+    if (low < high) {
+      tabulate(low, high);
+    } else {
+      Piece constant{low, high, {}};
+      constant.coefficients[0] = at_voltage(high);
+      pieces_.push_back(constant);
+    }
+  }
+
   EnduranceRow row(double charge, const Totals& sum) {
     return {sum[time],        charge,           open_circuit_voltage(battery_, charge), sum[electrical], sum[internal],
             sum[aerodynamic], sum[lift], at(charge).metrics, at(charge).domain};
   }
 
   void discharge(double last, const std::optional<double>& hover) {
+    tabulate_between(last);
     std::vector<double> charges = grid(last);
     if (hover) {
       charges.push_back(*hover);
@@ -200,7 +307,7 @@ class Flight {
     Totals sum{};
     for (std::size_t n = 0; n < charges.size(); ++n) {
       if (n > 0) {
-        const Totals piece = integral(charges[n], charges[n - 1]);
+        const Totals piece = integral_between_rows(charges[n], charges[n - 1]);
         for (std::size_t q = 0; q < total_count; ++q) sum[q] += piece[q];
       }
       result_.rows.push_back(row(charges[n], sum));
@@ -239,6 +346,7 @@ class Flight {
   Vehicle<double> vehicle_;
   SteadyOptions steady_;
   std::map<double, State> known_;
+  std::vector<Piece> pieces_;  ///< in the order of voltages
   EnduranceResult result_;
 };
 

@@ -8,6 +8,8 @@ namespace wingbeat {
 namespace {
 
 constexpr int most_rounds = 25;
+/// Where so many trials do not flap, the search of one settles the member.
+constexpr int most_still = 3;
 
 /// The search for one member's voltage.
 struct Search {
@@ -19,6 +21,7 @@ struct Search {
   double high_frequency = absent;  ///< at high
   double next = 0.0;               ///< voltage to be tried
   double limit = 0.0;              ///< no voltage above is tried here
+  int still = 0;                   ///< trials that did not flap
 };
 
 Search begin(const Vehicle<double>& v, std::size_t member, double frequency) {
@@ -37,6 +40,7 @@ Search begin(const Vehicle<double>& v, std::size_t member, double frequency) {
 /// Notes what the trial gave and chooses the next voltage. True when the voltage just tried is the answer.
 bool advance(Search& s, bool flaps, double frequency, double closeness) {
   const double tried = s.next;
+  if (!flaps) ++s.still;
   if (flaps && std::abs(frequency - s.target) <= closeness * s.target) return true;
   if (flaps && frequency >= s.target) {
     s.high = tried;
@@ -78,6 +82,13 @@ void solve_ensemble_at_frequency(std::span<EnsembleMember> members, std::span<co
   trial_options.tolerance = std::max(0.05 * options.tolerance, 1e-12);
   const double closeness = std::max(0.1 * options.tolerance, 1e-13);
 
+  const auto refuse = [&](std::size_t n, FrequencyOutcome why, FlappingStatus status) {
+    reached[n] = why;
+    outcomes[n] = {};
+    outcomes[n].status = status;
+    outcomes[n].scalar = true;
+    outcomes[n].metrics.values.fill(absent);
+  };
   std::vector<Search> searches;
   std::vector<std::size_t> settled, left;
   for (std::size_t n = 0; n < members.size(); ++n) {
@@ -85,6 +96,10 @@ void solve_ensemble_at_frequency(std::span<EnsembleMember> members, std::span<co
     if (vehicle.transmission == TransmissionType::direct) {
       vehicle.drive_frequency = frequencies[n];
       settled.push_back(n);
+    } else if (frequencies[n] > highest_frequency(vehicle, SearchRange::extrapolation)) {
+      // As find_voltage_for_frequency refuses it.
+      refuse(n, FrequencyOutcome::outside_domain, FlappingStatus::flapping);
+      outcomes[n].scalar = false;
     } else {
       searches.push_back(begin(vehicle, n, frequencies[n]));
     }
@@ -106,7 +121,7 @@ void solve_ensemble_at_frequency(std::span<EnsembleMember> members, std::span<co
       if (advance(s, flaps, results[k].metrics[Metric::frequency], closeness)) {
         members[s.member].vehicle.voltage = tried;
         settled.push_back(s.member);
-      } else if (!(s.next <= s.limit)) {
+      } else if (!(s.next <= s.limit) || s.still >= most_still) {
         left.push_back(s.member);
       } else {
         searches[kept++] = s;
@@ -121,17 +136,13 @@ void solve_ensemble_at_frequency(std::span<EnsembleMember> members, std::span<co
     SteadyOptions steady;
     steady.tolerance = options.tolerance;
     const FrequencySearch found = find_voltage_for_frequency(members[n].vehicle, frequencies[n], steady, start_up);
-    reached[n] = found.outcome;
     if (found.outcome == FrequencyOutcome::reached) {
       members[n].vehicle.voltage = found.voltage;
       settled.push_back(n);
       searched_singly.push_back(n);
       continue;
     }
-    outcomes[n] = {};
-    outcomes[n].status = found.status;
-    outcomes[n].scalar = true;
-    outcomes[n].metrics.values.fill(absent);
+    refuse(n, found.outcome, found.status);
   }
 
   for (std::size_t k = 0; k < settled.size(); ++k) trials[k] = members[settled[k]];

@@ -2,196 +2,198 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
+#include "voltage_trials.hpp"
 #include "wingbeat/core/text.hpp"
 
 namespace wingbeat {
 namespace {
 
 using detail::format;
+using detail::VoltageTrial;
+using detail::VoltageTrials;
 
-/// The metric that is to reach a value, with the words for it.
-struct Goal {
-  Metric metric;
-  double value;
-  const char* unit;
-  const char* does;   ///< "it ... 22 Hz"
-  const char* there;  ///< "and there ... 22 Hz already"
-  const char* name;
-  bool peaks;  ///< over the voltage, instead of growing with it
-};
-
-struct Trial {
-  double voltage = 0.0;
-  std::optional<double> value;  ///< of the goal's metric; empty: does not flap
-  FlappingStatus status = FlappingStatus::stalled;
-  std::string detail;
-};
+/// Widest bracket of the lowest voltage at which a vehicle flaps, relative.
+constexpr double onset_width = 1e-5;
 
 class Search {
  public:
-  Search(const Vehicle<double>& vehicle, const Goal& goal, const SteadyOptions& options, const StartUp& start_up)
-      : vehicle_(vehicle), goal_(goal), target_(goal.value), options_(options), start_up_(start_up) {
-    // The root finder must not see the solver's own error.
-    closeness_ = std::max(0.1 * options.tolerance, 1e-13) * target_;
-    options_.tolerance = std::max(0.01 * options.tolerance, 1e-12);
-    options_.stability = false;
-  }
+  Search(VoltageTrials trials, double target) : trials_(std::move(trials)), target_(target) {}
 
-  /// From the voltage `first` on: down to the lowest of the span while the goal is reached, else up to its highest.
-  FrequencySearch run(double first) {
-    Trial high = attempt(first);
-    Trial low = high;
-    if (reaches(high)) {
-      while (reaches(low) && low.voltage > first / frequency_search_span) low = attempt(0.5 * low.voltage);
-      if (reaches(low)) return conclude(FrequencyOutcome::too_low, low, format_slowest(low));
-    }
-    Trial most = high;
-    while (!reaches(high)) {
-      if (!(high.voltage < frequency_search_span * first)) {
-        if (!most.value || !goal_.peaks) return give_up(most, high);
-        const Trial peak = climb(most);
-        if (!reaches(peak)) return give_up(peak, high);
-        return close_in(attempt(most.voltage / 1.5), peak);
+  /// `unloaded` turns the motor at the wanted frequency without load. Only a load that drives the motor needs less.
+  FrequencySearch run(double unloaded) {
+    const double lowest = unloaded / frequency_search_span, highest = unloaded * frequency_search_span;
+    double voltage = unloaded;
+    for (int n = 0; n < 200; ++n) {
+      const VoltageTrial trial = trials_.at(voltage);
+      if (trial.flaps && std::abs(trial.frequency / target_ - 1.0) <= trials_.closeness()) return reached(trial);
+      if (trial.flaps && trial.frequency >= target_) {
+        high_ = trial;
+      } else if (trial.flaps || !low_flaps() || high_) {
+        low_ = trial;
+      } else {
+        ceiling_ = trial;  // it flaps at a lower voltage, but no longer here
       }
-      low = high;
-      high = attempt(std::min(1.5 * high.voltage, frequency_search_span * first));
-      if (high.value && !(most.value > high.value)) most = high;
+      if (const auto answer = decide(lowest, highest)) return *answer;
+      voltage = std::clamp(next(), lowest, highest);
     }
-    return close_in(low, high);
+    return too_high();
   }
 
  private:
-  Trial attempt(double voltage) {
-    ++evaluations_;
-    vehicle_.voltage = voltage;
-    const SteadyFlapping found = find_steady_flapping(vehicle_, options_, start_up_);
-    Trial trial{voltage, std::nullopt, found.status, found.detail};
-    if (found.status == FlappingStatus::flapping) trial.value = found.metrics[goal_.metric];
-    return trial;
-  }
+  bool low_flaps() const { return low_ && low_->flaps; }
 
-  /// The goal's metric at its peak between the neighbours of the best trial (golden section), or where it is reached.
-  Trial climb(const Trial& best) {
-    constexpr double golden = 0.6180339887498949;
-    double a = best.voltage / 1.5, b = 1.5 * best.voltage;
-    const auto value = [](const Trial& t) { return t.value.value_or(-1.0); };
-    Trial left = attempt(b - golden * (b - a)), right = attempt(a + golden * (b - a)), top = best;
-    while (b - a > 1e-6 * b) {
-      for (const Trial* t : {&left, &right}) {
-        if (value(*t) > value(top)) top = *t;
-      }
-      if (reaches(top)) return top;
-      if (value(left) >= value(right)) {
-        b = right.voltage, right = left, left = attempt(b - golden * (b - a));
-      } else {
-        a = left.voltage, left = right, right = attempt(a + golden * (b - a));
-      }
+  std::optional<FrequencySearch> decide(double lowest, double highest) {
+    if (!high_) {
+      if (low_flaps() && low_->beyond) return outside_domain(*low_);
+      if (low_->voltage >= highest) return low_->flaps ? too_high() : never_flaps();
+      if (ceiling_ && ceiling_->voltage < 1.01 * low_->voltage) return too_high();
+      return std::nullopt;
     }
-    return top;
+    if (!low_) return high_->voltage > lowest ? std::nullopt : std::optional(too_low());
+    const double width = high_->voltage - low_->voltage;
+    if (!low_->flaps) return width < onset_width * high_->voltage ? std::optional(too_low()) : std::nullopt;
+    if (width > 4e-16 * high_->voltage) return std::nullopt;
+    // At the last bits of the voltage a smooth frequency is as close as its own rounding allows.
+    const double gap = high_->frequency - low_->frequency;
+    if (gap < (10.0 * trials_.accuracy() + 2.0 * trials_.closeness()) * target_) return reached(*high_);
+    return conclude(FrequencyOutcome::jumps, *high_,
+                    format("at %.5g V the flapping frequency jumps from %.5g Hz to %.5g Hz: %.5g Hz in between cannot be "
+                           "held",
+                           high_->voltage, low_->frequency, high_->frequency, target_));
   }
 
-  bool reaches(const Trial& t) const { return t.value && *t.value >= target_; }
-  bool close(const Trial& t) const { return t.value && std::abs(*t.value - target_) <= closeness_; }
-
-  /// low stays below the target or does not flap, high reaches it.
-  FrequencySearch close_in(Trial low, Trial high) {
-    const double narrow = 4e-16 * high.voltage;
-    // ITP (Oliveira and Takahashi 2020) with kappa_2 = 1: false position, pulled towards the midpoint enough that no
-    // more than n_max steps are ever needed; plain bisection while the lower end does not flap.
-    const double epsilon = 1e-15 * high.voltage;
-    const double width_0 = high.voltage - low.voltage;
-    const int n_max = int(std::ceil(std::log2(width_0 / epsilon))) + 1;
-    for (int j = 0; j < n_max + 40; ++j) {
-      if (close(high)) return reached(high);
-      if (close(low)) return reached(low);
-      const double width = high.voltage - low.voltage;
-      // Below the flapping range more digits of its edge say nothing more.
-      if (!low.value && width < 1e-5 * high.voltage) break;
-      if (width <= narrow) break;
-      const double middle = 0.5 * (low.voltage + high.voltage);
-      double x = middle;
-      if (low.value) {
-        const double f_low = *low.value - target_, f_high = *high.value - target_;
-        const double falsi = (f_high * low.voltage - f_low * high.voltage) / (f_high - f_low);
-        const double sigma = middle >= falsi ? 1.0 : -1.0;
-        const double delta = 0.1 * width * width / width_0;
-        const double truncated = delta <= std::abs(middle - falsi) ? falsi + sigma * delta : middle;
-        const double radius = std::max(0.0, epsilon * std::ldexp(1.0, std::max(0, n_max - j)) - 0.5 * width);
-        x = std::abs(truncated - middle) <= radius ? truncated : middle - sigma * radius;
-      }
-      if (!(x > low.voltage && x < high.voltage)) x = middle;
-      const Trial trial = attempt(x);
-      (reaches(trial) ? high : low) = trial;
+  double next() {
+    if (!high_) {
+      if (ceiling_) return std::sqrt(low_->voltage * ceiling_->voltage);
+      return low_->flaps ? newton(*low_, 4.0) : 1.5 * low_->voltage;
     }
-    if (low.value) {
-      // At the last bits of the voltage a smooth frequency is as close as its own rounding allows.
-      const double gap = *high.value - *low.value;
-      if (gap < 10.0 * options_.tolerance * target_ + 2.0 * closeness_) return reached(high);
-      return conclude(FrequencyOutcome::jumps, high,
-                      format("at %.5g V the %s jumps from %.5g %s to %.5g %s: %.5g %s in between cannot be held",
-                             high.voltage, goal_.name, *low.value, goal_.unit, *high.value, goal_.unit, target_,
-                             goal_.unit));
+    if (!low_) return newton(*high_, 4.0);
+    if (!low_->flaps) return 0.5 * (low_->voltage + high_->voltage);
+    // Newton's method from the closer end, which the bracket bounds and halves where steps do not shrink it.
+    const double width = high_->voltage - low_->voltage;
+    const bool slow = width > 0.5 * bracket_;
+    bracket_ = width;
+    const double middle = 0.5 * (low_->voltage + high_->voltage);
+    if (slow && (stuck_ = !stuck_)) return middle;
+    const VoltageTrial& from = target_ - low_->frequency < high_->frequency - target_ ? *low_ : *high_;
+    const double guess = newton(from, 4.0);
+    return guess > low_->voltage && guess < high_->voltage ? guess : middle;
+  }
+
+  /// Newton's step in the logarithms of frequency and voltage; somewhat further outside a bracket, so that one is found
+  /// soon, and twice as far where the trial's own error counts.
+  double newton(const VoltageTrial& t, double most) const {
+    const double gap = std::log(target_ / t.frequency);
+    double step = gap / std::max(t.frequency_slope, 0.1);
+    if (!(low_ && high_)) step *= std::abs(gap) < 100.0 * trials_.accuracy() ? 2.0 : 1.0 + 0.1 * std::abs(step);
+    return t.voltage * std::clamp(std::exp(step), 1.0 / most, most);
+  }
+
+  /// The trial flaps outside the range, no faster than wanted: how fast does it flap inside?
+  FrequencySearch outside_domain(const VoltageTrial& trial) {
+    const std::string why = trials_.range() == SearchRange::domain
+                                ? trial.limits
+                                : format("the angle of attack falls below %.4g deg", extrapolation_angle_deg);
+    std::string text = format("%.5g Hz cannot be reached%s: at %.4g V, where it flaps at %.4g Hz, %s", target_, trials_.where(),
+                              trial.voltage, trial.frequency, why.c_str());
+    VoltageTrial outside = trial, inside = trial;
+    for (int n = 0; n < 40 && inside.flaps && !inside.inside; ++n) {
+      outside = inside;
+      inside = trials_.at(0.7 * inside.voltage);
     }
-    return conclude(FrequencyOutcome::too_low, low,
-                    format("%.5g %s cannot be reached: from rest it flaps only above %.4g V, and there %s %.4g %s "
-                           "already; below, it is %s (%s)",
-                           target_, goal_.unit, high.voltage, goal_.there, *high.value, goal_.unit,
-                           name_of(low.status), low.detail.c_str()));
-  }
-
-  std::string format_slowest(const Trial& slowest) const {
-    return format("%.5g %s cannot be reached: at %.4g V, the lowest voltage tried, it %s %.4g %s already", target_,
-                  goal_.unit, slowest.voltage, goal_.does, *slowest.value, goal_.unit);
-  }
-
-  FrequencySearch give_up(const Trial& most, const Trial& last) {
-    if (!most.value) {
-      return conclude(FrequencyOutcome::never_flaps, last,
-                      format("it flaps at no voltage up to %.4g V; there it is %s: %s", last.voltage,
-                             name_of(last.status), last.detail.c_str()));
+    if (!inside.flaps || !inside.inside) return conclude(FrequencyOutcome::outside_domain, trial, text);
+    while (outside.voltage - inside.voltage > 1e-4 * outside.voltage) {
+      const VoltageTrial middle = trials_.at(0.5 * (inside.voltage + outside.voltage));
+      if (!middle.flaps) break;
+      (middle.inside ? inside : outside) = middle;
     }
-    return conclude(FrequencyOutcome::too_high, most,
-                    format("%.5g %s cannot be reached: up to %.4g V it %s %.4g %s at most, at %.4g V", target_,
-                           goal_.unit, last.voltage, goal_.does, *most.value, goal_.unit, most.voltage));
+    text += format("; inside it flaps at %.4g Hz at most, at %.4g V", inside.frequency, inside.voltage);
+    return conclude(FrequencyOutcome::outside_domain, inside, text);
   }
 
-  FrequencySearch reached(const Trial& t) {
-    return {FrequencyOutcome::reached, t.voltage, t.status, t.detail, evaluations_};
+  FrequencySearch reached(const VoltageTrial& t) {
+    if (!t.inside) return outside_domain(t);
+    return {FrequencyOutcome::reached, t.voltage, t.status, t.detail, trials_.count(), absent, absent};
   }
-  FrequencySearch conclude(FrequencyOutcome outcome, const Trial& closest, const std::string& detail) const {
-    return {outcome, absent, closest.status, detail, evaluations_};
+  FrequencySearch never_flaps() {
+    return conclude(FrequencyOutcome::never_flaps, *low_,
+                    format("it flaps at no voltage up to %.4g V; there it is %s: %s", low_->voltage,
+                           name_of(low_->status), low_->detail.c_str()));
+  }
+  FrequencySearch too_high() {
+    const VoltageTrial& last = ceiling_ ? *ceiling_ : *low_;
+    return conclude(FrequencyOutcome::too_high, *low_,
+                    format("%.5g Hz cannot be reached: up to %.4g V it flaps at %.4g Hz at most, at %.4g V", target_,
+                           last.voltage, low_->frequency, low_->voltage));
+  }
+  FrequencySearch too_low() {
+    if (!low_) {
+      return conclude(FrequencyOutcome::too_low, *high_,
+                      format("%.5g Hz cannot be reached: at %.4g V, the lowest voltage tried, it flaps at %.4g Hz already",
+                             target_, high_->voltage, high_->frequency));
+    }
+    FrequencySearch result =
+        conclude(FrequencyOutcome::too_low, *high_,
+                 format("%.5g Hz cannot be reached: from rest it flaps only above %.4g V, and there at %.4g Hz already",
+                        target_, high_->voltage, high_->frequency) +
+                     detail::describe_below(*low_));
+    result.status = low_->status;
+    return result;
+  }
+  FrequencySearch conclude(FrequencyOutcome outcome, const VoltageTrial& closest, const std::string& text) const {
+    return {outcome,         absent,          closest.status,    text,
+            trials_.count(), closest.flaps ? closest.voltage : absent, closest.frequency};
   }
 
-  Vehicle<double> vehicle_;
-  Goal goal_;
+  VoltageTrials trials_;
   double target_;
-  double closeness_;
-  SteadyOptions options_;
-  const StartUp& start_up_;
-  int evaluations_ = 0;
+  std::optional<VoltageTrial> low_;      ///< slower than wanted, or not flapping
+  std::optional<VoltageTrial> high_;     ///< faster
+  std::optional<VoltageTrial> ceiling_;  ///< not flapping, above a low_ that flaps
+  double bracket_ = std::numeric_limits<double>::infinity();
+  bool stuck_ = false;
 };
 
 }  // namespace
 
+double highest_frequency(const Vehicle<double>& v, SearchRange range) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const BladeElement<double>& w = v.wings;
+  if (v.transmission == TransmissionType::direct || !(w.air_density > 0.0) || !(w.s2 > 0.0 || w.s3 > 0.0)) return infinity;
+  const bool domain = range == SearchRange::domain;
+  double velocity = infinity;  // peak of |beta'| that the range allows
+  const double angle = (domain ? angle_of_attack_lowest_deg : extrapolation_angle_deg) / degrees_per_radian;
+  if (w.pitch_coefficient > 0.0 && !(w.angle_of_attack_min >= angle)) velocity = (0.5 * pi - angle) / w.pitch_coefficient;
+  if (w.s2 > 0.0 && w.s3 > 0.0) {
+    velocity = std::min(velocity, (domain ? flow_speed_max : extrapolation_flow_speed) * w.s2 / w.s3);
+  }
+  return velocity / (4.0 * stroke_amplitude(v.crank));
+}
+
+FrequencySearch refuse_frequency(const Vehicle<double>& vehicle, double frequency, SearchRange range) {
+  const bool domain = range == SearchRange::domain;
+  FrequencySearch result;
+  result.outcome = FrequencyOutcome::outside_domain;
+  result.status = FlappingStatus::flapping;
+  result.detail = format("%.5g Hz cannot be reached %s: at a stroke amplitude of %.4g deg, whatever the voltage, wings that "
+                         "flap at more than %.4g Hz pass %s",
+                         frequency, domain ? "inside the domain of validity" : "in the range that is searched",
+                         degrees_per_radian * stroke_amplitude(vehicle.crank), highest_frequency(vehicle, range),
+                         domain ? "an angle of attack of 0 deg or Mach 0.3" : "an angle of attack of -360 deg or Mach 3");
+  return result;
+}
+
 FrequencySearch find_voltage_for_frequency(const Vehicle<double>& vehicle, double frequency,
-                                           const SteadyOptions& options, const StartUp& start_up) {
+                                           const SteadyOptions& options, const StartUp& start_up, SearchRange range) {
   require(frequency > 0.0 && std::isfinite(frequency), "frequency", "must be > 0 and finite", "Hz", frequency);
-  const Goal goal{Metric::frequency, frequency, "Hz", "flaps at", "at", "flapping frequency", false};
-  // Where the unloaded motor turns that fast. Only a load that drives the motor would need less.
+  if (frequency > highest_frequency(vehicle, range)) return refuse_frequency(vehicle, frequency, range);
   const Motor<double>& m = vehicle.motor;
   const double K = m.torque_constant, omega = two_pi * frequency;
   const double unloaded = K * omega + circuit_resistance(vehicle) * (m.viscous_damping * omega + m.friction_torque) / K;
-  return Search(vehicle, goal, options, start_up).run(unloaded);
-}
-
-FrequencySearch find_voltage_for_lift(const Vehicle<double>& vehicle, double lift, double nominal,
-                                      const SteadyOptions& options, const StartUp& start_up) {
-  require(lift > 0.0 && std::isfinite(lift), "lift", "must be > 0 and finite", "N", lift);
-  require(nominal > 0.0 && std::isfinite(nominal), "voltage", "must be > 0 and finite", "V", nominal);
-  const Goal goal{Metric::lift_mean, lift, "N", "lifts", "with", "mean lift", true};
-  return Search(vehicle, goal, options, start_up).run(lift_search_start * nominal);
+  return Search(VoltageTrials(vehicle, options, start_up, range), frequency).run(unloaded);
 }
 
 }  // namespace wingbeat

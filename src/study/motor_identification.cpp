@@ -132,12 +132,14 @@ void validate(const MotorDatasheet& s) {
   }
 }
 
+double deviation_in(const MotorDatasheet& s, const std::string& name) {
+  const auto own = s.deviations.find(name);
+  return own == s.deviations.end() ? s.deviation : own->second;
+}
+
 std::vector<Datum> data_of(const MotorDatasheet& s) {
   std::vector<Datum> data;
-  const auto deviation_of = [&](const std::string& name) {
-    const auto own = s.deviations.find(name);
-    return own == s.deviations.end() ? s.deviation : own->second;
-  };
+  const auto deviation_of = [&](const std::string& name) { return deviation_in(s, name); };
   const auto add = [&](const char* name, Kind kind, const std::optional<double>& value) {
     if (value) data.push_back({name, kind, *value, deviation_of(name), s.voltage.value_or(0.0)});
   };
@@ -175,18 +177,62 @@ std::string spaced(std::string name) {
 struct Estimate {
   std::string source;
   double value;
+  double deviation;  ///< relative
 };
+
+/// Apart by more than contradiction_factor and three standard deviations, which are given for the logarithm.
+bool is_gross(double ratio, double deviation) {
+  return !(ratio > 0.0) || std::abs(std::log(ratio)) > std::log(contradiction_factor) + 3.0 * deviation;
+}
 
 void find_contradictions(const std::string& constant_name, const std::vector<Estimate>& estimates,
                          std::vector<Contradiction>& out) {
   for (std::size_t a = 0; a < estimates.size(); ++a) {
     for (std::size_t b = a + 1; b < estimates.size(); ++b) {
-      const double size = std::abs(estimates[b].value / estimates[a].value - 1.0);
+      const double ratio = estimates[b].value / estimates[a].value, size = std::abs(ratio - 1.0);
       if (size > 5e-4) {
-        out.push_back({constant_name, estimates[a].source, estimates[b].source, estimates[a].value,
-                       estimates[b].value, size});
+        out.push_back({constant_name, estimates[a].source, estimates[b].source, estimates[a].value, estimates[b].value,
+                       size, is_gross(ratio, std::hypot(estimates[a].deviation, estimates[b].deviation))});
       }
     }
+  }
+}
+
+/// Where the sheet contradicts itself grossly: takes back the constants concerned and says why.
+void refuse_contradictions(const std::vector<Datum>& data, MotorIdentification& result) {
+  const auto take_back = [](IdentifiedConstant& c) { c = {std::nullopt, 0.0, "contradicted"}; };
+  const auto advice = [](const std::string& constants, const std::string& reason) {
+    return constants + ": " + reason +
+           "; correct the sheet, leave one of them out, or state in [deviation] how uncertain it is";
+  };
+  std::string electrical, inertia;
+  for (const Contradiction& c : result.contradictions) {
+    if (!c.gross) continue;
+    const double factor = std::max(c.first_value / c.second_value, c.second_value / c.first_value);
+    const std::string reason = format("%s and %s contradict each other about the %s by a factor of %.3g (%.4g and %.4g)",
+                                      c.first.c_str(), c.second.c_str(), c.constant.c_str(), factor, c.first_value,
+                                      c.second_value);
+    std::string& which = c.constant == "rotor inertia" ? inertia : electrical;
+    if (which.empty()) which = reason;
+  }
+  for (const Datum& d : data) {
+    const auto check = std::find_if(result.checks.begin(), result.checks.end(),
+                                    [&](const DatasheetCheck& c) { return c.name == d.name; });
+    if (!electrical.empty() || check == result.checks.end()) continue;
+    if (!is_gross(check->identified / check->published, d.deviation)) continue;
+    electrical = format("%s (%.4g) and the rest of the sheet (%.4g) contradict each other", spaced(d.name).c_str(),
+                        check->published, check->identified);
+  }
+  if (!electrical.empty()) {
+    for (IdentifiedConstant* c : {&result.armature_resistance, &result.torque_constant, &result.viscous_damping,
+                                  &result.friction_torque}) {
+      take_back(*c);
+    }
+    result.missing.push_back(advice("armature resistance, torque constant and losses", electrical));
+  }
+  if (!inertia.empty()) {
+    take_back(result.inertia);
+    result.missing.push_back(advice("rotor inertia", inertia));
   }
 }
 
@@ -305,6 +351,14 @@ MotorIdentification identify_motor(const MotorDatasheet& s, std::optional<double
         covariance(free[a], free[b]) = inverse(Eigen::Index(a), Eigen::Index(b));
       }
     }
+    // Values that scatter more widely than their deviations say are less exact than these say.
+    double chi_square = 0.0;
+    for (const Datum& d : data) {
+      chi_square += square((predicted(d, x, scales) - d.value) / (d.value * d.deviation));
+    }
+    const double freedom = double(data.size()) - double(free.size());
+    result.birge_ratio = freedom > 0.0 ? std::max(1.0, std::sqrt(chi_square / freedom)) : 1.0;
+    covariance *= square(result.birge_ratio);
   };
   if (electrical) fit();
   // A constant friction that nothing states must stand out of its own error.
@@ -376,21 +430,24 @@ MotorIdentification identify_motor(const MotorDatasheet& s, std::optional<double
 
   // Inertia, at the motor shaft first.
   std::vector<Estimate> inertias;
-  if (s.rotor_inertia) inertias.push_back({"rotor inertia", *s.rotor_inertia});
+  if (s.rotor_inertia) inertias.push_back({"rotor inertia", *s.rotor_inertia, deviation_in(s, "rotor_inertia")});
   if (s.mechanical_time_constant && electrical) {
     const double K_motor = at_output ? K / n : K;
-    inertias.push_back({"mechanical time constant", *s.mechanical_time_constant * K_motor * K_motor / R});
+    inertias.push_back({"mechanical time constant", *s.mechanical_time_constant * K_motor * K_motor / R,
+                        deviation_in(s, "mechanical_time_constant")});
   }
   if (!inertias.empty()) {
     double sum = 0.0, weight = 0.0;
     for (const Estimate& e : inertias) {
-      const auto own = s.deviations.find(e.source == "rotor inertia" ? "rotor_inertia" : "mechanical_time_constant");
-      const double d = own == s.deviations.end() ? s.deviation : own->second;
-      sum += std::log(e.value) / (d * d);
-      weight += 1.0 / (d * d);
+      sum += std::log(e.value) / square(e.deviation);
+      weight += 1.0 / square(e.deviation);
     }
     const double J = std::exp(sum / weight);
-    result.inertia = {n * n * J, n * n * J / std::sqrt(weight), inertias.size() > 1 ? "fitted" : inertias[0].source};
+    double chi_square = 0.0;
+    for (const Estimate& e : inertias) chi_square += square(std::log(e.value / J) / e.deviation);
+    const double birge = std::max(1.0, std::sqrt(chi_square / std::max(double(inertias.size()) - 1.0, 1.0)));
+    result.inertia = {n * n * J, n * n * J * birge / std::sqrt(weight),
+                      inertias.size() > 1 ? "fitted" : inertias[0].source};
   } else if (s.assume_steel_cylinder) {
     const double r = 0.5 * *s.rotor_diameter;
     const double J = 0.5 * steel_density * pi * r * r * *s.rotor_length * r * r;
@@ -422,35 +479,51 @@ MotorIdentification identify_motor(const MotorDatasheet& s, std::optional<double
     }
     result.remarks.push_back(remark);
   }
-  if (s.gear_efficiency) {
-    result.remarks.push_back("the gear efficiency is a friction of the transmission, not of the motor: it serves to "
-                             "read the sheet's torques and is not in the result");
+  if (s.gear_efficiency && at_output) {
+    result.remarks.push_back(format("the gear efficiency of %.4g served to read the sheet's torques at the output; the "
+                                    "[motor] section holds no gear efficiency, so that a vehicle with this motor has an "
+                                    "ideal gearbox: its losses under load are not in any result",
+                                    *s.gear_efficiency));
+  } else if (s.gear_efficiency) {
+    result.remarks.push_back(format("the gear efficiency of %.4g is NOT USED: the sheet's values stand for the motor shaft, "
+                                    "and the [motor] section holds no gear efficiency, so that a vehicle with this motor "
+                                    "has an ideal gearbox: its losses under load are not in any result",
+                                    *s.gear_efficiency));
   }
 
   // Independent ways to the same constant.
   std::vector<Estimate> resistances, constants;
-  if (s.resistance) resistances.push_back({"resistance", *s.resistance});
-  if (s.stall_current) resistances.push_back({"stall current", v / *s.stall_current});
-  if (s.torque_constant) constants.push_back({"torque constant", *s.torque_constant});
-  if (s.speed_constant) constants.push_back({"speed constant", 1.0 / *s.speed_constant});
+  const auto add = [&](std::vector<Estimate>& to, const char* source, double value,
+                       std::initializer_list<const char*> rests_on) {
+    double variance = 0.0;
+    for (const char* name : rests_on) variance += square(deviation_in(s, name));
+    to.push_back({source, value, std::sqrt(variance)});
+  };
+  if (s.resistance) add(resistances, "resistance", *s.resistance, {"resistance"});
+  if (s.stall_current) add(resistances, "stall current", v / *s.stall_current, {"stall_current"});
+  if (s.torque_constant) add(constants, "torque constant", *s.torque_constant, {"torque_constant"});
+  if (s.speed_constant) add(constants, "speed constant", 1.0 / *s.speed_constant, {"speed_constant"});
   const double eta = scales.torque_factor;
   if (s.stall_torque && s.stall_current) {
     const double T_c = x[friction] * scales.friction;
-    constants.push_back({"stall torque and current", (*s.stall_torque / eta + T_c) / *s.stall_current});
+    add(constants, "stall torque and current", (*s.stall_torque / eta + T_c) / *s.stall_current,
+        {"stall_torque", "stall_current"});
   }
   if (s.no_load_speed && !resistances.empty()) {
     const double i_0 = s.no_load_current.value_or(0.0);
-    constants.push_back({"no-load speed", (v - resistances[0].value * i_0) / *s.no_load_speed});
+    add(constants, "no-load speed", (v - resistances[0].value * i_0) / *s.no_load_speed, {"no_load_speed"});
   }
   if (!constants.empty() && s.stall_torque && !s.stall_current) {
-    resistances.push_back({"stall torque", constants[0].value * v * eta / *s.stall_torque});
+    add(resistances, "stall torque", constants[0].value * v * eta / *s.stall_torque, {"stall_torque"});
+    resistances.back().deviation = std::hypot(resistances.back().deviation, constants[0].deviation);
   }
   find_contradictions("armature resistance", resistances, result.contradictions);
   find_contradictions("torque constant", constants, result.contradictions);
   if (s.no_load_current && s.friction_torque && !constants.empty()) {
     find_contradictions(
         "friction torque",
-        {{"friction torque", *s.friction_torque}, {"no-load current", constants[0].value * *s.no_load_current}},
+        {{"friction torque", *s.friction_torque, deviation_in(s, "friction_torque")},
+         {"no-load current", constants[0].value * *s.no_load_current, deviation_in(s, "no_load_current")}},
         result.contradictions);
   }
   std::stable_sort(result.contradictions.begin(), result.contradictions.end(),
@@ -464,6 +537,11 @@ MotorIdentification identify_motor(const MotorDatasheet& s, std::optional<double
                                       "motor", spaced(d.name).c_str(), d.value, check->identified));
     }
   }
+  if (result.birge_ratio > 1.05) {
+    result.remarks.push_back(format("the sheet's values scatter %.3g times as widely as their deviations say: the standard "
+                                    "errors are that much larger (Birge ratio)", result.birge_ratio));
+  }
+  refuse_contradictions(data, result);
   return result;
 }
 

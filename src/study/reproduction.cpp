@@ -32,8 +32,8 @@ std::vector<Metrics<double>> metrics_of(const std::vector<EnsembleOutcome>& outc
 }
 
 /// Runs a vehicle along an axis: `place` sets the design of one point; a frequency is held where the axis is one.
-std::vector<Metrics<double>> along(const std::vector<double>& axis, Condition condition, bool frequency,
-                                   const std::function<Design<double>(double)>& place) {
+void run_along(TrendCurve& curve, const std::vector<double>& axis, bool frequency,
+               const std::function<Design<double>(double)>& place) {
   std::vector<EnsembleMember> members;
   std::vector<std::size_t> at;
   for (std::size_t n = 0; n < axis.size(); ++n) {
@@ -43,7 +43,7 @@ std::vector<Metrics<double>> along(const std::vector<double>& axis, Condition co
     } catch (const ParameterError&) {
       continue;  // a rod shorter than its crank
     }
-    members.push_back({resolve(design, condition), reporting_of(design)});
+    members.push_back({resolve(design, curve.of.condition), reporting_of(design)});
     at.push_back(n);
   }
   std::vector<EnsembleOutcome> outcomes(members.size());
@@ -58,10 +58,14 @@ std::vector<Metrics<double>> along(const std::vector<double>& axis, Condition co
   }
   Metrics<double> none;
   none.values.fill(absent);
-  std::vector<Metrics<double>> metrics(axis.size(), none);
-  const auto found = metrics_of(outcomes);
-  for (std::size_t k = 0; k < at.size(); ++k) metrics[at[k]] = found[k];
-  return metrics;
+  curve.metrics.assign(axis.size(), none);
+  curve.domain.assign(axis.size(), {});
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    curve.metrics[at[k]] = outcomes[k].metrics;
+    if (std::isfinite(outcomes[k].metrics[Metric::power_electrical])) {
+      curve.domain[at[k]] = domain_of(members[k].vehicle, outcomes[k].metrics);
+    }
+  }
 }
 
 void set_constant(Design<double>& design, double voltage) { design.supply = {SupplyType::constant, voltage, 0.0, 1.0}; }
@@ -73,6 +77,7 @@ CycleCase cycle_of(const SpringPair& pair, const FlappingCase& which, std::optio
   RunOptions options;
   options.tolerance = 1e-9;
   options.frequency = frequency;
+  options.allow_extrapolation = true;
   options.waveform_rows = rows;
   CycleCase result{which, run_design(design, options), {}};
   const CrankGeometry<double> geometry = geometry_of(resolve(result.run.design).crank);
@@ -101,12 +106,13 @@ Reproduction reproduce(const SpringPair& pair, const ReproductionOptions& option
   r.crank_fixed_hinge.axis = evenly(2e-3, 14e-3, points(121, 25));
   r.crank_fixed_stroke.axis = r.crank_fixed_hinge.axis;
   r.rod.axis = evenly(8e-3, 40e-3, points(129, 33));
-  r.supply.axis = evenly(1.0, options.most_voltage, points(81, 17));
+  r.supply_fixed_hinge.axis = evenly(1.0, options.max_voltage, points(81, 17));
+  r.supply_fixed_stroke.axis = r.supply_fixed_hinge.axis;
 
   std::vector<std::function<void()>> tasks;
   const auto task_along = [&](TrendSet& set, std::size_t curve, bool frequency, auto place) {
     tasks.push_back([&set, curve, frequency, place] {
-      set.curves[curve].metrics = along(set.axis, set.curves[curve].of.condition, frequency, place);
+      run_along(set.curves[curve], set.axis, frequency, place);
     });
   };
   for (const Formulation formulation : {rod_force, virtual_work}) {
@@ -115,7 +121,7 @@ Reproduction reproduce(const SpringPair& pair, const ReproductionOptions& option
           FlappingCase{formulation, false, Condition::vacuum}, FlappingCase{formulation, false, Condition::wingless}}) {
       // Without wings there is no rod force, and nothing for a formulation to differ in.
       if (which.condition == Condition::wingless && formulation == virtual_work) continue;
-      r.frequency.curves.push_back({which, absent, {}});
+      r.frequency.curves.push_back({which, absent, {}, {}});
       task_along(r.frequency, r.frequency.curves.size() - 1, true,
                  [design = design_of(pair, which)](double) { return design; });
     }
@@ -126,13 +132,13 @@ Reproduction reproduce(const SpringPair& pair, const ReproductionOptions& option
       const SliderCrank<double> crank = resolve(design).crank;
       const double stroke = std::atan(crank.crank_radius / crank.hinge_offset);
 
-      r.crank_fixed_hinge.curves.push_back({which, absent, {}});
+      r.crank_fixed_hinge.curves.push_back({which, absent, {}, {}});
       task_along(r.crank_fixed_hinge, r.crank_fixed_hinge.curves.size() - 1, false, [design](double radius) {
         Design<double> d = design;
         d.transmission.crank_radius = radius;
         return d;
       });
-      r.crank_fixed_stroke.curves.push_back({which, absent, {}});
+      r.crank_fixed_stroke.curves.push_back({which, absent, {}, {}});
       task_along(r.crank_fixed_stroke, r.crank_fixed_stroke.curves.size() - 1, false, [design, stroke](double radius) {
         Design<double> d = design;
         d.transmission.crank_radius = radius;
@@ -140,20 +146,28 @@ Reproduction reproduce(const SpringPair& pair, const ReproductionOptions& option
         d.transmission.stroke_amplitude = stroke;
         return d;
       });
-      r.rod.curves.push_back({which, absent, {}});
+      r.rod.curves.push_back({which, absent, {}, {}});
       task_along(r.rod, r.rod.curves.size() - 1, false, [design](double length) {
         Design<double> d = design;
         d.transmission.rod_length = length;
         return d;
       });
       for (const double radius : options.crank_radii) {
-        r.supply.curves.push_back({which, radius, {}});
-        task_along(r.supply, r.supply.curves.size() - 1, false, [design, radius](double voltage) {
-          Design<double> d = design;
-          d.transmission.crank_radius = radius;
-          set_constant(d, voltage);
-          return d;
-        });
+        for (const bool hold_stroke : {false, true}) {
+          TrendSet& set = hold_stroke ? r.supply_fixed_stroke : r.supply_fixed_hinge;
+          Design<double> sized = design;
+          sized.transmission.crank_radius = radius;
+          if (hold_stroke) {
+            sized.transmission.hinge_offset.reset();
+            sized.transmission.stroke_amplitude = stroke;
+          }
+          set.curves.push_back({which, radius, {}, {}});
+          task_along(set, set.curves.size() - 1, false, [sized](double voltage) {
+            Design<double> d = sized;
+            set_constant(d, voltage);
+            return d;
+          });
+        }
       }
     }
   }
@@ -212,9 +226,9 @@ CalibratedLaw calibrate_friction(Design<double> design, FrictionLaw law, double 
   return result;
 }
 
-LossCurve loss_along_stiffness(const Design<double>& design, double frequency, double most_stiffness, int points) {
+LossCurve loss_along_stiffness(const Design<double>& design, double frequency, double max_stiffness, int points) {
   LossCurve curve;
-  curve.stiffness = evenly(0.0, most_stiffness, points);
+  curve.stiffness = evenly(0.0, max_stiffness, points);
   std::vector<EnsembleMember> members;
   for (const double stiffness : curve.stiffness) {
     Design<double> d = design;

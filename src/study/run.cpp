@@ -25,23 +25,6 @@ Motion<double> motion_of(const Vehicle<double>& vehicle, double crank_angle, dou
   return motion_at(vehicle, s, c, omega, i, v_t, branch);
 }
 
-WaveformRow row_of(const Vehicle<double>& vehicle, double time, double crank_angle, double omega,
-                   const Motion<double>& m) {
-  const double speed = std::abs(m.stroke_velocity);
-  return {time,
-          crank_angle,
-          omega,
-          m.current,
-          stroke_angle(m.kinematics),
-          m.stroke_velocity,
-          degrees_per_radian * angle_of_attack(vehicle.wings, speed),
-          lift_force(vehicle.wings, speed),
-          m.aero_moment,
-          m.rod_force,
-          m.motor_torque,
-          m.friction_torque};
-}
-
 /// The last whole lap of a simulation, sampled evenly in time. The simulation is repeated with samples about as dense
 /// as the rows asked for; between samples the state follows cubics.
 void last_lap(const Vehicle<double>& vehicle, const Supply<double>& supply, TransientOptions options, int rows,
@@ -87,8 +70,8 @@ void last_lap(const Vehicle<double>& vehicle, const Supply<double>& supply, Tran
                                ? a.current + x * (b.current - a.current)
                                : hermite(a.current, b.current, ma.voltage_reserve / L_a, mb.voltage_reserve / L_a);
     const Motion<double> m = motion_of(vehicle, theta, omega, current, v);
-    result.cycle.push_back(row_of(vehicle, time - start, theta - start_angle, omega, m));
-    result.cycle_voltage.push_back(m.voltage);
+    result.cycle.push_back(
+        waveform_row(vehicle, m, time - start, theta - start_angle, omega, stroke_angle(m.kinematics)));
   }
 }
 
@@ -103,18 +86,6 @@ void require_choice_of_voltage(const Supply<double>& supply, const char* wanted,
   }
 }
 
-/// Terminal voltage at each row of an orbit's cycle [V].
-std::vector<double> terminal_voltages(const Vehicle<double>& vehicle, const std::vector<WaveformRow>& cycle) {
-  std::vector<double> v;
-  for (const WaveformRow& row : cycle) {
-    const double phase = two_pi * vehicle.drive_frequency * row.time;
-    const double supplied =
-        vehicle.transmission == TransmissionType::direct ? vehicle.voltage * std::sin(phase) : vehicle.voltage;
-    v.push_back(terminal_voltage(vehicle, supplied, row.current));
-  }
-  return v;
-}
-
 void set_voltage(Supply<double>& supply, double voltage) {
   supply.voltage = supply.type == SupplyType::pwm ? voltage / supply.duty : voltage;
 }
@@ -127,6 +98,23 @@ void set_duty(Supply<double>& supply, double mean, double lift) {
                                                   lift, mean, supply.voltage));
   }
   supply.duty = duty;
+}
+
+FrequencySearch find_voltage(const Vehicle<double>& vehicle, const Supply<double>& supply, const RunOptions& options) {
+  SteadyOptions steady;
+  steady.tolerance = options.tolerance;
+  const SearchRange range = options.allow_extrapolation ? SearchRange::extrapolation : SearchRange::domain;
+  if (!options.lift) {
+    return find_voltage_for_frequency(vehicle, *options.frequency, steady, start_up_in_time(), range);
+  }
+  LiftSearchOptions where;
+  where.range = range;
+  if (supply.voltage > 0.0) where.nominal = supply.voltage;
+  FrequencySearch search = find_voltage_for_lift(vehicle, *options.lift, steady, start_up_in_time(), where);
+  if (supply.type == SupplyType::pwm && search.closest_voltage > supply.voltage) {
+    search.detail += format("; a duty of 1 gives %.4g V", supply.voltage);
+  }
+  return search;
 }
 
 void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunResult& result) {
@@ -146,14 +134,12 @@ void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunRes
   }
   if (options.waveform_rows > 1 && !found.record.empty()) {
     result.cycle = found.record.waveform(options.waveform_rows);
-    result.cycle_voltage = terminal_voltages(vehicle, result.cycle);
   } else if (options.waveform_rows > 1 && found.simulated) {
     TransientOptions transient;
     transient.tolerance = std::max(options.tolerance, transient_tightest);
     transient.cycle_rows = options.waveform_rows;
     if (vehicle.transmission == TransmissionType::direct) {
       result.cycle = simulate_start_up(vehicle, transient).cycle;
-      result.cycle_voltage = terminal_voltages(vehicle, result.cycle);
     } else {
       last_lap(vehicle, {SupplyType::constant, vehicle.voltage, 0.0, 1.0, {}}, transient, options.waveform_rows, result);
     }
@@ -176,7 +162,6 @@ void run_transient(const Vehicle<double>& vehicle, const RunOptions& options, Ru
     result.metrics = *found.metrics;
     if (direct) {
       result.cycle = found.cycle;
-      result.cycle_voltage = terminal_voltages(vehicle, result.cycle);
     } else if (options.waveform_rows > 1) {
       last_lap(vehicle, result.design.supply, transient, options.waveform_rows, result);
     }
@@ -239,15 +224,11 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
   const bool driven = options.frequency && set_drive_frequency(result.design, *options.frequency);
   Vehicle<double> vehicle = resolve(result.design, options.condition);
   if ((options.frequency && !driven) || options.lift) {
-    SteadyOptions steady;
-    steady.tolerance = options.tolerance;
-    const double nominal = supply.voltage > 0.0 ? supply.voltage : 1.0;
-    result.search =
-        options.lift ? find_voltage_for_lift(vehicle, *options.lift, nominal, steady, start_up_in_time())
-                     : find_voltage_for_frequency(vehicle, *options.frequency, steady, start_up_in_time());
+    result.search = find_voltage(vehicle, supply, options);
     if (result.search->outcome != FrequencyOutcome::reached) {
       result.status = result.search->status;
       result.detail = result.search->detail;
+      result.settled = result.status != FlappingStatus::undecided;
       return result;
     }
     if (options.lift && supply.type == SupplyType::pwm) {

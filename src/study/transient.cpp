@@ -437,7 +437,10 @@ bool StartUp::out_of_budget() {
 
 TransientResult StartUp::run() {
   prepare();
-  if (uniqueness(theta_) <= smallest_margin && !wingless_) jam(theta_);
+  // A motor that never starts is stalled, jammed or not.
+  const double drive = vehicle_.motor.torque_constant * supply_.voltage / circuit_resistance(vehicle_);
+  const bool starts = omega_ != 0.0 || theta_ != 0.0 || drive > constant_friction_;
+  if (starts && uniqueness(theta_) <= smallest_margin && !wingless_) jam(theta_);
   while (!done_) {
     if (omega_ == 0.0) {
       stand();
@@ -1101,7 +1104,9 @@ void StartUp::rest(double theta, bool held_by_friction) {
   theta_ = theta;
   omega_ = 0.0;
   const double R = circuit_resistance(vehicle_);
-  const double stall_torque = vehicle_.motor.torque_constant * supply_.voltage / R;
+  // A switched supply drives with its mean voltage.
+  const double v = supply_.type == SupplyType::pwm ? vehicle_.voltage : supply_.voltage;
+  const double stall_torque = vehicle_.motor.torque_constant * v / R;
   const double mean_current = supply_.type == SupplyType::sine ? 0.0 : vehicle_.voltage / R;
   const double angle = wrap_angle(theta);
   const double load = std::abs(net_static_torque(theta, mean_current));

@@ -44,6 +44,27 @@ TrendPeak highest_along(const AlongTheWay& value, double from, double to, int sa
   return peak;
 }
 
+TrendPeak dip_along(const AlongTheWay& value, double from, double to, int samples) {
+  std::vector<double> values;
+  for (int n = 0; n < samples; ++n) values.push_back(value(place(from, to, n, samples)));
+  int best = -1;
+  for (int n = 1; n + 1 < samples; ++n) {
+    const auto at = [&](int k) { return values[std::size_t(k)]; };
+    if (at(n) <= at(n - 1) && at(n) < at(n + 1) && (best < 0 || at(n) < at(best))) best = n;
+  }
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  if (best < 0) return {none, none, false};
+  std::uintmax_t evaluations = 40;
+  const auto [at, least] = boost::math::tools::brent_find_minima(
+      [&](double x) {
+        const double y = value(x);
+        return std::isfinite(y) ? y : std::numeric_limits<double>::max();
+      },
+      place(from, to, best - 1, samples), place(from, to, best + 1, samples), 13, evaluations);
+  if (values[std::size_t(best)] < least) return {place(from, to, best, samples), values[std::size_t(best)], true};
+  return {at, least, true};
+}
+
 double crossing_along(const AlongTheWay& value, double level, double from, double to, int samples) {
   double above = to, at_above = value(to);
   for (int n = samples - 2; n >= 0; --n) {

@@ -60,6 +60,27 @@ TEST_F(Domain, TheFirstLinesSayWhatIsOutside) {
   }
 }
 
+TEST_F(Domain, EfficienciesThatNoVehicleHas) {
+  std::vector<std::string> arguments = {"run", plain, "--json"};
+  for (const char* set : {"transmission.rod_length=0.02238", "transmission.hinge_offset=0.01435", "friction.type=none",
+                          "motor.viscous_damping=1e-10", "wing.inertia=2.191e-08"}) {
+    arguments.insert(arguments.end(), {"--set", set});
+  }
+  const auto with = [&](std::initializer_list<std::string> sets) {
+    std::vector<std::string> all = arguments;
+    for (const std::string& set : sets) all.insert(all.end(), {"--set", set});
+    return run(all).json();
+  };
+  const Json three_times = with({"spring.stiffness=0.01744", "supply.voltage=4.023", "motor.armature_resistance=0.02012",
+                                 "transmission.mid_stroke_height=0.01609"});
+  EXPECT_GT(three_times["efficiency_system"].get<double>(), 3.0);
+  EXPECT_EQ(three_times["domain"], "formulation_residual, mechanism_efficiency");
+  const Json gives_power = with({"spring.stiffness=0.03759", "supply.voltage=5.504", "motor.armature_resistance=0.6877",
+                                 "transmission.mid_stroke_height=0.01497"});
+  EXPECT_LT(gives_power["power_electrical_w"].get<double>(), 0.0);
+  EXPECT_EQ(gives_power["domain"], "mechanism_efficiency, input_power");
+}
+
 TEST_F(Domain, RodForceWarnsOfWhatItDoesNotConserve) {
   const Json json = run({"run", plain, "--json"}).json();
   ASSERT_EQ(json["warnings"].size(), 1u);

@@ -41,7 +41,7 @@ TEST_F(Endurance, ReportJsonFigureAndDataSet) {
   EXPECT_EQ(history["time_s"].size(), history["lift_mean_n"].size());
 
   const wingbeat::NetcdfReader file(path("flight.nc"));
-  EXPECT_EQ(file.read("time").back(), json["endurance_s"].get<double>());
+  EXPECT_EQ(file.read("time_s").back(), json["endurance_s"].get<double>());
   EXPECT_EQ(file.read("charge").front(), 1.0);
   EXPECT_EQ(file.read("lift_to_weight").size(), history["time_s"].size());
   EXPECT_EQ(file.attribute("hover"), "lost");
@@ -53,6 +53,23 @@ TEST_F(Endurance, ReportJsonFigureAndDataSet) {
                           "supply.charge=" + Json(charge).dump(), "--tolerance", "1e-10", "--json"}).json();
   EXPECT_NEAR(there["lift_to_weight"].get<double>(), 1.0, 1e-9);
   EXPECT_NEAR(there["voltage_v"].get<double>(), json["hover_lost"]["voltage_v"].get<double>(), 1e-9);
+}
+
+TEST_F(Endurance, LiftOverWeightIsThatOfAllMasses) {
+  const std::vector<std::string> heavy = {"endurance", battery, "--set", "supply.cells=2", "--set", "supply.mass=\"5 g\"",
+                                          "--set", "vehicle.mass=\"2 g\""};
+  const auto with = [&](std::vector<std::string> more) {
+    std::vector<std::string> all = heavy;
+    all.insert(all.end(), more.begin(), more.end());
+    return run(all);
+  };
+  const Json json = with({"--json"}).json();
+  const double mean = json["lift_mean_n"].get<double>() / (7e-3 * 9.80665);
+  char row[80];
+  std::snprintf(row, sizeof row, "  mean lift / weight    %14.4g%14.4g%14.4g\n",
+                json["initial"]["lift_to_weight"].get<double>(), mean, json["final"]["lift_to_weight"].get<double>());
+  EXPECT_THAT(with({"--plot", path("flight.svg")}).out, HasSubstr(row));
+  EXPECT_THAT(read(path("flight.svg")), HasSubstr("weight, 68.65 mN"));
 }
 
 TEST_F(Endurance, ABatteryThatCannotStartTheVehicle) {
@@ -70,7 +87,7 @@ TEST_F(Endurance, ABatteryThatCannotStartTheVehicle) {
 TEST_F(Endurance, AVehicleThatNeverHoversSaysSo) {
   const Outcome outcome = run({"endurance", battery});
   EXPECT_EQ(outcome.status, 0);
-  EXPECT_THAT(outcome.out, HasSubstr("lift is below the weight from the start"));
+  EXPECT_THAT(outcome.out, HasSubstr("below weight from the start: cannot hover"));
 }
 
 TEST_F(Endurance, BadInput) {

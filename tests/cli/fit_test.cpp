@@ -16,7 +16,8 @@ const std::string bench = data + "/bench/flapper.toml";
 TEST_F(Fit, WritesAVehicleThatRunsAndItsCovariance) {
   const Outcome o = run({"fit", bench, "-o", path("fitted.toml"), "--no-profiles", "--plot", path("residuals.svg")});
   EXPECT_EQ(o.status, 0);
-  EXPECT_THAT(o.err, IsEmpty());
+  EXPECT_EQ(o.err, "wrote " + path("fitted.toml") + "\nwrote " + path("fitted.covariance.toml") + "\nwrote " +
+                       path("residuals.svg") + "\n");
   for (const char* part : {"3 parameters, 36 rows", "converged", "friction.radius", "What the data can tell",
                            "only air determines aerodynamics.pitch_coefficient", "Share of the information"}) {
     EXPECT_THAT(o.out, HasSubstr(part));
@@ -86,6 +87,83 @@ TEST_F(Fit, RowsOutOfReachAreReportedByFileAndLine) {
   EXPECT_EQ(json["points"][0]["fitted"], nullptr);
 }
 
+/// The shipped bench with its currents in mA labelled A, of which `deviation` is said.
+class WrongUnit : public Fit {
+ protected:
+  Outcome fit(const std::string& deviation, std::vector<std::string> more = {}) {
+    fs::create_directories(path("bench"));
+    fs::copy(data + "/designs", path("designs"), fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+    for (const char* log : {"air.csv", "vacuum.csv", "wingless.csv"}) {
+      std::string text = read(data + "/bench/" + log);
+      for (auto at = text.find("_mA"); at != std::string::npos; at = text.find("_mA")) text.replace(at, 3, "_A");
+      std::ofstream(path(std::string("bench/") + log)) << text;
+    }
+    std::string text = read(bench);
+    const auto from = text.find("[deviation]"), to = text.find("[[log]]");
+    std::ofstream(path("bench/flapper.toml")) << text.replace(from, to - from, deviation);
+    std::vector<std::string> arguments = {"fit", path("bench/flapper.toml"), "-o", path("fitted.toml")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  }
+};
+
+TEST_F(WrongUnit, IsAMisfitBeforeAnythingElse) {
+  const Outcome o = fit("[deviation]\ndefault = { relative = 0.01 }\n");
+  EXPECT_EQ(o.status, 3);
+  EXPECT_TRUE(o.out.starts_with("MISFIT: the model does not describe the data: chi square is ")) << o.out;
+  EXPECT_THAT(o.err, HasSubstr("the model does not describe the data"));
+  EXPECT_THAT(o.err, HasSubstr("no vehicle file was written"));
+  EXPECT_THAT(o.err, HasSubstr("is its unit right?"));
+  EXPECT_THAT(o.out, testing::Not(HasSubstr(" .. ")));
+  EXPECT_THAT(o.out, testing::Not(HasSubstr("the data determine")));
+  EXPECT_FALSE(fs::exists(path("fitted.toml")));
+  EXPECT_FALSE(fs::exists(path("fitted.covariance.toml")));
+  const Json json = fit("[deviation]\ndefault = { relative = 0.01 }\n", {"--json"}).json();
+  EXPECT_THAT(json["misfit"].get<std::string>(), HasSubstr("degrees of freedom"));
+  EXPECT_LT(json["p_value"].get<double>(), 1e-6);
+  for (const Json& p : json["parameters"]) {
+    for (const char* key : {"standard_error", "lower_95", "upper_95", "profile_lower_95"}) EXPECT_TRUE(p[key].is_null());
+  }
+}
+
+TEST_F(WrongUnit, IsAMisfitOfDeviationsThatAreEstimatedToo) {
+  const Outcome o = fit("[deviation]\ndefault = \"estimated\"\n");
+  EXPECT_EQ(o.status, 3);
+  EXPECT_TRUE(o.out.starts_with("MISFIT: ")) << o.out;
+  EXPECT_THAT(o.err, HasSubstr("the residuals of current_mean_a are on the average"));
+  EXPECT_THAT(o.out, testing::Not(HasSubstr(" .. ")));
+}
+
+TEST_F(Fit, IntervalsKeepToTheBounds) {
+  const Json json = run({"fit", bench, "--json", "--no-profiles"}).json();
+  EXPECT_TRUE(json["misfit"].is_null());
+  EXPECT_GT(json["p_value"].get<double>(), 1e-3);
+  std::string text = read(bench);
+  fs::copy(data + "/bench", path("bench"));
+  fs::copy(data + "/designs", path("designs"));
+  // A lower bound right below the truth: what is left of the interval begins there.
+  const auto radius = text.find("lower = \"0 mm\"");
+  text.replace(radius, 14, "lower = \"2.499 mm\"");
+  text.replace(text.find("start = \"1 mm\""), 14, "start = \"4 mm\"");
+  std::ofstream(path("bench/flapper.toml")) << text;
+  for (const Json& p : run({"fit", path("bench/flapper.toml"), "--json", "--no-profiles"}).json()["parameters"]) {
+    if (p["key"] != "friction.radius") continue;
+    for (const char* key : {"value", "lower_95"}) EXPECT_GE(p[key].get<double>(), 2.499e-3) << key;
+    EXPECT_GT(p["upper_95"].get<double>(), 2.51e-3);
+  }
+}
+
+TEST_F(Fit, StartsHaveALimit) {
+  std::string text = read(bench);
+  text += "\n[fit]\nstarts = 20000000\n";
+  fs::copy(data + "/bench", path("bench"));
+  fs::copy(data + "/designs", path("designs"));
+  std::ofstream(path("bench/flapper.toml")) << text;
+  const Outcome o = run({"fit", path("bench/flapper.toml")});
+  EXPECT_EQ(o.status, 2);
+  EXPECT_THAT(o.err, HasSubstr("fit.starts: must be at most 1000, got 20000000; every start is a whole fit"));
+}
+
 TEST_F(Fit, UnknownParametersAreNoNumbers) {
   std::string text = read(bench);
   const auto air = text.find("[[log]]"), vacuum = text.find("[[log]]", air + 1);
@@ -103,7 +181,7 @@ TEST_F(Fit, UnknownParametersAreNoNumbers) {
 }
 
 TEST_F(Fit, HelpShowsAnExampleThatRuns) {
-  EXPECT_THAT(run({"fit", "--help"}).out, HasSubstr("wingbeat fit data/bench/flapper.toml -o fitted.toml"));
+  EXPECT_THAT(run({"fit", "--help"}).out, HasSubstr("wingbeat fit flapper -o fitted.toml"));
 }
 
 }  // namespace

@@ -165,7 +165,9 @@ TEST_F(Optimise, SeveralObjectivesGiveAFront) {
     const Outcome text = run({"optimise", file, "-o", path("front.nc"), "--plot", path("front.svg"), "--designs",
                               path("designs")});
     ASSERT_EQ(text.status, 0) << text.err;
-    EXPECT_EQ(text.err, "");
+    EXPECT_THAT(text.err, testing::StartsWith("wrote " + path("front.nc") + "\nwrote " + path("front.svg") + "\nwrote " +
+                                              path("designs") + "/"));
+    EXPECT_EQ(count_of(text.err, "\n"), count_of(text.err, "wrote "));
     EXPECT_THAT(text.out, HasSubstr("hypervolume "));
     EXPECT_THAT(text.out, HasSubstr("knee"));
     EXPECT_THAT(read(path("front.svg")), HasSubstr("mean electrical input power (W)"));
@@ -203,6 +205,15 @@ TEST_F(Optimise, ThreeObjectivesAndMotors) {
   const Json json = run({"optimise", file, "--json"}).json();
   EXPECT_EQ(json["motors"].size(), 3U);
   EXPECT_EQ(json["motors"][0]["solved"].get<int>() + json["motors"][1]["solved"].get<int>(), 64 + 16 * 5);
+}
+
+TEST_F(Optimise, AReferenceThatNothingBeatsIsSaid) {
+  const std::string strict = "[[objective]]\nmaximise = \"lift_mean_n\"\nreference = \"90 mN\"\n"
+                             "[[objective]]\nminimise = \"power_electrical_w\"\nreference = \"1 mW\"\n";
+  const Outcome o = run({"optimise", study(strict + short_search + voltage)});
+  EXPECT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("no design is better than the reference in every objective"));
+  EXPECT_THAT(o.out, testing::Not(HasSubstr("nan")));
 }
 
 TEST_F(Optimise, AFrontThatIsNotThereIsStatusThree) {

@@ -31,6 +31,7 @@ const std::vector<std::string> contract_keys = {"status",
                                                 "frequency_hz",
                                                 "current_mean_a",
                                                 "current_peak_a",
+                                                "current_rms_a",
                                                 "power_electrical_w",
                                                 "power_motor_w",
                                                 "power_motor_reference_w",
@@ -96,6 +97,16 @@ TEST_F(Run, TableNamesStatusMetricsAndBooks) {
     EXPECT_LE(line.size(), 90U) << line;
     EXPECT_TRUE(line.empty() || line.back() != ' ') << line;
   }
+}
+
+TEST_F(Run, LiftBelowTheWeightIsSaidNotToHover) {
+  EXPECT_THAT(run({"run", plain}).out, HasSubstr("below weight: cannot hover"));
+  const Outcome light = run({"run", plain, "--set", "vehicle.mass=0.5 g"});
+  EXPECT_THAT(light.out, HasSubstr("   can hover"));
+  // Every mass stated for itself is carried too, also where a lift over weight is asked for.
+  const std::vector<std::string> heavy = {"--set", "vehicle.mass=0.5 g", "--set", "motor.mass=1 g"};
+  const Json json = run({"run", plain, "--json", "--lift-to-weight", "0.5", heavy[0], heavy[1], heavy[2], heavy[3]}).json();
+  EXPECT_NEAR(json["lift_to_weight"].get<double>(), 0.5, 1e-6);
 }
 
 TEST_F(Run, SetReplacesKeysInOrder) {
@@ -242,7 +253,7 @@ struct BadCase {
   std::string sentence;
 };
 
-TEST_F(Run, BadInputIsOneSentenceOnStandardErrorAndStatus2) {
+TEST_F(Run, BadInputIsSentencesOnStandardErrorAndStatus2) {
   std::ofstream(path("not.toml")) << "[vehicle\n";
   std::ofstream(path("short.toml")) << "[supply]\ntype = \"constant\"\nvoltage = \"3 V\"\n";
   const std::vector<BadCase> cases = {
@@ -273,7 +284,7 @@ TEST_F(Run, BadInputIsOneSentenceOnStandardErrorAndStatus2) {
       {{"run", plain, "--waveforms", path("w.txt")}, "must end in .csv or .nc"},
       {{"run", plain, "--plot", path("p.bmp")}, "must end in .svg, .pdf or .png"},
       {{"run", plain, "--plot-power", path("p")}, "must end in .svg, .pdf or .png"},
-      {{"run", plain, "--plot", path("p.svg"), "--plot-power", path("p.svg")}, "is the file of --plot"},
+      {{"run", plain, "--plot", path("p.svg"), "--plot-power", path("p.svg")}, "is also the file of --plot"},
       {{"run", plain, "--plot", path("no/such/p.svg")}, "there is no folder"},
       {{"compare"}, "file is required"},
       {{"compare", plain}, "unknown key"},
@@ -285,7 +296,9 @@ TEST_F(Run, BadInputIsOneSentenceOnStandardErrorAndStatus2) {
     EXPECT_THAT(o.out, IsEmpty());
     EXPECT_THAT(o.err, HasSubstr(c.sentence));
     EXPECT_THAT(o.err, testing::StartsWith("wingbeat: "));
-    EXPECT_EQ(count_of(o.err, "\n"), 1U) << o.err;
+    // A line for each error: one, but where most of a file is missing.
+    EXPECT_EQ(count_of(o.err, "\n"), c.sentence == "missing section [motor]" ? 5U : 1U) << o.err;
+    EXPECT_EQ(count_of("\n" + o.err, "\nwingbeat: "), count_of(o.err, "\n")) << o.err;
   }
 }
 

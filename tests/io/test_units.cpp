@@ -90,6 +90,64 @@ TEST(Units, RefusesWhatIsNotTheQuantity) {
   EXPECT_EQ(parse_quantity("0.2 s-1", "Hz"), 0.2);
 }
 
+TEST(Units, ANumberAfterTheUnitIsNeverAFactor) {
+  for (const char* text : {"1 mm·5", "1 mm²·5", "1 mm·5e0", "1 mm·-5", "1 m° 5", "1 m*5", "1 m.5", "5·2 mm",
+                           "1 m×5"}) {
+    EXPECT_THAT(refusal(text, "m"), testing::HasSubstr(", which holds a second number")) << text;
+  }
+  EXPECT_THAT(refusal("1 mm²5", "m2"), testing::HasSubstr(", which holds a second number"));
+  EXPECT_EQ(parse_quantity("2 mΩ2/ohm", "ohm"), 2e-6);
+}
+
+TEST(Units, WordsOfCatalogues) {
+  EXPECT_EQ(parse_quantity("50 mAh", "C"), 180.0);
+  EXPECT_EQ(parse_quantity("0.05Ah", "C"), 180.0);
+  EXPECT_EQ(parse_quantity("0.1 mNm", "N m"), 1e-4);
+  EXPECT_EQ(parse_quantity("0.1 Nm", "N m"), 0.1);
+  EXPECT_EQ(parse_quantity("100 uNm", "N m"), 1e-4);
+  EXPECT_EQ(parse_quantity("100 µNm", "N m"), 1e-4);
+  EXPECT_EQ(parse_quantity("2 Nmm", "N m"), 0.002);
+  EXPECT_EQ(parse_quantity("2 Ncm", "N m"), 0.02);
+  EXPECT_EQ(parse_quantity("7.6 mNm/A", "N m/A"), 0.0076);
+  EXPECT_EQ(parse_quantity("1.4 mNm/rad", "N m/rad"), 0.0014);
+  EXPECT_EQ(parse_quantity("3.6e-6 Nms/rad", "N m s/rad"), 3.6e-6);
+  EXPECT_EQ(parse_quantity("3 mVs/rad", "N m/A"), 0.003);
+  EXPECT_DOUBLE_EQ(parse_quantity("1320 RPM", "Hz"), 22.0);
+  for (const char* text : {"0.12 gcm2", "0.12 gcm²", "0.12 gcm^2", "0.12 gcm**2", "0.12 g cm2", "0.12 g·cm²",
+                           "12 gmm2", "12e3 mgmm2", "1.2e-2 kgmm2", "1.2e-8 kgm2", "1.2e-4 kgcm2"}) {
+    EXPECT_DOUBLE_EQ(parse_quantity(text, "kg m2"), 1.2e-8) << text;
+  }
+  // Still no other dimension, and no longer word.
+  EXPECT_EQ(refusal("1 Nm", "N m/A"), "expected a torque constant such as \"0.01 N m/A\", got \"1 Nm\"");
+  EXPECT_EQ(refusal("1 gcm2", "N m"), "expected a torque such as \"0.1 mN m\", got \"1 gcm2\"");
+  EXPECT_EQ(refusal("1 nm", "N m"), "expected a torque such as \"0.1 mN m\", got \"1 nm\"");
+  EXPECT_THAT(refusal("1 mAh", "A"), testing::HasSubstr("expected a current"));
+  EXPECT_THAT(refusal("1 gcm3", "kg m2"), testing::HasSubstr("unknown unit \"gcm3\""));
+  EXPECT_THAT(refusal("1 gcm25", "kg m2"), testing::HasSubstr("unknown unit \"gcm25\""));
+}
+
+TEST(Units, SpeedConstantsAreTorqueConstantsWhereAskedFor) {
+  const auto torque_constant = [](const char* text) {
+    return parse_quantity(text, "N m/A", SpeedConstant::inverted);
+  };
+  EXPECT_DOUBLE_EQ(torque_constant("1000 rpm/V"), 60.0 / (two_pi * 1000.0));
+  EXPECT_DOUBLE_EQ(torque_constant("1 krpm/V"), 60.0 / (two_pi * 1000.0));
+  EXPECT_DOUBLE_EQ(torque_constant("100 rad/s/V"), 0.01);
+  EXPECT_EQ(torque_constant("0.01 N m/A"), 0.01);
+  EXPECT_EQ(torque_constant("10 mV s/rad"), 0.01);
+  EXPECT_THROW(torque_constant("0 rpm/V"), UnitError);
+  EXPECT_THROW(torque_constant("-5 rpm/V"), UnitError);
+  EXPECT_THROW(torque_constant("1000 rpm"), UnitError);
+  EXPECT_EQ(refusal("1000 rpm/V", "N m/A"),
+            "expected a torque constant such as \"0.01 N m/A\", got \"1000 rpm/V\"; a speed constant is the reciprocal "
+            "of a torque constant: write 0.0095493 N m/A");
+  EXPECT_EQ(refusal("1000 min-1/V", "N m/A"),
+            "expected a torque constant such as \"0.01 N m/A\", got \"1000 min-1/V\"; a speed constant names the angle, "
+            "as in rpm/V or rad/s/V");
+  EXPECT_THROW(unit_factor("rpm/V", "N m/A"), UnitError);
+  EXPECT_THROW(parse_quantity("1000 rpm/V", "kg m2", SpeedConstant::inverted), UnitError);
+}
+
 TEST(Units, MessagesStayOnOneLine) {
   EXPECT_EQ(in_quotes("a\nb\x01"), "\"a\\nb\\x01\"");
   EXPECT_EQ(in_quotes(std::string(59, 'a') + "éb"), "\"" + std::string(59, 'a') + "...\"");

@@ -121,20 +121,5 @@ TEST(Reproduction, TheBestConstantLoadOfAMotorHasAClosedForm) {
   EXPECT_NEAR(best_constant_load_efficiency(m, 3.0), (root - 1.0) / (root + 1.0), 1e-7);
 }
 
-TEST(Claims, OneThatHoldsInOneFormulationDependsOnIt) {
-  PublishedFile file = read_published(WINGBEAT_DATA "/published/friction2022.toml");
-  file.trends.clear();
-  Judgement j = judge(file, one_by_one);
-  ASSERT_EQ(j.claims.size(), file.values.size());
-  EXPECT_TRUE(j.laws.empty());
-  for (const Claim& c : j.claims) {
-    for (std::size_t f = 0; f < 2; ++f) EXPECT_EQ(c.within[f], std::abs(c.ours[f] / *c.published - 1.0) <= c.tolerance);
-    const int met = c.within[0] + c.within[1];
-    EXPECT_EQ(c.verdict, met == 2   ? Verdict::reproduced
-                         : met == 1 ? Verdict::depends_on_formulation
-                                    : Verdict::not_reproduced);
-  }
-}
-
 }  // namespace
 }  // namespace wingbeat

@@ -116,6 +116,30 @@ TEST(Endurance, LinearCurveGivesALogarithm) {
   EXPECT_NEAR(r.endurance(), 100.0 / per_volt * std::log(4.0 / 3.0), 1e-9 * r.endurance());
 }
 
+// A measured curve of thousands of rows costs no more orbits than its two ends.
+TEST(Endurance, ManyRowsOfADischargeCurveCostNoOrbits) {
+  Design<double> d = hovering_design();
+  Battery<double>& b = d.supply.battery;
+  b.discharge_curve = {{0.0, 2.9}, {1.0, 3.6}};
+  const EnduranceResult few = fly_to_the_end(d);
+  b.discharge_curve.clear();
+  for (int n = 0; n <= 2000; ++n) b.discharge_curve.emplace_back(n / 2000.0, 2.9 + 0.7 * n / 2000.0);
+  const EnduranceResult many = fly_to_the_end(d);
+  EXPECT_NEAR(many.endurance(), few.endurance(), 1e-9 * few.endurance());
+  EXPECT_NEAR(many.rows.back().lift_impulse, few.rows.back().lift_impulse, 1e-9 * few.rows.back().lift_impulse);
+  EXPECT_LT(few.evaluations, 400);
+  EXPECT_LT(many.evaluations, 400);
+
+  // Rows that bend: the curve of the vehicle above, sampled, against the cubics themselves.
+  const Design<double> smooth = hovering_design();
+  for (int n = 0; n <= 2000; ++n) {
+    b.discharge_curve[std::size_t(n)].second = 0.5 * open_circuit_voltage(smooth.supply.battery, n / 2000.0);
+  }
+  const EnduranceResult sampled = fly_to_the_end(d), exact = fly_to_the_end(smooth);
+  EXPECT_NEAR(sampled.endurance(), exact.endurance(), 1e-6 * exact.endurance());
+  EXPECT_LT(sampled.evaluations, 1000);
+}
+
 TEST(Endurance, HoverIsLostWhereLiftEqualsWeight) {
   const Design<double> d = hovering_design();
   const EnduranceResult r = fly_to_the_end(d);

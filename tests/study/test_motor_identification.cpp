@@ -213,6 +213,68 @@ TEST(MotorIdentification, ContradictionHasItsSize) {
               HasSubstr("resistance and stall current disagree about the armature resistance by 8.3 %"));
 }
 
+TEST(MotorIdentification, ContradictionsWidenTheIntervals) {
+  MotorDatasheet s = exact_sheet(motor, 3.0);
+  const MotorIdentification consistent = identify_motor(s);
+  EXPECT_EQ(consistent.birge_ratio, 1.0);
+  s.resistance = 1.5 * 5.4;
+  s.torque_constant = 2.1e-3;
+  const MotorIdentification found = identify_motor(s);
+  ASSERT_TRUE(found.complete());
+  EXPECT_GT(found.birge_ratio, 2.0);
+  EXPECT_GT(found.armature_resistance.standard_error, 2.0 * consistent.armature_resistance.standard_error);
+  EXPECT_LT(std::abs(*found.armature_resistance.value - 5.4), 2.0 * found.armature_resistance.standard_error);
+  EXPECT_THAT(found.remarks, Contains(HasSubstr("(Birge ratio)")));
+  // Two inertias apart by far more than their deviations.
+  s = exact_sheet(motor, 3.0);
+  s.mechanical_time_constant = 2.0 * 5.4 * 5e-9 / (2.1e-3 * 2.1e-3);
+  const IdentifiedConstant inertia = identify_motor(s).inertia;
+  EXPECT_GT(*inertia.value + 1.5 * inertia.standard_error, 1e-8);
+  EXPECT_LT(*inertia.value - 1.5 * inertia.standard_error, 5e-9);
+}
+
+TEST(MotorIdentification, GrossContradictionsAreRefused) {
+  for (const double factor : {0.1, 10.0}) {
+    MotorDatasheet s = read_datasheet(std::string(WINGBEAT_DATA) + "/motors/0816K003SR.toml");
+    *s.resistance *= factor;
+    const MotorIdentification found = identify_motor(s);
+    EXPECT_FALSE(found.complete()) << factor;
+    EXPECT_FALSE(found.armature_resistance.value.has_value());
+    EXPECT_FALSE(found.torque_constant.value.has_value());
+    EXPECT_TRUE(found.inertia.value.has_value());
+    EXPECT_THAT(found.missing,
+                testing::ElementsAre(HasSubstr("resistance and stall torque contradict each other about the armature "
+                                               "resistance by a factor of ")));
+    // Said to be that uncertain it is a value like any other.
+    if (factor < 1.0) continue;
+    s.deviations["resistance"] = 0.9;
+    const MotorIdentification doubted = identify_motor(s);
+    ASSERT_TRUE(doubted.complete()) << factor;
+    EXPECT_NEAR(*doubted.armature_resistance.value, 5.4, 0.5) << factor;
+  }
+  MotorDatasheet s = exact_sheet(motor, 3.0);
+  s.mechanical_time_constant = 10.0 * 5.4 * 5e-9 / (2.1e-3 * 2.1e-3);
+  const MotorIdentification found = identify_motor(s);
+  EXPECT_FALSE(found.inertia.value.has_value());
+  EXPECT_TRUE(found.armature_resistance.value.has_value());
+  // A point of the performance curve has no second way of its own.
+  s = exact_sheet(motor, 3.0);
+  s.points.push_back({{}, 3e-4, 0.05 * (2.1e-3 * 3.0 / 5.4 - 3e-4) / (2.1e-3 * 2.1e-3 / 5.4 + 3e-9), {}, {}});
+  EXPECT_THAT(identify_motor(s).missing, testing::ElementsAre(HasSubstr(") and the rest of the sheet (")));
+}
+
+TEST(MotorIdentification, GearEfficiencyIsKeptOrSaidNotToBeUsed) {
+  MotorDatasheet s = exact_sheet(motor, 3.0);
+  s.gear_ratio = 20.0;
+  s.gear_efficiency = 0.7;
+  const MotorIdentification at_motor = identify_motor(s);
+  EXPECT_THAT(at_motor.remarks, Contains(HasSubstr("the gear efficiency of 0.7 is NOT USED")));
+  EXPECT_THAT(motor_section(at_motor, s, "made by a test"), HasSubstr("gear_efficiency = 0.7"));
+  EXPECT_THAT(json_identification(at_motor, s), HasSubstr("\"gear_efficiency\": 0.7"));
+  s.shaft = Shaft::output;
+  EXPECT_THAT(identify_motor(s).remarks, Contains(HasSubstr("the gear efficiency of 0.7 served to read")));
+}
+
 TEST(MotorIdentification, GearReferredToTheOutput) {
   MotorDatasheet s = exact_sheet(motor, 3.0);
   s.gear_ratio = 20.0;

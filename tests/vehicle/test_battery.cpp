@@ -135,7 +135,7 @@ TEST(BatteryVehicle, WaveformVoltageSagsWithTheCurrent) {
       const RunResult r = run_design(d, {.method = method, .waveform_rows = 91});
       ASSERT_EQ(r.cycle.size(), 91u);
       for (std::size_t n = 0; n < r.cycle.size(); ++n) {
-        EXPECT_NEAR(r.cycle_voltage[n], 3.7 - 1.5 * r.cycle[n].current, 1e-12);
+        EXPECT_NEAR(r.cycle[n].voltage, 3.7 - 1.5 * r.cycle[n].current, 1e-12);
       }
     }
   }

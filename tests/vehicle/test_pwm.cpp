@@ -105,7 +105,8 @@ TEST(Pwm, LiftOutOfReach) {
   }
   const RunResult most = run_design(reference_design(), {.lift = 10.0});
   EXPECT_EQ(most.search->outcome, FrequencyOutcome::too_high);
-  EXPECT_NE(most.detail.find("10 N cannot be reached: up to 30 V it lifts "), std::string::npos) << most.detail;
+  EXPECT_NE(most.detail.find("10 N cannot be reached inside the domain of validity: it lifts 0.06"), std::string::npos)
+      << most.detail;
   // Just below the peak over the voltage, which lies between the voltages tried first, a lift can be reached.
   double peak = 0.0;
   for (double v = 9.0; v < 12.0; v += 0.05) {
@@ -119,8 +120,14 @@ TEST(Pwm, LiftOutOfReach) {
   EXPECT_EQ(run_design(reference_design(), {.lift = 1.001 * peak}).search->outcome, FrequencyOutcome::too_high);
   Design<double> held = reference_design();
   held.motor.constants.friction_torque = 1.0;
-  const RunResult never = run_design(held, {.lift = 20e-3});
-  EXPECT_EQ(never.status, FlappingStatus::stalled);
+  const RunResult high = run_design(held, {.lift = 20e-3});
+  ASSERT_EQ(high.search->outcome, FrequencyOutcome::reached) << high.detail;
+  EXPECT_GT(high.metrics[Metric::voltage], 9.0 / 0.01);  // R_a T_c / K, where the motor starts at all
+  Design<double> jams = reference_design();
+  jams.motor.constants.inertia = 1e-9;
+  jams.friction.coefficient = 5e-3;
+  const RunResult never = run_design(jams, {.lift = 20e-3});
+  EXPECT_EQ(never.status, FlappingStatus::jammed);
   EXPECT_EQ(never.search->outcome, FrequencyOutcome::never_flaps);
   EXPECT_THROW(run_design(reference_design(), {.frequency = 20.0, .lift = 20e-3}), ParameterError);
   EXPECT_THROW(run_design(reference_design(), {.lift = -1.0}), ParameterError);

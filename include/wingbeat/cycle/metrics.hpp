@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <string_view>
 
@@ -17,6 +18,7 @@ enum class Metric {
   frequency,
   current_mean,
   current_peak,
+  current_rms,
   power_electrical,
   power_motor,
   power_motor_reference,
@@ -166,13 +168,17 @@ Metrics<S> cycle_metrics(const Vehicle<S>& v, const CycleIntegrals<S>& integrals
   m[Metric::current_mean] = f * total(Integral::current);
   m[Metric::voltage] = terminal_voltage(v, v.voltage, m[Metric::current_mean]);
   m[Metric::current_peak] = peak(Extreme::current);
+  using std::sqrt;
+  const S current_square = f * total(Integral::current_square);
+  const auto carries_current = current_square > S(0.0);
+  m[Metric::current_rms] = select(carries_current, sqrt(select(carries_current, current_square, S(1.0))), S(0.0));
   m[Metric::power_electrical] = f * total(Integral::electrical_work);
   m[Metric::power_motor] = f * total(Integral::motor_work);
   m[Metric::power_motor_reference] = S(two_pi) * reporting.bench_torque_constant * f * m[Metric::current_mean];
   m[Metric::power_friction] = f * total(Integral::friction_work);
   m[Metric::power_aerodynamic] = f * total(Integral::aero_work);
   m[Metric::power_reactive] = f * total(Integral::reactive_work);
-  m[Metric::power_copper] = v.motor.armature_resistance * f * total(Integral::current_square);
+  m[Metric::power_copper] = v.motor.armature_resistance * current_square;
   m[Metric::power_viscous] = v.motor.viscous_damping * f * total(Integral::speed_square);
   m[Metric::power_loss] = m[Metric::power_electrical] - m[Metric::power_aerodynamic];
   m[Metric::power_residual] = f * total(Integral::residual_work);

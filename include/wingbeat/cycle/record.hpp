@@ -23,7 +23,18 @@ struct WaveformRow {
   double rod_force;            ///< F [N]; absent where there is no rod
   double motor_torque;         ///< T_m [N m]
   double friction_torque;      ///< T_f [N m]
+  double voltage;              ///< v at the motor terminals [V]
+  double power_electrical;     ///< v i [W]
+  double power_motor;          ///< T_m omega [W]
+  double power_friction;       ///< T_f omega [W]
+  double power_aerodynamic;    ///< M_aero beta' [W]
+  double spring_moment;        ///< N_w k beta of all hinge springs [N m], towards stroke angle zero
+  double inertial_moment;      ///< N_w J_w beta'' of all wings [N m]
 };
+
+/// What acts at one instant, as a row: `stroke_angle` beta and `shaft_angle` theta [rad], omega [rad/s].
+WaveformRow waveform_row(const Vehicle<double>& vehicle, const Motion<double>& motion, double time, double shaft_angle,
+                         double shaft_speed, double stroke_angle);
 
 /// A system and its lap.
 template <class System>

@@ -14,7 +14,10 @@ namespace wingbeat {
 
 /// A fit as its bench file describes it, logs read. Vehicle file and logs are sought beside it. Throws InputError with
 /// file, line and reason.
-BenchFit read_bench(const std::filesystem::path& file);
+BenchFit read_bench(const std::filesystem::path& file, std::span<const std::string> overrides = {});
+
+/// The vehicle file that it names.
+std::filesystem::path vehicle_of_bench(const std::filesystem::path& file);
 
 /// One log: a header that names each column with its unit, rows growing strictly in what was set on the bench.
 /// `log` brings the condition and, of a waveform log, the operating point in `given_value`. `measured` restricts the
@@ -32,8 +35,8 @@ std::string text_friction(std::span<const FrictionCandidate> candidates);
 /// One JSON object; `candidates` may be empty.
 std::string json_fit(const BenchFit& fit, const FitResult& result, std::span<const FrictionCandidate> candidates);
 
-/// The fitted vehicle file, complete and ready to run, with what it rests on as comments.
-std::string fitted_vehicle(const BenchFit& fit, const FitResult& result, const std::string& made_by);
+/// What a fitted vehicle rests on, as the comments above its file.
+std::string fitted_vehicle_head(const BenchFit& fit, const FitResult& result, const std::string& made_by);
 
 /// The determined parameters with their covariance, as TOML: what a tolerance study starts from.
 std::string covariance_file(const FitResult& result, const std::string& vehicle_name, const std::string& made_by);

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "wingbeat/vehicle/design.hpp"
 
@@ -25,17 +27,27 @@ class InputError : public std::runtime_error {
   int column() const { return column_; }
   const std::string& key() const { return key_; }
 
+  /// What else is wrong, in the order of the input, each entry alone; empty where this is all.
+  const std::vector<InputError>& others() const { return others_; }
+  void add_other(InputError other) {
+    other.others_.clear();
+    others_.push_back(std::move(other));
+  }
+  void forget_others() { others_.clear(); }
+
  private:
   std::string file_;
   int line_;
   int column_;
   std::string key_;
+  std::vector<InputError> others_;
 };
 
 /// Gives the text of a table file (chord or coefficient CSV) that a vehicle file names. May throw std::runtime_error.
 using TableLoader = std::function<std::string(const std::string& name)>;
 
-/// The whole text of a file; throws InputError if it is missing, unreadable, a directory, or above 4 MB.
+/// The whole text of a file, of standard input for "-"; throws InputError if it is missing, unreadable, a directory, or
+/// above 4 MB.
 std::string read_text_file(const std::filesystem::path& file);
 
 /// The design in a vehicle file, validated. CSV files that it names are sought beside it.
@@ -45,7 +57,7 @@ std::string read_text_file(const std::filesystem::path& file);
 /// below its own. An override replaces the file's alternative to it (stroke_amplitude and hinge_offset, resonance and
 /// stiffness, ...), and one that changes a type or shape drops the file's keys that belong to the old one.
 ///
-/// Throws InputError; nothing else for any content of file and overrides.
+/// Throws InputError, with all that is wrong and not only the first; nothing else for any content of file and overrides.
 Design<double> read_design(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 
 /// The same from text; `file_name` stands in messages. Without a loader, table files are refused; no file is touched.

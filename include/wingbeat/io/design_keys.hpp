@@ -444,6 +444,9 @@ const Key<S>* find_key(std::string_view path) {
 /// "unknown key; did you mean motor.inertia?", or with the keys of its section where none is near.
 std::string unknown_key_message(std::string_view path);
 
+/// The key or section that an unknown key was probably to be, or empty where none is near.
+std::string nearest_key(std::string_view path);
+
 /// The name nearest to the given one, or empty where none is near.
 std::string_view nearest_name(std::string_view given, std::span<const std::string_view> known);
 

@@ -14,7 +14,7 @@ struct EnergyBranch {
   double power;  ///< [W]
 };
 
-/// The supply feeds the motor, which loses in copper and rotor drag; the motor output feeds the transmission, which
+/// The supply feeds the motor, which loses in copper and viscous friction; the motor output feeds the transmission, which
 /// loses in friction and in what its formulation fails to conserve; the air gets the rest.
 struct EnergyFlow {
   double supply;                                  ///< P_e [W]

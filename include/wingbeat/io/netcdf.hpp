@@ -35,7 +35,8 @@ class NetcdfFile {
   explicit NetcdfFile(const std::filesystem::path& file);
   NetcdfFile(const NetcdfFile&) = delete;
   NetcdfFile& operator=(const NetcdfFile&) = delete;
-  /// Closes without a word; call close() to learn whether everything was written.
+  /// Closes without a word; call close() to learn whether everything was written. After an error nothing is closed: HDF5
+  /// does not survive the second meeting with a full disk.
   ~NetcdfFile();
 
   Dimension define_dimension(const std::string& name, std::size_t length);
@@ -54,6 +55,8 @@ class NetcdfFile {
   void set_attribute(const std::string& name, std::string_view text);
   void set_attribute(const Variable& variable, const std::string& name, std::string_view text);
 
+  /// Names the key of the vehicle file that a variable holds, in its attribute wingbeat_key.
+  void set_key(const Variable& variable, std::string_view key) { set_attribute(variable, "wingbeat_key", key); }
   /// What the values of a flag mean, in the manner of the CF conventions: 0, 1, 2, ...
   void set_flags(const Variable& variable, std::span<const std::string> meanings);
   /// What the bits of a flag mean, the lowest first (at most seven): flag_masks 1, 2, 4, ...
@@ -75,6 +78,7 @@ class NetcdfFile {
 
   std::string file_;
   int id_ = -1;
+  mutable bool failed_ = false;
 };
 
 /// A NetCDF file open for reading. Every member throws NetcdfError.
@@ -104,17 +108,21 @@ class NetcdfReader {
   int id_ = -1;
 };
 
-/// What makes a data set one that can be run again: the global attributes of every file the program writes.
+/// What makes a data set one that can be run again: the global attributes of every file the program writes. What is
+/// empty, or a tolerance of 0, does not apply and is left out.
 struct Provenance {
   std::string title;
-  std::string version;    ///< of the program
-  std::string input;      ///< the vehicle file, complete in itself
-  std::string condition;  ///< air, vacuum, wingless
-  std::string method;     ///< orbit, transient
-  std::string domain = {};  ///< "inside" or the limits of the model that are exceeded; empty: not said
+  std::string command;        ///< of the program, as "sweep"
+  std::string version;        ///< of the program
+  std::string vehicle;        ///< the vehicle file, complete in itself
+  std::string study = {};     ///< the study file
+  std::string condition = {}; ///< air, vacuum, wingless
+  std::string method = {};    ///< orbit, transient; of a Pareto study its algorithm
+  std::string domain = {};    ///< "inside" or the limits of the model that are exceeded; empty: not said
   double tolerance = 0.0;
 };
 
+/// Conventions, title, source, wingbeat_version, vehicle and, where they apply, study, condition, method, tolerance.
 void write_provenance(NetcdfFile& file, const Provenance& provenance);
 
 }  // namespace wingbeat

@@ -21,6 +21,7 @@ struct MotorCandidate {
 
 struct OptimiseFile {
   std::string title;
+  std::filesystem::path vehicle_file;
   OptimiseStudy study;
   std::vector<MotorCandidate> motors;  ///< empty: the vehicle's own motor alone
   std::vector<DiscreteParameter> choices;
@@ -31,7 +32,7 @@ struct OptimiseFile {
 
 /// The study in a TOML file; the vehicle file and a motor catalogue that it names are sought beside it. Throws
 /// InputError.
-OptimiseFile read_optimise_study(const std::filesystem::path& file);
+OptimiseFile read_optimise_study(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 
 /// A motor of the catalogue, or the vehicle's own, with one value of each discrete parameter, and what became of it;
 /// `result` is not used where the motor is refused.

@@ -15,6 +15,9 @@ namespace wingbeat {
 /// "even-1" and so on.
 std::vector<std::pair<std::string, std::size_t>> named_picks(const ParetoStudy& study, const ParetoResult& result);
 
+/// Their names, where `even` designs are picked along the front.
+std::vector<std::string> pick_names(std::span<const ParetoObjective> objectives, std::size_t even);
+
 /// Readable report with a table of the picked designs.
 std::string text_front(const OptimiseFile& file, const ParetoStudy& study, const ParetoResult& result);
 

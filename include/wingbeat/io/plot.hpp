@@ -13,13 +13,15 @@ namespace wingbeat {
 
 enum class PlotFormat { svg, pdf, png };
 
+/// As OutputRules wants them.
+inline constexpr const char* plot_extensions = ".svg .pdf .png";
 /// By the extension; empty for any other.
 std::optional<PlotFormat> plot_format(const std::filesystem::path& file);
 
-/// One flapping cycle against time: stroke angle and flapping velocity, lift, rod force, powers. `voltage` holds the
-/// terminal voltage of each row [V]. Throws std::runtime_error, with what to do, where gnuplot is missing or fails.
-void plot_cycle(std::span<const WaveformRow> rows, std::span<const double> voltage, const std::string& title,
-                PlotFormat format, const std::filesystem::path& file);
+/// One flapping cycle against time: stroke angle and flapping velocity, lift, rod force, powers. Throws
+/// std::runtime_error, with what to do, where gnuplot is missing or fails.
+void plot_cycle(std::span<const WaveformRow> rows, const std::string& title, PlotFormat format,
+                const std::filesystem::path& file);
 
 /// One case of a power breakdown.
 struct PowerBar {

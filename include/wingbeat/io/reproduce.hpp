@@ -1,4 +1,4 @@
-// A paper reproduced into a folder: figures, the data behind them, judged statements, one report.
+// A paper reproduced into a folder: figures, the data behind them, assessed statements, one report.
 #pragma once
 
 #include <filesystem>
@@ -24,6 +24,7 @@ const KnownPaper& known_paper(std::string_view name);
 struct ReproduceOptions {
   std::filesystem::path output;  ///< the folder
   bool coarse = false;
+  bool force = false;   ///< replaces files that the program did not write
   std::string version;  ///< of the program
   ForEach for_each;
   std::function<void(double share, const std::string& what)> progress;  ///< called by one thread at a time
@@ -31,13 +32,14 @@ struct ReproduceOptions {
 
 /// A folder that may be written to: new, empty, or one that this command wrote before. Creates it. Throws InputError
 /// for every other, and where it cannot be written.
-void prepare_reproduction_folder(const std::filesystem::path& folder, std::string_view paper);
+/// That a file in it would be replaced that is not the program's, or was changed since, is refused unless `force`.
+void prepare_reproduction_folder(const std::filesystem::path& folder, std::string_view paper, bool force = false);
 
 /// Computes and writes everything. Files of the same names from an earlier run are replaced, others in the folder stay.
 /// Throws InputError as prepare_reproduction_folder does, std::runtime_error where a file cannot be stored or drawn.
 struct ReproduceResult {
   PublishedFile file;
-  Judgement judgement;
+  Assessment assessment;
   int figures = 0;
 };
 ReproduceResult reproduce_paper(const KnownPaper& paper, const ReproduceOptions& options);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 
 #include "wingbeat/io/design_file.hpp"
@@ -24,8 +25,9 @@ struct Study {
   Sweep sweep;
 };
 
-/// The study in a TOML file; the vehicle file and a CSV that it names are sought beside it. Throws InputError.
-Study read_study(const std::filesystem::path& file);
+/// The study in a TOML file; the vehicle file and a CSV that it names are sought beside it. `overrides` are applied to
+/// the vehicle after [set], as read_design does. Throws InputError.
+Study read_study(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 
 /// The same from texts; no file is touched. Throws InputError.
 Study parse_study(const StudyInput& input);

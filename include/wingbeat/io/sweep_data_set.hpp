@@ -9,6 +9,7 @@
 
 #include "wingbeat/io/study_file.hpp"
 #include "wingbeat/io/sweep_journal.hpp"
+#include "wingbeat/study/sweep_best.hpp"
 
 namespace wingbeat {
 
@@ -18,12 +19,8 @@ struct SweepDigest {
   std::uint64_t recomputed = 0;                             ///< by the scalar solver
   std::uint64_t outside = 0;                                ///< flapping, but outside the model's domain
   std::array<std::uint64_t, domain_limit_count> beyond{};   ///< of those, by DomainLimit
-  struct Best {
-    std::uint64_t index;
-    double value;
-  };
-  std::optional<Best> lift;        ///< most lift_mean [N], if kept, of what counts
-  std::optional<Best> efficiency;  ///< most efficiency_system [1], if kept, of what counts
+  SweepBest lift;        ///< by lift_mean [N], if kept
+  SweepBest efficiency;  ///< by efficiency_system [1], if kept
 };
 
 /// Stands for everything that a data set depends on: study, vehicle, options, instruction set, version.
@@ -42,8 +39,10 @@ Study read_study_in_data_set(const std::filesystem::path& file);
 
 /// What stands under the name of an output: nothing, this very sweep, or something that must not be overwritten.
 enum class Standing { nothing, same_sweep };
-/// Throws InputError for anything else, with the reason; `option` is what the path was given for.
-Standing standing_of(const std::filesystem::path& file, std::uint64_t fingerprint, const std::string& option);
+/// Throws InputError for anything else, with the reason, unless `force` says that it may be replaced, which makes it
+/// nothing; `option` is what the path was given for.
+Standing standing_of(const std::filesystem::path& file, std::uint64_t fingerprint, const std::string& option,
+                     bool force);
 
 /// Bytes of the data set, nearly.
 std::uint64_t data_set_size(const Study& study);

@@ -51,10 +51,10 @@ class SweepJournal {
   using Prepare = std::function<std::vector<std::uint64_t>(const std::filesystem::path& file)>;
 
   /// Opens journal and data set, or creates them. Throws InputError, which leaves what is there as it was, if they
-  /// cannot be written, if they belong to another sweep or to a running process; std::runtime_error where there is no
-  /// room for a data set of `size` bytes.
-  SweepJournal(const std::filesystem::path& journal, const std::filesystem::path& data_set, std::uint64_t fingerprint,
-               const ChunkLayout& layout, std::uint64_t size, const Prepare& prepare);
+  /// cannot be written, if they belong to a running process, or, unless `force` says that they may be replaced, to
+  /// another sweep; std::runtime_error where there is no room for a data set of `size` bytes.
+  SweepJournal(const std::filesystem::path& journal, const std::filesystem::path& data_set, bool force,
+               std::uint64_t fingerprint, const ChunkLayout& layout, std::uint64_t size, const Prepare& prepare);
   SweepJournal(const SweepJournal&) = delete;
   SweepJournal& operator=(const SweepJournal&) = delete;
   ~SweepJournal();
@@ -72,6 +72,7 @@ class SweepJournal {
   void lock(std::uint64_t fingerprint, std::uint64_t size, const Prepare& prepare);
   void reserve(std::uint64_t size, bool fresh) const;
   void take_over();
+  std::uint64_t frame_sum(int data_file, std::span<const std::uint64_t> places) const;
   void close();
   bool transfer(std::uint64_t chunk, std::byte* bytes, bool write) const;
   std::uint64_t record_at(std::uint64_t record) const;
@@ -79,9 +80,11 @@ class SweepJournal {
   [[noreturn]] void failed(const std::filesystem::path& file, int reason) const;
 
   std::filesystem::path journal_, data_set_;
+  bool force_;
   ChunkLayout layout_;
   int journal_file_ = -1, data_file_ = -1;
   std::vector<std::uint64_t> places_;
+  std::uint64_t frame_ = 0;  ///< check sum of what stands around the columns
   std::uint64_t records_ = 0;
   std::vector<bool> held_;
 };

@@ -25,6 +25,7 @@ struct SweepRunOptions {
   int threads = 0;                                    ///< at most; 0: one for each core
   std::function<void(const SweepProgress&)> progress;  ///< called now and then, by one thread at a time
   std::function<bool()> stop;                         ///< true: no chunk is begun any more
+  bool force = false;                                 ///< replaces files that are not of this sweep
   Ranks* ranks = nullptr;                             ///< rank 0 of several, or null
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 
 #include "wingbeat/io/plot.hpp"
@@ -11,7 +12,7 @@ namespace wingbeat {
 
 /// The study in a TOML file; the vehicle file and a fit's covariance that it names are sought beside it. Throws
 /// InputError.
-ToleranceStudy read_tolerance_study(const std::filesystem::path& file);
+ToleranceStudy read_tolerance_study(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 
 /// A readable report of at most 100 columns.
 std::string text_tolerance(const ToleranceStudy& study, const ToleranceResult& result);

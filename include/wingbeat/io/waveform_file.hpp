@@ -17,7 +17,7 @@ struct WaveformColumn {
   const char* long_name;  ///< plain words
   double WaveformRow::*value;
 };
-inline constexpr int waveform_column_count = 12;
+inline constexpr int waveform_column_count = 19;
 
 /// The columns of a waveform file, in order.
 const std::array<WaveformColumn, waveform_column_count>& waveform_columns();

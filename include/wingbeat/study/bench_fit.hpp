@@ -103,6 +103,7 @@ struct FitDirection {
 struct FitPoint {
   std::size_t log, row, column;
   double measured, fitted, deviation;  ///< SI; fitted is absent where the model does not reach the row
+  double weight = 1.0;                 ///< under the robust loss, 0 to 1
   double residual() const { return (measured - fitted) / deviation; }
 };
 
@@ -122,9 +123,28 @@ struct ConditionShare {
   std::vector<double> error_without;  ///< standard error of each parameter without this condition; infinity: lost
 };
 
+/// What is left of one measured quantity beside the fitted model.
+struct QuantityResiduals {
+  MeasuredQuantity quantity;
+  int values = 0;
+  bool estimated = false;     ///< the deviation is that of the residuals themselves
+  double rms = 0.0;           ///< of the residuals, in standard deviations
+  double unexplained = absent;  ///< sum of squares of the residuals over that about the values' mean [1]
+  double relative = absent;     ///< rms of the residuals over that of the values [1]
+  double measured_over_fitted = absent;  ///< median
+};
+
+/// [fit] starts at most.
+inline constexpr int most_fit_starts = 1000;
+
 struct FitResult {
   bool converged = false;
   std::string message;
+  /// Why the fitted model does not describe the data, a clause with the numbers; empty: it does. Standard errors,
+  /// intervals and covariances are absent then: they suppose a model that the data obey.
+  std::string misfit;
+  double p_value = absent;  ///< chance of residuals as large under the stated deviations
+  std::vector<QuantityResiduals> quantities;
   Design<double> design;  ///< fitted; parameters not determined keep their start
   std::vector<FittedParameter> parameters;
   std::vector<std::vector<double>> covariance;   ///< SI; rows of parameters not determined are absent (NaN)

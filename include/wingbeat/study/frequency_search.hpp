@@ -1,47 +1,80 @@
-// The voltage at which a vehicle flaps at a wanted frequency, or with a wanted lift.
+// The voltage at which a vehicle flaps at a wanted frequency, or with a wanted lift; docs/targets.md.
 #pragma once
 
 #include <string>
 
+#include "wingbeat/cycle/domain.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
 
 namespace wingbeat {
 
+/// Where an answer may lie.
+enum class SearchRange {
+  domain,        ///< inside the domain of validity (cycle/domain.hpp)
+  extrapolation  ///< also outside, down to extrapolation_angle_deg and up to extrapolation_flow_speed
+};
+
+/// Smallest angle of attack [deg] of SearchRange::extrapolation: there the coefficients have gone round twice, and cycles
+/// beyond take up to seconds each.
+inline constexpr double extrapolation_angle_deg = -360.0;
+/// Largest speed of the wings at S_3/S_2 of SearchRange::extrapolation [m/s]: ten times the domain's.
+inline constexpr double extrapolation_flow_speed = 10.0 * flow_speed_max;
+
 /// What came of the search for a frequency; "faster" and "slower" stand for more and less lift where that is sought.
 enum class FrequencyOutcome {
   reached,
-  never_flaps,  ///< at no voltage searched
-  too_low,      ///< it flaps, but only faster: at the voltage that would do it stands still
-  too_high,     ///< it flaps, but slower up to the highest voltage searched
-  jumps         ///< the frequency jumps past the wanted one as the voltage grows
+  never_flaps,    ///< at no voltage searched
+  too_low,        ///< it flaps, but only faster: at the voltage that would do it stands still
+  too_high,       ///< it flaps, but slower over all of the range
+  jumps,          ///< the frequency jumps past the wanted one as the voltage grows
+  outside_domain  ///< it flaps, but inside the domain of validity at no voltage, or not at the one that would do
 };
 
 struct FrequencySearch {
   FrequencyOutcome outcome = FrequencyOutcome::never_flaps;
   double voltage = absent;  ///< reached: [V]
-  /// Not reached: what the vehicle does at the voltage closest to the answer; flapping for too_high and jumps.
+  /// Not reached: what the vehicle does at the voltage closest to the answer; flapping for too_high, jumps and
+  /// outside_domain.
   FlappingStatus status = FlappingStatus::stalled;
   std::string detail;  ///< one sentence: what was found, or which frequencies can be reached
   int evaluations = 0;
+  /// Not reached: where the vehicle comes closest in the range, such as the peak of the lift or its onset: voltage [V] and
+  /// what it reaches there [Hz or N]. Absent where no cycle of the range was computed.
+  double closest_voltage = absent;
+  double closest_value = absent;
 };
 
-/// The search covers voltages up to this multiple of the one that turns the unloaded motor at the wanted frequency.
+/// The search for a frequency covers voltages up to this multiple of the one that turns the unloaded motor so fast, the
+/// search for a lift at least as many times the one at which the unloaded motor moves the wings fast enough for it.
 inline constexpr double frequency_search_span = 100.0;
 
-/// Finds the constant voltage at which the vehicle flaps at `frequency` [Hz], to within options.tolerance, by a
-/// bracketed solve on find_steady_flapping; a voltage at which it does not flap counts as too low. vehicle.voltage is
-/// not used. Where the frequency is no steady function of the voltage, any of the answers may come out.
+/// A flapping frequency above which the vehicle is certainly out of the range, whatever its voltage [Hz]: in each cycle the
+/// wings travel four stroke amplitudes, so that their peak velocity is at least that much times the frequency. Infinite
+/// without air, and for a direct drive.
+double highest_frequency(const Vehicle<double>& vehicle, SearchRange range);
+
+/// The refusal of a frequency above highest_frequency(); nothing is computed for it. Its status is flapping.
+FrequencySearch refuse_frequency(const Vehicle<double>& vehicle, double frequency, SearchRange range);
+
+/// Finds the constant voltage at which the vehicle flaps at `frequency` [Hz], to within options.tolerance, by Newton's
+/// method on the exact derivative in a bracket; a voltage at which it does not flap counts as too low. vehicle.voltage is
+/// not used. From rest, a crank flaps the faster the higher the voltage, so that there is one answer at most.
 /// Throws ParameterError unless frequency > 0.
 FrequencySearch find_voltage_for_frequency(const Vehicle<double>& vehicle, double frequency,
-                                           const SteadyOptions& options = {}, const StartUp& start_up = {});
+                                           const SteadyOptions& options = {}, const StartUp& start_up = {},
+                                           SearchRange range = SearchRange::extrapolation);
 
-/// The search for a lift starts at this fraction of the nominal voltage.
-inline constexpr double lift_search_start = 0.1;
+struct LiftSearchOptions {
+  double nominal = 1.0;  ///< usual voltage [V], > 0: ten times as much is searched at least; a direct drive starts there
+  SearchRange range = SearchRange::domain;
+};
 
-/// The same for a mean lift [N]. `nominal` [V] is the size of voltage to look at first: the search runs upwards from a
-/// tenth of it, so that where lift peaks over the voltage, the lower of two voltages is found.
+/// The lowest voltage (direct drive: amplitude) at which the vehicle has the mean lift `lift` [N] in the range, to within
+/// options.tolerance; vehicle.voltage is not used. The lift is followed upwards from where the vehicle starts to flap, or
+/// from next to none, by cubics through values and exact derivatives, checked half-way, so that neither a peak nor a pair of
+/// answers hides between two voltages. A refusal states the peak, or the onset if that lifts too much already.
 /// Throws ParameterError unless lift and nominal > 0.
-FrequencySearch find_voltage_for_lift(const Vehicle<double>& vehicle, double lift, double nominal,
-                                      const SteadyOptions& options = {}, const StartUp& start_up = {});
+FrequencySearch find_voltage_for_lift(const Vehicle<double>& vehicle, double lift, const SteadyOptions& options = {},
+                                      const StartUp& start_up = {}, const LiftSearchOptions& where = {});
 
 }  // namespace wingbeat

@@ -56,7 +56,11 @@ inline constexpr double typical_motor_damping = 29.6e-9;
 /// Density of steel [kg/m3], of the fallback for the rotor's inertia.
 inline constexpr double steel_density = 7850.0;
 
-/// A constant with its standard error from the sheet's deviations.
+/// Ways to one constant, or a published value and the identified motor, that lie further apart than by this factor are no
+/// matter of accuracy: the sheet is refused, unless the deviations given for them allow it.
+inline constexpr double contradiction_factor = 3.0;
+
+/// A constant with its standard error from the sheet's deviations and its contradictions.
 struct IdentifiedConstant {
   std::optional<double> value;  ///< empty: the sheet does not determine it
   double standard_error = 0.0;
@@ -77,6 +81,7 @@ struct Contradiction {
   std::string first, second;  ///< what each rests on
   double first_value, second_value;
   double size;  ///< relative difference
+  bool gross = false;  ///< beyond contradiction_factor
 };
 
 struct MotorIdentification {
@@ -85,6 +90,9 @@ struct MotorIdentification {
       friction_torque;
   std::vector<DatasheetCheck> checks;
   std::vector<Contradiction> contradictions;  ///< largest first
+  /// How much wider the sheet's values scatter about the identified motor than their deviations say, at least 1; standard
+  /// errors are multiplied by it (Birge 1932, Phys. Rev. 40, 207).
+  double birge_ratio = 1.0;
   std::vector<std::string> remarks;           ///< assumptions made, in words
   std::vector<std::string> missing;           ///< constants that could not be determined, and what would do it
   bool complete() const { return missing.empty(); }

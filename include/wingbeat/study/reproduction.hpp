@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "wingbeat/cycle/domain.hpp"
 #include "wingbeat/study/optimise.hpp"
 #include "wingbeat/study/run.hpp"
 
@@ -32,6 +33,7 @@ struct TrendCurve {
   FlappingCase of;
   double crank_radius = absent;  ///< of the curve [m], where it tells curves apart
   std::vector<Metrics<double>> metrics;
+  std::vector<DomainStatus> domain;  ///< of each point; none() where there are no metrics
 };
 struct TrendSet {
   std::vector<double> axis;  ///< flapping frequency [Hz], crank radius [m], rod length [m] or voltage [V]
@@ -52,7 +54,7 @@ struct ReproductionOptions {
   double voltage = 3.0;     ///< of cycles and of the mechanism's trends [V]
   double frequency = 22.0;  ///< of the other cycles [Hz]
   std::vector<double> crank_radii = {3e-3, 5e-3, 7e-3, 9e-3};  ///< of the trend along the voltage [m]
-  double most_voltage = 5.0;                                   ///< where that trend ends [V]
+  double max_voltage = 5.0;                                    ///< where that trend ends [V]
 };
 
 struct Reproduction {
@@ -61,7 +63,8 @@ struct Reproduction {
   TrendSet crank_fixed_hinge;                       ///< crank radius at `voltage`, hinge offset held
   TrendSet crank_fixed_stroke;                      ///< stroke amplitude held
   TrendSet rod;                                     ///< rod length at `voltage`
-  TrendSet supply;                                  ///< voltage, for each of the crank radii, hinge offset held
+  TrendSet supply_fixed_hinge;                      ///< voltage, for each of the crank radii, hinge offset held
+  TrendSet supply_fixed_stroke;                     ///< stroke amplitude held
   std::vector<CycleCase> at_frequency, at_voltage;  ///< both formulations, springs off and on
 };
 
@@ -91,7 +94,7 @@ struct LossCurve {
   std::vector<double> stiffness;         ///< of each hinge [N m/rad]
   std::vector<Metrics<double>> metrics;  ///< absent where the frequency cannot be held
 };
-LossCurve loss_along_stiffness(const Design<double>& design, double frequency, double most_stiffness, int points);
+LossCurve loss_along_stiffness(const Design<double>& design, double frequency, double max_stiffness, int points);
 
 /// Efficiency of a motor at a voltage [V] under the constant load that is best for it [1].
 double best_constant_load_efficiency(const Motor<double>& motor, double voltage);

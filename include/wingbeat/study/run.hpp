@@ -25,7 +25,7 @@ struct RunOptions {
   std::optional<double> frequency = {};
   /// [N]; given instead of the frequency: the same for the mean lift, which a pwm supply reaches by its duty.
   std::optional<double> lift = {};
-  bool allow_extrapolation = false; ///< a search for a lift may leave the model's domain
+  bool allow_extrapolation = false; ///< a search for a frequency or a lift may leave the model's domain
   int waveform_rows = 0;            ///< instants of one cycle to return, both ends included; 0: none
 };
 
@@ -41,7 +41,6 @@ struct RunResult {
   std::string domain_detail;   ///< the same in words with numbers; empty inside
   std::vector<std::string> warnings;  ///< what a reader of the metrics should know beside the domain
   std::vector<WaveformRow> cycle;
-  std::vector<double> cycle_voltage;       ///< terminal voltage of each row [V]
   solve::PeriodicSummary orbit;            ///< of Method::orbit
   std::optional<TransientResult> start_up; ///< of Method::transient
   std::optional<FrequencySearch> search;   ///< where a frequency or a lift was asked for

@@ -237,7 +237,8 @@ std::vector<Sheet> mechanism_sheets(const Material& m) {
     s.caption =
         springs
             ? fmt::format(
-                  "Each hinge has a spring of {:.4g} mN m/rad, relaxed in mid-stroke: with a wing of {:.4g} g mm2 it "
+                  "Each hinge has a spring of {:.4g} mN m/rad, relaxed in mid-stroke: with a wing of {:.4g} g mm\u00b2 "
+                  "it "
                   "resonates at {:.4g} Hz. Drawn by the program at a crank angle of {:.0f} deg.",
                   1e3 * vehicle.spring.stiffness, 1e9 * vehicle.wing_inertia,
                   std::sqrt(vehicle.spring.stiffness / vehicle.wing_inertia) / two_pi, degrees_per_radian * drawn_angle)
@@ -245,15 +246,17 @@ std::vector<Sheet> mechanism_sheets(const Material& m) {
                   "To scale but for the wings, drawn by the program from the vehicle file at a crank angle of {:.0f} "
                   "deg. "
                   "The motor turns the crank; rod and slider swing the wings about their hinges by {:.1f} deg to "
-                  "either side. The rod force F presses on the joints: their friction torque is mu r_e |F| with "
+                  "either side. The rod force F (crank reaction force in the paper) loads the joints: their friction "
+                  "torque "
+                  "is mu r_e |F| with "
                   "mu r_e = {:.4g} mm.",
                   degrees_per_radian * drawn_angle, degrees_per_radian * stroke_amplitude(crank),
                   1e3 * design.friction.coefficient);
     const CycleCase* cycle = cycle_of(m.computed.at_frequency, Formulation::rod_force, springs);
     if (cycle) {
-      s.animation =
-          moving(crank, *cycle,
-                 fmt::format("one cycle at {:g} Hz, springs {}", m.computed.options.frequency, springs ? "on" : "off"));
+      s.animation = moving(
+          crank, *cycle,
+          fmt::format("{:g} Hz, {} springs", m.computed.options.frequency, springs ? "with" : "without"));
     }
     Table& t = s.table;
     std::vector<double> angle, height, stroke, wing_lever, crank_lever;

@@ -1,6 +1,4 @@
 // The energy picture: flows from supply to air, and power over the cycle with what is stored and returned.
-#include "wingbeat/io/energy_flow.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 
 #include "../figure.hpp"
 #include "sheet.hpp"
+#include "wingbeat/io/energy_flow.hpp"
 #include "wingbeat/io/report.hpp"
 
 namespace wingbeat {
@@ -15,8 +14,8 @@ namespace wingbeat {
 EnergyFlow energy_flow(const EnergyAudit& a) {
   return {a.electrical,
           a.electrical - a.copper - a.viscous,
-          {{"copper", a.copper}, {"rotor drag", a.viscous}},
-          {{"friction", a.friction}, {"residual", a.residual}},
+          {{"copper", a.copper}, {"motor viscous", a.viscous}},
+          {{"friction", a.friction}, {"form. residual", a.residual}},
           a.aerodynamic};
 }
 
@@ -137,16 +136,19 @@ std::vector<Sheet> energy_sheets(const Material& m) {
       const CycleCase* c = cycle_of(m.computed.at_frequency, formulation, on);
       if (!c) continue;
       const EnergyAudit a = energy_audit(c->run.metrics);
-      cases.push_back({fmt::format("springs {}", on ? "on" : "off"), energy_flow(a)});
+      cases.push_back({on ? "with springs" : "without springs", energy_flow(a)});
       springs.push_back(on ? 1.0 : 0.0);
       const double powers[] = {a.electrical, a.copper, a.viscous, a.friction, a.residual, a.aerodynamic, a.imbalance};
       for (std::size_t k = 0; k < std::size(powers); ++k) columns[k].push_back(powers[k]);
     }
     if (cases.size() < 2) continue;
     s.table.add("springs", "1", "hinge springs: 0 off, 1 on", springs);
-    const char* names[] = {"electrical", "copper", "rotor_drag", "friction", "residual", "aerodynamic", "imbalance"};
+    const char* names[] = {"electrical",           "copper",      "motor_viscous", "friction",
+                           "formulation_residual", "aerodynamic", "balance_error"};
+    const char* meanings[] = {"electrical input",     "copper loss",        "motor viscous loss",  "friction loss",
+                              "formulation residual", "aerodynamic output", "energy-balance error"};
     for (std::size_t k = 0; k < std::size(names); ++k) {
-      s.table.add(fmt::format("power_{}_w", names[k]), "W", fmt::format("mean {} power", names[k]), columns[k]);
+      s.table.add(fmt::format("power_{}_w", names[k]), "W", fmt::format("mean power: {}", meanings[k]), columns[k]);
     }
     const EnergyFlow &off = cases[0].flow, &on = cases[1].flow;
     s.caption = fmt::format(
@@ -155,9 +157,9 @@ std::vector<Sheet> energy_sheets(const Material& m) {
         "friction. The air gets {:.1f} mW without springs and {:.1f} mW with them. {}",
         1e3 * (off.supply - on.supply), 1e3 * (off.motor[0].power - on.motor[0].power),
         1e3 * (off.transmission[0].power - on.transmission[0].power), 1e3 * off.air, 1e3 * on.air,
-        formulation == Formulation::rod_force ? "The residual is what the paper's equation (1) as printed fails to "
-                                                "conserve: it appears in no part of the vehicle."
-                                              : "Nothing is left over: this formulation conserves power.");
+        formulation == Formulation::rod_force ? "The formulation residual is what the paper's equation (1) as "
+                                                "printed fails to conserve; it appears in no part of the vehicle."
+                                              : "This formulation conserves power: there is no residual.");
     s.draw = [cases](PlotFormat format, const std::filesystem::path& file) { draw_flows(cases, format, file); };
     sheets.push_back(std::move(s));
   }
@@ -166,7 +168,7 @@ std::vector<Sheet> energy_sheets(const Material& m) {
     if (!c) continue;
     Sheet s;
     s.id = on ? "power-cycle-springs-on" : "power-cycle-springs-off";
-    s.heading = fmt::format("Power over a cycle at {:g} Hz, springs {}", f0, on ? "on" : "off");
+    s.heading = fmt::format("Power over a cycle at {:g} Hz, {} springs", f0, on ? "with" : "without");
     s.section = "energy";
     const auto& rows = c->run.cycle;
     std::vector<double> time, electrical, output, aero, stored, ms;
@@ -177,7 +179,7 @@ std::vector<Sheet> energy_sheets(const Material& m) {
     double stored_sum = 0.0, returned_sum = 0.0;
     for (std::size_t n = 0; n < rows.size(); ++n) {
       time.push_back(rows[n].time - rows.front().time);
-      electrical.push_back(c->run.cycle_voltage[n] * rows[n].current);
+      electrical.push_back(rows[n].power_electrical);
       output.push_back(rows[n].motor_torque * rows[n].crank_speed);
       aero.push_back(rows[n].aero_moment * rows[n].flapping_velocity);
       stored.push_back(c->stored_power[n]);
@@ -196,8 +198,8 @@ std::vector<Sheet> energy_sheets(const Material& m) {
         "Shaded: power that goes into wings and springs ({:.2f} mJ in each cycle) and comes back from them ({:.2f} "
         "mJ). {}",
         1e3 * stored_sum, -1e3 * returned_sum,
-        on ? "With springs less of it passes through rod and joints, whose friction grows with the force."
-           : "Without springs all of it passes through the rod, twice, and friction takes its part each time.");
+        on ? "With springs less of it passes through the rod and its joints, whose friction grows with the force."
+           : "Without springs all of it passes through the rod twice in each cycle, with a friction loss each time.");
     Chart chart;
     chart.x = "time (ms)";
     chart.panel_height = 2.3;

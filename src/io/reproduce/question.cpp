@@ -1,4 +1,4 @@
-// The title question in figures: how each friction law answers to the force in the mechanism, and how far it is off.
+// The title question in figures: how the loss of each friction law depends on the force in the mechanism.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ std::string underscored(std::string text) {
 
 std::vector<Sheet> friction_sheets(const Material& m) {
   std::vector<Sheet> sheets;
-  if (m.judgement.laws.empty() || m.judgement.laws.front().loss.stiffness.empty()) return sheets;
+  if (m.assessment.laws.empty() || m.assessment.laws.front().loss.stiffness.empty()) return sheets;
   Sheet s;
   s.id = "friction-laws";
   s.heading = fmt::format("Friction loss and input power as springs are added, {:g} Hz", m.computed.options.frequency);
@@ -40,8 +40,9 @@ std::vector<Sheet> friction_sheets(const Material& m) {
   loss.title = "friction loss";
   input.y = "power (mW)";
   input.title = "electrical input";
-  for (std::size_t n = 0; n < m.judgement.laws.size(); ++n) {
-    const LawPrediction& p = m.judgement.laws[n];
+  for (std::size_t n = 0; n < m.assessment.laws.size(); ++n) {
+    const LawPrediction& p = m.assessment.laws[n];
+    if (p.variant == recalibrated) continue;
     const CurveStyle style = law_styles[n % std::size(compared_friction_laws)];
     const bool first = p.law.formulation == Formulation::rod_force;
     std::vector<double> x, f, l, e, f_si, l_si, e_si;
@@ -74,12 +75,11 @@ std::vector<Sheet> friction_sheets(const Material& m) {
   chart.panels = {force, loss, input};
   s.caption =
       "Each law was calibrated to the same operating point without springs (rod-force; virtual-work in the data). "
-      "Adding springs at a "
-      "held frequency takes force off the rod whatever the law - the motion is the same - but only a loss that depends "
-      "on the force "
-      "follows it down. Viscous, quadratic and constant friction see the speed alone, whose mean does not change, and "
-      "so predict "
-      "almost no saving of friction.";
+      "Springs reduce the mean rod force at prescribed frequency, whatever the law, since the motion is almost the "
+      "same. "
+      "Only a loss that depends on the force falls with it. Viscous, quadratic and constant friction depend on the "
+      "speed "
+      "alone, whose mean does not change, and predict almost no saving of friction.";
   s.draw = [chart](PlotFormat format, const std::filesystem::path& file) { reproduction::draw(chart, format, file); };
   sheets.push_back(std::move(s));
   return sheets;

@@ -3,9 +3,14 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <boost/crc.hpp>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <mutex>
+#include <set>
 
 #include "embedded.hpp"
 #include "sheet.hpp"
@@ -69,7 +74,59 @@ const KnownPaper& known_paper(std::string_view name) {
                    fmt::format("the program knows no such paper; it knows {}", names));
 }
 
-void prepare_reproduction_folder(const fs::path& folder, std::string_view paper) {
+namespace {
+
+/// The name a file of a reproduction has.
+bool is_piece(const std::string& name) {
+  const std::string_view begins[] = {"figure-", "friction-laws.", "energy-flow", "power-cycle-", "claims.", "report.html"};
+  return name == notice || std::any_of(std::begin(begins), std::end(begins), [&](auto b) { return name.starts_with(b); });
+}
+
+std::string listed(const std::string& name, std::string_view content) {
+  boost::crc_32_type sum;
+  sum.process_bytes(content.data(), content.size());
+  return fmt::format("{:08x} {}\n", sum.checksum(), name);
+}
+
+/// The lines of the notice that list files: check sum and name.
+std::set<std::string> listed_in(const fs::path& folder) {
+  std::set<std::string> lines;
+  std::ifstream in(folder / notice);
+  for (std::string line; std::getline(in, line);) {
+    if (line.size() > 9 && line.find_first_not_of("0123456789abcdef") == 8 && line[8] == ' ') lines.insert(line + "\n");
+  }
+  return lines;
+}
+
+/// True of a folder that a version without check sums wrote: all of its pieces count as the program's.
+bool is_without_sums(const fs::path& folder, std::string_view paper) {
+  std::ifstream in(folder / notice, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  return text.starts_with(first_line(paper)) && text.find("\nCheck sums") == std::string::npos;
+}
+
+/// True if the file is as an earlier run left it.
+bool is_listed(const fs::path& file, const std::set<std::string>& lines) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return false;
+  std::ifstream in(file, std::ios::binary);
+  const std::string content{std::istreambuf_iterator<char>(in), {}};
+  return lines.contains(listed(file.filename().string(), content));
+}
+
+/// Refuses to replace a piece that the program did not write or that was changed since.
+void check_pieces(const fs::path& folder, bool force) {
+  const std::set<std::string> lines = listed_in(folder);
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (!is_piece(entry.path().filename().string())) continue;
+    checked_output("-o", entry.path(), {"", force || is_listed(entry.path(), lines)});
+  }
+}
+
+}  // namespace
+
+void prepare_reproduction_folder(const fs::path& folder, std::string_view paper, bool force) {
   const auto refuse = [&](const std::string& reason) {
     throw InputError(fmt::format("-o {}", folder.string()), 0, 0, "", reason);
   };
@@ -86,7 +143,13 @@ void prepare_reproduction_folder(const fs::path& folder, std::string_view paper)
         if (std::fgets(line, sizeof line, in)) begins = line;
         std::fclose(in);
       }
-      if (begins != first_line(paper)) refuse("holds files of something else; name a new or an empty folder");
+      if (begins == first_line(paper)) {
+        check_pieces(folder, force || is_without_sums(folder, paper));
+      } else if (force) {
+        check_pieces(folder, true);
+      } else {
+        refuse("holds files of something else; name a new or an empty folder, or --force to write among them");
+      }
     }
   } else {
     const fs::path parent = fs::absolute(folder, error).lexically_normal().parent_path();
@@ -99,15 +162,26 @@ void prepare_reproduction_folder(const fs::path& folder, std::string_view paper)
 ReproduceResult reproduce_paper(const KnownPaper& paper, const ReproduceOptions& options) {
   using namespace reproduction;
   fs::path folder = options.output;
-  prepare_reproduction_folder(folder, paper.name);
+  prepare_reproduction_folder(folder, paper.name, options.force);
+  const std::set<std::string> known = listed_in(folder);
+  const bool replace = options.force || is_without_sums(folder, paper.name);
   const auto put = [&](const std::string& name, std::string_view content) {
-    OutputFile file("-o", folder / name);
+    OutputFile file("-o", folder / name, {"", replace || is_listed(folder / name, known)});
     file.write(content);
     file.commit();
   };
-  put(notice, first_line(paper.name) +
-                  "Open report.html. figure-*: each figure as SVG and PDF, its data as CSV and NetCDF (.nc).\n"
-                  "claims.csv, claims.json: every statement judged. Running the command again replaces these files.\n");
+  const std::string about =
+      first_line(paper.name) +
+      "Open report.html. figure-*: each figure as SVG and PDF, its data as CSV and NetCDF (.nc).\n"
+      "claims.csv, claims.json: every statement assessed. Running the command again replaces these files.\n"
+      "\nCheck sums (CRC-32) of the texts, by which the command knows them again:\n";
+  // Beside what will be written now stands what an earlier run wrote: one that is interrupted leaves either.
+  std::set<std::string> lines = known;
+  const auto write_notice = [&] {
+    put(notice, about + fmt::format("{}", fmt::join(lines, "")));
+    FileRecord::of_this_program().withdraw(fs::canonical(folder) / notice);
+  };
+  write_notice();
   const auto progress = [&](double share, const std::string& what) {
     if (options.progress) options.progress(share, what);
   };
@@ -120,18 +194,20 @@ ReproduceResult reproduce_paper(const KnownPaper& paper, const ReproduceOptions&
   computing.coarse = options.coarse;
   const Reproduction computed =
       reproduce(pair, computing, options.for_each, [&](double share) { progress(0.2 * share, "computing"); });
-  result.judgement =
-      judge(result.file, options.for_each, [&](double share) { progress(0.2 + 0.1 * share, "judging statements"); });
+  result.assessment =
+      assess(result.file, options.for_each, [&](double share) { progress(0.2 + 0.1 * share, "assessing statements"); });
 
-  const Material material{result.file, pair, computed, result.judgement};
+  const Material material{result.file, pair, computed, result.assessment};
   std::vector<Sheet> sheets = mechanism_sheets(material);
-  for (const auto& more : {paper_sheets(material), friction_sheets(material), energy_sheets(material)}) {
+  for (const auto& more :
+       {paper_sheets(material), section5_sheets(material), friction_sheets(material), energy_sheets(material)}) {
     sheets.insert(sheets.end(), more.begin(), more.end());
   }
   result.figures = int(sheets.size());
   Provenance provenance;
+  provenance.command = "reproduce";
   provenance.version = options.version;
-  provenance.input = write_design(pair[1]);
+  provenance.vehicle = write_design(pair[1]);
   provenance.condition = "air";
   provenance.method = "orbit";
   provenance.tolerance = 1e-7;
@@ -143,7 +219,7 @@ ReproduceResult reproduce_paper(const KnownPaper& paper, const ReproduceOptions&
   options.for_each(sheets.size(), [&](std::size_t n) {
     const Sheet& s = sheets[n];
     for (const auto& [format, extension] : {std::pair(PlotFormat::svg, ".svg"), std::pair(PlotFormat::pdf, ".pdf")}) {
-      OutputFile file("-o", folder / (s.id + extension));
+      OutputFile file("-o", folder / (s.id + extension), {"", replace});
       s.draw(format, file.temporary());
       if (format == PlotFormat::pdf)
         remove_date(file.temporary());
@@ -154,18 +230,25 @@ ReproduceResult reproduce_paper(const KnownPaper& paper, const ReproduceOptions&
     const std::lock_guard<std::mutex> lock(mutex);
     progress(0.3 + 0.68 * double(++finished) / double(sheets.size()), "drawing");
   });
+  std::vector<std::pair<std::string, std::string>> texts = {
+      {"claims.csv", csv_claims(result.assessment)},
+      {"claims.json", json_claims(result.file, result.assessment)},
+      {"report.html", report_html(material, sheets, options.version,
+                                  [&](const Sheet& s) { return drawings[std::size_t(&s - sheets.data())]; })}};
+  for (const Sheet& s : sheets) texts.emplace_back(s.id + ".csv", csv(s.table));
+  for (const auto& [name, content] : texts) lines.insert(listed(name, content));
+  write_notice();
+  for (const auto& [name, content] : texts) put(name, content);
+  lines.clear();
+  for (const auto& [name, content] : texts) lines.insert(listed(name, content));
+  write_notice();
   for (const Sheet& s : sheets) {
-    put(s.id + ".csv", csv(s.table));
-    OutputFile data("-o", folder / (s.id + ".nc"));
+    OutputFile data("-o", folder / (s.id + ".nc"), {"", replace});
     provenance.title = s.heading;
     write_netcdf(s.table, provenance, data.temporary());
     data.commit();
     if (!s.animation.empty()) put(s.id + "-moving.svg", s.animation);
   }
-  put("claims.csv", csv_claims(result.judgement));
-  put("claims.json", json_claims(result.file, result.judgement));
-  put("report.html", report_html(material, sheets, options.version,
-                                 [&](const Sheet& s) { return drawings[std::size_t(&s - sheets.data())]; }));
   progress(1.0, "done");
   return result;
 }

@@ -85,11 +85,12 @@ struct Material {
   const PublishedFile& file;
   const SpringPair& pair;
   const Reproduction& computed;
-  const Judgement& judgement;
+  const Assessment& assessment;
 };
 
 std::vector<Sheet> mechanism_sheets(const Material& m);
 std::vector<Sheet> paper_sheets(const Material& m);
+std::vector<Sheet> section5_sheets(const Material& m);
 std::vector<Sheet> friction_sheets(const Material& m);
 std::vector<Sheet> energy_sheets(const Material& m);
 

@@ -1,0 +1,112 @@
+// wingbeat keys, metrics and new: what may stand in a vehicle file, what comes out, and a file to start from.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <system_error>
+#include <vector>
+
+#include "command.hpp"
+#include "options.hpp"
+#include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/io/design_file.hpp"
+#include "wingbeat/io/design_keys.hpp"
+#include "wingbeat/io/output_file.hpp"
+#include "wingbeat/io/reference.hpp"
+#include "wingbeat/io/units.hpp"
+
+namespace wingbeat::app {
+namespace {
+
+struct Arguments {
+  std::string filter;
+  bool json = false;
+};
+
+int show(const Arguments& a, std::string (*text)(const std::string&), std::string (*json)(const std::string&),
+         const char* what, const std::vector<std::string_view>& names) {
+  if (text(a.filter).empty()) {
+    const std::string_view near = nearest_name(a.filter, names);
+    throw InputError(in_quotes(a.filter), 0, 0, "",
+                     near.empty() ? fmt::format("no {} has this in its name, unit or meaning", what)
+                                  : fmt::format("no {} has this in its name, unit or meaning; did you mean {}?", what, near));
+  }
+  print(a.json ? json(a.filter) : text(a.filter));
+  return done;
+}
+
+struct NewArguments {
+  std::string file = "vehicle.toml";
+  std::string transmission = "slider-crank";
+};
+
+int write_new(const NewArguments& a) {
+  TransmissionType type = TransmissionType::slider_crank;
+  if (a.transmission == "direct") {
+    type = TransmissionType::direct;
+  } else if (a.transmission != "slider-crank") {
+    throw InputError("--transmission", 0, 0, "",
+                     fmt::format("must be slider-crank or direct, got {}", in_quotes(a.transmission)));
+  }
+  if (a.file == "-") {
+    print(starting_vehicle(type, "new vehicle"));
+    return done;
+  }
+  std::filesystem::path file(a.file);
+  if (file.extension().empty()) file += ".toml";
+  if (file.extension() != ".toml") throw InputError(one_line(a.file), 0, 0, "", "the name must end in .toml");
+  std::error_code error;
+  if (std::filesystem::exists(std::filesystem::symlink_status(file, error))) {
+    throw InputError(one_line(file.string()), 0, 0, "", "is there already and is never overwritten; give another name");
+  }
+  const std::string stem = one_line(file.stem().string());
+  const bool plain = stem.find_first_of("\"\\") == std::string::npos;
+  OutputFile output("new", file, {".toml", false});
+  output.write(starting_vehicle(type, plain ? stem : "new vehicle"));
+  output.commit();
+  return done;
+}
+
+}  // namespace
+
+void add_keys(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("keys", "List the keys of vehicle files: unit, range, default, meaning");
+  const auto a = std::make_shared<Arguments>();
+  command->add_option("filter", a->filter, "Only keys with this in their name, unit or meaning")->type_name("WORD");
+  add_json(command, a->json);
+  command->footer("Example:\n  wingbeat keys torque");
+  command->callback([a, &action] {
+    action = [a] {
+      std::vector<std::string_view> names;
+      for (const auto& key : vehicle_keys<double>()) names.push_back(key.path);
+      return show(*a, text_keys, json_keys, "key", names);
+    };
+  });
+}
+
+void add_metrics(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("metrics", "List the metrics of a run: name, unit, meaning");
+  const auto a = std::make_shared<Arguments>();
+  command->add_option("filter", a->filter, "Only metrics with this in their name, unit or meaning")->type_name("WORD");
+  add_json(command, a->json);
+  command->footer("Example:\n  wingbeat metrics power");
+  command->callback([a, &action] {
+    action = [a] {
+      std::vector<std::string_view> names;
+      for (const MetricInfo& metric : metric_table()) names.push_back(metric.key);
+      return show(*a, text_metrics, json_metrics, "metric", names);
+    };
+  });
+}
+
+void add_new(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("new", "Write a vehicle file to start from, every key explained");
+  const auto a = std::make_shared<NewArguments>();
+  command->add_option("file", a->file, "NAME or NAME.toml (default vehicle.toml), never overwritten; - for standard output")
+      ->type_name("FILE");
+  command->add_option("--transmission", a->transmission, "slider-crank (default) or direct")->type_name("TYPE");
+  command->footer("Example:\n  wingbeat new flapper.toml");
+  command->callback([a, &action] { action = [a] { return write_new(*a); }; });
+}
+
+}  // namespace wingbeat::app

@@ -1,0 +1,23 @@
+// What the program says about itself: keys of vehicle files, metrics, and a vehicle file to start from.
+#pragma once
+
+#include <string>
+
+#include "wingbeat/vehicle/design.hpp"
+
+namespace wingbeat {
+
+/// The keys of vehicle files whose name, unit or meaning contains `filter` (all for an empty one), with unit, range,
+/// default and meaning, as text or as one JSON object. Empty where there is none.
+std::string text_keys(const std::string& filter);
+std::string json_keys(const std::string& filter);
+
+/// The same for metrics: name, unit, meaning.
+std::string text_metrics(const std::string& filter);
+std::string json_metrics(const std::string& filter);
+
+/// A vehicle file that flaps and holds every key that such a vehicle may have, each explained, the optional ones as
+/// comments.
+std::string starting_vehicle(TransmissionType transmission, const std::string& name);
+
+}  // namespace wingbeat

@@ -1,0 +1,28 @@
+// A design as the keys of a vehicle file, one by one.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "wingbeat/vehicle/design.hpp"
+
+namespace wingbeat {
+
+struct WrittenKey {
+  std::string_view path, unit;
+  std::string text;              ///< the value in TOML, to the last bit
+  std::optional<double> number;  ///< [SI], of a number
+};
+
+/// In the order of the key table.
+std::vector<WrittenKey> written_keys(const Design<double>& design);
+
+/// A TOML string.
+std::string toml_text(std::string_view text);
+
+/// A number, or a string with its unit, that reads back to the same double.
+std::string toml_quantity(double x, std::string_view unit);
+
+}  // namespace wingbeat

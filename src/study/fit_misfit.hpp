@@ -1,0 +1,22 @@
+// Whether a fitted model describes the data at all: before any interval is stated.
+#pragma once
+
+#include "wingbeat/study/bench_fit.hpp"
+
+namespace wingbeat {
+
+/// Residuals with less than this probability of being so large by chance, and over twice the variance stated, are a misfit.
+inline constexpr double misfit_probability = 1e-6;
+inline constexpr double misfit_variance = 2.0;
+/// Where the deviation is estimated from the residuals themselves: shares of the values' own spread (of its variance) and
+/// of their size that residuals must exceed both.
+inline constexpr double misfit_spread = 0.5, misfit_size = 0.2;
+
+/// Sums up the residuals of result.points by measured quantity and states in words where the model misses the data;
+/// `fitted_count` parameters were fitted. Sets result.quantities, result.p_value and result.misfit.
+void assess_misfit(const BenchFit& fit, int fitted_count, FitResult& result);
+
+/// Takes back what a misfit leaves without meaning: standard errors, intervals, covariances, what the data determine.
+void withdraw_intervals(FitResult& result);
+
+}  // namespace wingbeat

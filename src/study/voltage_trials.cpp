@@ -1,0 +1,70 @@
+#include "voltage_trials.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "wingbeat/core/text.hpp"
+#include "wingbeat/cycle/orbit_gradient.hpp"
+
+namespace wingbeat::detail {
+
+VoltageTrials::VoltageTrials(const Vehicle<double>& vehicle, const SteadyOptions& options, const StartUp& start_up,
+                             SearchRange range)
+    : vehicle_(vehicle), options_(options), start_up_(start_up), range_(range) {
+  // The root finder must not see the solver's own error.
+  closeness_ = std::max(0.1 * options.tolerance, 1e-13);
+  options_.tolerance = std::max(0.01 * options.tolerance, 1e-12);
+  options_.stability = false;
+}
+
+VoltageTrial VoltageTrials::at(double voltage) {
+  ++count_;
+  vehicle_.voltage = voltage;
+  const SteadyFlapping found = find_steady_flapping(vehicle_, options_, start_up_);
+  VoltageTrial trial;
+  trial.voltage = voltage;
+  trial.status = found.status;
+  trial.flaps = found.status == FlappingStatus::flapping;
+  trial.detail = found.detail;
+  if (!trial.flaps) return trial;
+
+  const Metrics<double>& m = found.metrics;
+  trial.frequency = m[Metric::frequency];
+  trial.lift = m[Metric::lift_mean];
+  trial.lift_peak = m[Metric::lift_peak];
+  trial.pitching = 90.0 - m[Metric::angle_of_attack_min];
+  trial.frequency_slope = 1.0;
+  trial.lift_slope = 0.0;
+  // A cycle that was simulated in time has no record to be differentiated.
+  if (!found.record.empty()) {
+    GradientVehicle seeded{vehicle_.cast<GradientJet>()};
+    const bool direct = vehicle_.transmission == TransmissionType::direct;
+    if (direct) seeded.vehicle.voltage = gradient_seed(voltage, 0);
+    const OrbitGradient g = orbit_gradient(found, seeded, {.peaks = false});
+    const int slot = direct ? gradient_first_slot : gradient_voltage_slot;
+    const double f_slope = g.metrics[Metric::frequency].v[slot], lift_slope = g.metrics[Metric::lift_mean].v[slot];
+    trial.exact = g.regular && std::isfinite(f_slope) && std::isfinite(lift_slope);
+    if (trial.exact) {
+      trial.frequency_slope = f_slope * voltage / trial.frequency;
+      trial.lift_slope = lift_slope * voltage;
+    }
+  }
+  const DomainExcess excess = domain_excess(vehicle_, m);
+  const bool domain = range_ == SearchRange::domain;
+  const double alpha = m[Metric::angle_of_attack_min];
+  const double flow = excess[std::size_t(DomainLimit::flow_speed)];
+  trial.beyond = domain ? alpha < angle_of_attack_lowest_deg || flow > 0.0
+                        : alpha < extrapolation_angle_deg ||
+                              flow > extrapolation_flow_speed / flow_speed_max - 1.0;
+  trial.excess = -1.0;
+  for (const double e : excess) trial.excess = std::isfinite(e) ? std::max(trial.excess, e) : 1.0;
+  trial.inside = domain ? domain_of(excess).none() : !trial.beyond;
+  if (!trial.inside && domain) trial.limits = describe_domain(vehicle_, m);
+  return trial;
+}
+
+std::string describe_below(const VoltageTrial& below) {
+  return format("; below, it is %s (%s)", name_of(below.status), below.detail.c_str());
+}
+
+}  // namespace wingbeat::detail

@@ -1,0 +1,81 @@
+// Trials of one vehicle at many voltages, with exact derivatives by the voltage: what both searches for one share.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "wingbeat/study/frequency_search.hpp"
+
+namespace wingbeat::detail {
+
+struct VoltageTrial {
+  double voltage = 0.0;
+  bool flaps = false;
+  FlappingStatus status = FlappingStatus::stalled;
+  std::string detail;
+  double frequency = absent;        ///< [Hz]
+  bool exact = false;               ///< both slopes; else 1 and 0 stand for them
+  double frequency_slope = absent;  ///< d ln f / d ln v
+  double lift = absent;             ///< mean [N]
+  double lift_peak = absent;        ///< [N]
+  double lift_slope = absent;       ///< d lift / d ln v [N]
+  double pitching = absent;         ///< 90 deg less the smallest angle of attack [deg]
+  double excess = absent;           ///< largest domain_excess()
+  bool inside = false;              ///< the range that is searched
+  bool beyond = false;              ///< so fast that no higher voltage can be inside
+  std::string limits;               ///< of the domain, where they are exceeded: describe_domain()
+};
+
+class VoltageTrials {
+ public:
+  VoltageTrials(const Vehicle<double>& vehicle, const SteadyOptions& options, const StartUp& start_up,
+                SearchRange range);
+
+  VoltageTrial at(double voltage);
+
+  const Vehicle<double>& vehicle() const { return vehicle_; }
+  SearchRange range() const { return range_; }
+  int count() const { return count_; }
+  /// How close to the value sought is close enough, relative.
+  double closeness() const { return closeness_; }
+  /// Relative accuracy of a trial's values.
+  double accuracy() const { return options_.tolerance; }
+  /// "" or " inside the domain of validity".
+  const char* where() const { return range_ == SearchRange::domain ? " inside the domain of validity" : ""; }
+
+ private:
+  Vehicle<double> vehicle_;
+  SteadyOptions options_;
+  const StartUp& start_up_;
+  SearchRange range_;
+  double closeness_;
+  int count_ = 0;
+};
+
+/// "; below, it is locked (rests at ...)".
+std::string describe_below(const VoltageTrial& below);
+
+/// A cubic over 0 to 1 by its values and slopes at the ends.
+struct Hermite {
+  double y0, d0, y1, d1;
+  double value(double t) const {
+    return y0 + t * (d0 + t * (3.0 * (y1 - y0) - 2.0 * d0 - d1 + t * (2.0 * (y0 - y1) + d0 + d1)));
+  }
+  double slope(double t) const {
+    return d0 + t * (2.0 * (3.0 * (y1 - y0) - 2.0 * d0 - d1) + t * 3.0 * (2.0 * (y0 - y1) + d0 + d1));
+  }
+};
+
+/// A zero of f between 0 and 1, where f changes sign.
+template <class F>
+double zero_between(const F& f) {
+  double a = 0.0, b = 1.0;
+  const bool positive = f(a) > 0.0;
+  for (int n = 0; n < 50; ++n) {
+    const double mid = 0.5 * (a + b);
+    (f(mid) > 0.0) == positive ? a = mid : b = mid;
+  }
+  return 0.5 * (a + b);
+}
+
+}  // namespace wingbeat::detail

@@ -1,0 +1,319 @@
+// The voltages found for a lift or a frequency: the lowest one inside the domain of validity, or a refusal that says why.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <ctime>
+#include <random>
+
+#include "vehicle/random_vehicle.hpp"
+#include "wingbeat/study/ensemble.hpp"
+#include "wingbeat/study/ensemble_frequency.hpp"
+#include "wingbeat/study/run.hpp"
+
+namespace wingbeat {
+namespace {
+
+/// Seconds of processor time, which other processes do not lengthen.
+double processor_time() { return double(std::clock()) / CLOCKS_PER_SEC; }
+
+/// The vehicle of docs/tutorials/own-vehicle.md, with springs. Its lift peaks at 91 mN.
+Design<double> tutorial_design() {
+  Design<double> d;
+  d.mass = 9e-3;
+  d.supply.voltage = 3.7;
+  d.motor.gear_ratio = 20.0;
+  d.motor.constants = {5.4, 53e-6, 2.11e-3, 5.1e-9, 1e-8, 0.0};
+  d.transmission.crank_radius = 4e-3;
+  d.transmission.rod_length = 18e-3;
+  d.transmission.stroke_amplitude = 50.0 / degrees_per_radian;
+  d.transmission.formulation = Formulation::virtual_work;
+  d.friction = {FrictionLaw::load_proportional, 0.5e-3};
+  d.spring.stiffness = 1e-3;
+  d.wing.inertia = 4e-8;
+  d.wing.planform.shape = PlanformShape::rectangle;
+  d.wing.planform.length = 65e-3;
+  d.wing.planform.root_chord = 22e-3;
+  d.wing.planform.hub_offset = 5e-3;
+  d.aerodynamics.air_density = 1.225;
+  d.aerodynamics.pitch_coefficient = 5e-3;
+  d.aerodynamics.coefficients = translational_2022();
+  return d;
+}
+
+RunResult with_lift(const Design<double>& design, double lift, bool extrapolate = false) {
+  RunOptions options;
+  options.lift = lift;
+  options.allow_extrapolation = extrapolate;
+  return run_design(design, options);
+}
+
+TEST(LiftSearch, TakesTheLowestVoltageNotOneBehindTheNegativeLift) {
+  const Design<double> d = tutorial_design();
+  const double weight = 9e-3 * standard_gravity;
+  for (const bool extrapolate : {false, true}) {
+    const RunResult hover = with_lift(d, weight, extrapolate);
+    ASSERT_EQ(hover.search->outcome, FrequencyOutcome::reached) << hover.detail;
+    EXPECT_NEAR(hover.metrics[Metric::lift_mean] / weight, 1.0, 1e-6);
+    EXPECT_NEAR(hover.metrics[Metric::voltage], 9.5, 0.01);
+    EXPECT_NEAR(hover.metrics[Metric::power_electrical], 0.97, 0.005);
+    EXPECT_NEAR(hover.metrics[Metric::angle_of_attack_min], 17.7, 0.1);
+  }
+}
+
+TEST(LiftSearch, RefusesWhatLiesAboveThePeakAndSaysWhereItIs) {
+  const Design<double> d = tutorial_design();
+  const RunResult over = with_lift(d, 0.1);
+  ASSERT_EQ(over.search->outcome, FrequencyOutcome::too_high) << over.detail;
+  EXPECT_EQ(over.status, FlappingStatus::flapping);
+  double peak = 0.0, where = 0.0;
+  for (double v = 9.0; v < 12.0; v += 0.02) {
+    Design<double> at = d;
+    at.supply.voltage = v;
+    const double lift = run_design(at).metrics[Metric::lift_mean];
+    if (lift > peak) peak = lift, where = v;
+  }
+  EXPECT_NEAR(over.search->closest_value / peak, 1.0, 1e-5);
+  EXPECT_NEAR(over.search->closest_voltage, where, 0.02);
+  EXPECT_NE(over.detail.find("0.1 N cannot be reached inside the domain of validity: it lifts 0.09"), std::string::npos)
+      << over.detail;
+  // Just below the peak there are two answers; the lower voltage is taken.
+  const RunResult top = with_lift(d, 0.99999 * peak);
+  ASSERT_EQ(top.search->outcome, FrequencyOutcome::reached) << top.detail;
+  EXPECT_LT(top.metrics[Metric::voltage], over.search->closest_voltage);
+  EXPECT_EQ(with_lift(d, 1.00002 * peak).search->outcome, FrequencyOutcome::too_high);
+  // Far outside the domain the lift of the formulas grows without end.
+  const RunResult beyond = with_lift(d, 0.1, true);
+  ASSERT_EQ(beyond.search->outcome, FrequencyOutcome::reached) << beyond.detail;
+  EXPECT_LT(beyond.metrics[Metric::angle_of_attack_min], -90.0);
+}
+
+TEST(LiftSearch, APwmSupplyReachesItByItsDuty) {
+  Design<double> d = tutorial_design();
+  d.supply = {SupplyType::pwm, 12.0, 20e3, 0.3};
+  const RunResult hover = with_lift(d, 9e-3 * standard_gravity);
+  ASSERT_EQ(hover.search->outcome, FrequencyOutcome::reached) << hover.detail;
+  EXPECT_NEAR(hover.design.supply.duty, 9.5 / 12.0, 1e-3);
+  EXPECT_EQ(hover.design.supply.voltage, 12.0);
+}
+
+TEST(LiftSearch, TheOnsetIsARefusalThatSaysWhatItLifts) {
+  Design<double> d = reference_design();
+  d.spring.stiffness = 1.377e-3;
+  for (const double lift : {0.5e-3, 45e-6}) {
+    const RunResult small = with_lift(d, lift);
+    ASSERT_EQ(small.search->outcome, FrequencyOutcome::too_low) << small.detail;
+    EXPECT_EQ(small.status, FlappingStatus::locked);
+    EXPECT_NEAR(small.search->closest_voltage, 1.2753, 2e-4);
+    EXPECT_NEAR(small.search->closest_value, 1.093e-3, 1e-6);
+    EXPECT_NE(small.detail.find("from rest it flaps only above 1.275 V, and there lifts 0.001093 N already; below, it is "
+                                "locked"),
+              std::string::npos)
+        << small.detail;
+    // Outside the domain the lift falls through both again.
+    const RunResult falling = with_lift(d, lift, true);
+    ASSERT_EQ(falling.search->outcome, FrequencyOutcome::reached) << falling.detail;
+    EXPECT_NEAR(falling.metrics[Metric::lift_mean], lift, 1e-6 * falling.metrics[Metric::lift_peak]);
+    EXPECT_LT(falling.metrics[Metric::angle_of_attack_min], 0.0);
+  }
+  EXPECT_EQ(with_lift(reference_design(), 45e-6).search->outcome, FrequencyOutcome::reached);
+}
+
+TEST(LiftSearch, ADirectDriveReachesItByItsAmplitude) {
+  Design<double> d = reference_design();
+  d.transmission = {};
+  d.transmission.type = TransmissionType::direct;
+  d.friction = {};
+  d.supply = {SupplyType::sine, 3.0, 22.0, 1.0};
+  d.spring.resonance = 22.0;
+  const double at_3 = run_design(d).metrics[Metric::lift_mean];
+  ASSERT_GT(at_3, 0.0);
+  const RunResult r = with_lift(d, at_3);
+  ASSERT_EQ(r.search->outcome, FrequencyOutcome::reached) << r.detail;
+  EXPECT_NEAR(r.metrics[Metric::lift_mean] / at_3, 1.0, 1e-6);
+  EXPECT_NEAR(r.design.supply.voltage, 3.0, 1e-4);
+}
+
+/// What many voltages show of a vehicle, without any search.
+struct Traced {
+  std::vector<double> voltages;
+  std::vector<EnsembleOutcome> outcomes;
+  std::vector<bool> inside;
+};
+
+Traced trace(const Vehicle<double>& vehicle, double low, double high, int count) {
+  Traced t;
+  std::vector<EnsembleMember> members(std::size_t(count), {vehicle, {}});
+  for (int n = 0; n < count; ++n) {
+    t.voltages.push_back(low * std::pow(high / low, double(n) / (count - 1)));
+    members[std::size_t(n)].vehicle.voltage = t.voltages.back();
+  }
+  t.outcomes.resize(members.size());
+  EnsembleOptions options;
+  options.metrics = domain_metrics();
+  options.metrics.set(std::size_t(Metric::lift_mean));
+  options.metrics.set(std::size_t(Metric::frequency));
+  solve_ensemble(members, options, start_up_in_time(), t.outcomes);
+  for (std::size_t n = 0; n < members.size(); ++n) {
+    t.inside.push_back(t.outcomes[n].status == FlappingStatus::flapping &&
+                       domain_of(members[n].vehicle, t.outcomes[n].metrics).none());
+  }
+  return t;
+}
+
+// Two hundred voltages each, solved by batches, show the first crossing and the peak that the search has to find.
+TEST(LiftSearch, AgreesWithTwoHundredVoltagesOnRandomVehicles) {
+  std::mt19937_64 random(20261121);
+  std::uniform_real_distribution<double> share(-2.0, 0.6);  // decades
+  int reached = 0, over = 0, under = 0;
+  for (int n = 0; n < 200; ++n) {
+    SCOPED_TRACE(n);
+    const Vehicle<double> vehicle = resolve(random_design(random, 2.0));
+    const Traced t = trace(vehicle, 0.3, 60.0, 200);
+    const auto lift = [&](std::size_t k) { return t.outcomes[k].metrics[Metric::lift_mean]; };
+    const auto flaps = [&](std::size_t k) { return t.outcomes[k].status == FlappingStatus::flapping; };
+    double peak = -1.0, near_peak = -1.0, least = 1e9;  // near: also the neighbours of voltages inside
+    std::size_t first = t.voltages.size();
+    for (std::size_t k = 0; k < t.voltages.size(); ++k) {
+      if (flaps(k)) first = std::min(first, k);
+      const bool beside = (k > 0 && t.inside[k - 1]) || (k + 1 < t.voltages.size() && t.inside[k + 1]);
+      if (flaps(k) && (t.inside[k] || beside)) near_peak = std::max(near_peak, lift(k));
+      if (!t.inside[k]) continue;
+      peak = std::max(peak, lift(k));
+      least = std::min(least, lift(k));
+    }
+    const double target = std::pow(10.0, n % 2 == 0 ? share(random) : 0.1 * share(random)) * (peak > 0.0 ? peak : 0.01);
+    const FrequencySearch found = find_voltage_for_lift(vehicle, target, {}, start_up_in_time());
+    // The first interval that is inside at both ends and holds the target.
+    std::size_t crossing = t.voltages.size();
+    for (std::size_t k = 1; k < t.voltages.size() && crossing == t.voltages.size(); ++k) {
+      if (t.inside[k - 1] && t.inside[k] && (lift(k - 1) < target) != (lift(k) < target)) crossing = k;
+    }
+    if (found.outcome == FrequencyOutcome::reached) {
+      ++reached;
+      Vehicle<double> at = vehicle;
+      at.voltage = found.voltage;
+      const SteadyFlapping there = find_steady_flapping(at, {}, start_up_in_time());
+      ASSERT_EQ(there.status, FlappingStatus::flapping);
+      EXPECT_NEAR(there.metrics[Metric::lift_mean] / target, 1.0, 1e-6);
+      EXPECT_TRUE(domain_of(at, there.metrics).none());
+      if (crossing < t.voltages.size()) {
+        EXPECT_LE(found.voltage, t.voltages[crossing] * (1.0 + 1e-9)) << found.detail;
+      }
+      continue;
+    }
+    if (crossing < t.voltages.size()) {
+      // Both ends hold orbits from rest, but the lift may jump between them.
+      EXPECT_EQ(found.outcome, FrequencyOutcome::jumps) << target << " at " << t.voltages[crossing] << ": " << found.detail;
+    }
+    if (found.outcome == FrequencyOutcome::too_high) {
+      ++over;
+      EXPECT_LT(peak, target * (1.0 + 1e-6)) << found.detail;
+      EXPECT_GT(found.closest_value, peak * (1.0 - 1e-6)) << found.detail;
+      EXPECT_LT(found.closest_value, near_peak * 1.01) << found.detail;
+    } else if (found.outcome == FrequencyOutcome::too_low) {
+      ++under;
+      EXPECT_GT(least, target);
+      ASSERT_LT(first, t.voltages.size());
+      EXPECT_LT(found.closest_voltage, t.voltages[first] * 1.001) << found.detail;
+      if (first > 0) {
+        EXPECT_GT(found.closest_voltage, t.voltages[first - 1] * 0.999) << found.detail;
+      }
+    } else if (found.outcome == FrequencyOutcome::never_flaps) {
+      EXPECT_EQ(first, t.voltages.size()) << found.detail;
+    } else if (found.outcome == FrequencyOutcome::outside_domain) {
+      if (peak > 0.0) {
+        EXPECT_TRUE(peak < target || least > target) << found.detail;
+      }
+    }
+  }
+  EXPECT_GT(reached, 100);
+  EXPECT_GT(over, 30);
+  EXPECT_GT(under, 1);
+}
+
+TEST(FrequencySearch, FrequenciesOutOfReachAreRefusedAtOnce) {
+  std::mt19937_64 random(3);
+  for (int n = 0; n < 20; ++n) {
+    const Vehicle<double> vehicle = resolve(random_design(random, 1.5));
+    for (const double frequency : {1e4, 1e5, 1e6}) {
+      for (const SearchRange range : {SearchRange::domain, SearchRange::extrapolation}) {
+        const auto start = processor_time();
+        const FrequencySearch found = find_voltage_for_frequency(vehicle, frequency, {}, start_up_in_time(), range);
+        EXPECT_EQ(found.outcome, FrequencyOutcome::outside_domain);
+        EXPECT_EQ(found.evaluations, 0);
+        EXPECT_LT(processor_time() - start, 0.1);
+      }
+    }
+  }
+}
+
+// The bound is one: whatever flaps inside the range flaps more slowly.
+TEST(FrequencySearch, NothingInsideFlapsFasterThanTheBound) {
+  std::mt19937_64 random(4);
+  double closest = 0.0;
+  for (int n = 0; n < 60; ++n) {
+    const Vehicle<double> vehicle = resolve(random_design(random, 1.5));
+    const Traced t = trace(vehicle, 2.0, 60.0, 25);
+    const double bound = highest_frequency(vehicle, SearchRange::domain);
+    for (std::size_t k = 0; k < t.voltages.size(); ++k) {
+      if (!t.inside[k]) continue;
+      const double f = t.outcomes[k].metrics[Metric::frequency];
+      EXPECT_LT(f, bound);
+      closest = std::max(closest, f / bound);
+    }
+  }
+  EXPECT_GT(closest, 0.5);
+}
+
+TEST(FrequencySearch, KeepsToTheDomainUnlessAsked) {
+  const Design<double> d = tutorial_design();
+  RunOptions options;
+  options.frequency = 60.0;
+  const RunResult refused = run_design(d, options);
+  ASSERT_EQ(refused.search->outcome, FrequencyOutcome::outside_domain) << refused.detail;
+  EXPECT_EQ(refused.status, FlappingStatus::flapping);
+  EXPECT_NE(refused.detail.find("60 Hz cannot be reached inside the domain of validity: at "), std::string::npos)
+      << refused.detail;
+  // The fastest inside has its smallest angle of attack at 0 deg.
+  options.frequency = refused.search->closest_value;
+  const RunResult fastest = run_design(d, options);
+  ASSERT_EQ(fastest.search->outcome, FrequencyOutcome::reached) << fastest.detail;
+  EXPECT_NEAR(fastest.metrics[Metric::angle_of_attack_min], 0.0, 0.05);
+  options.frequency = 60.0;
+  options.allow_extrapolation = true;
+  const RunResult reached = run_design(d, options);
+  ASSERT_EQ(reached.search->outcome, FrequencyOutcome::reached) << reached.detail;
+  EXPECT_LT(reached.metrics[Metric::angle_of_attack_min], 0.0);
+}
+
+TEST(FrequencySearch, ReachesTheToleranceAskedFor) {
+  for (const double tolerance : {1e-4, 1e-8, 1e-12}) {
+    RunOptions options;
+    options.tolerance = tolerance;
+    options.frequency = 22.0;
+    const RunResult r = run_design(reference_design(), options);
+    ASSERT_EQ(r.search->outcome, FrequencyOutcome::reached) << r.detail;
+    EXPECT_NEAR(r.metrics[Metric::frequency] / 22.0, 1.0, tolerance);
+    EXPECT_LT(r.search->evaluations, 20);
+  }
+}
+
+TEST(FrequencySearch, ManyUnreachedDesignsCostNothing) {
+  std::mt19937_64 random(5);
+  std::vector<EnsembleMember> members;
+  for (int n = 0; n < 500; ++n) members.push_back({resolve(random_design(random, 1.5)), {}});
+  const std::vector<double> frequencies(members.size(), 1e6);
+  std::vector<EnsembleOutcome> outcomes(members.size());
+  std::vector<FrequencyOutcome> reached(members.size());
+  const auto start = processor_time();
+  solve_ensemble_at_frequency(members, frequencies, {}, start_up_in_time(), outcomes, reached);
+  EXPECT_LT(processor_time() - start, 0.1);
+  for (std::size_t n = 0; n < members.size(); ++n) {
+    EXPECT_EQ(reached[n], FrequencyOutcome::outside_domain);
+    EXPECT_EQ(outcomes[n].status, FlappingStatus::flapping);
+    EXPECT_TRUE(std::isnan(outcomes[n].metrics[Metric::frequency]));
+  }
+}
+
+}  // namespace
+}  // namespace wingbeat
