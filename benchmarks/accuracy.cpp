@@ -1,7 +1,7 @@
 // How far the metrics of random vehicles are from those of a far tighter tolerance, over the tolerance asked for:
 //   benchmarks/accuracy orbit|transient|batched [VEHICLES] [TOLERANCE] [BOX] [SEED]
 // VEHICLES of each box of tests/vehicle/wide_design.hpp (1000, 1e-6, all, 1 unless given). Exit status 1 if more than one
-// vehicle in a thousand is off by more than the tolerance, or any by more than three times.
+// vehicle in a thousand is off by more than the tolerance, or any by more than three times. With LIST in the environment, the worst of each box are listed.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -13,10 +13,8 @@
 
 #include "vehicle/wide_design.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
-#ifndef ORBIT_ONLY
 #include "wingbeat/study/ensemble.hpp"
 #include "wingbeat/study/transient.hpp"
-#endif
 
 using namespace wingbeat;
 
@@ -56,9 +54,6 @@ int main(int argc, char** argv) {
     if (only >= 0 && b != only) continue;
     std::mt19937_64 random(seed);
     std::vector<Vehicle<double>> vehicles;
-#ifdef ORBIT_ONLY
-    struct EnsembleMember { Vehicle<double> v; Reporting reporting; };
-#endif
     std::vector<EnsembleMember> members;
     while (int(vehicles.size()) < count) {
       try {
@@ -70,7 +65,6 @@ int main(int argc, char** argv) {
     }
     Sums sums;
     sums.vehicles = count;
-#ifndef ORBIT_ONLY
     std::vector<EnsembleOutcome> outcomes(members.size());
     if (solver == "batched") {
       EnsembleOptions options;
@@ -79,7 +73,6 @@ int main(int argc, char** argv) {
       solve_ensemble(members, options, {}, outcomes);
       sums.seconds = seconds_since(start);
     }
-#endif
     std::vector<Found> found;
     for (int n = 0; n < count; ++n) {
       const Vehicle<double>& v = vehicles[std::size_t(n)];
@@ -87,7 +80,6 @@ int main(int argc, char** argv) {
       Found f;
       f.number = n;
       Metrics<double> got;
-#ifndef ORBIT_ONLY
       if (solver == "batched") {
         const EnsembleOutcome& o = outcomes[std::size_t(n)];
         if (o.status != FlappingStatus::flapping) continue;
@@ -106,7 +98,6 @@ int main(int argc, char** argv) {
         if (r.status != FlappingStatus::flapping || !r.metrics) continue;
         got = *r.metrics;
       } else
-#endif
       {
         const auto start = std::chrono::steady_clock::now();
         const SteadyFlapping r =
@@ -130,11 +121,13 @@ int main(int argc, char** argv) {
       f.multiplier_exact = exact.metrics[Metric::floquet_multiplier_max];
       if (solver != "orbit" && std::abs(got[Metric::frequency] / exact.metrics[Metric::frequency] - 1.0) > 1e-2) {
         ++sums.other;
-        if (list) std::printf("box %d number %d: frequency %g, exact %g, %s\n", b, n, got[Metric::frequency], exact.metrics[Metric::frequency], f.note.c_str());
+        if (list) {
+          std::printf("box %d number %d: frequency %g, exact %g, %s\n", b, n, got[Metric::frequency],
+                      exact.metrics[Metric::frequency], f.note.c_str());
+        }
         continue;
       }
       f.off = metrics_apart(got, exact.metrics, &f.metric) / tolerance;
-      if (std::getenv("EACH")) std::printf("%d %d %.3g %s M %.4g\n", b, n, f.off, metric_table()[std::size_t(f.metric)].key, f.multiplier_exact);
       ++sums.compared;
       sums.longest = std::max(sums.longest, int(1e3 * f.seconds));
       if (!(f.off <= 1.0)) {
@@ -146,9 +139,10 @@ int main(int argc, char** argv) {
     }
     std::sort(found.begin(), found.end(), [](const Found& x, const Found& y) { return x.off > y.off; });
     if (!found.empty()) sums.worst = found.front().off;
-    std::printf("| %d %s | %d | %d | %d | %d | %.3g | %s | %d | %.2f (%d ms) |\n", b, wide_boxes[std::size_t(b)], sums.vehicles,
-                sums.compared, sums.outside, sums.outside_three, sums.worst,
-                found.empty() ? "" : metric_table()[std::size_t(found.front().metric)].key, sums.other, sums.seconds, sums.longest);
+    std::printf("| %d %s | %d | %d | %d | %d | %.3g | %s | %d | %.2f (%d ms) |\n", b, wide_boxes[std::size_t(b)],
+                sums.vehicles, sums.compared, sums.outside, sums.outside_three, sums.worst,
+                found.empty() ? "" : metric_table()[std::size_t(found.front().metric)].key, sums.other, sums.seconds,
+                sums.longest);
     std::fflush(stdout);
     if (list) {
       for (std::size_t k = 0; k < std::min<std::size_t>(found.size(), 8); ++k) {
@@ -157,8 +151,8 @@ int main(int argc, char** argv) {
                     metric_table()[std::size_t(f.metric)].key, f.multiplier, f.multiplier_exact, f.estimate,
                     f.recomputed ? " recomputed" : "", f.note.c_str());
       }
-      std::vector<double> m;
-      double worst = 0.0; int at = 0; double is = 0, should = 0;
+      double worst = 0.0, is = 0.0, should = 0.0;
+      int at = 0;
       for (const Found& f : found) {
         const double off = std::abs(f.multiplier - f.multiplier_exact) / std::max(1e-6, std::abs(f.multiplier_exact));
         if (!(off <= worst)) worst = off, at = f.number, is = f.multiplier, should = f.multiplier_exact;

@@ -25,7 +25,8 @@ TEST(Floquet, ProductsNeitherOverflowNorUnderflow) {
 
 TEST(Floquet, ComplexPairsHaveTheRootOfTheDeterminant) {
   MatrixProduct<2> product;
-  for (int n = 0; n < 100; ++n) product.append({0.9 * std::cos(0.1), -0.9 * std::sin(0.1), 0.9 * std::sin(0.1), 0.9 * std::cos(0.1)});
+  const double c = 0.9 * std::cos(0.1), s = 0.9 * std::sin(0.1);
+  for (int n = 0; n < 100; ++n) product.append({c, -s, s, c});
   EXPECT_NEAR(product.spectral_radius() / std::pow(0.9, 100), 1.0, 1e-10);
 }
 

@@ -42,7 +42,11 @@ struct MatrixProduct {
         largest = std::max(largest, std::abs(sum));
       }
     }
-    log_determinant += std::log(std::abs(determinant(int(n), factor.data())));
+    double size = 0.0;
+    for (const double entry : factor) size = std::max(size, std::abs(entry));
+    std::array<double, n * n> shape = factor;
+    for (double& entry : shape) entry = size > 0.0 ? entry / size : 0.0;
+    log_determinant += double(n) * std::log(size) + std::log(std::abs(determinant(int(n), shape.data())));
     if (!(largest > 0.0)) {
       log_scale = -std::numeric_limits<double>::infinity();
       return;
