@@ -137,6 +137,29 @@ TEST(Statuses, HeavyRotorsSettleByExtrapolation) {
   EXPECT_LT(in_time.start_up->time_to_steady, 10.0 * T);
 }
 
+TEST(Statuses, AMotorThatNeverStartsIsStalledEvenWhereItWouldJam) {
+  Design<double> d = reference_design();
+  d.motor.constants.inertia = 2e-9;  // jams where it stands
+  RunOptions options;
+  options.method = Method::transient;
+  d.friction.coefficient = 6e-3;
+  EXPECT_EQ(run_design(d, options).status, FlappingStatus::jammed);
+  d.motor.constants.friction_torque = 3.4e-3;  // stall torque 3.33e-3 N m
+  EXPECT_EQ(run_design(d, options).status, FlappingStatus::stalled);
+  EXPECT_EQ(orbit_of(d).status, FlappingStatus::stalled);
+  EXPECT_EQ(batched(d).status, FlappingStatus::stalled);
+}
+
+TEST(Statuses, ADirectDriveWeakerThanItsFrictionIsStalledThoughItSlipsAtFirst) {
+  // Number 493: the current's start winds the springs, whose slips then die out.
+  const WideVehicle v = wide_vehicle(WideBox::direct, 493);
+  EXPECT_EQ(orbit_of(v.design).status, FlappingStatus::stalled);
+  RunOptions options;
+  options.method = Method::transient;
+  const RunResult in_time = run_design(v.design, options);
+  EXPECT_EQ(in_time.status, FlappingStatus::stalled) << in_time.detail;
+}
+
 TEST(Statuses, AgreeOnWideVehicles) {
   constexpr std::uint32_t of_each = 8;
   int flapping = 0, others = 0;
