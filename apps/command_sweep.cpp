@@ -183,7 +183,8 @@ std::string json_summary(const Study& study, const SweepResult& result, const Ar
   for (int s = 0; s < sweep_status_count; ++s) {
     json["status"][name_of(SweepStatus(s))] = result.digest.designs[std::size_t(s)];
   }
-  const auto best = [&](const std::optional<SweepDigest::Best>& found, Metric metric) {
+  const auto best = [&](const SweepBest& b, Metric metric) {
+    const auto& found = b.design();
     if (!found) return Json(nullptr);
     Json entry;
     entry["index"] = found->index;
