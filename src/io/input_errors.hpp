@@ -26,9 +26,10 @@ class InputErrors {
     }
   }
 
+  /// An error with others keeps their order: its reader has put them so.
   void add(const InputError& error) {
-    errors_.push_back(error);
-    for (const InputError& other : error.others()) errors_.push_back(other);
+    errors_.push_back({error, error.line(), error.column()});
+    for (const InputError& other : error.others()) errors_.push_back({other, error.line(), error.column()});
   }
 
   bool none() const { return errors_.empty(); }
@@ -49,17 +50,25 @@ class InputErrors {
   }
 
  private:
+  struct Kept {
+    InputError error;
+    int line, column;  ///< by which it is sorted
+  };
+
   std::vector<InputError> in_order() const {
     std::map<std::string, std::size_t> files;  // in the order in which they were read
-    for (const InputError& error : errors_) files.emplace(error.file(), files.size());
-    std::vector<InputError> sorted = errors_;
-    std::stable_sort(sorted.begin(), sorted.end(), [&](const InputError& a, const InputError& b) {
-      return std::tuple(files.at(a.file()), a.line(), a.column()) < std::tuple(files.at(b.file()), b.line(), b.column());
+    for (const Kept& kept : errors_) files.emplace(kept.error.file(), files.size());
+    std::vector<Kept> sorted = errors_;
+    std::stable_sort(sorted.begin(), sorted.end(), [&](const Kept& a, const Kept& b) {
+      return std::tuple(files.at(a.error.file()), a.line, a.column) <
+             std::tuple(files.at(b.error.file()), b.line, b.column);
     });
-    return sorted;
+    std::vector<InputError> errors;
+    for (const Kept& kept : sorted) errors.push_back(kept.error);
+    return errors;
   }
 
-  std::vector<InputError> errors_;
+  std::vector<Kept> errors_;
 };
 
 }  // namespace wingbeat
