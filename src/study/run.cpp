@@ -9,7 +9,6 @@ namespace wingbeat {
 namespace {
 
 constexpr double transient_tightest = 1e-11;
-constexpr long transient_steps = 3000000;  // weakly damped drives with small inductances take more than a million
 
 using detail::format;
 
@@ -150,7 +149,6 @@ void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunRes
 void run_transient(const Vehicle<double>& vehicle, const RunOptions& options, RunResult& result) {
   TransientOptions transient;
   transient.tolerance = std::max(options.tolerance, transient_tightest);
-  transient.max_steps = transient_steps;
   transient.reporting = reporting_of(result.design);
   const bool direct = vehicle.transmission == TransmissionType::direct;
   if (!direct) transient.supply = result.design.supply;
@@ -184,7 +182,6 @@ StartUp start_up_in_time(double tolerance) {
   return [tolerance](const Vehicle<double>& vehicle) {
     TransientOptions options;
     options.tolerance = std::max(tolerance, transient_tightest);
-    options.max_steps = transient_steps;
     options.metrics = false;
     const TransientResult r = simulate_start_up(vehicle, options);
     StartUpOutcome outcome{r.status, r.settled, r.detail, r.crank_speed, r.current, r.stroke_angle, {}};

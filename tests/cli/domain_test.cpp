@@ -71,10 +71,10 @@ TEST_F(Domain, EfficienciesThatNoVehicleHas) {
     for (const std::string& set : sets) all.insert(all.end(), {"--set", set});
     return run(all).json();
   };
-  const Json three_times = with({"spring.stiffness=0.01744", "supply.voltage=4.023", "motor.armature_resistance=0.02012",
+  const Json above_one = with({"spring.stiffness=0.01744", "supply.voltage=4.023", "motor.armature_resistance=0.02012",
                                  "transmission.mid_stroke_height=0.01609"});
-  EXPECT_GT(three_times["efficiency_system"].get<double>(), 3.0);
-  EXPECT_EQ(three_times["domain"], "formulation_residual, mechanism_efficiency");
+  EXPECT_GT(above_one["efficiency_system"].get<double>(), 1.2);
+  EXPECT_EQ(above_one["domain"], "angle_of_attack, formulation_residual, mechanism_efficiency");
   const Json gives_power = with({"spring.stiffness=0.03759", "supply.voltage=5.504", "motor.armature_resistance=0.6877",
                                  "transmission.mid_stroke_height=0.01497"});
   EXPECT_LT(gives_power["power_electrical_w"].get<double>(), 0.0);
@@ -140,7 +140,7 @@ TEST_F(Domain, SweepsFlagItAndTheBestIsInside) {
   const Outcome free = run({"sweep", file, "-o", path("free.nc"), "--allow-extrapolation"});
   ASSERT_EQ(free.status, 0) << free.err;
   EXPECT_THAT(free.out, HasSubstr("extrapolation is allowed"));
-  EXPECT_NE(free.out.substr(free.out.find("most mean lift")), kept.out.substr(kept.out.find("most mean lift")));
+  EXPECT_NE(free.out.substr(free.out.find("maximum mean lift")), kept.out.substr(kept.out.find("maximum mean lift")));
   const std::string asked = study(voltages, "allow_extrapolation = true\n");
   EXPECT_THAT(run({"sweep", asked, "-o", path("asked.nc")}).out, HasSubstr("extrapolation is allowed"));
 }

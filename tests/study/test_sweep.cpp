@@ -76,8 +76,8 @@ TEST(Sweep, EachDesignIsWhatARunOfItGives) {
 TEST(Sweep, HowItIsDividedDoesNotMatter) {
   const Sweep sweep = small_sweep();
   SweepColumns whole, parts;
-  whole.resize(18, 28);
-  parts.resize(18, 28);
+  whole.resize(18, std::size_t(metric_count));
+  parts.resize(18, std::size_t(metric_count));
   SweepSolver(sweep, start_up_in_time()).solve(whole, 0, 18);
   SweepSolver one(sweep, start_up_in_time()), other(sweep, start_up_in_time());
   other.solve(parts, 11, 18);

@@ -20,7 +20,9 @@ struct TransientOptions {
   double tolerance = 1e-6;  ///< wanted relative accuracy of the metrics of steady flapping [1], 1e-11 to 1e-2
   double max_time = 0.0;    ///< give up after this time [s]; 0: chosen from the vehicle's own time scales
   int max_laps = 5000;      ///< give up after this many revolutions
-  long max_steps = 1000000; ///< give up after this many integration steps (about a microsecond each)
+  /// Give up after this many integration steps, a microsecond or two each: weakly damped drives with small inductances
+  /// take more than a million.
+  long max_steps = 3000000;
 
   double crank_angle = 0.0;  ///< theta at the start [rad]
   double crank_speed = 0.0;  ///< omega at the start [rad/s]; negative turns backwards
