@@ -359,20 +359,14 @@ bool DirectStartUp::rests_for_good() {
     const double remains = inductive_ ? std::abs(y_[2] - vehicle_.voltage / Z * std::sin(w_ * t_ - lag)) : 0.0;
     held = drive_torque_ + std::abs(springs_of(y_[0])) + m.torque_constant * remains;
   }
-  // Where friction outweighs the drive, wound springs give ever smaller slips until they are too weak.
-  const bool dies_out = stuck_ && drive_torque_ <= holding_torque_ && !changes_.empty() && changes_.back() < 1e-6;
-  if (held > holding_torque_ && !no_drive && !dies_out) return false;
+  if (held > holding_torque_ && !no_drive) return false;
   done_ = true;
   result_.settled = true;
   result_.status = FlappingStatus::stalled;
   result_.time_to_steady = t_;
   result_.lock_angle = y_[0];
-  result_.torque_margin = stuck_ ? std::max(0.0, holding_torque_ - held) : 0.0;
-  result_.detail = held > holding_torque_ && dies_out
-                       ? format("rests at stroke angle %.4f deg but for slips that die out: the supply gives a torque of "
-                                "%.4g N m at most, which does not exceed the constant friction %.4g N m",
-                                y_[0] * degrees_per_radian, drive_torque_, holding_torque_)
-                   : stuck_ ? format("rests at stroke angle %.4f deg: the constant friction %.4g N m holds %.4g N m, "
+  result_.torque_margin = stuck_ ? holding_torque_ - held : 0.0;
+  result_.detail = stuck_ ? format("rests at stroke angle %.4f deg: the constant friction %.4g N m holds %.4g N m, "
                                    "all that supply and springs apply at most",
                                    y_[0] * degrees_per_radian, holding_torque_, held)
                           : std::string("no voltage: nothing moves the wings");

@@ -28,6 +28,7 @@ class Search {
     double voltage = unloaded;
     for (int n = 0; n < 200; ++n) {
       const VoltageTrial trial = trials_.at(voltage);
+      if (trial.flaps) follow(trial);
       if (trial.flaps && std::abs(trial.frequency / target_ - 1.0) <= trials_.closeness()) return reached(trial);
       if (trial.flaps && trial.frequency >= target_) {
         high_ = trial;
@@ -43,6 +44,16 @@ class Search {
   }
 
  private:
+  /// The slope between the last two trials: a frequency is so nearly proportional to the voltage that this takes one trial
+  /// more than an exact slope, at half the cost each.
+  void follow(const VoltageTrial& t) {
+    const double x = std::log(t.voltage), y = std::log(t.frequency);
+    const double slope = (y - last_y_) / (x - last_x_);
+    if (std::abs(y - last_y_) > 10.0 * trials_.accuracy() && slope > 0.1 && slope < 10.0) slope_ = slope;
+    last_x_ = x;
+    last_y_ = y;
+  }
+
   bool low_flaps() const { return low_ && low_->flaps; }
 
   std::optional<FrequencySearch> decide(double lowest, double highest) {
@@ -68,26 +79,26 @@ class Search {
   double next() {
     if (!high_) {
       if (ceiling_) return std::sqrt(low_->voltage * ceiling_->voltage);
-      return low_->flaps ? newton(*low_, 4.0) : 1.5 * low_->voltage;
+      return low_->flaps ? secant(*low_, 4.0) : 1.5 * low_->voltage;
     }
-    if (!low_) return newton(*high_, 4.0);
+    if (!low_) return secant(*high_, 4.0);
     if (!low_->flaps) return 0.5 * (low_->voltage + high_->voltage);
-    // Newton's method from the closer end, which the bracket bounds and halves where steps do not shrink it.
+    // The secant's step from the closer end, which the bracket bounds and halves where steps do not shrink it.
     const double width = high_->voltage - low_->voltage;
     const bool slow = width > 0.5 * bracket_;
     bracket_ = width;
     const double middle = 0.5 * (low_->voltage + high_->voltage);
     if (slow && (stuck_ = !stuck_)) return middle;
     const VoltageTrial& from = target_ - low_->frequency < high_->frequency - target_ ? *low_ : *high_;
-    const double guess = newton(from, 4.0);
+    const double guess = secant(from, 4.0);
     return guess > low_->voltage && guess < high_->voltage ? guess : middle;
   }
 
-  /// Newton's step in the logarithms of frequency and voltage; somewhat further outside a bracket, so that one is found
+  /// The secant's step in the logarithms of frequency and voltage; somewhat further outside a bracket, so that one is found
   /// soon, and twice as far where the trial's own error counts.
-  double newton(const VoltageTrial& t, double most) const {
+  double secant(const VoltageTrial& t, double most) const {
     const double gap = std::log(target_ / t.frequency);
-    double step = gap / std::max(t.frequency_slope, 0.1);
+    double step = gap / slope_;
     if (!(low_ && high_)) step *= std::abs(gap) < 100.0 * trials_.accuracy() ? 2.0 : 1.0 + 0.1 * std::abs(step);
     return t.voltage * std::clamp(std::exp(step), 1.0 / most, most);
   }
@@ -153,6 +164,8 @@ class Search {
   std::optional<VoltageTrial> low_;      ///< slower than wanted, or not flapping
   std::optional<VoltageTrial> high_;     ///< faster
   std::optional<VoltageTrial> ceiling_;  ///< not flapping, above a low_ that flaps
+  double last_x_ = absent, last_y_ = absent;  ///< logarithms of the last trial's voltage and frequency
+  double slope_ = 1.0;                        ///< d ln f / d ln v
   double bracket_ = std::numeric_limits<double>::infinity();
   bool stuck_ = false;
 };
@@ -193,7 +206,7 @@ FrequencySearch find_voltage_for_frequency(const Vehicle<double>& vehicle, doubl
   const Motor<double>& m = vehicle.motor;
   const double K = m.torque_constant, omega = two_pi * frequency;
   const double unloaded = K * omega + circuit_resistance(vehicle) * (m.viscous_damping * omega + m.friction_torque) / K;
-  return Search(VoltageTrials(vehicle, options, start_up, range), frequency).run(unloaded);
+  return Search(VoltageTrials(vehicle, options, start_up, range, false), frequency).run(unloaded);
 }
 
 }  // namespace wingbeat

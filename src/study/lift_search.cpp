@@ -334,7 +334,7 @@ FrequencySearch find_voltage_for_lift(const Vehicle<double>& vehicle, double lif
                                       const StartUp& start_up, const LiftSearchOptions& where) {
   require(lift > 0.0 && std::isfinite(lift), "lift", "must be > 0 and finite", "N", lift);
   require(where.nominal > 0.0 && std::isfinite(where.nominal), "voltage", "must be > 0 and finite", "V", where.nominal);
-  VoltageTrials trials(vehicle, options, start_up, where.range);
+  VoltageTrials trials(vehicle, options, start_up, where.range, true);
   const BladeElement<double>& w = vehicle.wings;
   if (!(w.air_density > 0.0 && w.s2 > 0.0)) {
     const VoltageTrial t = trials.at(where.nominal);

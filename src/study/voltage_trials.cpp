@@ -9,8 +9,8 @@
 namespace wingbeat::detail {
 
 VoltageTrials::VoltageTrials(const Vehicle<double>& vehicle, const SteadyOptions& options, const StartUp& start_up,
-                             SearchRange range)
-    : vehicle_(vehicle), options_(options), start_up_(start_up), range_(range) {
+                             SearchRange range, bool slopes)
+    : vehicle_(vehicle), options_(options), start_up_(start_up), range_(range), slopes_(slopes) {
   // The root finder must not see the solver's own error.
   closeness_ = std::max(0.1 * options.tolerance, 1e-13);
   options_.tolerance = std::max(0.01 * options.tolerance, 1e-12);
@@ -36,7 +36,7 @@ VoltageTrial VoltageTrials::at(double voltage) {
   trial.frequency_slope = 1.0;
   trial.lift_slope = 0.0;
   // A cycle that was simulated in time has no record to be differentiated.
-  if (!found.record.empty()) {
+  if (slopes_ && !found.record.empty()) {
     GradientVehicle seeded{vehicle_.cast<GradientJet>()};
     const bool direct = vehicle_.transmission == TransmissionType::direct;
     if (direct) seeded.vehicle.voltage = gradient_seed(voltage, 0);

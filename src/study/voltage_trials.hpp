@@ -28,8 +28,9 @@ struct VoltageTrial {
 
 class VoltageTrials {
  public:
+  /// `slopes`: with derivatives, each of which costs about as much as its orbit.
   VoltageTrials(const Vehicle<double>& vehicle, const SteadyOptions& options, const StartUp& start_up,
-                SearchRange range);
+                SearchRange range, bool slopes);
 
   VoltageTrial at(double voltage);
 
@@ -48,6 +49,7 @@ class VoltageTrials {
   SteadyOptions options_;
   const StartUp& start_up_;
   SearchRange range_;
+  bool slopes_;
   double closeness_;
   int count_ = 0;
 };

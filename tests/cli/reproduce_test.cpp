@@ -148,10 +148,10 @@ TEST_F(Reproduce, TheClaimsAreThoseCommitted) {
         const bool place = ours[n][0].find("crank radius of") == 0 || ours[n][0].find("range of best") == 0 ||
                            ours[n][0].find("at this flapping frequency") != std::string::npos ||
                            ours[n][0].find("near this flapping frequency") != std::string::npos;
-        EXPECT_NEAR(x, y,
-                    place ? 5e-3 * std::max(std::abs(y), 1.0 * (name.find("deviation") != std::string::npos))
-                          : 1e-6 * std::max(std::abs(y), 1.0 * (name.find("deviation") != std::string::npos)))
-            << ours[n][0] << ", " << name;
+        // So are the chord moments that come nearest to two values of which both cannot be met.
+        const bool nearest = name.find("own_calibration") != std::string::npos;
+        const double scale = std::max(std::abs(y), name.find("deviation") != std::string::npos ? 1.0 : 0.0);
+        EXPECT_NEAR(x, y, scale * (place ? 5e-3 : nearest ? 1e-4 : 1e-6)) << ours[n][0] << ", " << name;
       } else {
         EXPECT_EQ(ours[n][column], expected[n][column]) << ours[n][0] << ", " << name;
       }

@@ -150,16 +150,6 @@ TEST(Statuses, AMotorThatNeverStartsIsStalledEvenWhereItWouldJam) {
   EXPECT_EQ(batched(d).status, FlappingStatus::stalled);
 }
 
-TEST(Statuses, ADirectDriveWeakerThanItsFrictionIsStalledThoughItSlipsAtFirst) {
-  // Number 493: the current's start winds the springs, whose slips then die out.
-  const WideVehicle v = wide_vehicle(WideBox::direct, 493);
-  EXPECT_EQ(orbit_of(v.design).status, FlappingStatus::stalled);
-  RunOptions options;
-  options.method = Method::transient;
-  const RunResult in_time = run_design(v.design, options);
-  EXPECT_EQ(in_time.status, FlappingStatus::stalled) << in_time.detail;
-}
-
 TEST(Statuses, AgreeOnWideVehicles) {
   constexpr std::uint32_t of_each = 8;
   int flapping = 0, others = 0;

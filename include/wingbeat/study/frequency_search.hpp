@@ -56,8 +56,8 @@ double highest_frequency(const Vehicle<double>& vehicle, SearchRange range);
 /// The refusal of a frequency above highest_frequency(); nothing is computed for it. Its status is flapping.
 FrequencySearch refuse_frequency(const Vehicle<double>& vehicle, double frequency, SearchRange range);
 
-/// Finds the constant voltage at which the vehicle flaps at `frequency` [Hz], to within options.tolerance, by Newton's
-/// method on the exact derivative in a bracket; a voltage at which it does not flap counts as too low. vehicle.voltage is
+/// Finds the constant voltage at which the vehicle flaps at `frequency` [Hz], to within options.tolerance, by the secant
+/// method in the logarithms, in a bracket; a voltage at which it does not flap counts as too low. vehicle.voltage is
 /// not used. From rest, a crank flaps the faster the higher the voltage, so that there is one answer at most.
 /// Throws ParameterError unless frequency > 0.
 FrequencySearch find_voltage_for_frequency(const Vehicle<double>& vehicle, double frequency,
