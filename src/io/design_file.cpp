@@ -332,7 +332,9 @@ class Reader {
 
   void read_chords(Planform<double>& planform) const {
     const std::string_view path = document_.find("wing.planform.file") ? "wing.planform.file" : "wing.planform.chords";
-    const Value& value = *document_.find(path);
+    const Value* found = document_.find(path);
+    if (!found) return;  // missing, which is among the errors already
+    const Value& value = *found;
     const bool in_place = path == "wing.planform.chords";
     if (!in_place) text_of(value, path, "the name of a CSV file");
     if (in_place && value.kind != Value::Kind::array) wrong(value, path, "rows [distance, chord]");

@@ -460,6 +460,8 @@ TEST(DesignErrors, TableFiles) {
   EXPECT_EQ(refusal_of("distance_mm,chord_mm\n0,1\n1\n"), where + "c.csv:3:1: expected 2 numbers, got 1");
   EXPECT_EQ(refusal_of("distance_mm,chord_mm\n0, x\n"), where + "c.csv:2:4: expected a number, got \"x\"");
   EXPECT_EQ(refusal_of("distance_mm,chord_mm\n0,1\n"), where + "the chord table needs at least two rows");
+  EXPECT_NE(refusal(vehicle_text, {"wing.planform={shape='tabulated'}"}).find("wing.planform.file: missing"),
+            std::string::npos);
   EXPECT_EQ(refusal(vehicle_text, {"wing.planform={shape='tabulated', file='c.csv'}"}),
             "--set wing.planform={shape='tabulated', file='c.csv'}: wing.planform.file: table files cannot be read "
             "here; "
