@@ -146,7 +146,8 @@ TEST_F(Fit, IntervalsKeepToTheBounds) {
   text.replace(radius, 14, "lower = \"2.499 mm\"");
   text.replace(text.find("start = \"1 mm\""), 14, "start = \"4 mm\"");
   std::ofstream(path("bench/flapper.toml")) << text;
-  for (const Json& p : run({"fit", path("bench/flapper.toml"), "--json", "--no-profiles"}).json()["parameters"]) {
+  const Json bounded = run({"fit", path("bench/flapper.toml"), "--json", "--no-profiles"}).json();
+  for (const Json& p : bounded["parameters"]) {
     if (p["key"] != "friction.radius") continue;
     for (const char* key : {"value", "lower_95"}) EXPECT_GE(p[key].get<double>(), 2.499e-3) << key;
     EXPECT_GT(p["upper_95"].get<double>(), 2.51e-3);
