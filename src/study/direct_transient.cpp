@@ -19,6 +19,7 @@ enum Root { root_motion, root_stored_moment, root_velocity, root_count };  // th
 
 constexpr double stiff_decays_per_period = 500.0;
 constexpr int sticking_pieces = 512;   // of a period: how often a stuck shaft is looked at
+constexpr int creep_periods = 8;       // of ever shorter slips in one direction, that end at rest
 constexpr int contraction_periods = 4; // over which the contraction is taken: complex multipliers make it uneven
 
 class DirectStartUp {
@@ -55,6 +56,7 @@ class DirectStartUp {
   void add_variation();
   void period_done();
   bool rests_for_good();
+  bool creeps_to_rest();
   void begin_measuring();
   void take_metrics();
   bool out_of_budget();
@@ -88,6 +90,9 @@ class DirectStartUp {
   CycleExtremes<double> extremes_{};
   double swing_ = 0.0;  ///< largest |beta| of this period at the ends of steps
   std::vector<double> swings_;
+  double stroke_before_ = 0.0;
+  double travel_[2] = {}, last_travel_ = infinity;  ///< of this period: backwards, forwards; the longer of the last
+  int creeping_ = 0;                                ///< periods so far
   double before_[3] = {};
   std::vector<double> changes_;
 };
@@ -290,6 +295,8 @@ WaveformRow DirectStartUp::row(double t, const double* y) const {
 
 void DirectStartUp::step_taken(Cvode& cvode, double from) {
   swing_ = std::max(swing_, std::abs(y_[0]));
+  travel_[y_[0] > stroke_before_] += std::abs(y_[0] - stroke_before_);
+  stroke_before_ = y_[0];
   const double i = std::abs(current_of(t_, y_));
   if (i > result_.inrush_current) {
     result_.inrush_current = i;
@@ -373,12 +380,34 @@ bool DirectStartUp::rests_for_good() {
   return true;
 }
 
+/// True, with the verdict, where the drive alone cannot break the shaft away and the springs let it creep towards an angle
+/// of rest: from standstill to standstill the angle is a monotone map of itself, and slips in one direction end where there
+/// are none.
+bool DirectStartUp::creeps_to_rest() {
+  const double travel = std::max(travel_[0], travel_[1]), back = std::min(travel_[0], travel_[1]);
+  const bool creeps = stuck_ && drive_torque_ <= holding_torque_ && travel < last_travel_ && back <= 1e-6 * travel;
+  creeping_ = creeps ? creeping_ + 1 : 0;
+  last_travel_ = travel;
+  travel_[0] = travel_[1] = 0.0;
+  if (creeping_ < creep_periods) return false;
+  done_ = true;
+  result_.settled = true;
+  result_.status = FlappingStatus::stalled;
+  result_.time_to_steady = t_;
+  result_.lock_angle = y_[0];
+  result_.torque_margin = holding_torque_ - drive_torque_;
+  result_.detail = format("creeps to rest near stroke angle %.4f deg, the last period by %.2g deg: the supply gives a torque "
+                          "of %.4g N m at most, which does not exceed the constant friction %.4g N m",
+                          y_[0] * degrees_per_radian, travel * degrees_per_radian, drive_torque_, holding_torque_);
+  return true;
+}
+
 void DirectStartUp::period_done() {
   ++result_.laps;
   event(Kind::revolution);
   swings_.push_back(swing_);
   swing_ = std::abs(y_[0]);
-  if (rests_for_good()) return;
+  if (rests_for_good() || creeps_to_rest()) return;
 
   const double scale[3] = {stroke_scale_, speed_scale_, current_scale_};
   double change = 0.0;
@@ -455,6 +484,7 @@ TransientResult DirectStartUp::run() {
   }
   std::copy(y_, y_ + 3, before_);
   swing_ = std::abs(y_[0]);
+  stroke_before_ = y_[0];
   result_.inrush_current = std::abs(current_of(0.0, y_));
   next_sample_ = options_.record_interval;
   sample();

@@ -18,6 +18,21 @@ Vehicle<double> next_vehicle(WideBox box, std::mt19937_64& random) {
   }
 }
 
+// Steps as long as the decay of the current allows: beyond the pair's interval of stability they fed an oscillation of the
+// speed of 1e-4 that neither error estimate nor closure showed.
+TEST(Accuracy, AMotorAloneTurnsAtConstantSpeed) {
+  Vehicle<double> motor = wingless_vehicle();
+  motor.voltage = 2.27457;
+  motor.motor = {.armature_resistance = 8.86615, .armature_inductance = 1.11022e-3, .torque_constant = 8.81683e-3,
+                 .inertia = 3.11749e-8, .viscous_damping = 3.49479e-6};
+  for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
+    const Metrics<double> m = find_steady_flapping(motor, {.tolerance = tolerance}).metrics;
+    EXPECT_NEAR(m[Metric::crank_speed_max] / m[Metric::crank_speed_min], 1.0, tolerance);
+    const double current = motor.motor.viscous_damping * two_pi * m[Metric::frequency] / motor.motor.torque_constant;
+    EXPECT_NEAR(m[Metric::current_peak] / current, 1.0, tolerance);
+  }
+}
+
 // benchmarks/accuracy does the same with thousands of vehicles.
 TEST(Accuracy, OrbitsKeepTheToleranceInWideBoxes) {
   for (const double tolerance : {1e-6}) {

@@ -137,6 +137,34 @@ TEST(Statuses, HeavyRotorsSettleByExtrapolation) {
   EXPECT_LT(in_time.start_up->time_to_steady, 10.0 * T);
 }
 
+// The start of the current displaces the wings once; then springs and drive move them back by less every period.
+TEST(Statuses, ADirectDriveThatCreepsToRestIsStalled) {
+  Design<double> d = reference_design();
+  d.supply = {.type = SupplyType::sine, .voltage = 1.9844533436247884, .frequency = 16.773896073575298};
+  d.motor.constants = {.armature_resistance = 1.646658283204204, .armature_inductance = 0.091134891193958179,
+                       .torque_constant = 0.015141843001611133, .inertia = 2.5490402520183034e-08,
+                       .viscous_damping = 6.6429608616915956e-06};
+  d.transmission = {};
+  d.transmission.type = TransmissionType::direct;
+  d.friction = {FrictionLaw::constant, 0.0031678920876149104};
+  d.spring = {};
+  d.spring.resonance = 15.218520998230197;
+  d.wing.inertia = 8.2880590971944996e-08;
+  d.wing.planform.s2 = 1.908383519405084e-06;
+  d.wing.planform.s3 = 6.4543755204706724e-08;
+  d.aerodynamics.pitch_coefficient = 0.0012220461864332736;
+  RunOptions options;
+  options.method = Method::transient;
+  const RunResult in_time = run_design(d, options);
+  EXPECT_EQ(in_time.status, FlappingStatus::stalled);
+  EXPECT_THAT(in_time.detail, HasSubstr("creeps to rest near stroke angle"));
+  EXPECT_LT(in_time.start_up->steps, 1000000);
+  EXPECT_EQ(orbit_of(d).status, FlappingStatus::stalled);
+  EXPECT_EQ(batched(d).status, FlappingStatus::stalled);
+  d.friction.coefficient = 0.0030;  // below the greatest torque of the drive
+  EXPECT_EQ(run_design(d, options).status, FlappingStatus::flapping);
+}
+
 TEST(Statuses, AMotorThatNeverStartsIsStalledEvenWhereItWouldJam) {
   Design<double> d = reference_design();
   d.motor.constants.inertia = 2e-9;  // jams where it stands

@@ -71,6 +71,8 @@ struct StepResult {
   typename System::Quadrature integral_error3;  ///< the same of the integrals
   typename System::Quadrature integral_error5;
   typename System::Switches lowest;  ///< least switch times its sign over the later stages: < 0 hints at a crossing
+  typename System::State last_stage;  ///< with quadratures: where the explicit pair's last stage is, at x + h as y is,
+  typename System::State last_slope;  ///< and the rates there
   bool admissible = true;          ///< false: a stage left the region where the equations hold
 };
 
@@ -127,6 +129,10 @@ StepResult<System> explicit_step(const System& system, const typename System::Re
     const Rates<System> rates =
         system.template rates<quadratures && dop853::b[stage] != 0.0>(x + dop853::c[stage] * h, at, branch);
     k[stage] = rates.dy;
+    if constexpr (quadratures && stage == stages - 1) {
+      result.last_stage = at;
+      result.last_slope = rates.dy;
+    }
     // The first stages are of too low an order to tell.
     if constexpr (stage >= 5) {
       for (std::size_t w = 0; w < rates.switches.size(); ++w) {

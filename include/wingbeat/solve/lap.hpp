@@ -140,6 +140,21 @@ double scaled_error(const System& system, const StepResult<System>& step, double
   return error;
 }
 
+/// |h lambda| of the fastest decay, from two states at the end of a step and the rates there; 0 where the states are as
+/// good as equal. Hairer's test of stiffness in DOP853.
+template <class System>
+double step_times_decay(const System& system, const StepResult<System>& step, const typename System::State& slope,
+                        double h) {
+  const typename System::State scale = system.error_scale(step.y);
+  double apart = 0.0, change = 0.0;
+  for (std::size_t n = 0; n < scale.size(); ++n) {
+    const double y = (step.y[n] - step.last_stage[n]) / scale[n], dy = (slope[n] - step.last_slope[n]) / scale[n];
+    apart += y * y;
+    change += dy * dy;
+  }
+  return apart > 1e-24 ? h * std::sqrt(change / apart) : 0.0;
+}
+
 /// Position tolerance of a switch: an error e in its position costs about e^2 times the change of slope there.
 inline double switch_tolerance(double tolerance) { return 0.4 * std::sqrt(tolerance); }
 
@@ -149,6 +164,7 @@ class LapDriver {
  public:
   using State = typename System::State;
   using Signs = typename System::Signs;
+  static constexpr double largest_decay = 6.0;  ///< |h lambda| within which the explicit pair is stable
   static constexpr std::size_t switch_count = std::tuple_size_v<typename System::Switches>;
 
   LapDriver(const System& system, const LapOptions& options, Lap<System>& lap)
@@ -195,6 +211,16 @@ class LapDriver {
       }
       double x1 = reaches ? target : x_ + step;
       Rates<System> last = system_.template rates<quadratures>(x1, result.y, signs_);
+      if constexpr (quadratures) {
+        // Beyond the pair's interval of stability, steps feed an oscillation that the error estimates hardly see.
+        if (options_.method == Method::explicit_pair) {
+          const double decay = step_times_decay(system_, result, last.dy, step);
+          if (decay > largest_decay) {
+            h = step * std::max(0.1, 0.9 * largest_decay / decay);
+            continue;
+          }
+        }
+      }
       bool flip = false;
       std::size_t flipped = switch_count;
       if (reaches && to_switch) {
