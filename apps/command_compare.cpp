@@ -7,10 +7,11 @@
 
 #include "command.hpp"
 #include "options.hpp"
-#include "wingbeat/io/design_file.hpp"
-#include "wingbeat/io/output_file.hpp"
-#include "wingbeat/io/plot.hpp"
-#include "wingbeat/io/published.hpp"
+#include "wingbeat/files/design_file.hpp"
+#include "wingbeat/files/output_file.hpp"
+#include "wingbeat/report/plot.hpp"
+#include "wingbeat/files/published.hpp"
+#include "wingbeat/reproduction/comparison.hpp"
 
 namespace wingbeat::app {
 namespace {

@@ -9,9 +9,9 @@
 
 #include "command.hpp"
 #include "options.hpp"
-#include "wingbeat/io/design_file.hpp"
-#include "wingbeat/io/endurance_report.hpp"
-#include "wingbeat/io/output_file.hpp"
+#include "wingbeat/files/design_file.hpp"
+#include "wingbeat/report/endurance_report.hpp"
+#include "wingbeat/files/output_file.hpp"
 
 namespace wingbeat::app {
 namespace {

@@ -10,11 +10,12 @@
 
 #include "command.hpp"
 #include "options.hpp"
-#include "wingbeat/io/bench_file.hpp"
-#include "wingbeat/io/design_edit.hpp"
-#include "wingbeat/io/design_file.hpp"
-#include "wingbeat/io/design_parameter.hpp"
-#include "wingbeat/io/output_file.hpp"
+#include "wingbeat/files/bench_file.hpp"
+#include "wingbeat/files/design_edit.hpp"
+#include "wingbeat/files/design_file.hpp"
+#include "wingbeat/files/design_parameter.hpp"
+#include "wingbeat/files/output_file.hpp"
+#include "wingbeat/report/fit_report.hpp"
 
 namespace wingbeat::app {
 namespace {

@@ -7,10 +7,11 @@
 
 #include "command.hpp"
 #include "options.hpp"
-#include "wingbeat/io/datasheet_file.hpp"
-#include "wingbeat/io/design_file.hpp"
-#include "wingbeat/io/output_file.hpp"
-#include "wingbeat/io/units.hpp"
+#include "wingbeat/files/datasheet_file.hpp"
+#include "wingbeat/files/design_file.hpp"
+#include "wingbeat/files/output_file.hpp"
+#include "wingbeat/files/units.hpp"
+#include "wingbeat/report/identification_report.hpp"
 
 namespace wingbeat::app {
 namespace {

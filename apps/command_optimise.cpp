@@ -12,15 +12,17 @@
 #include <vector>
 
 #include "command.hpp"
-#include "wingbeat/io/design_edit.hpp"
+#include "wingbeat/files/design_edit.hpp"
 #include "options.hpp"
-#include "wingbeat/io/design_file.hpp"
-#include "wingbeat/io/evolution_module.hpp"
-#include "wingbeat/io/optimise_data.hpp"
-#include "wingbeat/io/optimise_file.hpp"
-#include "wingbeat/io/output_file.hpp"
-#include "wingbeat/io/pareto_report.hpp"
-#include "wingbeat/io/units.hpp"
+#include "wingbeat/files/design_file.hpp"
+#include "wingbeat/report/optimise_report.hpp"
+#include "wingbeat/run/evolution_module.hpp"
+#include "wingbeat/files/optimise_data.hpp"
+#include "wingbeat/files/optimise_file.hpp"
+#include "wingbeat/files/output_file.hpp"
+#include "wingbeat/report/pareto_report.hpp"
+#include "wingbeat/files/units.hpp"
+#include "wingbeat/run/parallel.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat::app {

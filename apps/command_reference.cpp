@@ -9,11 +9,11 @@
 #include "command.hpp"
 #include "options.hpp"
 #include "wingbeat/cycle/metrics.hpp"
-#include "wingbeat/io/design_file.hpp"
-#include "wingbeat/io/design_keys.hpp"
-#include "wingbeat/io/output_file.hpp"
-#include "wingbeat/io/reference.hpp"
-#include "wingbeat/io/units.hpp"
+#include "wingbeat/files/design_file.hpp"
+#include "wingbeat/files/design_keys.hpp"
+#include "wingbeat/files/output_file.hpp"
+#include "wingbeat/report/reference.hpp"
+#include "wingbeat/files/units.hpp"
 
 namespace wingbeat::app {
 namespace {

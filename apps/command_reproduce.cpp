@@ -6,10 +6,11 @@
 
 #include "command.hpp"
 #include "options.hpp"
-#include "wingbeat/io/claims.hpp"
-#include "wingbeat/io/optimise_file.hpp"
-#include "wingbeat/io/reproduce.hpp"
-#include "wingbeat/io/written_files.hpp"
+#include "wingbeat/reproduction/claims.hpp"
+#include "wingbeat/files/optimise_file.hpp"
+#include "wingbeat/reproduction/reproduce.hpp"
+#include "wingbeat/files/written_files.hpp"
+#include "wingbeat/run/parallel.hpp"
 
 namespace wingbeat::app {
 namespace {

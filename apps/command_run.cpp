@@ -10,12 +10,12 @@
 
 #include "command.hpp"
 #include "options.hpp"
-#include "wingbeat/io/design_file.hpp"
-#include "wingbeat/io/output_file.hpp"
-#include "wingbeat/io/plot.hpp"
-#include "wingbeat/io/report.hpp"
-#include "wingbeat/io/units.hpp"
-#include "wingbeat/io/waveform_file.hpp"
+#include "wingbeat/files/design_file.hpp"
+#include "wingbeat/files/output_file.hpp"
+#include "wingbeat/report/plot.hpp"
+#include "wingbeat/report/report.hpp"
+#include "wingbeat/files/units.hpp"
+#include "wingbeat/files/waveform_file.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat::app {

@@ -14,14 +14,14 @@
 
 #include "command.hpp"
 #include "options.hpp"
-#include "wingbeat/io/design_file.hpp"
-#include "wingbeat/io/output_file.hpp"
-#include "wingbeat/io/plot.hpp"
-#include "wingbeat/io/report.hpp"
-#include "wingbeat/io/sweep_plot.hpp"
-#include "wingbeat/io/sweep_run.hpp"
-#include "wingbeat/io/units.hpp"
-#include "wingbeat/io/written_files.hpp"
+#include "wingbeat/files/design_file.hpp"
+#include "wingbeat/files/output_file.hpp"
+#include "wingbeat/report/plot.hpp"
+#include "wingbeat/report/report.hpp"
+#include "wingbeat/report/sweep_plot.hpp"
+#include "wingbeat/run/sweep_run.hpp"
+#include "wingbeat/files/units.hpp"
+#include "wingbeat/files/written_files.hpp"
 
 namespace wingbeat::app {
 namespace {
@@ -205,6 +205,16 @@ std::string json_summary(const Study& study, const SweepResult& result, const Ar
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+/// "sse2, avx2 or avx512"
+std::string known_instruction_sets() {
+  std::string names;
+  for (std::size_t n = 0; n < std::size(instruction_sets); ++n) {
+    names += n == 0 ? "" : n + 1 < std::size(instruction_sets) ? ", " : " or ";
+    names += instruction_sets[n].first;
+  }
+  return names;
+}
+
 Study study_of(const Arguments& arguments) {
   const bool data_set = std::filesystem::path(arguments.study).extension() == ".nc";
   if (data_set && !arguments.overrides.empty()) {
@@ -227,7 +237,7 @@ Study study_of(const Arguments& arguments) {
     const auto known = std::find_if(std::begin(instruction_sets), std::end(instruction_sets),
                                     [&](const auto& entry) { return entry.first == arguments.isa; });
     const std::string option = "--isa " + arguments.isa;
-    if (known == std::end(instruction_sets)) throw InputError(option, 0, 0, "", "must be sse2, avx2 or avx512");
+    if (known == std::end(instruction_sets)) throw InputError(option, 0, 0, "", "must be " + known_instruction_sets());
     if (!is_available(known->second)) throw InputError(option, 0, 0, "", "this processor cannot run it");
     options.isa = known->second;
   }

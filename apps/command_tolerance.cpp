@@ -10,9 +10,11 @@
 
 #include "command.hpp"
 #include "options.hpp"
-#include "wingbeat/io/output_file.hpp"
-#include "wingbeat/io/sweep_run.hpp"
-#include "wingbeat/io/tolerance_file.hpp"
+#include "wingbeat/files/output_file.hpp"
+#include "wingbeat/files/tolerance_data.hpp"
+#include "wingbeat/report/tolerance_report.hpp"
+#include "wingbeat/run/sweep_run.hpp"
+#include "wingbeat/files/tolerance_file.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat::app {

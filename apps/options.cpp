@@ -6,8 +6,8 @@
 #include <charconv>
 #include <system_error>
 
-#include "wingbeat/io/design_keys.hpp"
-#include "wingbeat/io/units.hpp"
+#include "wingbeat/files/design_keys.hpp"
+#include "wingbeat/files/units.hpp"
 
 namespace wingbeat::app {
 namespace {

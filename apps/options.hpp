@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "wingbeat/io/input_file.hpp"
+#include "wingbeat/files/input_file.hpp"
 
 namespace wingbeat::app {
 

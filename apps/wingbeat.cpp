@@ -15,11 +15,11 @@
 #include "command.hpp"
 #include "options.hpp"
 #include "wingbeat/core/status.hpp"
-#include "wingbeat/io/design_file.hpp"
-#include "wingbeat/io/file_record.hpp"
-#include "wingbeat/io/temporary_files.hpp"
-#include "wingbeat/io/units.hpp"
-#include "wingbeat/io/written_files.hpp"
+#include "wingbeat/files/design_file.hpp"
+#include "wingbeat/files/file_record.hpp"
+#include "wingbeat/files/temporary_files.hpp"
+#include "wingbeat/files/units.hpp"
+#include "wingbeat/files/written_files.hpp"
 
 namespace wingbeat::app {
 

@@ -13,8 +13,8 @@
 
 #include "vehicle/wide_design.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
-#include "wingbeat/study/ensemble.hpp"
-#include "wingbeat/study/transient.hpp"
+#include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/time/transient.hpp"
 
 using namespace wingbeat;
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "vehicle/random_vehicle.hpp"
-#include "wingbeat/study/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace {

@@ -9,7 +9,7 @@
 
 #include "vehicle/reference_vehicle.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
-#include "wingbeat/study/transient.hpp"
+#include "wingbeat/time/transient.hpp"
 
 namespace {
 

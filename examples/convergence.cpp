@@ -7,7 +7,7 @@
 
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
-#include "wingbeat/io/design_file.hpp"
+#include "wingbeat/files/design_file.hpp"
 
 namespace {
 

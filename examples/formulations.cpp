@@ -11,7 +11,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "wingbeat/io/design_file.hpp"
+#include "wingbeat/files/design_file.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace {

@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <exception>
 
-#include "wingbeat/io/design_file.hpp"
+#include "wingbeat/files/design_file.hpp"
 #include "wingbeat/study/run.hpp"
 
 int main(int argc, char** argv) try {

@@ -1,7 +1,7 @@
 // The one part that is linked with MPI: a library of its own beside the program, loaded under mpirun alone.
 #include <mpi.h>
 
-#include "wingbeat/io/ranks.hpp"
+#include "wingbeat/run/ranks.hpp"
 
 namespace {
 

@@ -12,8 +12,8 @@
 #include <limits>
 #include <set>
 
-#include "fit_misfit.hpp"
-#include "least_squares.hpp"
+#include "study/fit_misfit.hpp"
+#include "study/least_squares.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/study/frequency_search.hpp"
 #include "wingbeat/study/run.hpp"

@@ -1,4 +1,4 @@
-#include "fit_misfit.hpp"
+#include "study/fit_misfit.hpp"
 
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>

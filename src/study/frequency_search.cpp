@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "voltage_trials.hpp"
+#include "study/voltage_trials.hpp"
 #include "wingbeat/core/text.hpp"
 
 namespace wingbeat {

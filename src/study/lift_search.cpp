@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "voltage_trials.hpp"
+#include "study/voltage_trials.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
 

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "least_squares.hpp"
+#include "study/least_squares.hpp"
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/core/text.hpp"

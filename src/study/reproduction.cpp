@@ -21,7 +21,7 @@ EnsembleOptions ensemble_options() {
   EnsembleOptions options;
   options.tolerance = 1e-7;
   // The narrowest instructions, so that the bytes of a data set do not depend on the processor.
-  options.isa = InstructionSet::sse2;
+  options.isa = InstructionSet::base;
   return options;
 }
 

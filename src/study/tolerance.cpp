@@ -341,4 +341,10 @@ ToleranceResult assess_tolerance(const ToleranceStudy& study, const SweepColumns
   return result;
 }
 
+std::span<const double> samples_of(const ToleranceStudy& study, const SweepColumns& columns, Metric metric) {
+  std::size_t column = 0;
+  for (int m = 0; m < int(metric); ++m) column += study.options.metrics[std::size_t(m)];
+  return std::span(columns.metrics[column]).subspan(0, base_count(study));
+}
+
 }  // namespace wingbeat

@@ -1,4 +1,4 @@
-#include "voltage_trials.hpp"
+#include "study/voltage_trials.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 
 #include "program.hpp"
 #include "wingbeat/cycle/metrics.hpp"
-#include "wingbeat/io/design_keys.hpp"
+#include "wingbeat/files/design_keys.hpp"
 
 namespace cli {
 namespace {

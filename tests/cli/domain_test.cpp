@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "program.hpp"
-#include "wingbeat/io/netcdf.hpp"
+#include "wingbeat/files/netcdf.hpp"
 
 namespace cli {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "program.hpp"
-#include "wingbeat/io/netcdf.hpp"
+#include "wingbeat/files/netcdf.hpp"
 
 namespace {
 

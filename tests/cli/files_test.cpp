@@ -7,7 +7,7 @@
 #include <map>
 
 #include "program.hpp"
-#include "wingbeat/io/waveform_file.hpp"
+#include "wingbeat/files/waveform_file.hpp"
 
 namespace cli {
 namespace {

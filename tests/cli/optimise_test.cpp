@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "program.hpp"
-#include "wingbeat/io/netcdf.hpp"
+#include "wingbeat/files/netcdf.hpp"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "program.hpp"
-#include "wingbeat/io/netcdf.hpp"
+#include "wingbeat/files/netcdf.hpp"
 
 namespace cli {
 namespace {

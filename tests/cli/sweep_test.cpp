@@ -9,7 +9,7 @@
 
 #include "program.hpp"
 #include "wingbeat/cycle/metrics.hpp"
-#include "wingbeat/io/netcdf.hpp"
+#include "wingbeat/files/netcdf.hpp"
 
 namespace cli {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "wingbeat/io/design_file.hpp"
+#include "wingbeat/files/design_file.hpp"
 
 namespace wingbeat::fuzz {
 

@@ -1,6 +1,6 @@
 // "BENCH \0 VEHICLE \0 LOG" as a bench file, its vehicle and its logs.
 #include "files.hpp"
-#include "wingbeat/io/bench_file.hpp"
+#include "wingbeat/files/bench_file.hpp"
 
 using namespace wingbeat;
 

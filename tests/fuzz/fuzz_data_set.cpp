@@ -1,8 +1,8 @@
 // A sweep's data set that is read again: "STUDY \0 VEHICLE \0 TABLE \0 NAME \0 EDITS" as the texts that it keeps and
 // damage to the file, four bytes each: where in three bytes, the new byte.
 #include "files.hpp"
-#include "wingbeat/io/netcdf.hpp"
-#include "wingbeat/io/sweep_data_set.hpp"
+#include "wingbeat/files/netcdf.hpp"
+#include "wingbeat/files/sweep_data_set.hpp"
 
 using namespace wingbeat;
 

@@ -1,6 +1,7 @@
 // Bytes as a motor data sheet; what it identifies must survive writing and reading.
 #include "files.hpp"
-#include "wingbeat/io/datasheet_file.hpp"
+#include "wingbeat/report/identification_report.hpp"
+#include "wingbeat/files/datasheet_file.hpp"
 
 using namespace wingbeat;
 

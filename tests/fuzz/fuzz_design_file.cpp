@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "wingbeat/io/design_file.hpp"
+#include "wingbeat/files/design_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::vector<std::string> parts(1);

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "files.hpp"
-#include "wingbeat/io/sweep_journal.hpp"
+#include "wingbeat/run/sweep_journal.hpp"
 
 using namespace wingbeat;
 

@@ -1,6 +1,6 @@
 // "STUDY \0 VEHICLE \0 CATALOGUE" as an optimisation study, its vehicle and its motor catalogue.
 #include "files.hpp"
-#include "wingbeat/io/optimise_file.hpp"
+#include "wingbeat/files/optimise_file.hpp"
 
 using namespace wingbeat;
 

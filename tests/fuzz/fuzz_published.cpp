@@ -1,6 +1,6 @@
 // "PUBLISHED \0 VEHICLE" as a file of published values and each vehicle that it names.
 #include "files.hpp"
-#include "wingbeat/io/published.hpp"
+#include "wingbeat/files/published.hpp"
 
 using namespace wingbeat;
 

@@ -1,6 +1,6 @@
 // "STUDY \0 VEHICLE \0 TABLE" as a sweep's study, its vehicle and its CSV of designs.
 #include "files.hpp"
-#include "wingbeat/io/study_file.hpp"
+#include "wingbeat/files/study_file.hpp"
 
 using namespace wingbeat;
 

@@ -1,6 +1,6 @@
 // "STUDY \0 VEHICLE \0 COVARIANCE" as a tolerance study, its vehicle and a fit's covariance.
 #include "files.hpp"
-#include "wingbeat/io/tolerance_file.hpp"
+#include "wingbeat/files/tolerance_file.hpp"
 
 using namespace wingbeat;
 

@@ -1,11 +1,11 @@
-#include "wingbeat/io/bench_file.hpp"
+#include "wingbeat/files/bench_file.hpp"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <fstream>
 
-#include "wingbeat/io/design_file.hpp"
+#include "wingbeat/files/design_file.hpp"
 
 namespace wingbeat {
 namespace {

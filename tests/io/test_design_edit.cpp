@@ -6,8 +6,8 @@
 #include <sstream>
 #include <unistd.h>
 
-#include "wingbeat/io/design_edit.hpp"
-#include "wingbeat/io/design_keys.hpp"
+#include "wingbeat/files/design_edit.hpp"
+#include "wingbeat/files/design_keys.hpp"
 
 namespace wingbeat {
 namespace {

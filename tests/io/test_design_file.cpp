@@ -1,4 +1,4 @@
-#include "wingbeat/io/design_file.hpp"
+#include "wingbeat/files/design_file.hpp"
 
 #include <gmock/gmock.h>
 
@@ -7,7 +7,7 @@
 #include <fstream>
 #include <map>
 
-#include "wingbeat/io/design_keys.hpp"
+#include "wingbeat/files/design_keys.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {

@@ -1,4 +1,4 @@
-#include "wingbeat/io/design_keys.hpp"
+#include "wingbeat/files/design_keys.hpp"
 
 #include <gmock/gmock.h>
 
@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "wingbeat/core/jet.hpp"
-#include "wingbeat/io/design_file.hpp"
-#include "wingbeat/io/units.hpp"
+#include "wingbeat/files/design_file.hpp"
+#include "wingbeat/files/units.hpp"
 
 namespace wingbeat {
 namespace {

@@ -1,7 +1,7 @@
 // Vehicle files of direct drives: what is read, what is written back, and what is refused with file, line and key.
 #include <gtest/gtest.h>
 
-#include "wingbeat/io/design_file.hpp"
+#include "wingbeat/files/design_file.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {

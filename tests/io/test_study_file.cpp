@@ -1,4 +1,4 @@
-#include "wingbeat/io/study_file.hpp"
+#include "wingbeat/files/study_file.hpp"
 
 #include <gmock/gmock.h>
 #include <stdlib.h>
@@ -8,8 +8,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "wingbeat/io/optimise_file.hpp"
-#include "wingbeat/io/tolerance_file.hpp"
+#include "wingbeat/files/optimise_file.hpp"
+#include "wingbeat/files/tolerance_file.hpp"
 
 namespace wingbeat {
 namespace {

@@ -1,4 +1,4 @@
-#include "wingbeat/io/units.hpp"
+#include "wingbeat/files/units.hpp"
 
 #include <gmock/gmock.h>
 

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "wingbeat/io/claims.hpp"
-#include "wingbeat/io/optimise_file.hpp"
+#include "wingbeat/reproduction/claims.hpp"
+#include "wingbeat/files/optimise_file.hpp"
+#include "wingbeat/run/parallel.hpp"
 
 namespace wingbeat {
 namespace {

@@ -2,7 +2,8 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
-#include "wingbeat/io/published.hpp"
+#include "wingbeat/reproduction/comparison.hpp"
+#include "wingbeat/files/published.hpp"
 
 namespace wingbeat {
 namespace {

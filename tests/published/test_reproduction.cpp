@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "wingbeat/io/claims.hpp"
-#include "wingbeat/io/energy_flow.hpp"
+#include "wingbeat/reproduction/claims.hpp"
+#include "wingbeat/report/energy_flow.hpp"
 #include "wingbeat/study/reproduction.hpp"
 
 namespace wingbeat {

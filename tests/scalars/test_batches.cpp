@@ -25,13 +25,15 @@ void PrintTo(const InstructionSet& set, std::ostream* out) { *out << set.name; }
 /// Those that this processor can run.
 std::vector<InstructionSet> instruction_sets() {
   std::vector<InstructionSet> sets = {
-      {"sse2", lanes::evaluate_sse2, lanes::check_select_sse2, lanes::functions_sse2}};
+      {"base", lanes::evaluate_base, lanes::check_select_base, lanes::functions_base}};
+#ifdef __x86_64__
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
     sets.push_back({"avx2", lanes::evaluate_avx2, lanes::check_select_avx2, lanes::functions_avx2});
   }
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) {
     sets.push_back({"avx512", lanes::evaluate_avx512, lanes::check_select_avx512, lanes::functions_avx512});
   }
+#endif
   return sets;
 }
 

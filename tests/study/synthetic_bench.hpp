@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "wingbeat/io/design_parameter.hpp"
+#include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/study/bench_fit.hpp"
 #include "wingbeat/study/run.hpp"
 

@@ -5,8 +5,8 @@
 
 #include "vehicle/random_vehicle.hpp"
 #include "wingbeat/cycle/orbit_gradient.hpp"
-#include "wingbeat/io/design_keys.hpp"
-#include "wingbeat/io/design_parameter.hpp"
+#include "wingbeat/files/design_keys.hpp"
+#include "wingbeat/files/design_parameter.hpp"
 
 namespace wingbeat {
 namespace {

@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "vehicle/reference_vehicle.hpp"
-#include "wingbeat/io/design_file.hpp"
+#include "wingbeat/files/design_file.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {

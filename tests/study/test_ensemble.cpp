@@ -1,4 +1,4 @@
-#include "wingbeat/study/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -259,7 +259,7 @@ TEST(Ensemble, InstructionSetsAgree) {
     EnsembleOptions options;
     options.tolerance = tolerance;
     options.metrics.reset(std::size_t(Metric::floquet_multiplier_max));
-    options.isa = InstructionSet::sse2;
+    options.isa = InstructionSet::base;
     const auto sse2 = solve(members, options);
     for (const InstructionSet isa : available()) {
       options.isa = isa;

@@ -1,3 +1,4 @@
+#include "wingbeat/report/identification_report.hpp"
 #include "wingbeat/study/motor_identification.hpp"
 
 #include <gmock/gmock.h>
@@ -8,8 +9,8 @@
 #include <sstream>
 
 #include "wingbeat/core/math.hpp"
-#include "wingbeat/io/datasheet_file.hpp"
-#include "wingbeat/io/design_file.hpp"
+#include "wingbeat/files/datasheet_file.hpp"
+#include "wingbeat/files/design_file.hpp"
 
 namespace wingbeat {
 namespace {

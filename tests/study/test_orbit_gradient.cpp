@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "vehicle/random_vehicle.hpp"
-#include "wingbeat/io/design_keys.hpp"
-#include "wingbeat/io/design_parameter.hpp"
+#include "wingbeat/files/design_keys.hpp"
+#include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/study/run.hpp"
 #include "wingbeat/vehicle/design_cast.hpp"
 

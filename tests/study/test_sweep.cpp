@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "vehicle/reference_vehicle.hpp"
-#include "wingbeat/io/design_keys.hpp"
+#include "wingbeat/files/design_keys.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {

@@ -6,9 +6,9 @@
 #include <functional>
 #include <numbers>
 
-#include "wingbeat/io/design_file.hpp"
-#include "wingbeat/io/design_parameter.hpp"
-#include "wingbeat/io/sweep_run.hpp"
+#include "wingbeat/files/design_file.hpp"
+#include "wingbeat/files/design_parameter.hpp"
+#include "wingbeat/run/sweep_run.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {

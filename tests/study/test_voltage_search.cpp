@@ -6,7 +6,7 @@
 #include <random>
 
 #include "vehicle/random_vehicle.hpp"
-#include "wingbeat/study/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/study/ensemble_frequency.hpp"
 #include "wingbeat/study/run.hpp"
 

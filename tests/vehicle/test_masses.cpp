@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "vehicle/reference_vehicle.hpp"
-#include "wingbeat/study/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {

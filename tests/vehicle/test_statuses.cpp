@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "vehicle/wide_boxes.hpp"
-#include "wingbeat/study/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {

@@ -1,4 +1,4 @@
-#include "wingbeat/study/transient.hpp"
+#include "wingbeat/time/transient.hpp"
 
 #include <cmath>
 #include <random>

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "vehicle/wide_boxes.hpp"
-#include "wingbeat/study/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/study/run.hpp"
 
 using namespace wingbeat;

@@ -15,6 +15,11 @@ enum class Formulation {
   virtual_work  ///< straight frictionless guide: g = H cos gamma / cos^2 beta; F h omega = F g beta' identically
 };
 
+/// As in files and results.
+inline const char* name_of(Formulation formulation) {
+  return formulation == Formulation::rod_force ? "rod-force" : "virtual-work";
+}
+
 /// Geometry of the mechanism. The crank angle theta is measured from the horizontal and grows with rotation.
 template <Scalar S>
 struct SliderCrank {

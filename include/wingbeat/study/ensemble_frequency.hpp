@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "wingbeat/study/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/study/frequency_search.hpp"
 
 namespace wingbeat {

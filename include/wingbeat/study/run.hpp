@@ -8,7 +8,7 @@
 #include "wingbeat/cycle/domain.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/study/frequency_search.hpp"
-#include "wingbeat/study/transient.hpp"
+#include "wingbeat/time/transient.hpp"
 
 namespace wingbeat {
 
@@ -16,6 +16,9 @@ enum class Method {
   orbit,     ///< periodic orbit in crank angle, or in the phase of a direct drive's supply
   transient  ///< simulated from rest until steady
 };
+
+/// As in options and results.
+inline const char* name_of(Method method) { return method == Method::orbit ? "orbit" : "transient"; }
 
 struct RunOptions {
   Condition condition = Condition::air;

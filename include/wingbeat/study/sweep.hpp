@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "wingbeat/study/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/study/frequency_search.hpp"
 #include "wingbeat/study/sampling.hpp"
 #include "wingbeat/vehicle/design.hpp"

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -65,6 +66,8 @@ std::vector<std::vector<double>> parameter_covariance(const ToleranceStudy& stud
 
 /// Vehicles of the plain sample: N, or 2 N with indices. The others mix rows of its two halves.
 std::uint64_t base_count(const ToleranceStudy& study);
+/// The samples' values of an output that is a metric, those outside the domain included.
+std::span<const double> samples_of(const ToleranceStudy& study, const SweepColumns& columns, Metric metric);
 
 /// All vehicles of the study as one axis of samples: A, B, then A with the factor i taken from B for each i. Throws
 /// ParameterError for more parameters than a Sobol sequence has dimensions and for a covariance that is not positive

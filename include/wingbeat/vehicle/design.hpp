@@ -22,6 +22,16 @@ enum class Condition {
   wingless  ///< no wing: rod force zero
 };
 
+/// As in files and options.
+inline const char* name_of(Condition condition) {
+  switch (condition) {
+    case Condition::air: return "air";
+    case Condition::vacuum: return "vacuum";
+    case Condition::wingless: return "wingless";
+  }
+  return "unknown";
+}
+
 /// [motor]: constants at the output shaft, or at the motor shaft with a gear ratio.
 template <Scalar S>
 struct MotorDesign {

@@ -1,0 +1,62 @@
+// The steady flapping of very many vehicles: SIMD batches first, the scalar solver for what they cannot settle.
+#pragma once
+
+#include <bitset>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "wingbeat/core/status.hpp"
+#include "wingbeat/cycle/domain.hpp"
+#include "wingbeat/ensemble/lane_blocks.hpp"
+#include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/cycle/steady_flapping.hpp"
+
+namespace wingbeat {
+
+/// SIMD instruction sets the batched solver is compiled for, narrowest first: `base` is what every processor of the target
+/// has. Where that is none, the scalar solver does the work.
+enum class InstructionSet { base, avx2, avx512 };
+inline constexpr std::pair<std::string_view, InstructionSet> instruction_sets[] = {
+    {WINGBEAT_BASE_ISA, InstructionSet::base},
+#ifdef WINGBEAT_X86
+    {"avx2", InstructionSet::avx2},
+    {"avx512", InstructionSet::avx512},
+#endif
+};
+
+/// True if this processor can run it.
+bool is_available(InstructionSet isa);
+/// The widest one this processor can run.
+InstructionSet best_instruction_set();
+
+/// Indexed by Metric.
+using MetricSet = std::bitset<metric_count>;
+
+/// All metrics.
+inline MetricSet all_metrics() { return MetricSet().set(); }
+
+struct EnsembleOptions {
+  double tolerance = 1e-6;               ///< wanted relative accuracy of every metric, 1e-12 to 1e-2
+  MetricSet metrics = all_metrics();     ///< those wanted; the others are absent. Peaks and multipliers cost extra
+  InstructionSet isa = best_instruction_set();
+  bool scalar_only = false;              ///< every design by the scalar solver
+  bool domain = true;                    ///< find out the domain status, whichever metrics are wanted
+};
+
+struct EnsembleOutcome {
+  FlappingStatus status = FlappingStatus::stalled;
+  bool scalar = false;             ///< computed by the scalar solver
+  double error_estimate = absent;  ///< of the metrics, relative; absent unless flapping
+  Metrics<double> metrics;         ///< all absent unless flapping
+  DomainStatus domain = {};        ///< limits of the model that it exceeds; none unless flapping
+};
+
+/// Solves every member into the outcome of the same index, on the calling thread. A member's outcome depends on nothing
+/// but the member, the options and the instruction set: not on its neighbours, its place or the number of members.
+/// `start_up` judges, as in find_steady_flapping, what does not rotate for certain. Throws ParameterError for options
+/// out of range or an instruction set this processor lacks; never on account of a vehicle.
+void solve_ensemble(std::span<const EnsembleMember> members, const EnsembleOptions& options, const StartUp& start_up,
+                    std::span<EnsembleOutcome> outcomes);
+
+}  // namespace wingbeat

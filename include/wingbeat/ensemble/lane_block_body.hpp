@@ -1,0 +1,70 @@
+// What every src/lane_blocks_*.cpp compiles for its instruction set.
+#pragma once
+
+#include <type_traits>
+
+#include "wingbeat/ensemble/lane_blocks.hpp"
+#include "wingbeat/ensemble/lane_lag.hpp"
+#include "wingbeat/ensemble/lane_multiplier.hpp"
+#include "wingbeat/ensemble/lane_orbit.hpp"
+#include "wingbeat/ensemble/lane_peaks.hpp"
+#include "wingbeat/ensemble/lane_start.hpp"
+
+namespace wingbeat {
+
+/// The body of solve_block_*() for one instruction set. No containers: what this leaves behind must belong to the
+/// instruction set alone.
+template <class L>
+void solve_block(const EnsembleMember* const* members, int count, const LaneSettings& settings,
+                 LaneResult* const* results) {
+  alignas(64) double numbers[std::size_t(L::lanes)];
+  // The block is filled up with its last member.
+  const auto member = [&](int lane) -> const EnsembleMember& { return *members[lane < count ? lane : count - 1]; };
+  const auto gather = [&](const auto& number_of) {
+    for (int lane = 0; lane < L::lanes; ++lane) numbers[lane] = number_of(member(lane));
+    return L::load(numbers);
+  };
+  const auto with_states = [&](auto states) {
+    constexpr int N = decltype(states)::value;
+    Vehicle<L> vehicle;
+    vehicle.crank.formulation = members[0]->vehicle.crank.formulation;
+    for_each_number(vehicle, [&](L& to, const auto& of) {
+      to = gather([&](const EnsembleMember& m) { return of(m.vehicle); });
+    });
+    LaneOrbit<L, N> orbit(vehicle, settings);
+    if (settings.approach == LaneApproach::resume) {
+      orbit.visit_start([&](L& to, const auto& of) {
+        for (int lane = 0; lane < L::lanes; ++lane) numbers[lane] = of(results[lane < count ? lane : count - 1]->start);
+        to = L::load(numbers);
+      });
+    }
+    const Metrics<L> found = orbit.solve(gather([](const EnsembleMember& m) { return m.reporting.mass; }),
+                                         gather([](const EnsembleMember& m) {
+                                           return m.reporting.bench_torque_constant;
+                                         }));
+    const auto scatter = [&](const L& from, const auto& to) {
+      from.store(numbers);
+      for (int lane = 0; lane < count; ++lane) to(*results[lane]) = numbers[lane];
+    };
+    for (std::size_t m = 0; m < std::size_t(metric_count); ++m) {
+      scatter(found.values[m], [m](LaneResult& r) -> double& { return r.metrics.values[m]; });
+    }
+    scatter(orbit.error_estimate(), [](LaneResult& r) -> double& { return r.error_estimate; });
+    select<L>(orbit.locked(), L(2.0), select<L>(orbit.doubtful(), L(1.0), L(0.0))).store(numbers);
+    for (int lane = 0; lane < count; ++lane) {
+      results[lane]->verdict = numbers[lane] == 0.0   ? LaneVerdict::rotates
+                               : numbers[lane] == 1.0 ? LaneVerdict::doubtful
+                                                      : LaneVerdict::locked;
+    }
+    orbit.visit_start([&](L& from, const auto& to) {
+      scatter(from, [&](LaneResult& r) -> double& { return to(r.start); });
+    });
+  };
+  if (settings.current == LaneCurrent::state) {
+    with_states(std::integral_constant<int, 2>{});
+  } else {
+    with_states(std::integral_constant<int, 1>{});
+  }
+}
+
+}  // namespace wingbeat

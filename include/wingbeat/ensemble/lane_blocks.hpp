@@ -1,0 +1,102 @@
+// The batched orbit solver behind plain numbers: one function for each instruction set, none of whose types show.
+#pragma once
+
+#include <array>
+
+#include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
+
+// What every processor of the target has: SSE2 on x86-64, NEON on 64-bit ARM; elsewhere nothing that lanes could use.
+#if defined(__x86_64__) || defined(_M_X64)
+#define WINGBEAT_X86
+#define WINGBEAT_BASE_ISA "sse2"
+#elif defined(__aarch64__)
+#define WINGBEAT_BASE_ISA "neon64"
+#else
+#define WINGBEAT_BASE_ISA "none"
+#define WINGBEAT_NO_LANES
+#endif
+
+namespace wingbeat {
+
+inline constexpr int most_half_segments = 12;  ///< of half a lap
+inline constexpr int most_force_switches = 3;  ///< sign changes of the rod force within half a lap
+
+/// A quantity of which extremes are sought.
+enum class Quantity { velocity, current, slowness, speed, force, energy };
+inline constexpr int quantity_count = 6;
+
+/// One vehicle of an ensemble, validated and resolved.
+struct EnsembleMember {
+  Vehicle<double> vehicle;
+  Reporting reporting;
+};
+
+/// Where a lap begins: near the orbit, at the lower dead centre.
+struct LapStart {
+  std::array<double, 2> state;                                         ///< omega [rad/s], i [A]
+  std::array<std::array<double, most_force_switches>, 2> switch_at;    ///< of either half lap [rad]
+  std::array<double, 2> switch_count, first_sign;
+  std::array<double, 4> monodromy;                                     ///< of a lap, to a few per cent
+};
+
+enum class LaneApproach {
+  guess,      ///< from the speed at which the motor balances the mean load
+  from_rest,  ///< from rest, in time: what happens there is no longer in doubt
+  resume      ///< from the LapStart that an earlier attempt left
+};
+
+/// What the inductance of a block's motors makes of the current.
+enum class LaneCurrent {
+  algebraic,  ///< none
+  lagging,    ///< small: the current follows the speed within a fraction of a segment
+  state
+};
+
+struct LaneSettings {
+  LaneApproach approach = LaneApproach::guess;
+  int start_up_steps = 48; ///< from rest: of a turn at the speed without load
+  LaneCurrent current = LaneCurrent::state;
+  int coarse_laps = 2;
+  bool implicit = false;   ///< where explicit steps would be unstable, laps before the collocation take implicit ones
+  int segments = 6;        ///< of half a lap
+  int intervals = 6;       ///< between the nodes of a segment, even
+  int sweeps = 2;          ///< Newton's steps before the last
+  double peak_tolerance = 5e-7;  ///< a peak is settled when the cubic at its top promises less, relative
+  std::array<bool, quantity_count> wanted{};
+  bool velocity_aside = false;   ///< the peak velocity is wanted for the domain alone: no metric, no part in the error
+  bool multipliers = false;
+};
+
+enum class LaneVerdict {
+  rotates,
+  doubtful,  ///< may lock, stall, jam or have several orbits, or is beyond this solver's means
+  locked     ///< from rest it has come to a stop, in time, where it stays
+};
+
+struct LaneResult {
+  Metrics<double> metrics;
+  double error_estimate;  ///< of the cycle's means, relative
+  LaneVerdict verdict;
+  LapStart start;
+};
+
+/// Solves `count` members, at most lanes_* of them, alike in formulation, in whether they have springs and in
+/// what their inductance makes of the current. A member's result does not depend on the others.
+void solve_block_base(const EnsembleMember* const* members, int count, const LaneSettings& settings,
+                      LaneResult* const* results);
+#ifdef WINGBEAT_X86
+void solve_block_avx2(const EnsembleMember* const* members, int count, const LaneSettings& settings,
+                      LaneResult* const* results);
+void solve_block_avx512(const EnsembleMember* const* members, int count, const LaneSettings& settings,
+                        LaneResult* const* results);
+#endif
+
+#ifdef WINGBEAT_NO_LANES
+inline constexpr bool has_lanes = false;
+#else
+inline constexpr bool has_lanes = true;
+#endif
+inline constexpr int lanes_base = 4, lanes_avx2 = 8, lanes_avx512 = 16;
+
+}  // namespace wingbeat

@@ -1,0 +1,90 @@
+// The current behind a small inductance on SIMD lanes: the part of LaneOrbit in which it is no state, but lags behind the
+// speed. To first order i = (v - K omega - L_a di/dt) / R, di/dt being that of the course found before.
+#pragma once
+
+#include "wingbeat/ensemble/lane_orbit.hpp"
+
+namespace wingbeat {
+
+/// The inductance's voltage at the nodes from the course of the current that it leaves, twice: an iteration gains the
+/// ratio of its time constant to that of the course.
+template <class L, int N>
+void LaneOrbit<L, N>::let_current_lag() {
+  if constexpr (N == 1) {
+    const std::size_t intervals = std::size_t(rule_.intervals), nodes = first_node(2, 0);
+    const L inductance = vehicle_.motor.armature_inductance;
+    L change(0.0);
+    for (int repeat = 0; repeat < 2; ++repeat) {
+      change = L(0.0);
+      for (int half = 0; half < 2; ++half) {
+        const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+        for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
+          const std::size_t base = first_node(half, s);
+          const L inductance_per_h = inductance * inverse_of(max(L(mesh.u[s + 1] - mesh.u[s]), L(1e-12)));
+          std::array<L, nodes_per_segment> current;
+          for (std::size_t j = 0; j <= intervals; ++j) {
+            current[j] = algebraic_current(vehicle_, L(vehicle_.voltage - drop_[base + j]), course_[base + j][0]);
+          }
+          for (std::size_t m = 0; m <= intervals; ++m) {
+            L slope(0.0);
+            for (std::size_t j = 0; j <= intervals; ++j) slope = slope + L(rule_.slope[m][j]) * current[j];
+            const L drop = inductance_per_h * course_[base + m][0] * slope;
+            change = change + abs(drop - drop_[base + m]);
+            drop_[base + m] = drop;
+          }
+        }
+      }
+    }
+    lag_residual_ = change * inverse_of(L(vehicle_.voltage * L(double(nodes))));
+  }
+}
+
+/// Where the course bends, at a sign change of the rod force, the current goes on from what it was before and has relaxed
+/// within a time constant: what that adds to state and integrals, up to the square of the angle it takes.
+template <class L, int N>
+auto LaneOrbit<L, N>::relaxation(System system, std::size_t base, const L& force) const -> solve::Rates<System> {
+  solve::Rates<System> after, before;
+  evaluate<true>(system, place_of(base), course_[base], force, after);
+  system.drop = drop_[base - 1];
+  evaluate<true>(system, place_of(base), course_[base], force, before);
+  const L angle = vehicle_.motor.armature_inductance * course_[base][0] * inverse_of(circuit_resistance(vehicle_));
+  for (std::size_t n = 0; n < N; ++n) after.dy[n] = angle * (before.dy[n] - after.dy[n]);
+  for (std::size_t q = 0; q < after.dq.size(); ++q) after.dq[q] = angle * (before.dq[q] - after.dq[q]);
+  return after;
+}
+
+/// What relaxation() leaves out, relative: what grows with the angle of a time constant, and with what the speed changes by
+/// meanwhile. The factor is measured, on the coreless motors of tests/study/test_ensemble.cpp.
+template <class L, int N>
+L LaneOrbit<L, N>::lag_left_out() const {
+  const L angle = vehicle_.motor.armature_inductance * no_load_ * inverse_of(circuit_resistance(vehicle_));
+  return L(20.0) * layer_ * (angle + electrical_to_mechanical_time());
+}
+
+/// Ratio of the motor's time constants, (L_a / R) / (J R / K^2).
+template <class L, int N>
+L LaneOrbit<L, N>::electrical_to_mechanical_time() const {
+  const Motor<L>& m = vehicle_.motor;
+  return m.armature_inductance * square(L(m.torque_constant * inverse_of(circuit_resistance(vehicle_)))) *
+         inverse_of(m.inertia);
+}
+
+/// Takes the rates below and above a node's speed again with what the inductance makes of the change of acceleration.
+template <class L, int N>
+void LaneOrbit<L, N>::lag_with(System system, std::size_t node, const L& by, const L& force, solve::Rates<System>& below,
+                               solve::Rates<System>& above) const {
+  const L per_acceleration = vehicle_.motor.armature_inductance * vehicle_.motor.torque_constant *
+                             inverse_of(circuit_resistance(vehicle_));
+  const State& y = course_[node];
+  const L acceleration = rates_[node][0] * y[0];
+  for (solve::Rates<System>* rates : {&below, &above}) {
+    State moved = y;
+    moved[0] = rates == &below ? y[0] - by : y[0] + by;
+    for (int repeat = 0; repeat < 2; ++repeat) {
+      system.drop = drop_[node] - per_acceleration * (rates->dy[0] * moved[0] - acceleration);
+      evaluate<false>(system, place_of(node), moved, force, *rates);
+    }
+  }
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,109 @@
+// Floquet multipliers on SIMD lanes: the part of LaneOrbit that differentiates the lap map.
+#pragma once
+
+#include "wingbeat/ensemble/lane_orbit.hpp"
+
+namespace wingbeat {
+
+/// The largest modulus of the eigenvalues of the lap map's derivative, by collocation of the variational equation.
+template <class L, int N>
+L LaneOrbit<L, N>::floquet_multiplier() {
+  const std::size_t intervals = std::size_t(rule_.intervals);
+  Matrix M;
+  for (std::size_t row = 0; row < N; ++row) {
+    for (std::size_t column = 0; column < N; ++column) M[row][column] = L(row == column ? 1.0 : 0.0);
+  }
+  std::array<Matrix, nodes_per_segment> jacobian, path, moves;
+  solve::Rates<System> below, above;
+  for (int half = 0; half < 2; ++half) {
+    System system = half_lap(half);
+    const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+    for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
+      const std::size_t base = first_node(half, s);
+      const L h = mesh.u[s + 1] - mesh.u[s];
+      Matrix end_before = jacobian[intervals];
+      for (std::size_t m = 0; m <= intervals; ++m) {
+        if (lags_) system.drop = drop_[base + m];
+        for (std::size_t column = 0; column < N; ++column) {
+          const L by = column == 0 ? L(1e-4) * course_[base + m][0] : L(1e-4) * current_scale_;
+          State moved = course_[base + m];
+          moved[column] = moved[column] - by;
+          evaluate<false>(system, place_of(base + m), moved, mesh.force[s], below);
+          moved[column] = course_[base + m][column] + by;
+          evaluate<false>(system, place_of(base + m), moved, mesh.force[s], above);
+          if (lags_) lag_with(system, base + m, by, mesh.force[s], below, above);
+          const L per_both = L(0.5) * inverse_of(by);
+          for (std::size_t row = 0; row < N; ++row) jacobian[m][row][column] = (above.dy[row] - below.dy[row]) * per_both;
+        }
+        if (m == 0) {
+          // What sweep() corrects by grows with the square of the distance, its derivative with the distance.
+          const L& off = off_[std::size_t(half * segments_) + s];
+          if (any<L>(!(off == L(0.0)))) {
+            for (std::size_t row = 0; row < N; ++row) {
+              for (std::size_t column = 0; column < N; ++column) {
+                const L jump = off * (end_before[row][column] - jacobian[0][row][column]);
+                end_before[row][column] = select<L>(off == L(0.0), L(0.0), -jump);
+              }
+              end_before[row][row] = end_before[row][row] + L(1.0);
+            }
+            append(end_before, M);
+          }
+          path[0] = M;
+          continue;
+        }
+        path[m] = path[m - 1];
+        append(step_[base + m], path[m]);
+      }
+      for (int repeat = 0; repeat < settings_.sweeps + 2; ++repeat) {
+        std::array<Matrix, nodes_per_segment> rates;
+        for (std::size_t m = 0; m <= intervals; ++m) {
+          rates[m] = path[m];
+          append(jacobian[m], rates[m]);
+        }
+        Matrix d;
+        for (auto& row : d) row.fill(L(0.0));
+        for (std::size_t m = 1; m <= intervals; ++m) {
+          Matrix sum;
+          for (std::size_t row = 0; row < N; ++row) {
+            for (std::size_t column = 0; column < N; ++column) {
+              L integral(0.0);
+              for (std::size_t j = 0; j <= intervals; ++j) {
+                integral = integral + L(rule_.between[m][j]) * rates[j][row][column];
+              }
+              sum[row][column] = h * integral - (path[m][row][column] - path[m - 1][row][column]);
+            }
+          }
+          // d := step d + (1 + step) sum / 2
+          Matrix along = sum;
+          append(step_[base + m], along);
+          append(step_[base + m], d);
+          for (std::size_t row = 0; row < N; ++row) {
+            for (std::size_t column = 0; column < N; ++column) {
+              d[row][column] = d[row][column] + L(0.5) * (sum[row][column] + along[row][column]);
+            }
+          }
+          moves[m] = d;
+        }
+        for (std::size_t m = 1; m <= intervals; ++m) {
+          for (std::size_t row = 0; row < N; ++row) {
+            for (std::size_t column = 0; column < N; ++column) {
+              path[m][row][column] = path[m][row][column] + moves[m][row][column];
+            }
+          }
+        }
+      }
+      M = path[intervals];
+    }
+  }
+  if constexpr (N == 1) {
+    return abs(M[0][0]);
+  } else {
+    const L mean = L(0.5) * (M[0][0] + M[1][1]), half_difference = L(0.5) * (M[0][0] - M[1][1]);
+    const L determinant = M[0][0] * M[1][1] - M[0][1] * M[1][0];
+    const L discriminant = square(half_difference) + M[0][1] * M[1][0];
+    const L real = abs(mean) + sqrt(max(discriminant, L(0.0)));
+    return select<L>(discriminant >= L(0.0), real, sqrt(max(determinant, L(0.0))));
+  }
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,808 @@
+// The orbits of many vehicles at once, one per lane, by collocation on meshes of fixed size.
+//
+// A lap runs from the lower dead centre through two half laps, on each of which the stroke velocity keeps its sign. The
+// half laps' segments end where the rod force changes sign, which differs from lane to lane while the number of segments
+// does not. Coarse laps find where; a lap with one step per segment gives a first course and its derivatives; Newton's
+// method makes it satisfy the equations at the Lobatto points of every segment, and the lap its own end. Everything is
+// computed lane by lane without looking at the neighbours, so that a vehicle gets the same bits in any company.
+//
+// lane_start.hpp holds the way to the first course, lane_lag.hpp the current behind a small inductance, lane_peaks.hpp the
+// search for extremes, lane_multiplier.hpp the lap map's derivative.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "wingbeat/core/lanes.hpp"
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/ensemble/half_lap.hpp"
+#include "wingbeat/ensemble/lane_blocks.hpp"
+#include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/cycle/static_balance.hpp"
+#include "wingbeat/solve/collocation.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
+
+namespace wingbeat {
+
+inline constexpr int coarse_half_steps = 8;
+inline constexpr int most_energy_extremes = 5;  ///< of the energy stored in wings and springs, within half a lap
+
+/// Where the rod force changes sign within half a lap.
+template <class L>
+struct ForceSwitches {
+  std::array<L, most_force_switches> at;  ///< [rad], growing; pi/2 beyond the count
+  L count;
+  L first_sign;  ///< sign of the rod force at the start
+};
+
+/// The segments of half a lap.
+template <class L>
+struct HalfMesh {
+  std::array<L, most_half_segments + 1> u;
+  std::array<L, most_half_segments> force;  ///< sign of the rod force on each segment
+};
+
+/// Value and derivative by crank angle: |beta'| [rad/s], i [A], -omega and omega [rad/s], |F| [N], energy stored in wings
+/// and springs [J].
+template <class L>
+struct Reading {
+  L value, slope;
+};
+
+/// A stretch between two nodes in which a quantity rises from its start and falls towards its end.
+template <class L>
+struct PeakBracket {
+  L segment;          ///< of the lap, counted from 0
+  L x0, v0, d0;       ///< start: distance from the segment's start [rad], value, slope
+  L x1, v1, d1;       ///< end
+  L rises_and_falls;  ///< 1, or 0 where the larger end is all there is
+  L estimate;
+};
+
+/// The course of the state over one segment, another one in every lane.
+template <class L, int N>
+struct SegmentCourse {
+  L half, u, length, force;
+  std::array<std::array<L, N>, solve::CollocationRule::most + 1> legendre;  ///< coefficients of the state
+  std::array<L, solve::CollocationRule::most + 1> drop;                     ///< and of HalfLap::drop
+};
+
+template <class L, int N>
+class LaneOrbit {
+  using State = std::array<L, N>;
+  using Mask = wingbeat::Mask<L>;
+  using System = HalfLap<L, N>;
+  using Matrix = std::array<std::array<L, N>, N>;
+  static constexpr double quarter = 0.5 * pi;
+  static constexpr std::size_t nodes_per_segment = solve::CollocationRule::most;
+  static constexpr std::size_t most_nodes = 2 * most_half_segments * nodes_per_segment;
+  static constexpr int coarse_samples = 2 * coarse_half_steps + 1;
+
+ public:
+  LaneOrbit(const Vehicle<L>& vehicle, const LaneSettings& settings)
+      : vehicle_(vehicle), settings_(settings), rule_(solve::collocation_rule(settings.intervals)),
+        segments_(settings.segments) {
+    no_load_ = no_load_speed(vehicle);
+    floor_ = L(1e-4) * no_load_;
+    current_scale_ = vehicle.voltage / circuit_resistance(vehicle);
+    wanted_ = settings.wanted;
+    for (const bool wanted : wanted_) reads_ = reads_ || wanted;
+    geometry_ = geometry_of(vehicle.crank);
+    lags_ = N == 1 && settings.current == LaneCurrent::lagging;
+    if (N == 2 || lags_) per_inductance_ = L(1.0) / vehicle.motor.armature_inductance;
+  }
+
+  /// Metrics of the orbit. `mass` [kg] and `bench_torque_constant`
+  /// [N m/A] may be absent.
+  Metrics<L> solve(const L& mass, const L& bench_torque_constant);
+
+  // After solve():
+  const L& error_estimate() const { return error_estimate_; }
+  const Mask& doubtful() const { return doubtful_; }
+  const Mask& locked() const { return locked_; }
+  /// Calls visit(lanes, place), place(LapStart&) being where the number stands there, for all of where the next lap
+  /// starts: to set it before solve(), or to keep it afterwards.
+  template <class Visit>
+  void visit_start(const Visit& visit) {
+    for (std::size_t n = 0; n < N; ++n) visit(y_[n], [n](auto& start) -> double& { return start.state[n]; });
+    for (std::size_t half = 0; half < 2; ++half) {
+      ForceSwitches<L>& s = switches_[half];
+      for (std::size_t n = 0; n < most_force_switches; ++n) {
+        visit(s.at[n], [half, n](auto& start) -> double& { return start.switch_at[half][n]; });
+      }
+      visit(s.count, [half](auto& start) -> double& { return start.switch_count[half]; });
+      visit(s.first_sign, [half](auto& start) -> double& { return start.first_sign[half]; });
+    }
+    for (std::size_t n = 0; n < N * N; ++n) {
+      visit(monodromy_[n / N][n % N], [n](auto& start) -> double& { return start.monodromy[n]; });
+    }
+  }
+
+ private:
+  System half_lap(int half) const { return {vehicle_, geometry_, per_inductance_, L(half == 0 ? 1.0 : -1.0)}; }
+
+  [[gnu::noinline, gnu::flatten]] void tabulate();
+  [[gnu::noinline, gnu::flatten]] void judge_statics();
+  [[gnu::noinline, gnu::flatten]] L guess_speed();
+  [[gnu::noinline, gnu::flatten]] void start_from_rest();
+  [[gnu::noinline]] void replace_stiff(const System& system, const L& u, const L& h, const State& y, State& end,
+                                       L& force_in_middle, L& force_at_end) const;
+  template <bool last>
+  [[gnu::noinline, gnu::flatten]] void coarse_lap();
+  [[gnu::noinline, gnu::flatten]] L find_switches(int half, const L* u, const L* force, int count);
+  [[gnu::noinline, gnu::flatten]] void build_mesh(int half);
+  [[gnu::noinline]] void march();
+  [[gnu::noinline, gnu::flatten]] void place_nodes();
+  template <bool last>
+  [[gnu::noinline]] void sweep();
+  [[gnu::noinline, gnu::flatten]] void propose(std::size_t base, const L& h, State& end);
+  [[gnu::noinline, gnu::flatten]] void correct(State end);
+  [[gnu::noinline, gnu::flatten]] void let_current_lag();
+  [[gnu::noinline, gnu::flatten]] solve::Rates<System> relaxation(System system, std::size_t base, const L& force) const;
+  L lag_left_out() const;
+  L electrical_to_mechanical_time() const;
+  [[gnu::noinline, gnu::flatten]] void visit_node(const System& system, std::size_t node, const L& force,
+                                                  solve::Rates<System>& rates);
+  [[gnu::noinline, gnu::flatten]] void add_tails(const std::array<std::array<L, nodes_per_segment>, 4>& controlled,
+                                                 std::size_t base, const L& h);
+  [[gnu::noinline, gnu::flatten]] void read(const System& system, const L& u, const State& y, const L& force,
+                                            const Motion<L>& m, const State& dy,
+                                            const L& drop_slope, const std::array<bool, quantity_count>& wanted,
+                                            std::array<Reading<L>, quantity_count>& out) const;
+  [[gnu::noinline, gnu::flatten]] void follow(const L& segment, SegmentCourse<L, N>& course) const;
+  [[gnu::noinline, gnu::flatten]] Reading<L> reading_inside(Quantity quantity, const SegmentCourse<L, N>& course,
+                                                            const L& x) const;
+  template <class Visit>
+  void for_each_stretch(int half, Quantity quantity, const L& floor, const Visit& visit) const;
+  static void keep(const PeakBracket<L>& from, const Mask& where, PeakBracket<L>& to);
+  static L estimate_peak(PeakBracket<L>& b);
+  [[gnu::noinline, gnu::flatten]] L refine(Quantity quantity, const L& sign, PeakBracket<L> b);
+  [[gnu::noinline, gnu::flatten]] L peak(Quantity quantity);
+  [[gnu::noinline, gnu::flatten]] L exchanged_energy();
+  [[gnu::noinline, gnu::flatten]] L lift_peak(const L& highest_velocity) const;
+  [[gnu::noinline, gnu::flatten]] L floquet_multiplier();
+  [[gnu::noinline]] void lag_with(System system, std::size_t node, const L& by, const L& force,
+                                  solve::Rates<System>& below, solve::Rates<System>& above) const;
+  template <class RatesAt>
+  Matrix derivatives(const State& y, const State& rates, const RatesAt& rates_at) const;
+  [[gnu::noinline]] Matrix jacobian_at(const System& system, const Place<L>& place, const State& y, const State& rates,
+                                       const L& force) const;
+  static Mask is_stiff(const Matrix& jacobian, const L& h);
+  [[gnu::noinline, gnu::flatten]] static void find_rates(const System& system, const L& u, const State& y, State& rates,
+                                                         L& force) {
+    const Motion<L> m = system.motion_on_its_branch(system.place(u), y);
+    force = m.force_switch;
+    rates = system.template rates_of<false>(m, y, L(1.0)).dy;
+  }
+  template <class Rates>
+  [[gnu::noinline]] State implicit_step(const State& y, const L& h, const Rates& rates) const;
+  static void propagator(const Matrix& jacobian, const L& h, Matrix& out);
+  static void append(const Matrix& step, Matrix& product);
+  static L largest_modulus(const Matrix& M);
+  void close_lap(State& off) const;
+
+  [[gnu::noinline, gnu::flatten]] static void find_place(const System& system, const L& u, Place<L>& place) {
+    place = system.place(u);
+  }
+  /// Segments that meet share the place of their common node.
+  const Place<L>& place_of(std::size_t node) const {
+    return places_[node > 0 && node % std::size_t(rule_.intervals + 1) == 0 && node != first_node(1, 0) ? node - 1 : node];
+  }
+  std::size_t first_node(int half, std::size_t segment) const {
+    return (std::size_t(half * segments_) + segment) * std::size_t(rule_.intervals + 1);
+  }
+
+  const Vehicle<L>& vehicle_;
+  const LaneSettings& settings_;
+  const solve::CollocationRule& rule_;
+  int segments_;  ///< of half a lap
+  CrankGeometry<L> geometry_;
+  L per_inductance_, current_scale_, no_load_, floor_;
+  Matrix monodromy_;  ///< of a lap
+  std::array<std::array<Place<L>, coarse_samples>, 2> table_;
+  State y_;  ///< where a lap starts
+  Mask doubtful_, locked_;
+  Mask lost_;  ///< the crank comes near standstill on the way to the orbit
+  std::array<ForceSwitches<L>, 2> switches_{};
+  std::array<HalfMesh<L>, 2> mesh_;
+
+  /// Where a segment starts as march() leaves it, and the derivatives of the rates there and in its middle.
+  struct Stretch {
+    State y, rates;
+    std::array<Matrix, 2> jacobian;
+  };
+  std::array<Stretch, 2 * most_half_segments + 1> stretches_;
+  // At the nodes, segment after segment; where segments meet there is one for either.
+  std::array<Place<L>, most_nodes> places_;
+  std::array<State, most_nodes> course_, rates_, correction_;
+  std::array<L, most_nodes> force_;
+  std::array<L, 2 * most_half_segments> off_;  ///< of each segment's start from the sign change before it [rad], 0 without
+  std::array<Matrix, most_nodes> step_;  ///< derivative of the state by that at the node before
+  std::array<std::array<Reading<L>, most_nodes>, quantity_count> readings_;
+
+  std::array<L, lane_integrals.size()> integrals_;
+  std::array<L, 5> high_, low_;  ///< sums of the last and last but two coefficients of what limits the error
+  std::array<bool, quantity_count> wanted_;
+  bool reads_ = false;  ///< anything
+  // The current behind the speed, where the inductance is small.
+  bool lags_;
+  std::array<L, most_nodes> drop_;  ///< HalfLap::drop at the nodes
+  L lag_residual_;                  ///< its last change, of the voltage
+  L layer_;                         ///< largest relaxation() of the speed, relative
+
+  L slowest_, residual_, switch_offset_;
+  L step_error_, speed_error_;  ///< of what the segments' polynomials leave out: at all, and of speed and time
+  L overlooked_;   ///< depth to which the rod force has the wrong sign inside a segment, of its largest magnitude
+  L peak_error_;
+  L error_estimate_;
+};
+
+/// Derivatives by the state of the rates, which rates_at(state) gives, to four digits.
+template <class L, int N>
+template <class RatesAt>
+auto LaneOrbit<L, N>::derivatives(const State& y, const State& rates, const RatesAt& rates_at) const -> Matrix {
+  Matrix jacobian;
+  for (std::size_t n = 0; n < N; ++n) {
+    State moved = y;
+    const L by = n == 0 ? L(1e-4) * y[0] : L(1e-4) * current_scale_;
+    moved[n] = moved[n] + by;
+    const State there = rates_at(moved);
+    const L per_move = inverse_of(by);
+    for (std::size_t row = 0; row < N; ++row) jacobian[row][n] = (there[row] - rates[row]) * per_move;
+  }
+  return jacobian;
+}
+
+template <class L, int N>
+auto LaneOrbit<L, N>::jacobian_at(const System& system, const Place<L>& place, const State& y, const State& rates,
+                                  const L& force) const -> Matrix {
+  solve::Rates<System> at;
+  return derivatives(y, rates, [&](const State& moved) -> const State& {
+    evaluate<false>(system, place, moved, force, at);
+    return at.dy;
+  });
+}
+
+/// exp(h jacobian) by its (1, 1) Pade approximation (1 - z)^-1 (1 + z), z = h jacobian / 2.
+template <class L, int N>
+void LaneOrbit<L, N>::propagator(const Matrix& jacobian, const L& h, Matrix& out) {
+  const L half_h = L(0.5) * h;
+  if constexpr (N == 1) {
+    out[0][0] = L(2.0) * inverse_of(L(L(1.0) - half_h * jacobian[0][0])) - L(1.0);
+  } else {
+    const L z01 = half_h * jacobian[0][1], z10 = half_h * jacobian[1][0];
+    const L p = L(1.0) - half_h * jacobian[0][0], q = L(1.0) - half_h * jacobian[1][1];
+    const L twice_per_det = L(2.0) * inverse_of(L(p * q - z01 * z10));
+    out[0][0] = q * twice_per_det - L(1.0);
+    out[0][1] = z01 * twice_per_det;
+    out[1][0] = z10 * twice_per_det;
+    out[1][1] = p * twice_per_det - L(1.0);
+  }
+}
+
+/// product := step product.
+template <class L, int N>
+void LaneOrbit<L, N>::append(const Matrix& step, Matrix& product) {
+  const Matrix before = product;
+  for (std::size_t row = 0; row < N; ++row) {
+    for (std::size_t column = 0; column < N; ++column) {
+      L sum = step[row][0] * before[0][column];
+      if constexpr (N == 2) sum = sum + step[row][1] * before[1][column];
+      product[row][column] = sum;
+    }
+  }
+}
+
+/// Largest modulus of the eigenvalues.
+template <class L, int N>
+L LaneOrbit<L, N>::largest_modulus(const Matrix& M) {
+  if constexpr (N == 1) {
+    return abs(M[0][0]);
+  } else {
+    const L mean = L(0.5) * (M[0][0] + M[1][1]), half_difference = L(0.5) * (M[0][0] - M[1][1]);
+    const L discriminant = square(half_difference) + M[0][1] * M[1][0];
+    const L determinant = M[0][0] * M[1][1] - M[0][1] * M[1][0];
+    const L real = abs(mean) + sqrt(max(discriminant, L(0.0)));
+    return select<L>(discriminant >= L(0.0), real, sqrt(max(determinant, L(0.0))));
+  }
+}
+
+/// off := (1 - M)^-1 off: what a lap's start must move by for its end to meet it, the end being off it by so much.
+template <class L, int N>
+void LaneOrbit<L, N>::close_lap(State& off) const {
+  const auto& M = monodromy_;
+  if constexpr (N == 1) {
+    off[0] = off[0] * inverse_of(L(L(1.0) - M[0][0]));
+  } else {
+    const L p = L(1.0) - M[0][0], q = L(1.0) - M[1][1];
+    const L per_det = inverse_of(L(p * q - M[0][1] * M[1][0]));
+    const L d0 = off[0], d1 = off[1];
+    off[0] = (q * d0 + M[0][1] * d1) * per_det;
+    off[1] = (M[1][0] * d0 + p * d1) * per_det;
+  }
+}
+
+/// Sign changes of the rod force between the samples force[0..count] at u[0..count] of half a lap, by parabolas. Returns
+/// the largest distance from the switches known before [rad].
+template <class L, int N>
+L LaneOrbit<L, N>::find_switches(int half, const L* u, const L* force, int count) {
+  ForceSwitches<L> found;
+  found.at.fill(L(quarter));
+  found.count = L(0.0);
+  found.first_sign = sign_of(force[0]);
+  for (int k = 0; k < count; ++k) {
+    const L f0 = force[k], f1 = force[k + 1];
+    const Mask changes = (f0 >= L(0.0) && f1 < L(0.0)) || (f0 < L(0.0) && f1 >= L(0.0));
+    if (!any<L>(changes)) continue;
+    // Of the two neighbours the nearer to the switch.
+    const L h = u[k + 1] - u[k];
+    const L rise = f1 - f0, per_rise = inverse_of(rise);
+    const L straight = -(f0 * per_rise);
+    L curve;
+    const auto left = [&] {
+      const L h0 = u[k] - u[k - 1];
+      return (rise - (f0 - force[k - 1]) * h * inverse_of(h0)) * h * inverse_of(L(h + h0));
+    };
+    const auto right = [&] {
+      const L h2 = u[k + 2] - u[k + 1];
+      return ((force[k + 2] - f1) * h * inverse_of(h2) - rise) * h * inverse_of(L(h + h2));
+    };
+    if (k == 0) {
+      curve = right();
+    } else if (k + 1 == count) {
+      curve = left();
+    } else {
+      curve = select<L>(straight < L(0.5), left(), right());
+    }
+    // f0 + rise t - curve t (1 - t) = 0, by two Newton steps.
+    L t = straight + straight * (L(1.0) - straight) * curve * per_rise;
+    for (int n = 0; n < 2; ++n) {
+      const L value = f0 + rise * t - curve * t * (L(1.0) - t);
+      const L slope = rise - curve * (L(1.0) - L(2.0) * t);
+      t = t - value * inverse_of(slope);
+    }
+    t = select<L>(t >= L(0.0) && t <= L(1.0), t, min(max(straight, L(0.0)), L(1.0)));
+    const L at = u[k] + h * t;
+    for (int n = 0; n < most_force_switches; ++n) {
+      found.at[std::size_t(n)] = select<L>(changes && found.count == L(double(n)), at, found.at[std::size_t(n)]);
+    }
+    found.count = select<L>(changes, found.count + L(1.0), found.count);
+  }
+  doubtful_ = doubtful_ || found.count > L(double(most_force_switches));
+  ForceSwitches<L>& known = switches_[std::size_t(half)];
+  L offset(0.0);
+  for (std::size_t n = 0; n < most_force_switches; ++n) offset = max(offset, abs(found.at[n] - known.at[n]));
+  known = found;
+  return offset;
+}
+
+/// Segments of equal length between the switches, their number in proportion to the distance.
+template <class L, int N>
+void LaneOrbit<L, N>::build_mesh(int half) {
+  const int steps = segments_;
+  const ForceSwitches<L>& s = switches_[std::size_t(half)];
+  HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+  const L all(steps);
+  std::array<L, most_force_switches + 2> node, at, per_step;
+  node[0] = L(0.0);
+  at[0] = L(-quarter);
+  for (std::size_t n = 0; n < most_force_switches; ++n) {
+    const Mask used = s.count > L(double(n));
+    const L wanted = nearest_whole(L((s.at[n] + L(quarter)) * L(steps / pi)));
+    const L within = min(max(wanted, node[n] + L(1.0)), all - (s.count - L(double(n))));
+    node[n + 1] = select<L>(used, within, all);
+    at[n + 1] = select<L>(used, s.at[n], L(quarter));
+  }
+  node[most_force_switches + 1] = all;
+  at[most_force_switches + 1] = L(quarter);
+  for (std::size_t n = 0; n <= most_force_switches; ++n) {
+    per_step[n] = (at[n + 1] - at[n]) * inverse_of(max(L(node[n + 1] - node[n]), L(0.5)));
+  }
+  for (int m = 0; m <= steps; ++m) {
+    const L here(m);
+    L u = at[0] + per_step[0] * here;
+    L force = s.first_sign;
+    for (std::size_t n = 1; n <= most_force_switches; ++n) {
+      const Mask beyond = here >= node[n] && node[n] < all;
+      u = select<L>(beyond, at[n] + per_step[n] * (here - node[n]), u);
+      force = select<L>(beyond, -force, force);
+    }
+    mesh.u[std::size_t(m)] = m == steps ? L(quarter) : u;
+    if (m < steps) mesh.force[std::size_t(m)] = force;
+  }
+}
+
+/// Nodes on segments that end at the switches as march() left them, with its course and derivatives interpolated there.
+template <class L, int N>
+void LaneOrbit<L, N>::place_nodes() {
+  for (std::size_t row = 0; row < N; ++row) {
+    for (std::size_t column = 0; column < N; ++column) monodromy_[row][column] = L(row == column ? 1.0 : 0.0);
+  }
+  for (int half = 0; half < 2; ++half) {
+    const System system = half_lap(half);
+    const HalfMesh<L> before = mesh_[std::size_t(half)];
+    build_mesh(half);
+    const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+    for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
+      const Stretch& from = stretches_[std::size_t(half * segments_) + s];
+      const Stretch& to = stretches_[std::size_t(half * segments_) + s + 1];
+      const std::size_t base = first_node(half, s);
+      const L u = mesh.u[s], h = mesh.u[s + 1] - u, h_before = before.u[s + 1] - before.u[s];
+      const L shift = u - before.u[s], stretched = h - h_before;
+      const L per_h_before = inverse_of(max(h_before, L(1e-12)));
+      State c1, c2, c3;
+      for (std::size_t n = 0; n < N; ++n) {
+        const L rise = to.y[n] - from.y[n], d0 = h_before * from.rates[n], d1 = h_before * to.rates[n];
+        c1[n] = d0;
+        c2[n] = L(3.0) * rise - L(2.0) * d0 - d1;
+        c3[n] = d0 + d1 - L(2.0) * rise;
+      }
+      // The derivatives by the parabola through start, middle and end; across a switch they jump, and a straight line goes
+      // on from the middle.
+      const bool last = s + 1 == std::size_t(segments_);
+      const Mask smooth = (last ? L(-1.0) : before.force[s] * before.force[s + 1]) > L(0.0);
+      Matrix linear, bend;
+      for (std::size_t row = 0; row < N; ++row) {
+        for (std::size_t column = 0; column < N; ++column) {
+          const L rise = L(2.0) * (from.jacobian[1][row][column] - from.jacobian[0][row][column]);
+          linear[row][column] = rise;
+          bend[row][column] = select<L>(
+              smooth, L(2.0) * (to.jacobian[0][row][column] - from.jacobian[0][row][column] - rise), L(0.0));
+        }
+      }
+      for (std::size_t m = 0; m <= std::size_t(rule_.intervals); ++m) {
+        const double x = rule_.node[m];
+        if (m > 0 || s == 0) places_[base + m] = system.place(u + L(x) * h);
+        const L moved = (shift + L(x) * stretched) * per_h_before;
+        for (std::size_t n = 0; n < N; ++n) {
+          course_[base + m][n] = from.y[n] + L(x) * (c1[n] + L(x) * (c2[n] + L(x) * c3[n])) +
+                                 moved * (c1[n] + L(2.0 * x) * c2[n] + L(3.0 * x * x) * c3[n]);
+        }
+        if (m == 0) continue;
+        const double width = x - rule_.node[m - 1], t = x - 0.5 * width;
+        Matrix jacobian;
+        for (std::size_t row = 0; row < N; ++row) {
+          for (std::size_t column = 0; column < N; ++column) {
+            jacobian[row][column] =
+                from.jacobian[0][row][column] + L(t) * (linear[row][column] + L(t - 0.5) * bend[row][column]);
+          }
+        }
+        propagator(jacobian, L(width) * h, step_[base + m]);
+        append(step_[base + m], monodromy_);
+      }
+    }
+  }
+}
+
+/// What the nodes of a segment would each move by if the node before stood still: its rates' integral says so. `end` is
+/// what the node before the segment, and afterwards its last one, moves by if the lap's start stands still.
+template <class L, int N>
+void LaneOrbit<L, N>::propose(std::size_t base, const L& h, State& end) {
+  const std::size_t intervals = std::size_t(rule_.intervals);
+  for (std::size_t n = 0; n < N; ++n) end[n] = end[n] + correction_[base][n];
+  for (std::size_t m = 1; m <= intervals; ++m) {
+    State sum;
+    sum.fill(L(0.0));
+    for (std::size_t j = 0; j <= intervals; ++j) {
+      const L weight(rule_.between[m][j]);
+      for (std::size_t n = 0; n < N; ++n) sum[n] = sum[n] + weight * rates_[base + j][n];
+    }
+    for (std::size_t n = 0; n < N; ++n) sum[n] = h * sum[n] - (course_[base + m][n] - course_[base + m - 1][n]);
+    // (1 - z)^-1 = (1 + step) / 2
+    const Matrix& step = step_[base + m];
+    const State before = end;
+    for (std::size_t n = 0; n < N; ++n) {
+      L along = step[n][0] * sum[0], onward = step[n][0] * before[0];
+      if constexpr (N == 2) {
+        along = along + step[n][1] * sum[1];
+        onward = onward + step[n][1] * before[1];
+      }
+      correction_[base + m][n] = L(0.5) * (sum[n] + along);
+      end[n] = onward + correction_[base + m][n];
+    }
+  }
+}
+
+/// Newton's step from the proposed corrections, along the lap, which is to end where it started; `end` as propose() leaves
+/// it.
+template <class L, int N>
+void LaneOrbit<L, N>::correct(State end) {
+  const std::size_t per_segment = std::size_t(rule_.intervals + 1), nodes = first_node(2, 0);
+  State by;
+  for (std::size_t n = 0; n < N; ++n) by[n] = end[n] + course_[nodes - 1][n] - course_[0][n];
+  close_lap(by);
+  L sum(0.0);
+  slowest_ = course_[0][0];
+  const L per_speed = inverse_of(slowest_), per_current = inverse_of(current_scale_);
+  for (std::size_t base = 0; base < nodes; base += per_segment) {
+    for (std::size_t m = 0; m < per_segment; ++m) {
+      const std::size_t node = base + m;
+      if (m == 0) {
+        for (std::size_t n = 0; n < N; ++n) by[n] = by[n] + correction_[node][n];
+      } else {
+        const Matrix& step = step_[node];
+        const State before = by;
+        for (std::size_t n = 0; n < N; ++n) {
+          by[n] = step[n][0] * before[0] + correction_[node][n];
+          if constexpr (N == 2) by[n] = by[n] + step[n][1] * before[1];
+        }
+      }
+      sum = sum + abs(by[0]) * per_speed;
+      if constexpr (N == 2) sum = sum + abs(by[1]) * per_current;
+      for (std::size_t n = 0; n < N; ++n) course_[node][n] = course_[node][n] + by[n];
+      slowest_ = min(slowest_, course_[node][0]);
+    }
+  }
+  residual_ = sum * L(1.0 / double(nodes));
+  y_ = course_[0];
+}
+
+/// The equations at all nodes, and the corrections that follow; the last sweep takes integrals and readings, too.
+///
+/// Where a node stands off the sign change it was meant for by d, the wrong branch has held, or will hold, over d. The
+/// difference of the branches grows linearly from zero there, so that half of d times the difference at the node is the
+/// error left behind, up to O(d^3).
+template <class L, int N>
+template <bool last>
+void LaneOrbit<L, N>::sweep() {
+  const std::size_t intervals = std::size_t(rule_.intervals);
+  solve::Rates<System> rates;
+  State end;
+  end.fill(L(0.0));
+  correction_[0] = end;
+  L overlooked(0.0), highest(0.0);
+  std::array<std::array<L, nodes_per_segment>, 4> controlled;
+  typename System::Quadrature integrands_before;
+  if (lags_) let_current_lag();
+  if constexpr (last) {
+    integrals_.fill(L(0.0));
+    high_.fill(L(0.0));
+    low_.fill(L(0.0));
+    switch_offset_ = layer_ = L(0.0);
+  }
+  for (int half = 0; half < 2; ++half) {
+    System system = half_lap(half);
+    const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+    L h_before(0.0);
+    for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
+      const std::size_t base = first_node(half, s);
+      const L sign = mesh.force[s], h = mesh.u[s + 1] - mesh.u[s];
+      for (std::size_t m = 0; m <= intervals; ++m) {
+        if (lags_) system.drop = drop_[base + m];
+        if constexpr (last) {
+          visit_node(system, base + m, sign, rates);
+          const L weight = L(rule_.weight[m]) * h;
+          for (std::size_t q = 0; q < integrals_.size(); ++q) integrals_[q] = integrals_[q] + weight * rates.dq[q];
+          for (std::size_t c = 0; c < controlled.size(); ++c) controlled[c][m] = rates.dq[System::controlled_integrals[c]];
+          highest = max(highest, abs(rates.switches[0]));
+          if (m > 0 && m < intervals) overlooked = max(overlooked, -(rates.switches[0] * sign));
+        } else {
+          evaluate<false>(system, place_of(base + m), course_[base + m], sign, rates);
+        }
+        rates_[base + m] = rates.dy;
+        force_[base + m] = rates.switches[0];
+        if (m > 0) continue;
+        if constexpr (last) off_[std::size_t(half * segments_) + s] = L(0.0);
+        if (half == 0 && s == 0) continue;
+        // From the end of the segment before to the start of this one.
+        State& jump = correction_[base];
+        for (std::size_t n = 0; n < N; ++n) jump[n] = course_[base - 1][n] - course_[base][n];
+        if (s == 0) continue;
+        const Mask switches = mesh.force[s - 1] * sign < L(0.0);
+        if (!any<L>(switches)) continue;
+        L slope(0.0);
+        for (std::size_t j = 0; j <= intervals; ++j) slope = slope + L(rule_.slope[intervals][j]) * force_[base - 1 - intervals + j];
+        const L off = min(max(force_[base - 1] * h_before * inverse_of(slope), -h), h);
+        const L half_off = select<L>(switches, L(0.5) * off, L(0.0));
+        for (std::size_t n = 0; n < N; ++n) jump[n] = jump[n] - half_off * (rates_[base - 1][n] - rates_[base][n]);
+        if (lags_) {
+          const solve::Rates<System> by = relaxation(system, base, sign);
+          for (std::size_t n = 0; n < N; ++n) jump[n] = jump[n] + select<L>(switches, by.dy[n], L(0.0));
+          if constexpr (last) {
+            for (std::size_t q = 0; q < integrals_.size(); ++q) {
+              integrals_[q] = integrals_[q] + select<L>(switches, by.dq[q], L(0.0));
+            }
+            layer_ = max(layer_, select<L>(switches, abs(by.dy[0]) * inverse_of(course_[base][0]), L(0.0)));
+          }
+        }
+        if constexpr (last) {
+          for (std::size_t q = 0; q < integrals_.size(); ++q) {
+            integrals_[q] = integrals_[q] - half_off * (integrands_before[q] - rates.dq[q]);
+          }
+          off_[std::size_t(half * segments_) + s] = L(2.0) * half_off;
+          switch_offset_ = max(switch_offset_, L(2.0) * abs(half_off));
+        }
+      }
+      h_before = h;
+      propose(base, h, end);
+      if constexpr (last) {
+        integrands_before = rates.dq;
+        add_tails(controlled, base, h);
+        if (wanted_[std::size_t(Quantity::force)]) {
+          const L per_h = inverse_of(max(h, L(1e-12)));
+          auto& readings = readings_[std::size_t(Quantity::force)];
+          for (std::size_t m = 0; m <= intervals; ++m) {
+            L slope(0.0);
+            for (std::size_t j = 0; j <= intervals; ++j) slope = slope + L(rule_.slope[m][j]) * readings[base + j].value;
+            readings[base + m].slope = slope * per_h;
+          }
+        }
+      }
+    }
+    if constexpr (last) {
+      std::array<L, 2 * most_half_segments + 1> u, force;
+      for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
+        const std::size_t base = first_node(half, s);
+        u[2 * s] = mesh.u[s];
+        force[2 * s] = force_[base];
+        u[2 * s + 1] = L(0.5) * (mesh.u[s] + mesh.u[s + 1]);
+        force[2 * s + 1] = force_[base + intervals / 2];
+      }
+      u[2 * std::size_t(segments_)] = mesh.u[std::size_t(segments_)];
+      force[2 * std::size_t(segments_)] = force_[first_node(half, std::size_t(segments_)) - 1];
+      switch_offset_ = max(switch_offset_, find_switches(half, u.data(), force.data(), 2 * segments_));
+    }
+  }
+  correct(end);
+  if constexpr (last) {
+    overlooked_ = overlooked * inverse_of(max(highest, L(1e-300)));
+    // The coefficients fall geometrically, and the sums over the nodes see none below the 2 n-th.
+    step_error_ = speed_error_ = L(0.0);
+    for (std::size_t c = 0; c < high_.size(); ++c) {
+      const L scale = c == 0 ? L(1.0) : inverse_of(max(abs(integrals_[System::controlled_integrals[c - 1]]), L(1e-300)));
+      const L ratio = high_[c] * inverse_of(max(low_[c], L(1e-300)));
+      L error = high_[c] * scale;
+      for (std::size_t k = 0; k < intervals / 2; ++k) error = error * ratio;
+      step_error_ = max(step_error_, error);
+      if (c < 2) speed_error_ = max(speed_error_, error);
+    }
+  }
+}
+
+/// Adds the last coefficients of a segment's rates of speed and integrals.
+template <class L, int N>
+void LaneOrbit<L, N>::add_tails(const std::array<std::array<L, nodes_per_segment>, 4>& controlled, std::size_t base,
+                                const L& h) {
+  const std::size_t n = std::size_t(rule_.intervals);
+  const L per_omega = inverse_of(course_[base][0]);
+  for (std::size_t c = 0; c < high_.size(); ++c) {
+    L tail[4] = {L(0.0), L(0.0), L(0.0), L(0.0)};
+    for (std::size_t j = 0; j <= n; ++j) {
+      const L value = c == 0 ? rates_[base + j][0] * per_omega : controlled[c - 1][j];
+      for (std::size_t k = 0; k < 4; ++k) tail[k] = tail[k] + L(k <= n ? rule_.legendre[n - k][j] : 0.0) * value;
+    }
+    high_[c] = high_[c] + h * (abs(tail[0]) + abs(tail[1]));
+    low_[c] = low_[c] + h * (abs(tail[2]) + abs(tail[3]));
+  }
+}
+
+/// The readings wanted at a state, with the motion there.
+template <class L, int N>
+void LaneOrbit<L, N>::read(const System& system, const L& u, const State& y, const L& force, const Motion<L>& m,
+                           const State& dy, const L& drop_slope, const std::array<bool, quantity_count>& wanted,
+                           std::array<Reading<L>, quantity_count>& out) const {
+  const auto is_wanted = [&](Quantity q) { return wanted[std::size_t(q)]; };
+  const auto at = [&](Quantity q) -> Reading<L>& { return out[std::size_t(q)]; };
+  if (is_wanted(Quantity::velocity)) {
+    at(Quantity::velocity) = {system.half * m.stroke_velocity, system.half * m.stroke_acceleration * inverse_of(y[0])};
+  }
+  if (is_wanted(Quantity::speed)) at(Quantity::speed) = {y[0], dy[0]};
+  if (is_wanted(Quantity::slowness)) at(Quantity::slowness) = {-y[0], -dy[0]};
+  if (is_wanted(Quantity::current)) {
+    if constexpr (N == 2) {
+      at(Quantity::current) = {y[1], dy[1]};
+    } else {
+      const L per_resistance = inverse_of(circuit_resistance(vehicle_));
+      at(Quantity::current) = {m.current, lags_ ? system.drop * per_inductance_ * inverse_of(y[0])
+                                                : -(vehicle_.motor.torque_constant * dy[0] * per_resistance)};
+    }
+  }
+  if (is_wanted(Quantity::energy)) {
+    const L energy = wing_energy(vehicle_, m.kinematics, m.stroke_velocity);
+    // At the dead centres the slope is zero but for rounding; its sign is that of the moment there.
+    const L rising = sign_of(L(system.half * m.stored_moment));
+    const L steepness = max(abs(L(m.stored_moment * m.kinematics.stroke_slope)), L(1e-30));
+    at(Quantity::energy) = {energy, rising * steepness};
+  }
+  if (is_wanted(Quantity::force)) {
+    // The slope along the solution by central differences.
+    constexpr double by = 1e-4;
+    L ahead[2];
+    for (int side = 0; side < 2; ++side) {
+      const L move(side == 0 ? -by : by);
+      State moved;
+      for (std::size_t n = 0; n < N; ++n) moved[n] = y[n] + move * dy[n];
+      System there = system;
+      if (lags_) there.drop = system.drop + move * drop_slope;
+      ahead[side] = there.motion(there.place(u + move), moved, force).rod_force;
+    }
+    at(Quantity::force) = {force * m.rod_force, force * (ahead[1] - ahead[0]) * L(0.5 / by)};
+  }
+}
+
+/// Rates and readings at a node.
+template <class L, int N>
+void LaneOrbit<L, N>::visit_node(const System& system, std::size_t node, const L& force, solve::Rates<System>& rates) {
+  const Motion<L> motion = system.motion(place_of(node), course_[node], force);
+  rates = system.template rates_of<true>(motion, course_[node], force);
+  if (!reads_) return;
+  std::array<bool, quantity_count> wanted = wanted_;
+  wanted[std::size_t(Quantity::force)] = false;
+  std::array<Reading<L>, quantity_count> readings;
+  read(system, L(0.0), course_[node], force, motion, rates.dy, L(0.0), wanted, readings);
+  readings[std::size_t(Quantity::force)].value = force * motion.rod_force;
+  for (std::size_t q = 0; q < std::size_t(quantity_count); ++q) {
+    if (wanted_[q]) readings_[q][node] = readings[q];
+  }
+}
+
+template <class L, int N>
+Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant) {
+  lost_ = L(1.0) < L(0.0);
+  if (settings_.approach == LaneApproach::resume) {
+    doubtful_ = locked_ = lost_;
+  } else {
+    tabulate();
+    judge_statics();
+    const L balances = guess_speed();
+    if (settings_.approach == LaneApproach::guess) {
+      doubtful_ = doubtful_ || !(balances == L(1.0));
+    } else {
+      // A heavy rotor is far from any orbit after the few turns simulated: they do not show which of several it reaches.
+      start_from_rest();
+      doubtful_ = doubtful_ || balances > L(1.0);
+    }
+    for (int n = 1; n < settings_.coarse_laps; ++n) coarse_lap<false>();
+    coarse_lap<true>();
+  }
+  march();
+  place_nodes();
+  if (lags_) drop_.fill(L(0.0));
+  for (int n = 0; n < settings_.sweeps; ++n) sweep<false>();
+  sweep<true>();
+
+  CycleIntegrals<L> integrals;
+  integrals.fill(L(0.0));
+  const auto total = [&](Integral which) -> L& { return integrals[std::size_t(which)]; };
+  for (std::size_t q = 0; q < lane_integrals.size(); ++q) total(lane_integrals[q]) = integrals_[q];
+  total(Integral::electrical_work) =
+      vehicle_.voltage * total(Integral::current) - vehicle_.source_resistance * total(Integral::current_square);
+  total(Integral::motor_work) =
+      total(Integral::friction_work) + total(Integral::aero_work) + total(Integral::residual_work);
+  const auto is_wanted = [&](Quantity q) { return wanted_[std::size_t(q)]; };
+  peak_error_ = L(0.0);
+  CycleExtremes<L> extremes;
+  extremes.fill(L(0.0));
+  const auto seek = [&](Quantity quantity, Extreme extreme) {
+    if (is_wanted(quantity)) extremes[std::size_t(extreme)] = peak(quantity);
+  };
+  seek(Quantity::velocity, Extreme::flapping_velocity);
+  if (settings_.velocity_aside) {
+    peak_error_ = L(0.0);
+  } else if (is_wanted(Quantity::velocity)) {
+    extremes[std::size_t(Extreme::lift)] = lift_peak(extremes[std::size_t(Extreme::flapping_velocity)]);
+  }
+  if (is_wanted(Quantity::energy)) total(Integral::reactive_work) = exchanged_energy();
+  seek(Quantity::current, Extreme::current);
+  seek(Quantity::force, Extreme::rod_force);
+  seek(Quantity::slowness, Extreme::crank_speed_min);
+  seek(Quantity::speed, Extreme::crank_speed_max);
+  const L multiplier = settings_.multipliers ? floquet_multiplier() : L(0.0);
+
+  error_estimate_ = L(1.5) * (step_error_ + L(2.0) * residual_ + peak_error_) + L(0.03) * square(switch_offset_) +
+                    overlooked_ * sqrt(overlooked_);
+  // A motor near its speed without load draws the small difference of two large voltages.
+  const L back_emf = L(two_pi) * vehicle_.motor.torque_constant;
+  const L resistive = circuit_resistance(vehicle_) * abs(integrals_[lane_integral(Integral::current)]);
+  const L difference = max(L(back_emf * inverse_of(max(resistive, L(1e-300))) - L(1.0)), L(0.0));
+  error_estimate_ = error_estimate_ + L(1.5) * difference * (speed_error_ + L(2.0) * residual_);
+  if (lags_) error_estimate_ = error_estimate_ + L(1.5) * (difference + L(2.0)) * lag_residual_ + lag_left_out();
+  lost_ = lost_ || !(slowest_ > floor_);
+  if (settings_.approach == LaneApproach::guess) doubtful_ = doubtful_ || lost_;
+  doubtful_ = doubtful_ || (!lost_ && hardly_returns(vehicle_, largest_modulus(monodromy_), total(Integral::time)));
+  error_estimate_ = select<L>(lost_, L(std::numeric_limits<double>::infinity()), error_estimate_);
+  return cycle_metrics(vehicle_, integrals, extremes, multiplier, ReportingOf<L>{mass, bench_torque_constant});
+}
+
+}  // namespace wingbeat

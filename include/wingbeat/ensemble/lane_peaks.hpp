@@ -1,0 +1,308 @@
+// Extremes of a lap on SIMD lanes: the part of LaneOrbit that looks for them.
+#pragma once
+
+#include "wingbeat/ensemble/lane_orbit.hpp"
+
+namespace wingbeat {
+
+/// The course over a segment, which may differ from lane to lane: the integral of its rates' interpolant, and through the
+/// nodes that the last correction has moved since the rates were taken.
+template <class L, int N>
+void LaneOrbit<L, N>::follow(const L& segment, SegmentCourse<L, N>& course) const {
+  const std::size_t intervals = std::size_t(rule_.intervals);
+  std::array<State, nodes_per_segment> rates, y;
+  course = {};
+  for (State& at : y) at.fill(L(0.0));
+  rates = y;
+  for (int half = 0; half < 2; ++half) {
+    const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+    for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
+      const Mask here = segment == L(double(half * segments_) + double(s));
+      if (!any<L>(here)) continue;
+      const std::size_t base = first_node(half, s);
+      course.half = select<L>(here, L(half == 0 ? 1.0 : -1.0), course.half);
+      course.u = select<L>(here, mesh.u[s], course.u);
+      course.length = select<L>(here, mesh.u[s + 1] - mesh.u[s], course.length);
+      course.force = select<L>(here, mesh.force[s], course.force);
+      for (std::size_t k = 0; lags_ && k <= intervals; ++k) {
+        L sum(0.0);
+        for (std::size_t j = 0; j <= intervals; ++j) sum = sum + L(rule_.legendre[k][j]) * drop_[base + j];
+        course.drop[k] = select<L>(here, sum, course.drop[k]);
+      }
+      for (std::size_t n = 0; n < N; ++n) {
+        for (std::size_t j = 0; j <= intervals; ++j) {
+          y[j][n] = select<L>(here, course_[base + j][n], y[j][n]);
+          rates[j][n] = select<L>(here, rates_[base + j][n], rates[j][n]);
+        }
+      }
+    }
+  }
+  // Coefficients c of the rates; their integral from the start: c[k] (P[k+1] - P[k-1]) / (2 k + 1).
+  const L half_length = L(0.5) * course.length;
+  for (std::size_t n = 0; n < N; ++n) {
+    std::array<L, nodes_per_segment> c;
+    for (std::size_t k = 0; k <= intervals; ++k) {
+      L sum(0.0);
+      for (std::size_t j = 0; j <= intervals; ++j) sum = sum + L(rule_.legendre[k][j]) * rates[j][n];
+      c[k] = half_length * sum * L(1.0 / double(2 * k + 1));
+    }
+    auto& to = course.legendre;
+    to[0][n] = y[0][n] + c[0] - c[1];
+    for (std::size_t k = 1; k <= intervals + 1; ++k) {
+      to[k][n] = c[k - 1] - (k + 1 <= intervals ? c[k + 1] : L(0.0));
+    }
+    L reached = y[0][n];
+    for (std::size_t m = 1; m <= intervals; ++m) {
+      L sum(0.0);
+      for (std::size_t j = 0; j <= intervals; ++j) sum = sum + L(rule_.between[m][j]) * rates[j][n];
+      reached = reached + course.length * sum;
+      const L moved = y[m][n] - reached;
+      for (std::size_t k = 0; k <= intervals; ++k) to[k][n] = to[k][n] + L(rule_.legendre[k][m]) * moved;
+    }
+  }
+}
+
+/// A quantity, with the motion, at distance x from the start of a segment.
+template <class L, int N>
+Reading<L> LaneOrbit<L, N>::reading_inside(Quantity quantity, const SegmentCourse<L, N>& course, const L& x) const {
+  std::array<bool, quantity_count> wanted{};
+  wanted[std::size_t(quantity)] = true;
+  System system = {vehicle_, geometry_, per_inductance_, course.half};
+  const L t = L(2.0) * x * inverse_of(max(course.length, L(1e-12))) - L(1.0);
+  State y;
+  for (std::size_t n = 0; n < N; ++n) y[n] = course.legendre[0][n] + t * course.legendre[1][n];
+  L before(1.0), here = t, slope_before(0.0), slope(1.0), drop_slope(0.0);
+  if (lags_) {
+    system.drop = course.drop[0] + t * course.drop[1];
+    drop_slope = course.drop[1];
+  }
+  for (std::size_t k = 1; k <= std::size_t(rule_.intervals); ++k) {
+    const L next = L(double(2 * k + 1) / double(k + 1)) * t * here - L(double(k) / double(k + 1)) * before;
+    for (std::size_t n = 0; n < N; ++n) y[n] = y[n] + course.legendre[k + 1][n] * next;
+    if (lags_) {
+      const L next_slope = slope_before + L(double(2 * k + 1)) * here;
+      system.drop = system.drop + course.drop[k + 1] * next;
+      drop_slope = drop_slope + course.drop[k + 1] * next_slope;
+      slope_before = slope;
+      slope = next_slope;
+    }
+    before = here;
+    here = next;
+  }
+  drop_slope = drop_slope * L(2.0) * inverse_of(max(course.length, L(1e-12)));
+  const L u = course.u + x;
+  const Motion<L> motion = system.motion(system.place(u), y, course.force);
+  const State dy = system.template rates_of<false>(motion, y, course.force).dy;
+  std::array<Reading<L>, quantity_count> readings;
+  read(system, u, y, course.force, motion, dy, drop_slope, wanted, readings);
+  return readings[std::size_t(quantity)];
+}
+
+/// Calls visit(bracket, mask) for each stretch of half a lap, in order: from node to node, and where the cubic through
+/// both turns twice in between, its two parts; stretches that cannot rise above `floor` in any lane are left out.
+template <class L, int N>
+template <class Visit>
+void LaneOrbit<L, N>::for_each_stretch(int half, Quantity quantity, const L& floor, const Visit& visit) const {
+  const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+  const auto& readings = readings_[std::size_t(quantity)];
+  for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
+    const std::size_t base = first_node(half, s);
+    const L h = mesh.u[s + 1] - mesh.u[s];
+    for (std::size_t m = 1; m <= std::size_t(rule_.intervals); ++m) {
+      const Reading<L>& from = readings[m == 1 && s > 0 ? base - 1 : base + m - 1];
+      const Reading<L>& to = readings[base + m];
+      const L x0 = L(rule_.node[m - 1]) * h, x1 = L(rule_.node[m]) * h, width = x1 - x0;
+      const Mask may_rise = max(from.value, to.value) + L(0.3) * width * (abs(from.slope) + abs(to.slope)) > floor;
+      if (!any<L>(may_rise)) continue;
+      const PeakBracket<L> b = {L(double(half * segments_) + double(s)), x0, from.value, from.slope, x1, to.value,
+                                to.slope, L(0.0), L(0.0)};
+      const L slope = (b.v1 - b.v0) * inverse_of(max(width, L(1e-300)));
+      // A slope that is nowhere far below the larger one of the ends' does not change its sign in between.
+      Mask twice = may_rise && b.d0 * b.d1 > L(0.0) &&
+                   slope * sign_of(b.d0) < L(0.5) * max(abs(b.d0), abs(b.d1));
+      if (any<L>(twice)) {
+        const L c2 = L(3.0) * slope - L(2.0) * b.d0 - b.d1, c3 = b.d0 + b.d1 - L(2.0) * slope;
+        const L discriminant = square(c2) - L(3.0) * c3 * b.d0;
+        const L per_3c3 = inverse_of(select<L>(c3 == L(0.0), L(1e-300), L(3.0) * c3));
+        const L middle = -(c2 * per_3c3), reach = sqrt(max(discriminant, L(0.0))) * abs(per_3c3);
+        twice = twice && discriminant > L(0.0) && middle - reach > L(0.0) && middle + reach < L(1.0);
+        if (any<L>(twice)) {
+          visit(b, may_rise && !twice);
+          SegmentCourse<L, N> course;
+          follow(b.segment, course);
+          const L x = x0 + select<L>(twice, middle, L(0.5)) * width;
+          const Reading<L> at = reading_inside(quantity, course, x);
+          PeakBracket<L> first = b, second = b;
+          first.x1 = second.x0 = x;
+          first.v1 = second.v0 = at.value;
+          first.d1 = second.d0 = at.slope;
+          visit(first, twice);
+          visit(second, twice);
+          continue;
+        }
+      }
+      visit(b, may_rise);
+    }
+  }
+}
+
+template <class L, int N>
+void LaneOrbit<L, N>::keep(const PeakBracket<L>& from, const Mask& where, PeakBracket<L>& to) {
+  using P = PeakBracket<L>;
+  for (L P::*member : {&P::segment, &P::x0, &P::v0, &P::d0, &P::x1, &P::v1, &P::d1, &P::rises_and_falls, &P::estimate}) {
+    to.*member = select<L>(where, from.*member, to.*member);
+  }
+}
+
+/// Distance from x0, as a fraction of the bracket, of the maximum of the cubic through its ends; sets the estimate.
+template <class L, int N>
+L LaneOrbit<L, N>::estimate_peak(PeakBracket<L>& b) {
+  const L h = b.x1 - b.x0;
+  const L slope = (b.v1 - b.v0) * inverse_of(max(h, L(1e-300)));
+  const L z = b.d0 + b.d1 - L(3.0) * slope;
+  const L root = sqrt(max(L(z * z - b.d0 * b.d1), L(0.0)));
+  const Mask turns = b.d0 > L(0.0) && b.d1 < L(0.0);
+  const L below = select<L>(turns, L(b.d0 - b.d1 + L(2.0) * root), L(1.0));
+  const L t = min(max(L((b.d0 + root - z) * inverse_of(below)), L(0.0)), L(1.0));
+  const L c2 = L(3.0) * slope - L(2.0) * b.d0 - b.d1, c3 = b.d0 + b.d1 - L(2.0) * slope;
+  b.rises_and_falls = select<L>(turns, L(1.0), L(0.0));
+  b.estimate = select<L>(turns, b.v0 + h * t * (b.d0 + t * (c2 + t * c3)), max(b.v0, b.v1));
+  return t;
+}
+
+/// The maximum within a bracket: the cubic's, read on the course, and again within the bracket that this leaves. What the
+/// course errs by is added to the error of peaks.
+template <class L, int N>
+L LaneOrbit<L, N>::refine(Quantity quantity, const L& sign, PeakBracket<L> b) {
+  L highest = max(b.v0, b.v1);
+  const Mask inside = b.rises_and_falls > L(0.0);
+  if (!any<L>(inside)) return highest;
+  SegmentCourse<L, N> course;
+  follow(b.segment, course);
+  Mask active = inside;
+  for (int n = 0; n < 8 && any<L>(active); ++n) {
+    const L t = estimate_peak(b);
+    const L x = b.x0 + t * (b.x1 - b.x0);
+    const Reading<L> at = reading_inside(quantity, course, x);
+    const L v = sign * at.value, d = sign * at.slope;
+    const Mask rising = active && d > L(0.0), falling = active && !rising;
+    b.x0 = select<L>(rising, x, b.x0);
+    b.v0 = select<L>(rising, v, b.v0);
+    b.d0 = select<L>(rising, d, b.d0);
+    b.x1 = select<L>(falling, x, b.x1);
+    b.v1 = select<L>(falling, v, b.v1);
+    b.d1 = select<L>(falling, d, b.d1);
+    highest = select<L>(active, max(highest, v), highest);
+    // What is left to gain, by the cubic through the shrunken bracket.
+    estimate_peak(b);
+    active = active && b.estimate - highest > L(settings_.peak_tolerance) * abs(highest);
+  }
+  // The first coefficients left out, from how the last ones fall.
+  const std::size_t end = std::size_t(rule_.intervals) + 1;
+  const auto left_out = [&](std::size_t n, const L& scale) {
+    const auto size = [&](std::size_t k) { return abs(course.legendre[k][n]) + abs(course.legendre[k - 1][n]); };
+    const L high = size(end), low = max(size(end - 2), L(1e-300));
+    return high * min(L(high * inverse_of(low)), L(1.0)) * inverse_of(scale);
+  };
+  L error = L(2.0) * left_out(0, course.legendre[0][0]);
+  if constexpr (N == 2) {
+    if (quantity == Quantity::current) error = max(error, L(2.0) * left_out(1, abs(highest)));
+  }
+  peak_error_ = select<L>(inside, max(peak_error_, error), peak_error_);
+  return select<L>(inside, max(highest, b.estimate), highest);
+}
+
+/// The maximum of a quantity over the lap. Of two stretches with almost the same peak both are refined.
+template <class L, int N>
+L LaneOrbit<L, N>::peak(Quantity quantity) {
+  L highest_node(-1e300);
+  const std::size_t nodes = first_node(2, 0);
+  for (std::size_t n = 0; n < nodes; ++n) highest_node = max(highest_node, readings_[std::size_t(quantity)][n].value);
+  PeakBracket<L> best{}, other{};
+  best.estimate = other.estimate = L(-1e300);
+  for (int half = 0; half < 2; ++half) {
+    for_each_stretch(half, quantity, highest_node, [&](PeakBracket<L> b, const Mask& where) {
+      estimate_peak(b);
+      const Mask turns = where && b.rises_and_falls > L(0.0);
+      const Mask first = turns && b.estimate > best.estimate;
+      keep(best, first, other);
+      keep(b, first, best);
+      keep(b, turns && !first && b.estimate > other.estimate, other);
+    });
+  }
+  const L highest = max(highest_node, select<L>(best.estimate > L(-1e300), refine(quantity, L(1.0), best), highest_node));
+  // The cubics err by a small part of what they rise above their ends.
+  const L rise = other.estimate - min(other.v0, other.v1) + best.estimate - min(best.v0, best.v1);
+  const Mask close = other.estimate > L(-1e300) && other.estimate + L(0.2) * rise > best.estimate;
+  if (!any<L>(close)) return highest;
+  other.rises_and_falls = select<L>(close, other.rises_and_falls, L(0.0));
+  return select<L>(close, max(highest, refine(quantity, L(1.0), other)), highest);
+}
+
+/// The work that wings and springs exchange with the rest, |power| integrated over the lap [J]: the energy that they store
+/// rises and falls by it between its extremes.
+template <class L, int N>
+L LaneOrbit<L, N>::exchanged_energy() {
+  L total(0.0);
+  for (int half = 0; half < 2; ++half) {
+    const auto& readings = readings_[std::size_t(Quantity::energy)];
+    std::array<PeakBracket<L>, most_energy_extremes> extremes{};
+    std::array<L, most_energy_extremes> signs;
+    L count(0.0);
+    for_each_stretch(half, Quantity::energy, L(-1e300), [&](PeakBracket<L> b, const Mask& where) {
+      const L sign = sign_of(b.d0);
+      const Mask turns = where && !(sign_of(b.d1) == sign);
+      if (!any<L>(turns)) return;
+      for (L* part : {&b.v0, &b.d0, &b.v1, &b.d1}) *part = sign * *part;
+      estimate_peak(b);
+      for (std::size_t n = 0; n < most_energy_extremes; ++n) {
+        const Mask here = turns && count == L(double(n));
+        keep(b, here, extremes[n]);
+        signs[n] = select<L>(here, sign, signs[n]);
+      }
+      count = select<L>(turns, count + L(1.0), count);
+    });
+    doubtful_ = doubtful_ || count > L(double(most_energy_extremes));
+    L before = readings[first_node(half, 0)].value;
+    for (std::size_t n = 0; n < most_energy_extremes; ++n) {
+      const Mask exists = count > L(double(n));
+      if (!any<L>(exists)) break;
+      const L here = signs[n] * refine(Quantity::energy, signs[n], extremes[n]);
+      total = select<L>(exists, total + abs(here - before), total);
+      before = select<L>(exists, here, before);
+    }
+    const L end = readings[first_node(half, std::size_t(segments_)) - 1].value;
+    total = total + abs(end - before);
+  }
+  return total;
+}
+
+/// The largest lift while |beta'| runs from zero to its peak: at the peak, or where lift falls with speed before it.
+template <class L, int N>
+L LaneOrbit<L, N>::lift_peak(const L& highest_velocity) const {
+  const BladeElement<L>& w = vehicle_.wings;
+  // Samples of lift over speed find the highest stretch; a parabola's vertex, twice, the maximum in it.
+  constexpr int samples = 12;
+  L at = highest_velocity, best = lift_force(w, highest_velocity);
+  for (int n = 1; n < samples; ++n) {
+    const L u = L(double(n) / samples) * highest_velocity;
+    const L lift = lift_force(w, u);
+    const Mask higher = lift > best;
+    best = select<L>(higher, lift, best);
+    at = select<L>(higher, u, at);
+  }
+  const Mask within = at < highest_velocity || lift_force(w, L(L(0.999) * highest_velocity)) > best;
+  if (!any<L>(within)) return best;
+  L width = L(1.0 / samples) * highest_velocity;
+  for (int n = 0; n < 6; ++n) {
+    const L below = lift_force(w, L(at - width)), here = lift_force(w, at), above = lift_force(w, L(at + width));
+    const L curve = below - L(2.0) * here + above;
+    const L move = L(0.5) * width * (below - above) * inverse_of(select<L>(curve < L(0.0), curve, L(-1e300)));
+    at = min(max(at + min(max(move, -width), width), L(0.0)), highest_velocity);
+    best = select<L>(within, max(best, lift_force(w, at)), best);
+    width = L(0.25) * width;
+  }
+  return best;
+}
+
+}  // namespace wingbeat

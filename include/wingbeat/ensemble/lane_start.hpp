@@ -1,0 +1,325 @@
+// From a vehicle on each lane to a first course of its lap: the part of LaneOrbit that comes before the nodes.
+#pragma once
+
+#include "wingbeat/ensemble/lane_orbit.hpp"
+
+namespace wingbeat {
+
+template <class L, int N>
+void LaneOrbit<L, N>::tabulate() {
+  for (int half = 0; half < 2; ++half) {
+    const System system = half_lap(half);
+    for (int k = 0; k < coarse_samples; ++k) {
+      table_[std::size_t(half)][std::size_t(k)] = system.place(L(quarter * (2.0 * k / (coarse_samples - 1) - 1.0)));
+    }
+  }
+}
+
+/// Marks the lanes that could jam or lock: within a margin, for the table is coarse; static_balance() has the last word.
+template <class L, int N>
+void LaneOrbit<L, N>::judge_statics() {
+  const Vehicle<L>& v = vehicle_;
+  const L stall = stall_torque(v);
+  doubtful_ = !(stall > breakaway_torque(v));
+  locked_ = !doubtful_ && doubtful_;
+  // From rest, locking shows by itself, and only jams on the way are left to be told from near ones.
+  const bool from_rest = settings_.approach == LaneApproach::from_rest;
+  const L inertia_margin(from_rest ? 0.05 : 0.3), lever_margin(from_rest ? 0.02 : 0.1);
+  const bool springs = !from_rest && any<L>(v.spring.stiffness > L(0.0));
+  for (const auto& half : table_) {
+    for (const Place<L>& place : half) {
+      const CrankKinematics<L>& k = place.kinematics;
+      doubtful_ = doubtful_ || !(least_inertia(v, k) > inertia_margin * v.motor.inertia) ||
+                  !(k.wing_lever > lever_margin * v.crank.hinge_offset);
+      if (springs) {
+        doubtful_ = doubtful_ || !(advance_torque(v, k, place.spring_moment, L(L(0.8) * stall)) > L(0.0));
+      }
+    }
+  }
+}
+
+/// Starts at the balanced_speed(); returns how many there are.
+template <class L, int N>
+L LaneOrbit<L, N>::guess_speed() {
+  constexpr int stride = 4, count = coarse_samples / stride;
+  std::array<LoadPlace<L>, 2 * count> places;
+  for (int n = 0; n < 2 * count; ++n) {
+    const Place<L>& at = table_[std::size_t(n / count)][std::size_t(stride / 2 + stride * (n % count))];
+    places[std::size_t(n)] = load_place(vehicle_, at.kinematics, at.spring_moment);
+  }
+  const BalancedSpeed<L> balanced = balanced_speed<L>(vehicle_, places);
+  y_[0] = balanced.slowest;
+  if constexpr (N == 2) y_[1] = algebraic_current(vehicle_, vehicle_.voltage, y_[0]);
+  return balanced.count;
+}
+
+/// From rest at crank angle zero, in time, by the classical fourth-order method: over the lower dead centre twice, where
+/// the lap may begin. Lanes that come near standing still are doubtful, but for those that come to rest and stay.
+template <class L, int N>
+void LaneOrbit<L, N>::start_from_rest() {
+  using Moving = std::array<L, N + 1>;  // crank angle, state
+  const int steps_per_lap = settings_.start_up_steps;
+  constexpr int most_laps = 24;
+  // The kinks leave an error of the second order, which counts most where the crank almost stands still.
+  L slow_limit = L(1.92 / steps_per_lap) * no_load_;
+  // An inductance that is left out here changes the speed by less than its share of the motor's time constant.
+  if (lags_) slow_limit = slow_limit + L(2.0) * electrical_to_mechanical_time() * no_load_;
+  constexpr double end = 3.5 * pi;
+  const L dt = L(two_pi / double(steps_per_lap)) * inverse_of(no_load_);
+  if constexpr (N == 2) {  // beyond the method's stability
+    doubtful_ = doubtful_ || dt * circuit_resistance(vehicle_) * per_inductance_ > L(2.0);
+  }
+  const auto rates = [&](const Moving& x) {
+    const L sine = sin(x[0]), cosine = cos(x[0]);
+    System system = half_lap(0);
+    State y;
+    for (std::size_t n = 0; n < N; ++n) y[n] = x[n + 1];
+    const CrankKinematics<L> k = crank_kinematics(geometry_, sine, cosine);
+    system.half = sign_of(k.stroke_slope);
+    const Motion<L> m = system.motion_on_its_branch(system.place_of(k), y);
+    Moving r;
+    r[0] = y[0];
+    r[1] = m.crank_acceleration;
+    if constexpr (N == 2) {
+      r[2] = motor_loads(vehicle_.motor, m.voltage, y[1], y[0]).voltage_reserve * per_inductance_;
+    }
+    return r;
+  };
+  const auto moved = [](const Moving& x, const Moving& rate, const L& by) {
+    Moving to;
+    for (std::size_t n = 0; n <= N; ++n) to[n] = x[n] + by * rate[n];
+    return to;
+  };
+  Moving x;
+  x.fill(L(0.0));
+  y_.fill(L(0.0));
+  Mask done = L(1.0) < L(0.0), started = done, slow = done, stopped = done;
+  L waited(0.0);  // steps at rest, or since the crank was slow: after a few laps' worth others must decide
+  for (int n = 0; n < steps_per_lap * most_laps; ++n) {
+    if (all<L>(done || stopped || waited > L(2.0 * steps_per_lap))) break;
+    const Moving k1 = rates(x);
+    const Moving k2 = rates(moved(x, k1, L(0.5) * dt));
+    const Moving k3 = rates(moved(x, k2, L(0.5) * dt));
+    const Moving k4 = rates(moved(x, k3, dt));
+    Moving next;
+    for (std::size_t j = 0; j <= N; ++j) {
+      next[j] = x[j] + dt * L(1.0 / 6.0) * (k1[j] + L(2.0) * (k2[j] + k3[j]) + k4[j]);
+    }
+    // Friction holds a crank that has not started; it does not turn it backwards.
+    const Mask held = !started && !(next[1] > L(0.0));
+    next[0] = select<L>(held, x[0], next[0]);
+    next[1] = select<L>(held, L(0.0), next[1]);
+    started = started || next[1] > L(0.05) * no_load_;
+    slow = slow || (started && !done && !(next[1] > slow_limit));
+    waited = select<L>(slow || !started, waited + L(1.0), waited);
+    const Mask stops = started && !done && !stopped && !(next[1] > L(0.0));
+    const Mask arrives = !done && !stopped && next[0] >= L(end);
+    const L part = (L(end) - x[0]) * inverse_of(max(L(next[0] - x[0]), L(1e-300)));
+    for (std::size_t j = 0; j < N; ++j) y_[j] = select<L>(arrives, x[j + 1] + part * (next[j + 1] - x[j + 1]), y_[j]);
+    done = done || arrives;
+    stopped = stopped || stops;
+    for (std::size_t j = 0; j <= N; ++j) x[j] = select<L>(stopped && !stops, x[j], next[j]);
+  }
+  // A crank that has come to rest where friction outweighs the drive, at the present current and at the one that it
+  // settles to, stays.
+  const L stall = stall_torque(vehicle_);
+  const L sine = sin(x[0]), cosine = cos(x[0]);
+  const CrankKinematics<L> k = crank_kinematics(geometry_, sine, cosine);
+  const L N_k_beta = spring_moment(vehicle_, k);
+  L margin = lock_margin(vehicle_, k, N_k_beta, stall);
+  if constexpr (N == 2) {
+    margin = min(margin, lock_margin(vehicle_, k, N_k_beta, L(vehicle_.motor.torque_constant * x[2])));
+  }
+  locked_ = stopped && !doubtful_ && margin > L(0.05) * stall;
+  doubtful_ = doubtful_ || slow || !done;
+}
+
+/// Whether an explicit step of fourth order would be near its limit of stability.
+template <class L, int N>
+auto LaneOrbit<L, N>::is_stiff(const Matrix& jacobian, const L& h) -> Mask {
+  L fastest = abs(jacobian[0][0]);
+  if constexpr (N == 2) fastest = max(fastest, abs(jacobian[1][1]));
+  return h * fastest > L(1.5);
+}
+
+/// A step by the L-stable diagonally implicit method of second order with two stages (Alexander 1977), each by a few Newton
+/// steps; rates(part, y) are those at a part of the step.
+template <class L, int N>
+template <class Rates>
+auto LaneOrbit<L, N>::implicit_step(const State& y, const L& h, const Rates& rates) const -> State {
+  const double gamma = 1.0 - std::sqrt(0.5);
+  const L own = L(gamma) * h;
+  State known = y, at = y;
+  for (const double part : {gamma, 1.0}) {
+    State slope;
+    for (int newton = 0; newton < 4; ++newton) {
+      slope = rates(L(part), at);
+      Matrix reduced = derivatives(at, slope, [&](const State& moved) { return rates(L(part), moved); });
+      for (std::size_t row = 0; row < N; ++row) {  // 1 - gamma h jacobian
+        for (std::size_t n = 0; n < N; ++n) reduced[row][n] = L(row == n ? 1.0 : 0.0) - own * reduced[row][n];
+      }
+      State off;
+      for (std::size_t n = 0; n < N; ++n) off[n] = known[n] + own * slope[n] - at[n];
+      if constexpr (N == 1) {
+        off[0] = off[0] * inverse_of(reduced[0][0]);
+      } else {
+        // By elimination: of a b - c d, either product may be the fused one, another in each half of a block.
+        const L per_first = inverse_of(reduced[0][0]), factor = reduced[1][0] * per_first;
+        off[1] = (off[1] - factor * off[0]) * inverse_of(L(reduced[1][1] - factor * reduced[0][1]));
+        off[0] = (off[0] - reduced[0][1] * off[1]) * per_first;
+      }
+      const L least = L(0.3) * at[0];  // it shall not pass standstill
+      for (std::size_t n = 0; n < N; ++n) at[n] = at[n] + off[n];
+      at[0] = max(at[0], least);
+    }
+    // What the first stage leaves to the second: y + (1 - gamma) h slope.
+    for (std::size_t n = 0; n < N; ++n) known[n] = y[n] + L((1.0 - gamma) / gamma) * (at[n] - y[n]);
+  }
+  return at;
+}
+
+/// Where a step of coarse_lap() from y is stiff, takes an implicit one instead: its end, and the rod force's switch in its
+/// middle and at its end.
+template <class L, int N>
+void LaneOrbit<L, N>::replace_stiff(const System& system, const L& u, const L& h, const State& y, State& end,
+                                    L& force_in_middle, L& force_at_end) const {
+  State rates, beside;
+  L force;
+  find_rates(system, u, y, rates, force);
+  const Matrix jacobian = derivatives(y, rates, [&](const State& moved) -> const State& {
+    find_rates(system, u, moved, beside, force);
+    return beside;
+  });
+  const Mask stiff = is_stiff(jacobian, h);
+  if (!any<L>(stiff)) return;
+  const State by_implicit = implicit_step(y, h, [&](const L& part, const State& at) {
+    find_rates(system, u + part * h, at, rates, force);
+    return rates;
+  });
+  State middle;
+  for (std::size_t n = 0; n < N; ++n) {
+    end[n] = select<L>(stiff, by_implicit[n], end[n]);
+    middle[n] = L(0.5) * (y[n] + end[n]);
+  }
+  find_rates(system, u + L(0.5) * h, middle, rates, force);
+  force_in_middle = select<L>(stiff, force, force_in_middle);
+  find_rates(system, u + h, end, rates, force);
+  force_at_end = select<L>(stiff, force, force_at_end);
+}
+
+/// One lap by the classical fourth-order method, each stage on the branch that holds there; the last one finds the
+/// switches.
+template <class L, int N>
+template <bool last>
+void LaneOrbit<L, N>::coarse_lap() {
+  constexpr double h = pi / coarse_half_steps;
+  slowest_ = y_[0];
+  std::array<L, coarse_samples> angles;
+  for (std::size_t k = 0; k < coarse_samples; ++k) angles[k] = L(quarter * (2.0 * double(k) / (coarse_samples - 1) - 1.0));
+  for (int half = 0; half < 2; ++half) {
+    const System system = half_lap(half);
+    const auto& table = table_[std::size_t(half)];
+    std::array<L, coarse_samples> force;
+    const auto moved = [](const State& from, const State& slope, double by) {
+      State to;
+      for (std::size_t n = 0; n < N; ++n) to[n] = from[n] + L(by) * slope[n];
+      return to;
+    };
+    for (std::size_t k = 0; k + 2 < coarse_samples; k += 2) {
+      const auto at = [&](std::size_t sample, const State& y) {
+        const Motion<L> m = system.motion_on_its_branch(table[sample], y);
+        force[sample] = m.force_switch;
+        return system.template rates_of<false>(m, y, L(1.0)).dy;
+      };
+      const State k1 = at(k, y_);
+      const State k2 = at(k + 1, moved(y_, k1, 0.5 * h));
+      const State k3 = at(k + 1, moved(y_, k2, 0.5 * h));
+      const State k4 = at(k + 2, moved(y_, k3, h));
+      State next;
+      for (std::size_t n = 0; n < N; ++n) {
+        next[n] = y_[n] + L(h / 6.0) * (k1[n] + L(2.0) * (k2[n] + k3[n]) + k4[n]);
+      }
+      if (settings_.implicit) replace_stiff(system, angles[k], L(h), y_, next, force[k + 1], force[k + 2]);
+      y_ = next;
+      slowest_ = min(slowest_, y_[0]);
+    }
+    if constexpr (last) find_switches(half, angles.data(), force.data(), coarse_samples - 1);
+  }
+  lost_ = lost_ || !(slowest_ > floor_);
+}
+
+/// A lap from y_ by the classical fourth-order method with one step per segment; corrects the switches.
+template <class L, int N>
+void LaneOrbit<L, N>::march() {
+  solve::Rates<System> k1, k2, k3, k4;
+  for (int half = 0; half < 2; ++half) {
+    const System system = half_lap(half);
+    build_mesh(half);
+    const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+    std::array<L, 2 * most_half_segments + 1> u, force;
+    std::array<Place<L>, 3> places;
+    places[2] = system.place(mesh.u[0]);
+    const auto moved = [](const State& from, const State& slope, const L& by) {
+      State to;
+      for (std::size_t n = 0; n < N; ++n) to[n] = from[n] + by * slope[n];
+      return to;
+    };
+    for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
+      Stretch& stretch = stretches_[std::size_t(half * segments_) + s];
+      const L sign = mesh.force[s], h = mesh.u[s + 1] - mesh.u[s], half_h = L(0.5) * h;
+      u[2 * s] = mesh.u[s];
+      u[2 * s + 1] = mesh.u[s] + half_h;
+      const Place<L>&start = places[s % 2 == 0 ? 2 : 0], &middle = places[1], &end = places[s % 2 == 0 ? 0 : 2];
+      find_place(system, u[2 * s + 1], places[1]);
+      find_place(system, mesh.u[s + 1], places[s % 2 == 0 ? 0 : 2]);
+      evaluate<false>(system, start, y_, sign, k1);
+      force[2 * s] = k1.switches[0];
+      stretch.y = y_;
+      stretch.rates = k1.dy;
+      stretch.jacobian[0] = jacobian_at(system, start, y_, k1.dy, sign);
+      evaluate<false>(system, middle, moved(y_, k1.dy, half_h), sign, k2);
+      const State inside = moved(y_, k2.dy, half_h);
+      evaluate<false>(system, middle, inside, sign, k3);
+      force[2 * s + 1] = k3.switches[0];
+      stretch.jacobian[1] = jacobian_at(system, middle, inside, k3.dy, sign);
+      evaluate<false>(system, end, moved(y_, k3.dy, h), sign, k4);
+      State next;
+      for (std::size_t n = 0; n < N; ++n) {
+        next[n] = y_[n] + L(1.0 / 6.0) * h * (k1.dy[n] + L(2.0) * (k2.dy[n] + k3.dy[n]) + k4.dy[n]);
+      }
+      if (settings_.implicit) {
+        const Mask stiff = is_stiff(stretch.jacobian[0], h);
+        solve::Rates<System> rates;
+        const State by_implicit = implicit_step(y_, h, [&](const L& part, const State& y) {
+          Place<L> place;
+          find_place(system, mesh.u[s] + part * h, place);
+          evaluate<false>(system, place, y, sign, rates);
+          return rates.dy;
+        });
+        State between;
+        for (std::size_t n = 0; n < N; ++n) {
+          next[n] = select<L>(stiff, by_implicit[n], next[n]);
+          between[n] = L(0.5) * (y_[n] + next[n]);
+        }
+        evaluate<false>(system, middle, between, sign, rates);
+        force[2 * s + 1] = select<L>(stiff, rates.switches[0], force[2 * s + 1]);
+        const Matrix jacobian = jacobian_at(system, middle, between, rates.dy, sign);
+        for (std::size_t row = 0; row < N; ++row) {
+          for (std::size_t column = 0; column < N; ++column) {
+            L& to = stretch.jacobian[1][row][column];
+            to = select<L>(stiff, jacobian[row][column], to);
+          }
+        }
+      }
+      y_ = next;
+    }
+    u[2 * std::size_t(segments_)] = mesh.u[std::size_t(segments_)];
+    evaluate<false>(system, places[segments_ % 2 == 0 ? 2 : 0], y_, mesh.force[std::size_t(segments_ - 1)], k4);
+    force[2 * std::size_t(segments_)] = k4.switches[0];
+    stretches_[std::size_t((half + 1) * segments_)].y = y_;
+    stretches_[std::size_t((half + 1) * segments_)].rates = k4.dy;
+    find_switches(half, u.data(), force.data(), 2 * segments_);
+  }
+}
+
+}  // namespace wingbeat

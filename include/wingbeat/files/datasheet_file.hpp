@@ -1,0 +1,16 @@
+// Motor data sheets as TOML, and the identified motor as text. For the keys see docs/motors.md.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "wingbeat/study/motor_identification.hpp"
+
+namespace wingbeat {
+
+/// Throws InputError.
+MotorDatasheet read_datasheet(const std::filesystem::path& file);
+MotorDatasheet parse_datasheet(std::string_view text, const std::string& file_name);
+
+}  // namespace wingbeat

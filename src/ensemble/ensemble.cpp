@@ -1,0 +1,251 @@
+#include "wingbeat/ensemble/ensemble.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "wingbeat/ensemble/lane_blocks.hpp"
+#include "wingbeat/cycle/static_balance.hpp"
+#include "wingbeat/solve/collocation.hpp"
+
+namespace wingbeat {
+namespace {
+
+struct LaneSolver {
+  decltype(&solve_block_base) solve;
+  int lanes;
+};
+
+LaneSolver solver_for(InstructionSet isa) {
+  switch (isa) {
+#ifdef WINGBEAT_X86
+    case InstructionSet::avx2: return {solve_block_avx2, lanes_avx2};
+    case InstructionSet::avx512: return {solve_block_avx512, lanes_avx512};
+#endif
+    default: return {solve_block_base, lanes_base};
+  }
+}
+
+/// Angle that a crank turns by at the speed without load while its current decays by a factor of e: up to here lanes take
+/// it for a lag, of which they leave out what is of higher order. Segments are forty times as long.
+double most_lag(double tolerance) {
+  return 0.007 * std::min(std::sqrt(tolerance / 1e-6), 1.0);
+}
+
+/// How a tolerance is met.
+struct Plan {
+  LaneSettings first, from_rest, from_rest_finely;
+  std::array<LaneSettings, 3> again;
+};
+
+Plan plan_for(const EnsembleOptions& options) {
+  const auto wanted = [&](Metric m) { return options.metrics[std::size_t(m)]; };
+  Plan plan{};
+  LaneSettings& s = plan.first;
+  const auto want = [&](Quantity q, bool on) { s.wanted[std::size_t(q)] = on; };
+  const bool velocity =
+      wanted(Metric::lift_peak) || wanted(Metric::flapping_velocity_peak) || wanted(Metric::angle_of_attack_min);
+  want(Quantity::velocity, velocity);
+  want(Quantity::current, wanted(Metric::current_peak));
+  want(Quantity::force, wanted(Metric::rod_force_peak));
+  want(Quantity::slowness, wanted(Metric::crank_speed_min));
+  want(Quantity::speed, wanted(Metric::crank_speed_max));
+  want(Quantity::energy, wanted(Metric::power_reactive));
+  s.multipliers = wanted(Metric::floquet_multiplier_max);
+
+  // Where benchmarks/benchmark_ensemble is fastest at 1e-6. The order of the means is twice the number of intervals, that
+  // of peaks little more than it; a sweep gains about two digits.
+  const double digits = -std::log10(options.tolerance);
+  const bool peaks = std::any_of(s.wanted.begin(), s.wanted.end(), [](bool on) { return on; });
+  const auto even = [](double x) { return std::clamp(2 * int(std::ceil(0.5 * x)), 6, solve::most_collocation_intervals); };
+  want(Quantity::velocity, velocity || options.domain);
+  s.velocity_aside = options.domain && !velocity;
+  s.segments = digits > 5.0 ? 8 : 6;
+  s.intervals = even(peaks ? 1.6 * (digits - 2.8) : digits - 1.5);
+  s.sweeps = std::max(2, int(std::ceil((digits - 1.4) / 1.7)));
+  s.coarse_laps = 2;
+  s.peak_tolerance = 0.5 * options.tolerance;
+
+  LaneSettings finer = s;
+  finer.approach = LaneApproach::resume;
+  finer.implicit = true;
+  for (LaneSettings& again : plan.again) {
+    ++finer.sweeps;
+    finer.segments = std::min(finer.segments + 2, most_half_segments);
+    again = finer;
+    finer.intervals = std::min(finer.intervals + 2, solve::most_collocation_intervals);
+  }
+  plan.from_rest = s;
+  plan.from_rest.approach = LaneApproach::from_rest;
+  plan.from_rest.sweeps += 1;
+  plan.from_rest.segments = most_half_segments;
+  plan.from_rest.implicit = true;
+  plan.from_rest_finely = plan.from_rest;
+  plan.from_rest_finely.start_up_steps = 16 * plan.from_rest.start_up_steps;
+  return plan;
+}
+
+void keep_wanted(const MetricSet& wanted, Metrics<double>& metrics) {
+  for (std::size_t m = 0; m < std::size_t(metric_count); ++m) {
+    if (!wanted[m]) metrics.values[m] = absent;
+  }
+}
+
+/// One run of members through the solvers.
+class EnsembleRun {
+ public:
+  EnsembleRun(std::span<const EnsembleMember> members, const EnsembleOptions& options, const StartUp& start_up,
+              std::span<EnsembleOutcome> outcomes)
+      : members_(members), options_(options), start_up_(start_up), outcomes_(outcomes), plan_(plan_for(options)),
+        solver_(solver_for(options.isa)), results_(members.size()), rotates_(members.size()) {}
+
+  void solve() {
+    std::array<std::vector<std::size_t>, kinds> by_kind;
+    for (std::size_t n = 0; n < members_.size(); ++n) {
+      const Vehicle<double>& v = members_[n].vehicle;
+      if (options_.scalar_only || !has_lanes || v.wings.coefficients.table || has_pitch_stop(v.wings) ||
+          v.transmission == TransmissionType::direct) {
+        solve_by_scalar(n);
+      } else if (stall_torque(v) <= breakaway_torque(v)) {
+        settle(n, FlappingStatus::stalled);
+      } else {
+        by_kind[kind_of(v)].push_back(n);
+      }
+    }
+    for (const std::vector<std::size_t>& alike : by_kind) solve_alike(alike);
+  }
+
+ private:
+  static constexpr std::size_t kinds = 12;
+  std::size_t kind_of(const Vehicle<double>& v) const {
+    return (v.crank.formulation == Formulation::virtual_work ? 6 : 0) + (v.spring.stiffness > 0.0 ? 3 : 0) +
+           std::size_t(current_of(v));
+  }
+
+  LaneCurrent current_of(const Vehicle<double>& v) const {
+    if (!(v.motor.armature_inductance > 0.0)) return LaneCurrent::algebraic;
+    const double lag = v.motor.armature_inductance / circuit_resistance(v) * no_load_speed(v);
+    return lag < most_lag(options_.tolerance) ? LaneCurrent::lagging : LaneCurrent::state;
+  }
+
+  /// Few need more than the first attempt: all of a kind together fill the lanes of the others.
+  void solve_alike(const std::vector<std::size_t>& all) {
+    std::vector<std::size_t> doubtful, still_doubtful, inexact, left;
+    run(all, plan_.first, doubtful, inexact);
+    run(doubtful, plan_.from_rest, still_doubtful, inexact);
+    run(still_doubtful, plan_.from_rest_finely, left, inexact);
+    for (const LaneSettings& finer : plan_.again) {
+      std::vector<std::size_t> still_inexact;
+      run(inexact, finer, left, still_inexact);
+      inexact.swap(still_inexact);
+    }
+    left.insert(left.end(), inexact.begin(), inexact.end());
+    for (const std::size_t n : left) solve_by_scalar(n);
+  }
+
+  /// Solves those members; settles the outcomes of the exact ones, and lists the others.
+  void run(const std::vector<std::size_t>& which, LaneSettings settings, std::vector<std::size_t>& doubtful,
+           std::vector<std::size_t>& inexact) {
+    if (which.empty()) return;
+    settings.current = current_of(members_[which.front()].vehicle);
+    std::array<const EnsembleMember*, lanes_avx512> members;
+    std::array<LaneResult*, lanes_avx512> results;
+    for (std::size_t start = 0; start < which.size(); start += std::size_t(solver_.lanes)) {
+      const std::size_t count = std::min(which.size() - start, std::size_t(solver_.lanes));
+      for (std::size_t lane = 0; lane < count; ++lane) {
+        members[lane] = &members_[which[start + lane]];
+        results[lane] = &results_[which[start + lane]];
+      }
+      solver_.solve(members.data(), int(count), settings, results.data());
+    }
+    for (const std::size_t n : which) {
+      const LaneResult& r = results_[n];
+      if (settings.approach == LaneApproach::from_rest) rotates_[n] = r.verdict == LaneVerdict::rotates;
+      if (r.verdict == LaneVerdict::locked) {
+        settle(n, FlappingStatus::locked);
+      } else if (r.verdict == LaneVerdict::doubtful) {
+        doubtful.push_back(n);
+      } else if (!(r.error_estimate <= options_.tolerance)) {
+        inexact.push_back(n);
+      } else {
+        outcomes_[n] = {FlappingStatus::flapping, false, r.error_estimate, r.metrics, domain(n, r.metrics)};
+        keep_wanted(options_.metrics, outcomes_[n].metrics);
+      }
+    }
+  }
+
+  DomainStatus domain(std::size_t n, const Metrics<double>& metrics) const {
+    return options_.domain ? domain_of(members_[n].vehicle, metrics) : DomainStatus();
+  }
+
+  void settle(std::size_t n, FlappingStatus without_flapping) {
+    outcomes_[n] = {without_flapping, false, absent, {}};
+    outcomes_[n].metrics.values.fill(absent);
+  }
+
+  /// Whether it rotates from rest is known, and that its orbit is the only one.
+  bool start_up_is_known(std::size_t n) const {
+    const Vehicle<double>& v = members_[n].vehicle;
+    return rotates_[n] && !static_balance(v).can_jam() && balanced_speed(v).count == 1.0;
+  }
+
+  void solve_by_scalar(std::size_t n) {
+    SteadyOptions steady;
+    steady.tolerance = options_.tolerance;
+    steady.stability = options_.metrics[std::size_t(Metric::floquet_multiplier_max)];
+    steady.reporting = members_[n].reporting;
+    const StartUp known = [](const Vehicle<double>&) { return StartUpOutcome{}; };
+    SteadyFlapping found;
+    if (start_up_is_known(n)) found = find_steady_flapping(members_[n].vehicle, steady, known);
+    if (found.status != FlappingStatus::flapping) found = find_steady_flapping(members_[n].vehicle, steady, start_up_);
+    const bool flaps = found.status == FlappingStatus::flapping;
+    outcomes_[n] = {found.status, true, flaps ? found.summary.error_estimate : absent, found.metrics,
+                    flaps ? domain(n, found.metrics) : DomainStatus()};
+    if (found.simulated) outcomes_[n].error_estimate = found.simulated->error_estimate;
+    keep_wanted(options_.metrics, outcomes_[n].metrics);
+  }
+
+  std::span<const EnsembleMember> members_;
+  const EnsembleOptions& options_;
+  const StartUp& start_up_;
+  std::span<EnsembleOutcome> outcomes_;
+  Plan plan_;
+  LaneSolver solver_;
+  std::vector<LaneResult> results_;
+  std::vector<char> rotates_;  ///< from rest, as lanes have shown in time
+};
+
+}  // namespace
+
+bool is_available(InstructionSet isa) {
+  switch (isa) {
+    case InstructionSet::base: return true;
+#ifdef WINGBEAT_X86
+    case InstructionSet::avx2: return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+    case InstructionSet::avx512:
+      return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+             __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512bw") &&
+             __builtin_cpu_supports("avx512vl");
+#endif
+    default: return false;
+  }
+}
+
+InstructionSet best_instruction_set() {
+  InstructionSet best = InstructionSet::base;
+  for (const auto& [name, isa] : instruction_sets) {
+    if (is_available(isa)) best = isa;
+  }
+  return best;
+}
+
+void solve_ensemble(std::span<const EnsembleMember> members, const EnsembleOptions& options, const StartUp& start_up,
+                    std::span<EnsembleOutcome> outcomes) {
+  require(options.tolerance >= 1e-12 && options.tolerance <= 1e-2, "tolerance", "must lie between 1e-12 and 1e-2", "1",
+          options.tolerance);
+  if (!is_available(options.isa)) throw ParameterError("isa", "this processor lacks the instruction set");
+  EnsembleRun(members, options, start_up, outcomes).solve();
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,12 @@
+#include "wingbeat/ensemble/lane_block_body.hpp"
+
+namespace wingbeat {
+
+void solve_block_avx2(const EnsembleMember* const* members, int count, const LaneSettings& settings,
+                      LaneResult* const* results) {
+  using Block = Lanes<xsimd::fma3<xsimd::avx2>, 2>;
+  static_assert(Block::lanes == lanes_avx2);
+  solve_block<Block>(members, count, settings, results);
+}
+
+}  // namespace wingbeat

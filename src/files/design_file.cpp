@@ -1,0 +1,440 @@
+#include "wingbeat/files/design_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <system_error>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "files/input_errors.hpp"
+#include "files/table_csv.hpp"
+#include "files/toml_document.hpp"
+#include "wingbeat/files/design_keys.hpp"
+#include "wingbeat/files/file_record.hpp"
+#include "wingbeat/files/input_file.hpp"
+#include "wingbeat/files/units.hpp"
+
+namespace wingbeat {
+
+namespace {
+
+std::string message_text(const std::string& file, int line, int column, const std::string& key,
+                         const std::string& message) {
+  std::string text = file;
+  if (line > 0) text += fmt::format(":{}:{}", line, column);
+  if (!key.empty()) text += ": " + key;
+  return text + ": " + message;
+}
+
+constexpr std::string_view wave_coefficients[] = {"aerodynamics.coefficients.lift", "aerodynamics.coefficients.drag"};
+
+constexpr CsvColumn chord_columns[] = {{"distance", "m"}, {"chord", "m"}};
+constexpr CsvColumn discharge_columns[] = {{"charge", "1"}, {"voltage", "V"}};
+constexpr CsvColumn coefficient_columns[] = {{"alpha", "rad"}, {"cl", "1"}, {"cd", "1"}};
+
+class Reader {
+ public:
+  Reader(const Document& document, const TableLoader& load_table)
+      : document_(document), load_table_(load_table), errors_(document.errors) {}
+
+  /// Reads on after an error, so that all of them are told.
+  Design<double> read() {
+    Design<double> d{};
+    require_sections();
+    attempt([&] {
+      if (const Value* name = document_.find("vehicle.name")) d.name = text_of(*name, "vehicle.name", "a text");
+    });
+    read_choice("supply.type", supply_types, d.supply.type);
+    read_choice("transmission.type", transmission_types, d.transmission.type);
+    attempt([&] { read_formulation(d.transmission); });
+    read_choice("friction.type", friction_laws, d.friction.law);
+    attempt([&] {
+      if (document_.has_section("wing.planform")) return;
+      absent_.push_back("wing.planform");
+      missing("wing.planform",
+              "a table such as { shape = \"semi-ellipse\", length = \"63 mm\", root_chord = \"25 mm\" }");
+    });
+    read_choice("wing.planform.shape", planform_shapes, d.wing.planform.shape);
+    check_alternatives();
+    attempt([&] { read_coefficients(d.aerodynamics); });
+    read_numbers(d);
+    attempt([&] {
+      if (d.supply.type == SupplyType::battery) read_discharge_curve(d.supply.battery);
+    });
+    attempt([&] {
+      if (d.wing.planform.shape == PlanformShape::tabulated) read_chords(d.wing.planform);
+    });
+    errors_.refuse(missing_);
+    check(d);
+    return d;
+  }
+
+ private:
+  /// Thrown instead of an error that follows from one that is told already.
+  struct Told {};
+
+  template <class Do>
+  void attempt(const Do& act) {
+    try {
+      errors_.attempt(act);
+    } catch (const Told&) {
+    }
+  }
+
+  /// True if a misspelt or misplaced key, which is told already, was to be this one.
+  bool known_to_be_wrong(std::string_view path) const {
+    const auto leaf = [](std::string_view p) { return p.substr(p.rfind('.') + 1); };
+    const auto section = [](std::string_view p) { return p.substr(0, p.size() - p.substr(p.rfind('.') + 1).size()); };
+    const std::string_view name[] = {leaf(path)};
+    return std::any_of(document_.spoiled.begin(), document_.spoiled.end(), [&](const std::string& wrong) {
+      return wrong == path || (section(wrong) == section(path) && !nearest_name(leaf(wrong), name).empty());
+    });
+  }
+
+  void require_sections() {
+    constexpr std::pair<std::string_view, std::string_view> required[] = {
+        {"supply", "the voltage at the motor terminals"},
+        {"motor", "the motor's constants"},
+        {"transmission", "the mechanism between motor and wings"},
+        {"friction", "the friction law; without friction write type = \"none\""},
+        {"wing", "the wings' number, inertia and planform"},
+        {"aerodynamics", "air density, pitch coefficient and force coefficients"}};
+    for (const auto& [section, holds] : required) {
+      if (document_.has_section(section)) continue;
+      absent_.push_back(section);
+      if (known_to_be_wrong(section)) continue;
+      missing_.attempt([&, s = section, h = holds] {
+        document_.locate(s).refuse(std::string(s), fmt::format("missing section [{}]: {}", s, h));
+      });
+    }
+  }
+
+  /// Told after the errors that stand in the file.
+  [[noreturn]] void missing(std::string_view path, std::string_view expected) const {
+    const bool follows = std::any_of(absent_.begin(), absent_.end(), [&](std::string_view section) {
+      return path.starts_with(section) && path.size() > section.size() && path[section.size()] == '.';
+    });
+    if (follows || known_to_be_wrong(path)) throw Told{};
+    const auto dot = path.rfind('.');
+    const std::string section(path.substr(0, dot));
+    missing_.attempt([&] {
+      document_.locate(section).refuse(std::string(path),
+                                       fmt::format("missing in [{}]; expected {}", section, expected));
+    });
+    throw Told{};
+  }
+
+  [[noreturn]] void wrong(const Value& value, std::string_view path, std::string_view expected) const {
+    value.origin.refuse(std::string(path), fmt::format("expected {}, got {}", expected, kind_of(value)));
+  }
+
+  const std::string& text_of(const Value& value, std::string_view path, std::string_view expected) const {
+    if (value.kind != Value::Kind::text) wrong(value, path, expected);
+    return value.text;
+  }
+
+  const std::string& required_text(std::string_view path) const {
+    const std::string_view expected = find_key<double>(path)->range;
+    const Value* value = document_.find(path);
+    if (!value) missing(path, expected);
+    return text_of(*value, path, expected);
+  }
+
+  template <class E, std::size_t N>
+  E choice(std::string_view path, const std::pair<std::string_view, E> (&names)[N]) const {
+    const std::string& given = required_text(path);
+    for (const auto& [name, value] : names) {
+      if (name == given) return value;
+    }
+    wrong(*document_.find(path), path, find_key<double>(path)->range);
+  }
+
+  /// A choice on which other keys depend: what depends on one that cannot be read is passed over.
+  template <class E, std::size_t N>
+  void read_choice(std::string_view path, const std::pair<std::string_view, E> (&names)[N], E& result) {
+    unread_.push_back(path);
+    attempt([&] {
+      result = choice(path, names);
+      unread_.pop_back();
+    });
+  }
+
+  bool is_unread(std::string_view path) const {
+    return std::find(unread_.begin(), unread_.end(), path) != unread_.end();
+  }
+
+  [[noreturn]] void unsupported(std::string_view path, std::string_view given) const {
+    document_.locate(path).refuse(std::string(path), fmt::format("{} is not supported yet; expected {}", given,
+                                                                 find_key<double>(path)->range));
+  }
+
+  double number_of(const Value& value, std::string_view path, std::string_view unit) const {
+    if (value.kind == Value::Kind::number) {
+      if (!std::isfinite(value.number)) wrong(value, path, quantity_example(unit));
+      return value.number;
+    }
+    if (value.kind != Value::Kind::text) wrong(value, path, quantity_example(unit));
+    try {
+      return parse_quantity(value.text, unit, SpeedConstant::inverted);
+    } catch (const UnitError& error) {
+      value.origin.refuse(std::string(path), error.what());
+    }
+  }
+
+  /// True if the choices made so far leave a place for the key; refuses a key that is given without one.
+  bool belongs(const KeyText& key) const {
+    if (key.only_with.empty()) return true;
+    const Requirement requirement = requirement_of(key.only_with);
+    if (is_unread(requirement.key)) return false;
+    const Value* choice = document_.find(requirement.key);
+    if (choice && requirement.allows(choice->text)) return true;
+    if (const Value* value = document_.find(key.path)) {
+      if (!choice) {
+        value->origin.refuse(std::string(key.path), fmt::format("needs {}, which is not given", requirement.key));
+      }
+      value->origin.refuse(std::string(key.path),
+                           fmt::format("belongs to {0} = {1}, but {0} is {2}", requirement.key,
+                                       fmt::join(requirement.values, " or "), in_quotes(choice->text)));
+    }
+    return false;
+  }
+
+  void read_formulation(TransmissionDesign<double>& transmission) const {
+    const std::string_view path = "transmission.formulation";
+    if (document_.find(path)) {
+      transmission.formulation = choice(path, formulations);
+    } else if (transmission.type == TransmissionType::slider_crank && !is_unread("transmission.type")) {
+      missing(path, "rod-force or virtual-work: virtual-work conserves power and is the choice for a new vehicle, "
+                    "rod-force is equation (1) of the 2022 paper as printed");
+    }
+  }
+
+  void read_numbers(Design<double>& d) {
+    for (const auto& key : vehicle_keys<double>()) {
+      attempt([&] {
+        if (!belongs(key) || !key.set) return;
+        if (const Value* value = document_.find(key.path)) {
+          const double number = number_of(*value, key.path, key.unit);
+          if (!key.set(d, number)) value->origin.refuse(std::string(key.path), "has no place in this vehicle");
+          check_sign(*value, key, number);
+        } else if (key.fallback == "required") {
+          missing(key.path, quantity_example(key.unit));
+        }
+      });
+    }
+  }
+
+  /// The ranges that need no other key, each at its own line; validate() sees to the rest.
+  static void check_sign(const Value& value, const KeyText& key, double number) {
+    const bool fits = key.range == "> 0" ? number > 0.0 : key.range == ">= 0" ? number >= 0.0 : true;
+    if (fits) return;
+    const std::string expected = fmt::format("must be {}", key.range);
+    value.origin.refuse(std::string(key.path), range_message(expected.c_str(), std::string(key.unit).c_str(), number));
+  }
+
+  void check_alternatives() {
+    const auto is = [&](std::string_view path, std::string_view text) {
+      return !is_unread(path) && document_.find(path)->text == text;
+    };
+    const bool tabulated = is("wing.planform.shape", "tabulated");
+    const bool outline = is("wing.planform.shape", "semi-ellipse") || is("wing.planform.shape", "rectangle");
+    const bool direct = is("transmission.type", "direct");
+    const bool switching = is("supply.type", "sine") || is("supply.type", "pwm");
+    const bool ratio = document_.find("spring.resonance_ratio");
+    // Alternatives of a direct drive alone are not offered to others.
+    const std::tuple<std::string_view, std::string_view, bool, bool> pairs[] = {
+        {"transmission.hinge_offset", "transmission.stroke_amplitude", !direct && !is_unread("transmission.type"),
+         true},
+        {"spring.stiffness", "spring.resonance", document_.has_section("spring") && !ratio, true},
+        {"spring.stiffness", "spring.resonance_ratio", false, true},
+        {"spring.resonance", "spring.resonance_ratio", false, true},
+        {"supply.frequency", "supply.resonance_ratio", switching, direct},
+        {"wing.inertia", "wing.resonance", true, direct},
+        {"wing.planform.root_chord", "wing.planform.chord_ratio", outline, true},
+        {"wing.planform.file", "wing.planform.chords", tabulated, true},
+        {"supply.cell_voltage", "supply.discharge_curve", is("supply.type", "battery"), true}};
+    for (const auto& [one, other, required, offered] : pairs) {
+      attempt([&, one = one, other = other, required = required, offered = offered] {
+        check_alternative(one, other, required, offered);
+      });
+    }
+  }
+
+  void check_alternative(std::string_view one, std::string_view other, bool required, bool offered) const {
+    const Value* first = document_.find(one);
+    const Value* second = document_.find(other);
+    const auto leaf = [](std::string_view path) { return path.substr(path.rfind('.') + 1); };
+    if (first && second) {
+      second->origin.refuse(std::string(other), fmt::format("give {} or {}, not both", leaf(one), leaf(other)));
+    }
+    if (!required || first || second || known_to_be_wrong(other)) return;
+    const std::string_view unit = find_key<double>(one)->unit;
+    missing(one, unit.empty() ? std::string("the name of a CSV file, or chords instead")
+                 : offered     ? fmt::format("{}, or {} instead", quantity_example(unit), leaf(other))
+                               : quantity_example(unit));
+  }
+
+  void read_coefficients(AerodynamicsDesign<double>& a) const {
+    const std::string path = "aerodynamics.coefficients", table_path = path + ".table";
+    const char* expected = "\"translational-2022\" or a table of coefficients";
+    a.coefficients = translational_2022();
+    a.coefficients_name = "translational-2022";
+    if (const Value* name = document_.find(path)) {
+      if (name->kind != Value::Kind::text || name->text != a.coefficients_name) wrong(*name, path, expected);
+    }
+    if (!document_.has_section(path)) return;
+    if (const Value* table = document_.find(table_path)) {
+      for (const std::string_view wave : wave_coefficients) {
+        if (document_.has_section(wave)) {
+          document_.locate(wave).refuse(std::string(wave), "give table, or lift and drag, not both");
+        }
+      }
+      const auto rows = read_table(*table, table_path, coefficient_columns);
+      std::array<std::vector<double>, 3> columns;
+      for (const auto& row : rows) {
+        for (std::size_t n = 0; n < 3; ++n) columns[n].push_back(row[n]);
+      }
+      try {
+        a.coefficients.table = std::make_shared<CoefficientTable>(columns[0], columns[1], columns[2]);
+      } catch (const ParameterError& error) {
+        table->origin.refuse(table_path, error.reason());
+      }
+      a.coefficients.lift = {};
+      a.coefficients.drag = {};
+      a.coefficients_name = "table";
+      return;
+    }
+    // The numbers themselves come with the others.
+    for (const auto& key : vehicle_keys<double>()) {
+      if (key.set && key.path.starts_with(path + ".") && !document_.find(key.path)) {
+        missing(key.path, quantity_example(key.unit));
+      }
+    }
+  }
+
+  void read_discharge_curve(Battery<double>& battery) const {
+    const std::string_view path = "supply.discharge_curve";
+    const Value* value = document_.find(path);
+    if (!value) return;
+    for (const auto& row : read_table(*value, path, discharge_columns)) {
+      battery.discharge_curve.emplace_back(row[0], row[1]);
+    }
+    if (battery.discharge_curve.empty()) value->origin.refuse(std::string(path), "has no rows");
+  }
+
+  void read_chords(Planform<double>& planform) const {
+    const std::string_view path = document_.find("wing.planform.file") ? "wing.planform.file" : "wing.planform.chords";
+    const Value* found = document_.find(path);
+    if (!found) return;  // missing, which is among the errors already
+    const Value& value = *found;
+    const bool in_place = path == "wing.planform.chords";
+    if (!in_place) text_of(value, path, "the name of a CSV file");
+    if (in_place && value.kind != Value::Kind::array) wrong(value, path, "rows [distance, chord]");
+    for (const auto& row : read_table(value, path, chord_columns)) planform.chord_table.emplace_back(row[0], row[1]);
+  }
+
+  /// Rows of SI numbers from an array of rows in place, or from the CSV file of that name.
+  template <std::size_t N>
+  std::vector<std::array<double, N>> read_table(const Value& value, std::string_view path,
+                                                const CsvColumn (&columns)[N]) const {
+    std::vector<std::array<double, N>> rows;
+    if (value.kind == Value::Kind::array) {
+      for (const Value& row : value.items) {
+        const std::size_t number = rows.size() + 1;
+        if (row.kind != Value::Kind::array || row.items.size() != N) {
+          value.origin.refuse(std::string(path), fmt::format("row {} must hold {} values", number, N));
+        }
+        std::array<double, N> numbers;
+        for (std::size_t n = 0; n < N; ++n) numbers[n] = number_of(row.items[n], path, columns[n].unit);
+        rows.push_back(numbers);
+      }
+      return rows;
+    }
+    if (value.kind != Value::Kind::text) wrong(value, path, "the name of a CSV file, or rows");
+    if (!load_table_) value.origin.refuse(std::string(path), "table files cannot be read here; give the rows in place");
+    try {
+      for (const auto& row : parse_csv(load_table_(value.text), one_line(value.text), columns)) {
+        std::array<double, N> numbers;
+        std::copy_n(row.begin(), N, numbers.begin());
+        rows.push_back(numbers);
+      }
+      return rows;
+    } catch (const std::runtime_error& error) {
+      value.origin.refuse(std::string(path), error.what());
+    }
+  }
+
+  void check(const Design<double>& d) const {
+    try {
+      validate(d);
+    } catch (const ParameterError& error) {
+      std::string key = error.key();
+      if (key == "wing.planform.file" && !document_.find(key)) key = "wing.planform.chords";
+      document_.locate(key).refuse(key, error.reason());
+    }
+  }
+
+  const Document& document_;
+  const TableLoader& load_table_;
+  InputErrors errors_;
+  mutable InputErrors missing_;
+  std::vector<std::string_view> absent_;  ///< sections
+  std::vector<std::string_view> unread_;  ///< choices
+};
+
+}  // namespace
+
+InputError::InputError(std::string file, int line, int column, std::string key, const std::string& message)
+    : std::runtime_error(message_text(file, line, column, key, message)),
+      file_(std::move(file)),
+      line_(line),
+      column_(column),
+      key_(std::move(key)) {}
+
+std::string read_text_file(const std::filesystem::path& file) {
+  constexpr std::size_t largest = 4u << 20;
+  if (file == "-") return standard_input();
+  const std::string name = file.string();
+  const auto refuse = [&](const std::string& message) { throw InputError(name, 0, 0, "", message); };
+  if (name.find('\0') != std::string::npos) throw InputError(one_line(name), 0, 0, "", "not a file name");
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) {
+    const bool missing = !error || error == std::errc::no_such_file_or_directory;
+    refuse(missing ? "no such file" : "cannot be read: " + error.message());
+  }
+  if (std::filesystem::is_directory(status)) refuse("is a directory, not a file");
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) refuse(fmt::format("cannot be read: {}", std::strerror(errno)));
+  std::string text(largest + 1, '\0');
+  stream.read(text.data(), std::streamsize(text.size()));
+  if (stream.bad()) refuse("cannot be read");
+  text.resize(std::size_t(stream.gcount()));
+  if (text.size() > largest) refuse("larger than 4 MB, which no vehicle file or table is");
+  FileRecord::of_this_program().add_read(file);
+  return text;
+}
+
+Design<double> parse_design(std::string_view text, std::string_view file_name, std::span<const std::string> overrides,
+                            const TableLoader& load_table) {
+  Document document = parse_document(text, file_name);
+  document.errors.attempt([&] { apply_overrides(document, overrides); });
+  return Reader(document, load_table).read();
+}
+
+Design<double> read_design(const std::filesystem::path& file, std::span<const std::string> overrides) {
+  const std::filesystem::path folder = file.parent_path();
+  return parse_design(read_text_file(file), input_name(file), overrides,
+                      [&](const std::string& name) { return read_text_file(folder / name); });
+}
+
+}  // namespace wingbeat

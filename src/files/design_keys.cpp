@@ -1,0 +1,128 @@
+#include "wingbeat/files/design_keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace wingbeat {
+
+namespace {
+
+/// Edits that turn one text into the other: insert, remove, replace, or swap of neighbours.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
+  std::iota(last.begin(), last.end(), std::size_t(0));
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) row[j] = std::min(row[j], before[j - 2] + 1);
+    }
+    std::swap(before, last);
+    std::swap(last, row);
+  }
+  return last.back();
+}
+
+std::string_view leaf_of(std::string_view path) { return path.substr(path.rfind('.') + 1); }
+
+std::string_view parent_of(std::string_view path) {
+  const auto dot = path.rfind('.');
+  return dot == std::string_view::npos ? std::string_view{} : path.substr(0, dot);
+}
+
+std::vector<std::string_view> sections() {
+  std::vector<std::string_view> result;
+  for (const auto& key : vehicle_keys<double>()) {
+    for (std::string_view path = parent_of(key.path); !path.empty(); path = parent_of(path)) {
+      if (std::find(result.begin(), result.end(), path) == result.end()) result.push_back(path);
+    }
+  }
+  return result;
+}
+
+struct Nearest {
+  std::string_view path;
+  std::size_t distance = std::string_view::npos;
+  void offer(std::string_view candidate, std::size_t d) {
+    if (d < distance) *this = {candidate, d};
+  }
+};
+
+}  // namespace
+
+bool is_section(std::string_view path) {
+  for (const auto& key : vehicle_keys<double>()) {
+    if (key.path.size() > path.size() && key.path.starts_with(path) && key.path[path.size()] == '.') return true;
+  }
+  return false;
+}
+
+std::string_view nearest_name(std::string_view given, std::span<const std::string_view> known) {
+  if (given.size() > 80) return {};
+  Nearest nearest;
+  for (const std::string_view name : known) nearest.offer(name, edit_distance(given, name));
+  return nearest.distance <= std::max<std::size_t>(2, given.size() / 3) ? nearest.path : std::string_view{};
+}
+
+std::string nearest_key(std::string_view path) {
+  constexpr std::size_t longest = 80;
+  if (path.size() > longest) return {};
+  Nearest nearest;
+  for (const auto& key : vehicle_keys<double>()) {
+    nearest.offer(key.path, edit_distance(path, key.path));
+    // The right name in the wrong section.
+    if (leaf_of(key.path) == leaf_of(path)) nearest.offer(key.path, 2);
+  }
+  for (const std::string_view section : sections()) nearest.offer(section, edit_distance(path, section));
+  const bool near = nearest.distance <= std::max<std::size_t>(2, leaf_of(path).size() / 3);
+  return near ? std::string(nearest.path) : std::string();
+}
+
+std::string unknown_key_message(std::string_view path) {
+  const std::string_view parent = parent_of(path);
+  const bool top = parent.empty();
+  if (const std::string near = nearest_key(path); !near.empty()) {
+    const bool section = is_section(near) && !find_key<double>(near);
+    return "unknown key; did you mean " + (section && top ? "[" + near + "]" : near) + "?";
+  }
+  std::string known;
+  if (!top && is_section(parent)) {
+    for (const auto& key : vehicle_keys<double>()) {
+      if (parent_of(key.path) == parent) known += (known.empty() ? "" : ", ") + std::string(leaf_of(key.path));
+    }
+    if (!known.empty()) return "unknown key; [" + std::string(parent) + "] knows " + known;
+  }
+  for (const std::string_view section : sections()) {
+    if (parent_of(section).empty()) known += (known.empty() ? "[" : ", [") + std::string(section) + "]";
+  }
+  return "unknown key; the sections are " + known;
+}
+
+std::string vehicle_file_reference() {
+  std::string result;
+  std::string section;
+  for (const auto& key : vehicle_keys<double>()) {
+    const std::string top(key.path.substr(0, key.path.find('.')));
+    if (top != section) {
+      section = top;
+      result += fmt::format("\n## [{}]\n\n| key | unit | range | default | meaning |\n", section);
+      result += "| --- | --- | --- | --- | --- |\n";
+    }
+    std::string meaning(key.meaning);
+    if (!key.only_with.empty()) {
+      std::string choice(key.only_with);
+      for (auto bar = choice.find('|'); bar != std::string::npos; bar = choice.find('|', bar)) {
+        choice.replace(bar, 1, " or ");
+      }
+      meaning += " (only with `" + choice + "`)";
+    }
+    const std::string_view unit = key.unit.empty() ? "text" : key.unit == "1" ? "-" : key.unit;
+    result += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.path, unit, key.range, key.fallback, meaning);
+  }
+  return result;
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,502 @@
+#include "wingbeat/files/optimise_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "files/csv_cells.hpp"
+#include "files/study_sections.hpp"
+
+namespace wingbeat {
+namespace {
+
+namespace fs = std::filesystem;
+using detail::Kind;
+
+class OptimiseReader : public detail::StudySections {
+ public:
+  OptimiseReader(const fs::path& file, std::string_view text, std::span<const std::string> overrides)
+      : StudySections(input_name(file), text, overrides, {"objective", "parameter", "constraint", "motors", "search"},
+                      {"condition"}),
+        folder_(file.parent_path()) {}
+
+  OptimiseFile read() {
+    OptimiseFile file;
+    OptimiseStudy& study = file.study;
+    attempt([&] { file.title = read_title(); });
+    attempt([&] {
+      if (const TomlNode* metrics = study_->find("metrics")) {
+        refuse(*metrics, "study.metrics", "has no place here: the objective and the constraints say which are wanted");
+      }
+    });
+    attempt([&] { study.options.condition = read_condition(); });
+    attempt([&] {
+      EnsembleOptions accuracy;
+      accuracy.tolerance = study.options.tolerance;
+      read_tolerance(accuracy);
+      study.options.tolerance = accuracy.tolerance;
+    });
+    attempt([&] { study.allow_extrapolation = read_allow_extrapolation(); });
+    if (!attempt([&] { study.design = read_vehicle(folder_); })) finish();  // the rest is read for this vehicle
+    file.vehicle_file = find_vehicle(folder_, vehicle_file());
+    attempt([&] { study.options.frequency = read_frequency(study.design); });
+    const bool motors_read = attempt([&] {
+      if (const TomlNode* motors = root_.find("motors")) read_motors(*motors, file);
+    });
+    if (!motors_read) finish();
+    // The keys of a catalogue's motors are those of its first usable one.
+    Design<double> base = study.design;
+    for (const MotorCandidate& motor : file.motors) {
+      if (motor.refused.empty()) {
+        base = motor.design;
+        break;
+      }
+    }
+    several_ = root_.find("objective") && root_.find("objective")->kind == Kind::array;
+    attempt([&] {
+      if (several_) read_objectives(file, base);
+      else read_objective(study, base);
+    });
+    attempt([&] { read_parameters(file, base); });
+    attempt([&] { read_constraints(study, base); });
+    finish();
+    check_size(file);
+    return file;
+  }
+
+ private:
+  /// The metric of that name. One that the vehicle does not have is refused with what it needs.
+  Metric metric_named(const TomlNode& node, const std::string& where, const Design<double>& design) const {
+    const std::string name = text_of(node, where, "the name of a metric such as \"power_electrical_w\"");
+    const Metric metric = metric_called(node, where, name);
+    if (metric == Metric::floquet_multiplier_max && !several_) refuse(node, where, fmt::format("{} has no derivative", name));
+    if (metric == Metric::lift_to_weight && !design.mass) {
+      refuse(node, where, "lift_to_weight needs vehicle.mass; give it in the vehicle file or in [set]");
+    }
+    if (metric == Metric::power_motor_reference && !design.bench_torque_constant) {
+      refuse(node, where, "power_motor_reference_w needs bench.torque_constant");
+    }
+    return metric;
+  }
+
+  void read_objective(OptimiseStudy& study, const Design<double>& design) {
+    const TomlNode& node = need(root_, "", "objective", "a section [objective] with minimise or maximise");
+    if (node.kind != Kind::table) wrong(node, "objective", "a section [objective]");
+    known_keys(node, "objective", {"minimise", "maximise", "starts", "seed", "screen"});
+    const TomlNode *low = node.find("minimise"), *high = node.find("maximise");
+    if (bool(low) == bool(high)) refuse(node, "objective", "give one of minimise and maximise");
+    study.maximise = high != nullptr;
+    study.objective = metric_named(high ? *high : *low, high ? "objective.maximise" : "objective.minimise", design);
+    if (const TomlNode* search = root_.find("search")) {
+      refuse(*search, "search", "belongs to several [[objective]] sections; starts, screen and seed of one stand in "
+                                "[objective]");
+    }
+    if (const TomlNode* starts = node.find("starts")) {
+      study.starts = int(whole_number(*starts, "objective.starts", 1, 10000));
+    }
+    if (const TomlNode* seed = node.find("seed")) {
+      study.seed = whole_number(*seed, "objective.seed", 0, std::uint64_t(1) << 53);
+    }
+    if (const TomlNode* screen = node.find("screen")) {
+      study.screen = whole_number(*screen, "objective.screen", 16, 1000000);
+    }
+  }
+
+  void read_objectives(OptimiseFile& file, const Design<double>& design) {
+    const TomlNode& list = *root_.find("objective");
+    if (list.items.size() < 2 || list.items.size() > 3) {
+      refuse(list.items.empty() ? list : list.items.back(), "objective",
+             "expected one section [objective], or two or three sections [[objective]]");
+    }
+    for (const TomlNode& node : sections_of("objective")) {
+      known_keys(node, "objective", {"minimise", "maximise", "reference"});
+      const TomlNode *low = node.find("minimise"), *high = node.find("maximise");
+      if (bool(low) == bool(high)) refuse(node, "objective", "give one of minimise and maximise");
+      ParetoObjective objective;
+      objective.maximise = high != nullptr;
+      const char* where = high ? "objective.maximise" : "objective.minimise";
+      objective.metric = metric_named(high ? *high : *low, where, design);
+      for (const ParetoObjective& other : file.objectives) {
+        if (other.metric != objective.metric) continue;
+        refuse(high ? *high : *low, where, "is an objective already");
+      }
+      if (const TomlNode* reference = node.find("reference")) {
+        objective.reference =
+            quantity(*reference, "objective.reference", metric_info(objective.metric).unit);
+      }
+      file.objectives.push_back(objective);
+    }
+    const TomlNode* search = root_.find("search");
+    EvolutionOptions& evolution = file.evolution;
+    if (search) {
+      if (search->kind != Kind::table) wrong(*search, "search", "a section [search]");
+      known_keys(*search, "search", {"method", "population", "generations", "screen", "seed", "designs"});
+      if (const TomlNode* method = search->find("method")) {
+        const std::string name = one_of(*method, "search.method", {"nsga2", "moead"});
+        evolution.method = name == "nsga2" ? EvolutionMethod::nsga2 : EvolutionMethod::moead;
+      }
+      if (const TomlNode* population = search->find("population")) {
+        evolution.population = unsigned(whole_number(*population, "search.population", 8, 10000));
+        if (evolution.population % 4 != 0) refuse(*population, "search.population", "must be a multiple of 4");
+      }
+      if (const TomlNode* generations = search->find("generations")) {
+        evolution.generations = unsigned(whole_number(*generations, "search.generations", 1, 100000));
+      }
+      if (const TomlNode* seed = search->find("seed")) {
+        evolution.seed = unsigned(whole_number(*seed, "search.seed", 0, (std::uint64_t(1) << 32) - 1));
+      }
+      if (const TomlNode* designs = search->find("designs")) {
+        file.designs = std::size_t(whole_number(*designs, "search.designs", 1, 1000));
+      }
+    }
+    file.study.screen = std::max<std::uint64_t>(file.study.screen, evolution.population);
+    const TomlNode* screen = search ? search->find("screen") : nullptr;
+    if (screen) {
+      file.study.screen = whole_number(*screen, "search.screen", 16, 1000000);
+      if (file.study.screen < evolution.population) {
+        refuse(*screen, "search.screen", fmt::format("must be at least the population, {}", evolution.population));
+      }
+    }
+  }
+
+  /// The list of a discrete parameter.
+  std::vector<double> values_of(const TomlNode& node, const TomlNode& values, const DesignParameter& parameter) {
+    for (const char* other : {"lower", "upper", "scale"}) {
+      if (const TomlNode* given = node.find(other)) {
+        refuse(*given, fmt::format("parameter.{}", other), "has no place beside parameter.values");
+      }
+    }
+    if (values.kind != Kind::array || values.items.size() < 2) {
+      wrong(values, "parameter.values", "an array of at least two values");
+    }
+    std::vector<double> list;
+    for (const TomlNode& item : values.items) {
+      list.push_back(quantity(item, "parameter.values", parameter.unit));
+      if (std::count(list.begin(), list.end(), list.back()) > 1) {
+        refuse(item, "parameter.values", fmt::format("{:.6g} is given twice", list.back()));
+      }
+    }
+    return list;
+  }
+
+  /// Refuses a value that leaves the parameter's own range.
+  void check_range(const TomlNode& node, const std::string& where, const DesignParameter& parameter, double value,
+                   const Design<double>& design) const {
+    Design<double> d = design;
+    parameter.set(d, value);
+    try {
+      validate(d);
+    } catch (const ParameterError& error) {
+      if (error.key() == parameter.key) refuse(node, where, error.what());
+    }
+  }
+
+  void check_size(const OptimiseFile& file) const {
+    const std::size_t most = 1000;
+    std::size_t combinations = 1;
+    for (const DiscreteParameter& p : file.choices) combinations *= p.values.size();
+    combinations *= std::max<std::size_t>(1, file.motors.size());
+    const TomlNode& list = *root_.find("parameter");
+    if (!several_ && combinations > most) {
+      refuse(list, "parameter.values", fmt::format("{} combinations are more than {}: one objective tries each of them; "
+                                                   "take fewer values, or bounds instead", combinations, most));
+    }
+    if (file.study.parameters.size() + file.choices.size() + 1 > ScrambledSobol::most_dimensions) {
+      refuse(list, "parameter", fmt::format("more than {} parameters", ScrambledSobol::most_dimensions - 1));
+    }
+  }
+
+  void read_parameters(OptimiseFile& file, const Design<double>& design) {
+    OptimiseStudy& study = file.study;
+    const TomlNode& list = need(root_, "", "parameter", "[[parameter]] sections with key, lower and upper");
+    if (list.kind != Kind::array || list.items.empty()) wrong(list, "parameter", "[[parameter]] sections");
+    std::set<std::string> used;
+    Design<double> all = design;
+    std::vector<std::pair<const DesignParameter*, double>> given;
+    study.parameters.reserve(list.items.size());
+    file.choices.reserve(list.items.size());
+    const auto read_one = [&](const TomlNode& node) {
+      known_keys(node, "parameter", {"key", "lower", "upper", "scale", "values"});
+      const TomlNode& key = need(node, "parameter", "key", "a vehicle-file key");
+      const DesignParameter parameter = parameter_named(key, "parameter.key", design);
+      if (!used.insert(parameter.key).second) {
+        refuse(key, "parameter.key", fmt::format("{} is given already", parameter.key));
+      }
+      no_override_of(parameter.key, "has no effect: the study varies it");
+      if (const TomlNode* values = node.find("values")) {
+        file.choices.push_back({parameter, values_of(node, *values, parameter)});
+        const std::vector<double>& list_of = file.choices.back().values;
+        for (std::size_t n = 0; n < list_of.size(); ++n) {
+          check_range(values->items[n], "parameter.values", parameter, list_of[n], design);
+        }
+        given.emplace_back(&file.choices.back().parameter, list_of[0]);
+      } else {
+        study.parameters.push_back(bounded(node, parameter, design));
+        given.emplace_back(&study.parameters.back().parameter, study.parameters.back().lower);
+      }
+      given.back().first->set(all, given.back().second);
+    };
+    bool all_read = true;
+    for (const TomlNode& node : sections_of("parameter")) {
+      if (!attempt([&] { read_one(node); })) all_read = false;
+    }
+    for (std::size_t k = 0; all_read && k < given.size(); ++k) {
+      const auto found = given[k].first->value(all);
+      if (!found || *found != given[k].second) {
+        refuse(list.items[k], "parameter.key",
+               fmt::format("another parameter takes the place of {}", given[k].first->key));
+      }
+    }
+  }
+
+  OptimisedParameter bounded(const TomlNode& node, const DesignParameter& parameter, const Design<double>& design) {
+    OptimisedParameter p;
+    p.parameter = parameter;
+    const TomlNode& lower = need(node, "parameter", "lower", quantity_example(parameter.unit));
+    const TomlNode& upper = need(node, "parameter", "upper", quantity_example(parameter.unit));
+    p.lower = quantity(lower, "parameter.lower", parameter.unit);
+    p.upper = quantity(upper, "parameter.upper", parameter.unit);
+    if (!(p.upper > p.lower)) refuse(upper, "parameter.upper", "must exceed parameter.lower");
+    if (const TomlNode* scale = node.find("scale")) {
+      p.logarithmic = one_of(*scale, "parameter.scale", {"linear", "log"}) == "log";
+    }
+    if (p.logarithmic && !(p.lower > 0.0)) refuse(lower, "parameter.lower", "must be > 0 on a logarithmic scale");
+    check_range(lower, "parameter.lower", parameter, p.lower, design);
+    check_range(upper, "parameter.upper", parameter, p.upper, design);
+    return p;
+  }
+
+  void read_constraints(OptimiseStudy& study, const Design<double>& design) {
+    const auto read_one = [&](const TomlNode& node) {
+      known_keys(node, "constraint", {"metric", "at_least", "at_most"});
+      const TomlNode& name = need(node, "constraint", "metric", "the name of a metric");
+      const Metric metric = metric_named(name, "constraint.metric", design);
+      const TomlNode *low = node.find("at_least"), *high = node.find("at_most");
+      if (!low && !high) refuse(node, "constraint", "give at_least, at_most or both");
+      const std::string_view unit = metric_info(metric).unit;
+      if (low) study.constraints.push_back({metric, true, quantity(*low, "constraint.at_least", unit)});
+      if (high) study.constraints.push_back({metric, false, quantity(*high, "constraint.at_most", unit)});
+      if (low && high && !(study.constraints.back().limit > study.constraints.rbegin()[1].limit)) {
+        refuse(*high, "constraint.at_most", "must exceed constraint.at_least");
+      }
+    };
+    for (const TomlNode& node : sections_of("constraint")) attempt([&] { read_one(node); });
+  }
+
+  // ---- [motors]
+
+  void read_motors(const TomlNode& node, OptimiseFile& file) {
+    if (node.kind != Kind::table) wrong(node, "motors", "a section [motors]");
+    known_keys(node, "motors", {"catalogue", "gear_ratio", "mass_without"});
+    const TomlNode& name = need(node, "motors", "catalogue", "the name of a CSV file");
+    const fs::path path = folder_ / text_of(name, "motors.catalogue", "the name of a CSV file");
+    if (!fs::exists(path)) refuse(name, "motors.catalogue", fmt::format("there is no file {}", path.string()));
+    const TomlNode& ratio = need(node, "motors", "gear_ratio", "the ratio of the gearbox behind motors that have none");
+    const double gear = quantity(ratio, "motors.gear_ratio", "1");
+    if (!(gear > 0.0)) refuse(ratio, "motors.gear_ratio", "must be > 0");
+    std::optional<double> rest;
+    if (const TomlNode* mass = node.find("mass_without")) {
+      rest = quantity(*mass, "motors.mass_without", "kg");
+      if (!(*rest > 0.0)) refuse(*mass, "motors.mass_without", "must be > 0 kg");
+      if (file.study.design.masses.motor) {
+        refuse(*mass, "motors.mass_without", "has no place where the vehicle gives motor.mass: vehicle.mass is without "
+                                             "the motor already");
+      }
+    }
+    read_catalogue(path.string(), read_text_file(path), gear, rest, file);
+    if (std::none_of(file.motors.begin(), file.motors.end(), [](const auto& m) { return m.refused.empty(); })) {
+      std::string reason = file.motors.empty() ? "holds no motors" : "holds no motor that can be tried";
+      if (!file.motors.empty()) reason += fmt::format(": {}: {}", file.motors[0].model, file.motors[0].refused);
+      refuse(name, "motors.catalogue", reason);
+    }
+  }
+
+  static std::vector<std::string> cells_of(std::string_view line) {
+    std::vector<std::string> cells(1);
+    bool quoted = false;
+    for (const char c : line) {
+      if (c == '"') quoted = !quoted;
+      else if (c == ',' && !quoted) cells.emplace_back();
+      else if (c != '\r') cells.back() += c;
+    }
+    return cells;
+  }
+
+  void read_catalogue(const std::string& name, std::string_view text, double gear, std::optional<double> rest,
+                      OptimiseFile& file) {
+    std::vector<std::string> header;
+    int line_number = 0;
+    const auto refuse_there = [&](const std::string& key, const std::string& message) {
+      throw InputError(name, line_number, 1, key, message);
+    };
+    for (std::string_view line; next_line(text, line, line_number);) {
+      if (is_blank_or_comment(line)) continue;
+      const std::vector<std::string> cells = cells_of(line);
+      if (header.empty()) {
+        header = cells;
+        for (const char* needed : {"model", "gear_ratio", "resistance_ohm", "torque_constant_Nm_per_A",
+                                   "rotor_inertia_kgm2", "inductance_H"}) {
+          if (std::find(header.begin(), header.end(), needed) == header.end()) {
+            refuse_there(needed, "missing; expected a column of that name");
+          }
+        }
+        continue;
+      }
+      if (cells.size() != header.size()) {
+        refuse_there("", fmt::format("expected {} cells, got {}", header.size(), cells.size()));
+      }
+      const auto cell = [&](std::string_view column) -> std::string {
+        const auto found = std::find(header.begin(), header.end(), column);
+        return found == header.end() ? "" : cells[std::size_t(found - header.begin())];
+      };
+      const auto number = [&](std::string_view column) -> std::optional<double> {
+        const std::string content = cell(column);
+        if (content.find_first_not_of(" \t") == std::string::npos) return std::nullopt;
+        try {
+          return parse_quantity(content, "1");
+        } catch (const UnitError&) {
+          refuse_there(std::string(column), fmt::format("expected a number, got {}", in_quotes(content)));
+        }
+        return std::nullopt;
+      };
+      file.motors.push_back(candidate(cell("model"), number, gear, rest, file.study.design));
+    }
+  }
+
+  /// A row as a vehicle, or what it lacks.
+  template <class Number>
+  static MotorCandidate candidate(const std::string& model, const Number& number, double gear,
+                                  std::optional<double> rest, const Design<double>& design) {
+    MotorCandidate motor{one_line(model), "", {}, design};
+    const auto resistance = number("resistance_ohm"), constant = number("torque_constant_Nm_per_A");
+    const auto inertia = number("rotor_inertia_kgm2"), inductance = number("inductance_H");
+    const auto mass = number("mass_kg");
+    std::string lacks;
+    const auto need_value = [&](const std::optional<double>& x, const char* what) {
+      if (!x) lacks += fmt::format("{}{}", lacks.empty() ? "" : ", ", what);
+    };
+    need_value(resistance, "armature resistance");
+    need_value(constant, "torque constant");
+    need_value(inertia, "rotor inertia");
+    need_value(inductance, "inductance");
+    const bool weighed = rest || design.masses.motor;
+    if (weighed) need_value(mass, "mass");
+    if (!lacks.empty()) {
+      motor.refused = "incomplete, no " + lacks;
+      return motor;
+    }
+    auto& c = motor.design.motor.constants;
+    c.armature_resistance = *resistance;
+    c.torque_constant = *constant;
+    c.inertia = *inertia;
+    c.armature_inductance = *inductance;
+    c.friction_torque = number("friction_torque_Nm").value_or(0.0);
+    const auto no_load_current = number("no_load_current_A"), no_load_speed = number("no_load_speed_rad_s");
+    if (const auto damping = number("viscous_friction_Nms")) {
+      c.viscous_damping = *damping;
+    } else if (no_load_current && no_load_speed) {
+      // At no load the motor's torque covers its own friction alone.
+      const double rest_of_torque = *constant * *no_load_current - c.friction_torque;
+      c.viscous_damping = std::max(0.0, rest_of_torque) / *no_load_speed;
+      motor.derived.push_back(fmt::format("b = {:.2g} N m s/rad from the no-load current", c.viscous_damping));
+    } else {
+      motor.refused = "incomplete, neither viscous friction nor no-load current and speed";
+      return motor;
+    }
+    // A gearmotor's sheet states its output shaft; a bare motor gets the study's gearbox.
+    const double own = number("gear_ratio").value_or(1.0);
+    if (own == 1.0) motor.design.motor.gear_ratio = gear;
+    else motor.design.motor.gear_ratio.reset();
+    motor.design.motor.gear_inertia = 0.0;
+    motor.design.motor.gear_damping = 0.0;
+    if (rest) motor.design.mass = *rest;
+    if (weighed) motor.design.masses.motor = *mass;
+    try {
+      validate(motor.design);
+    } catch (const ParameterError& error) {
+      motor.refused = error.what();
+    }
+    return motor;
+  }
+
+  fs::path folder_;
+  bool several_ = false;  ///< objectives
+};
+
+}  // namespace
+
+std::vector<MotorTrial> trials_of(const OptimiseFile& file) {
+  std::size_t combinations = 1;
+  for (const DiscreteParameter& p : file.choices) combinations *= p.values.size();
+  std::vector<MotorTrial> trials;
+  const auto add = [&](const MotorCandidate* motor) {
+    for (std::size_t n = 0; n < combinations; ++n) {
+      std::vector<double> values(file.choices.size());
+      std::size_t rest = n;
+      for (std::size_t k = values.size(); k-- > 0;) {
+        values[k] = file.choices[k].values[rest % file.choices[k].values.size()];
+        rest /= file.choices[k].values.size();
+      }
+      trials.push_back({motor, std::move(values), {}});
+      if (trials.back().refused()) return;
+    }
+  };
+  for (const MotorCandidate& motor : file.motors) add(&motor);
+  if (file.motors.empty()) add(nullptr);
+  return trials;
+}
+
+OptimiseStudy trial_study(const OptimiseFile& file, const MotorTrial& trial) {
+  OptimiseStudy study = file.study;
+  if (trial.motor) study.design = trial.motor->design;
+  for (std::size_t k = 0; k < file.choices.size(); ++k) file.choices[k].parameter.set(study.design, trial.choices[k]);
+  return study;
+}
+
+std::string name_of(const OptimiseFile& file, const MotorTrial& trial) {
+  std::string name = trial.motor ? trial.motor->model : "";
+  if (trial.refused()) return name;
+  for (std::size_t k = 0; k < file.choices.size(); ++k) {
+    const DesignParameter& p = file.choices[k].parameter;
+    name += fmt::format("{}{} {:.6g}{}", name.empty() ? "" : ", ", p.key, trial.choices[k],
+                        p.unit == "1" ? "" : " " + p.unit);
+  }
+  return name;
+}
+
+ParetoStudy pareto_study(const OptimiseFile& file) {
+  ParetoStudy study;
+  for (const MotorCandidate& motor : file.motors) {
+    if (motor.refused.empty()) study.vehicles.push_back({motor.model, motor.design});
+  }
+  if (study.vehicles.empty()) study.vehicles.push_back({"", file.study.design});
+  study.condition = file.study.options.condition;
+  study.frequency = file.study.options.frequency;
+  study.tolerance = file.study.options.tolerance;
+  study.objectives = file.objectives;
+  study.parameters = file.study.parameters;
+  study.choices = file.choices;
+  study.constraints = file.study.constraints;
+  study.allow_extrapolation = file.study.allow_extrapolation;
+  study.evolution = file.evolution;
+  study.screen = file.study.screen;
+  study.designs = file.designs;
+  return study;
+}
+
+OptimiseFile read_optimise_study(const fs::path& file, std::span<const std::string> overrides) {
+  return OptimiseReader(file, read_text_file(file), overrides).read();
+}
+
+const MotorTrial* best_trial(const OptimiseFile& file, std::span<const MotorTrial> trials) {
+  const double sign = file.study.maximise ? -1.0 : 1.0;
+  const MotorTrial* best = nullptr;
+  for (const MotorTrial& t : trials) {
+    if (t.refused() || t.result.outcome != OptimiseResult::Outcome::found) continue;
+    const auto value = [&](const MotorTrial& of) { return sign * of.result.point.metrics[file.study.objective]; };
+    if (!best || value(t) < value(*best)) best = &t;
+  }
+  return best;
+}
+
+}  // namespace wingbeat

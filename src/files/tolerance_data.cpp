@@ -1,0 +1,89 @@
+#include "wingbeat/files/tolerance_data.hpp"
+
+#include <vector>
+
+#include "wingbeat/files/design_file.hpp"
+#include "wingbeat/files/design_keys.hpp"
+#include "wingbeat/files/netcdf.hpp"
+
+namespace wingbeat {
+
+void write_tolerance(const ToleranceStudy& study, const ToleranceResult& result, const SweepColumns& columns,
+                     const std::string& input, const std::string& version, const std::filesystem::path& file) {
+  NetcdfFile data(file);
+  write_provenance(data, {.title = study.title.empty() ? "tolerance study" : study.title,
+                          .command = "tolerance",
+                          .version = version,
+                          .vehicle = write_design(study.design),
+                          .study = input,
+                          .condition = name_of(study.condition)});
+  const std::size_t base = std::size_t(base_count(study));
+  const auto sample = data.define_dimension("sample", base);
+  const Sweep sweep = tolerance_sweep(study);
+  for (const SweptQuantity& q : sweep.axes.front().quantities) {
+    const auto variable =
+        data.define_variable(q.name, {sample}, q.unit, std::string(find_key<double>(q.key)->meaning));
+    data.set_key(variable, q.key);
+    data.write(variable, std::span(q.values).subspan(0, base));
+  }
+  const auto status =
+      data.define_dense("status", {sample}, "1", "what became of the vehicle", NetcdfFile::Storage::flag);
+  std::vector<std::string> names;
+  for (int s = 0; s < sweep_status_count; ++s) names.push_back(name_of(SweepStatus(s)));
+  data.set_flags(status, names);
+  data.write_run(status, 0, std::span(columns.status).subspan(0, base));
+  const auto domain = data.define_dense("domain", {sample}, "1", "limits of the model's domain that are exceeded",
+                                        NetcdfFile::Storage::flag);
+  std::vector<std::string> limits;
+  for (const DomainLimitInfo& limit : domain_limit_table()) limits.push_back(limit.key);
+  data.set_flag_masks(domain, limits);
+  data.write_run(domain, 0, std::span(columns.domain).subspan(0, base));
+  for (int m = 0; m < metric_count; ++m) {
+    if (!study.options.metrics[std::size_t(m)]) continue;
+    const MetricInfo& info = metric_info(Metric(m));
+    const auto variable = data.define_variable(info.key, {sample}, info.unit, info.long_name);
+    data.write(variable, samples_of(study, columns, Metric(m)));
+  }
+
+  const auto inputs = factors(study);
+  const auto factor = data.define_dimension("factor", inputs.size());
+  const auto output = data.define_dimension("output", result.outputs.size());
+  std::vector<std::string> labels;
+  for (const ToleranceFactor& f : inputs) labels.push_back(f.name);
+  data.define_texts("factor", factor, labels, "what varies independently");
+  labels.clear();
+  for (const ToleranceOutput& o : result.outputs) labels.push_back(o.name);
+  data.define_texts("output", output, labels, "metric, or 0 and 1 for flaps and hovers");
+  const auto table = [&](const char* name, const char* meaning, const auto& value) {
+    std::vector<double> values;
+    for (const ToleranceOutput& o : result.outputs) {
+      for (std::size_t i = 0; i < inputs.size(); ++i) values.push_back(value(o, i));
+    }
+    data.write(data.define_variable(name, {output, factor}, "1", meaning), values);
+  };
+  const auto index = [](double SobolIndex::*member) {
+    return [member](const ToleranceOutput& o, std::size_t i) {
+      return o.indices ? o.indices->inputs[i].*member : absent;
+    };
+  };
+  table("sobol_first", "Sobol index of first order", index(&SobolIndex::first));
+  table("sobol_first_lower", "its 95 % interval, lower end", index(&SobolIndex::first_lower));
+  table("sobol_first_upper", "its 95 % interval, upper end", index(&SobolIndex::first_upper));
+  table("sobol_total", "total Sobol index", index(&SobolIndex::total));
+  table("sobol_total_lower", "its 95 % interval, lower end", index(&SobolIndex::total_lower));
+  table("sobol_total_upper", "its 95 % interval, upper end", index(&SobolIndex::total_upper));
+  table("linear_share", "share of the variance by the linear prediction", [](const ToleranceOutput& o, std::size_t i) {
+    return o.linear_share.empty() ? absent : o.linear_share[i];
+  });
+  const auto row = [&](const char* name, const char* meaning, double ToleranceOutput::*member) {
+    std::vector<double> values;
+    for (const ToleranceOutput& o : result.outputs) values.push_back(o.*member);
+    data.write(data.define_variable(name, {output}, "1", meaning), values);
+  };
+  row("linear_mean", "value at the parameters' means, unit of the output", &ToleranceOutput::linear_mean);
+  row("linear_deviation", "standard deviation by the linear prediction, unit of the output",
+      &ToleranceOutput::linear_deviation);
+  data.close();
+}
+
+}  // namespace wingbeat

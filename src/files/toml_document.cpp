@@ -1,0 +1,519 @@
+#include "files/toml_document.hpp"
+
+#include <fmt/format.h>
+
+// Where it is not a compiled library, toml++ asserts what malformed input violates ("[=", "T:") although the code after
+// the assertion refuses such input properly.
+#define TOML_ASSERT(expression) static_assert(true)
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "wingbeat/files/design_keys.hpp"
+#include "wingbeat/files/units.hpp"
+
+namespace wingbeat {
+
+namespace {
+
+constexpr std::size_t largest_text = 4u << 20;
+constexpr int deepest_nesting = 16;
+
+/// Keys of which a vehicle may have one. An override of one removes the file's other.
+constexpr std::pair<std::string_view, std::string_view> alternatives[] = {
+    {"transmission.hinge_offset", "transmission.stroke_amplitude"},
+    {"spring.stiffness", "spring.resonance"},
+    {"spring.stiffness", "spring.resonance_ratio"},
+    {"spring.resonance", "spring.resonance_ratio"},
+    {"supply.frequency", "supply.resonance_ratio"},
+    {"wing.inertia", "wing.resonance"},
+    {"wing.planform.root_chord", "wing.planform.chord_ratio"},
+    {"wing.planform.file", "wing.planform.chords"},
+    {"supply.cell_voltage", "supply.discharge_curve"},
+    {"aerodynamics.coefficients.table", "aerodynamics.coefficients.lift"},
+    {"aerodynamics.coefficients.table", "aerodynamics.coefficients.drag"}};
+
+int line_of(const toml::source_position& p) { return int(p.line); }
+int column_of(const toml::source_position& p) { return int(p.column); }
+
+bool is_bare_key_character(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+}
+
+struct Complaint {
+  int line;
+  int column;
+  std::string message;
+};
+
+/// Keeps from toml++ 3.3 what it meets with undefined behaviour instead of an error:
+/// - deep nesting: it builds and destroys nested tables recursively and does not limit dotted keys;
+/// - a table header that does not begin with a key, "[=" (its issue 294);
+/// - letters beyond ASCII where it looks for white space (is_non_ascii_horizontal_whitespace).
+class Gatekeeper {
+ public:
+  explicit Gatekeeper(std::string_view text) : text_(text) {}
+
+  std::optional<Complaint> complaint() {
+    if (text_.starts_with("\xEF\xBB\xBF")) at_ = line_begin_ = 3;
+    for (; at_ < text_.size() && !complaint_; ++at_) {
+      const char c = text_[at_];
+      if (c == '\n') {
+        next_line();
+        dots_ = 0;
+        if (brackets_ == 0) in_value_ = false;
+      } else if (c == '#') {
+        at_ = std::min(text_.find('\n', at_), text_.size()) - 1;
+      } else if (c == '"' || c == '\'') {
+        check_string_begin();
+        skip_string(c);
+      } else if (c == '.') {
+        limit(++dots_);
+      } else if (c == '[' || c == '{') {
+        dots_ = 0;
+        if (c == '[' && brackets_ == 0 && !in_value_) check_header();
+        limit(++brackets_);
+      } else if (c == ']' || c == '}') {
+        dots_ = 0;
+        brackets_ = std::max(brackets_ - 1, 0);
+      } else if (c == '=' || c == ',') {
+        dots_ = 0;
+        in_value_ = true;
+      } else if (!is_ascii(c)) {
+        complain("not TOML: a letter outside ASCII belongs in quotes");
+      }
+    }
+    return complaint_;
+  }
+
+ private:
+  static bool is_ascii(char c) { return static_cast<unsigned char>(c) < 0x80; }
+
+  void next_line() {
+    ++line_;
+    line_begin_ = at_ + 1;
+  }
+
+  void complain(std::string message) {
+    if (complaint_) return;
+    const std::string_view before = text_.substr(line_begin_, at_ - line_begin_);
+    const auto characters = std::count_if(before.begin(), before.end(),
+                                          [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; });
+    complaint_ = {line_, int(characters) + 1, std::move(message)};
+  }
+
+  void limit(int nesting) {
+    if (nesting > deepest_nesting) {
+      complain(fmt::format("nested more than {} levels deep, which no vehicle file is", deepest_nesting));
+    }
+  }
+
+  void check_header() {
+    std::size_t name = at_ + 1;
+    if (name < text_.size() && text_[name] == '[') ++name;
+    name = std::min(text_.find_first_not_of(" \t", name), text_.size());
+    const char first = name < text_.size() ? text_[name] : '\n';
+    if (!is_bare_key_character(first) && first != '"' && first != '\'') {
+      complain("not TOML: a table header needs a name, as in [motor]");
+    }
+  }
+
+  /// toml++ reads on through a quote inside a number or word.
+  void check_string_begin() {
+    const char before = at_ > line_begin_ ? text_[at_ - 1] : '\n';
+    const std::string_view allowed = in_value_ ? " \t\n=,[{" : " \t\n=,[{.";
+    if (allowed.find(before) == std::string_view::npos) complain("not TOML: a quote inside a word");
+  }
+
+  /// Moves to the last character of a string, or of the line where a string of one line does not end.
+  void skip_string(char quote) {
+    const std::string_view triple = quote == '"' ? "\"\"\"" : "'''";
+    const bool multiline = text_.substr(at_).starts_with(triple);
+    for (at_ += multiline ? 3 : 1; at_ < text_.size(); ++at_) {
+      const char c = text_[at_];
+      if (c == '\n') {
+        if (!multiline) break;
+        next_line();
+      } else if (c == '\\' && quote == '"') {
+        if (multiline) check_line_end();
+        if (at_ + 1 < text_.size() && text_[at_ + 1] != '\n') ++at_;
+      } else if (multiline ? text_.substr(at_).starts_with(triple) : c == quote) {
+        if (!multiline) return;
+        at_ += 2;
+        while (at_ + 1 < text_.size() && text_[at_ + 1] == quote) ++at_;  // quotes may end the text itself
+        return;
+      }
+    }
+    --at_;
+  }
+
+  /// The backslash at the end of a line makes toml++ skip white space.
+  void check_line_end() {
+    const std::size_t next = text_.find_first_not_of(" \t\r\n", at_ + 1);
+    if (next != std::string_view::npos && !is_ascii(text_[next])) {
+      complain("a backslash before a letter outside ASCII is not supported");
+    }
+  }
+
+  std::string_view text_;
+  std::size_t at_ = 0, line_begin_ = 0;
+  int line_ = 1, dots_ = 0, brackets_ = 0;
+  bool in_value_ = false;  ///< after the = of a key
+  std::optional<Complaint> complaint_;
+};
+
+std::string reason_in(const toml::parse_error& error) {
+  std::string reason(error.description());
+  for (const std::string_view prefix : {"Error while parsing ", "Encountered "}) {
+    if (!reason.starts_with(prefix)) continue;
+    reason.erase(0, prefix.size());
+    if (prefix == "Encountered ") break;
+    const auto colon = reason.find(": ");
+    if (colon != std::string::npos) {
+      const std::string what = reason.substr(0, colon);
+      const bool vowel = what.find_first_of("aeiou") == 0;
+      reason = fmt::format("in {} {}, {}", vowel ? "an" : "a", what, reason.substr(colon + 2));
+    }
+  }
+  if (const auto redefined = reason.find("cannot redefine existing "); redefined != std::string::npos) {
+    const auto name = reason.find('\'', redefined), end = reason.find('\'', name + 1);
+    if (name != std::string::npos && end != std::string::npos) {
+      return fmt::format("{} is given twice", in_quotes(reason.substr(name + 1, end - name - 1)));
+    }
+  }
+  if (reason.find("expected a comment or whitespace, saw") != std::string::npos) {
+    reason += "; a text or a quantity with a unit stands in quotes, as in \"5 mm\"";
+  }
+  return "not TOML: " + one_line(reason, 200);
+}
+
+/// Parses TOML; refuses with `origin` moved to the place of the error unless the origin is an override.
+toml::table parse_toml(std::string_view text, const Origin& origin) {
+  const auto refuse = [&](int line, int column, const std::string& message) {
+    throw InputError(origin.file, origin.overridden ? 0 : line, origin.overridden ? 0 : column, "", message);
+  };
+  if (text.size() > largest_text) refuse(0, 0, "larger than 4 MB, which no vehicle file is");
+  if (const auto complaint = Gatekeeper(text).complaint()) {
+    refuse(complaint->line, complaint->column, complaint->message);
+  }
+  try {
+    return toml::parse(text, std::string_view{});
+  } catch (const toml::parse_error& error) {
+    refuse(line_of(error.source().begin), column_of(error.source().begin), reason_in(error));
+    throw;
+  }
+}
+
+Value value_of_node(const toml::node& node, const Origin& origin) {
+  Value value;
+  value.origin = origin;
+  if (const auto* text = node.as_string()) {
+    value.kind = Value::Kind::text;
+    value.text = text->get();
+  } else if (const auto* whole = node.as_integer()) {
+    value.kind = Value::Kind::number;
+    value.number = double(whole->get());
+  } else if (const auto* real = node.as_floating_point()) {
+    value.kind = Value::Kind::number;
+    value.number = real->get();
+  } else if (const auto* array = node.as_array()) {
+    value.kind = Value::Kind::array;
+    for (const toml::node& item : *array) value.items.push_back(value_of_node(item, origin));
+  } else if (node.is_table()) {
+    value.kind = Value::Kind::table;
+  } else {
+    value.text = node.is_boolean() ? "a boolean" : node.is_time() ? "a time" : "a date";
+  }
+  return value;
+}
+
+TomlNode tree_of(const toml::node& node) {
+  TomlNode tree;
+  tree.line = line_of(node.source().begin);
+  tree.column = column_of(node.source().begin);
+  if (const auto* text = node.as_string()) {
+    tree.kind = TomlNode::Kind::text;
+    tree.text = text->get();
+  } else if (const auto* whole = node.as_integer()) {
+    tree.kind = TomlNode::Kind::number;
+    tree.number = double(whole->get());
+    tree.whole = true;
+  } else if (const auto* real = node.as_floating_point()) {
+    tree.kind = TomlNode::Kind::number;
+    tree.number = real->get();
+  } else if (const auto* boolean = node.as_boolean()) {
+    tree.kind = TomlNode::Kind::boolean;
+    tree.number = boolean->get() ? 1.0 : 0.0;
+  } else if (const auto* array = node.as_array()) {
+    tree.kind = TomlNode::Kind::array;
+    for (const toml::node& item : *array) tree.items.push_back(tree_of(item));
+  } else if (const auto* table = node.as_table()) {
+    tree.kind = TomlNode::Kind::table;
+    for (const auto& [key, value] : *table) {
+      TomlNode member = tree_of(value);
+      // What is wrong with a key is shown where its name stands.
+      member.line = line_of(key.source().begin);
+      member.column = column_of(key.source().begin);
+      tree.members.push_back({std::string(key.str()), std::move(member)});
+    }
+    std::stable_sort(tree.members.begin(), tree.members.end(), [](const auto& a, const auto& b) {
+      return std::pair(a.node.line, a.node.column) < std::pair(b.node.line, b.node.column);
+    });
+  } else {
+    tree.text = node.is_time() ? "a time" : "a date";
+  }
+  return tree;
+}
+
+/// A key as it would stand in a file, so that "motor.inertia" in quotes is not taken for inertia in [motor].
+std::string segment(std::string_view key) {
+  const bool bare = !key.empty() && std::all_of(key.begin(), key.end(), is_bare_key_character);
+  if (!bare) return in_quotes(key);
+  constexpr std::size_t longest = 60;
+  return key.size() <= longest ? std::string(key) : std::string(key.substr(0, longest)) + "...";
+}
+
+/// Enters tables and values into the document, and its errors for what has no place there.
+class Flattener {
+ public:
+  Flattener(Document& document, Origin origin) : document_(document), base_(std::move(origin)) {}
+
+  void enter(const toml::table& table, const std::string& path) {
+    for (const auto& [key, node] : table) {
+      const std::string name = segment(key.str());
+      enter(node, path.empty() ? name : path + "." + name, origin_at(key.source().begin));
+    }
+  }
+
+  void enter(const toml::node& node, const std::string& path, const Origin& origin) {
+    const bool known = find_key<double>(path) != nullptr, section = is_section(path);
+    if (!known && !section) {
+      const std::string meant = nearest_key(path);
+      if (!meant.empty()) document_.spoiled.push_back(meant);
+      document_.spoiled.push_back(path);
+      offend(path, origin, unknown_key_message(path));
+    } else if (const toml::table* table = node.as_table(); table && section) {
+      document_.sections.insert_or_assign(path, origin);
+      enter(*table, path);
+    } else if (known) {
+      document_.values.insert_or_assign(path, value_of_node(node, origin));
+    } else {
+      const std::string example = path == "wing.planform"
+                                      ? "a table such as { shape = \"semi-ellipse\", length = \"63 mm\", "
+                                        "root_chord = \"25 mm\" }"
+                                  : path.find('.') == std::string::npos ? fmt::format("a section [{}]", path)
+                                                                        : "a table";
+      const bool list = node.is_array_of_tables();
+      document_.spoiled.push_back(path);
+      offend(path, origin, fmt::format("expected {}, got {}", example,
+                                       list ? "a list of tables" : kind_of(value_of_node(node, origin))));
+    }
+  }
+
+ private:
+  Origin origin_at(const toml::source_position& p) const {
+    if (base_.overridden) return base_;
+    return {base_.file, line_of(p), column_of(p), false};
+  }
+
+  void offend(const std::string& path, const Origin& origin, const std::string& message) {
+    document_.errors.attempt([&] { origin.refuse(path, message); });
+  }
+
+  Document& document_;
+  Origin base_;
+};
+
+bool at_or_below(std::string_view path, std::string_view above) {
+  return path.starts_with(above) && (path.size() == above.size() || path[above.size()] == '.');
+}
+
+template <class Map, class Condition>
+void erase_below(Map& map, std::string_view path, const Condition& condition) {
+  std::erase_if(map, [&](const auto& entry) { return at_or_below(entry.first, path) && condition(entry.second); });
+}
+
+/// Before an override of a single number of the force coefficients: the named set, given or by default, written out.
+void spell_out_coefficients(Document& document, std::string_view overridden) {
+  const std::string path = "aerodynamics.coefficients";
+  const Value* name = document.find(path);
+  const bool single = at_or_below(overridden, path + ".lift") || at_or_below(overridden, path + ".drag");
+  const bool named_set = name && name->kind == Value::Kind::text && name->text == "translational-2022";
+  if (!single || document.has_section(path) || (name && !named_set)) return;
+  Design<double> named{};
+  named.aerodynamics.coefficients = translational_2022();
+  const Origin origin = document.locate(path);
+  document.values.erase(path);
+  document.sections.insert_or_assign(path, origin);
+  for (const auto& key : vehicle_keys<double>()) {
+    if (key.get && key.path != path && at_or_below(key.path, path)) {
+      document.values[std::string(key.path)] = {Value::Kind::number, "", *key.get(named), {}, origin};
+    }
+  }
+}
+
+std::string_view trim(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+/// The value of an override as the one entry of a table, or nothing where it is a bare string.
+std::optional<toml::table> override_value(std::string_view text, const Origin& origin) {
+  if (text.find_first_of("\r\n") == std::string_view::npos) {
+    try {
+      return parse_toml(fmt::format("value = {}", text), origin);
+    } catch (const InputError&) {
+    }
+    try {
+      parse_toml(fmt::format("# {}", text), origin);  // a comment too may hold no control characters
+      return std::nullopt;
+    } catch (const InputError&) {
+    }
+  }
+  origin.refuse("", "neither a TOML value nor one line of plain UTF-8 text");
+}
+
+void apply_override(Document& document, const std::string& assignment) {
+  Origin origin;
+  origin.file = "--set " + one_line(assignment, 120);
+  origin.overridden = true;
+  const auto equals = assignment.find('=');
+  if (equals == std::string::npos) origin.refuse("", "expected KEY=VALUE, as in --set supply.voltage=\"3 V\"");
+  const std::string path(trim(std::string_view(assignment).substr(0, equals)));
+  const std::string_view text = trim(std::string_view(assignment).substr(equals + 1));
+  if (!find_key<double>(path) && !is_section(path)) {
+    origin.refuse(one_line(path), unknown_key_message(path));
+  }
+
+  spell_out_coefficients(document, path);
+  const auto anything = [](const auto&) { return true; };
+  erase_below(document.values, path, anything);
+  erase_below(document.sections, path, anything);
+  for (auto dot = path.rfind('.'); dot != std::string::npos; dot = dot == 0 ? dot : path.rfind('.', dot - 1)) {
+    const std::string above = path.substr(0, dot);
+    document.values.erase(above);
+    document.sections.try_emplace(above, origin);
+  }
+  Flattener flattener(document, origin);
+  if (const auto parsed = override_value(text, origin)) {
+    flattener.enter(parsed->begin()->second, path, origin);
+  } else {
+    flattener.enter(toml::value<std::string>(std::string(text)), path, origin);
+  }
+
+  const auto from_file = [](const Value& value) { return !value.origin.overridden; };
+  for (const auto& [one, other] : alternatives) {
+    if (at_or_below(path, one)) erase_below(document.values, other, from_file);
+    if (at_or_below(path, other)) erase_below(document.values, one, from_file);
+  }
+}
+
+}  // namespace
+
+std::string kind_of(const Value& value) {
+  switch (value.kind) {
+    case Value::Kind::text: return in_quotes(value.text);
+    case Value::Kind::number: return fmt::format("the number {}", value.number);
+    case Value::Kind::array: return "an array";
+    case Value::Kind::table: return "a table";
+    case Value::Kind::other: break;
+  }
+  return value.text;
+}
+
+const TomlNode* TomlNode::find(std::string_view key) const {
+  for (const auto& [name, node] : members) {
+    if (name == key) return &node;
+  }
+  return nullptr;
+}
+
+TomlNode parse_toml_tree(std::string_view text, std::string_view file_name) {
+  return tree_of(parse_toml(text, Origin{std::string(file_name), 0, 0, false}));
+}
+
+std::string kind_of(const TomlNode& node) {
+  switch (node.kind) {
+    case TomlNode::Kind::text: return in_quotes(node.text);
+    case TomlNode::Kind::number: return fmt::format("the number {}", node.number);
+    case TomlNode::Kind::boolean: return node.number != 0.0 ? "true" : "false";
+    case TomlNode::Kind::array: return "an array";
+    case TomlNode::Kind::table: return "a table";
+    case TomlNode::Kind::other: break;
+  }
+  return node.text;
+}
+
+bool are_alternatives(std::string_view one, std::string_view other) {
+  return std::any_of(std::begin(alternatives), std::end(alternatives), [&](const auto& pair) {
+    return pair == std::pair(one, other) || pair == std::pair(other, one);
+  });
+}
+
+const Value* Document::find(std::string_view path) const {
+  const auto found = values.find(path);
+  return found == values.end() ? nullptr : &found->second;
+}
+
+bool Document::has_section(std::string_view path) const { return sections.find(path) != sections.end(); }
+
+Origin Document::locate(std::string_view path) const {
+  if (const Value* value = find(path)) return value->origin;
+  while (true) {
+    if (const auto section = sections.find(path); section != sections.end()) return section->second;
+    const auto dot = path.rfind('.');
+    if (dot == std::string_view::npos) return {file_name, last_line, 1, false};
+    path = path.substr(0, dot);
+    if (const Value* value = find(path)) return value->origin;
+  }
+}
+
+Document parse_document(std::string_view text, std::string_view file_name) {
+  Document document;
+  document.file_name = file_name;
+  document.last_line = 1 + int(std::count(text.begin(), text.end(), '\n')) - int(text.ends_with('\n'));
+  document.last_line = std::max(document.last_line, 1);
+  const Origin origin{document.file_name, 0, 0, false};
+  const toml::table root = parse_toml(text, origin);
+  Flattener flattener(document, origin);
+  flattener.enter(root, "");
+  return document;
+}
+
+Requirement requirement_of(std::string_view only_with) {
+  Requirement result;
+  const auto equals = only_with.find(" = ");
+  result.key = only_with.substr(0, equals);
+  if (equals == std::string_view::npos) return result;
+  for (std::string_view rest = only_with.substr(equals + 3);;) {
+    const auto bar = rest.find('|');
+    result.values.push_back(rest.substr(0, bar));
+    if (bar == std::string_view::npos) return result;
+    rest.remove_prefix(bar + 1);
+  }
+}
+
+bool Requirement::allows(std::string_view value) const {
+  return values.empty() || std::find(values.begin(), values.end(), value) != values.end();
+}
+
+void apply_overrides(Document& document, std::span<const std::string> overrides) {
+  InputErrors errors;
+  for (const std::string& assignment : overrides) errors.attempt([&] { apply_override(document, assignment); });
+  for (const auto& key : vehicle_keys<double>()) {
+    if (key.only_with.empty()) continue;
+    const Requirement requirement = requirement_of(key.only_with);
+    const Value* value = document.find(key.path);
+    const Value* choice = document.find(requirement.key);
+    if (value && choice && !value->origin.overridden && choice->origin.overridden &&
+        !requirement.allows(choice->text)) {
+      document.values.erase(std::string(key.path));
+    }
+  }
+  errors.refuse();
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,353 @@
+#include "wingbeat/files/units.hpp"
+
+#include <fmt/format.h>
+#include <udunits2.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <regex>
+#include <system_error>
+#include <utility>
+
+#include "wingbeat/core/math.hpp"
+
+namespace wingbeat {
+
+namespace {
+
+constexpr std::size_t longest_unit = 80;
+
+struct FreeUnit {
+  void operator()(ut_unit* unit) const { ut_free(unit); }
+};
+struct FreeSystem {
+  void operator()(ut_system* system) const { ut_free_system(system); }
+};
+using Unit = std::unique_ptr<ut_unit, FreeUnit>;
+
+/// A unit taken apart: `scale` times a product of powers of base units, the radian counted on its own.
+struct Anatomy {
+  double scale = 1.0;
+  int angle = 0;
+  std::map<std::string, int> dimension;
+  bool plain = true;  ///< neither offset nor logarithm nor time stamp
+};
+
+Anatomy& anatomy(void* argument) { return *static_cast<Anatomy*>(argument); }
+
+void add_power(Anatomy& a, const ut_unit* base, int power) {
+  const char* symbol = ut_get_symbol(base, UT_ASCII);
+  const std::string name = symbol ? symbol : "?";
+  if (name == "rad") {
+    a.angle += power;
+  } else if (power != 0) {
+    a.dimension[name] += power;
+  }
+}
+
+ut_status visit_basic(const ut_unit* unit, void* argument) {
+  add_power(anatomy(argument), unit, 1);
+  return UT_SUCCESS;
+}
+ut_status visit_product(const ut_unit*, int count, const ut_unit* const* bases, const int* powers, void* argument) {
+  for (int n = 0; n < count; ++n) add_power(anatomy(argument), bases[n], powers[n]);
+  return UT_SUCCESS;
+}
+ut_status visit_scaled(const ut_unit* unit, double scale, const ut_unit* underlying, double offset, void* argument);
+ut_status visit_timestamp(const ut_unit*, const ut_unit*, double, void* argument) {
+  anatomy(argument).plain = false;
+  return UT_SUCCESS;
+}
+ut_status visit_logarithm(const ut_unit*, double, const ut_unit*, void* argument) {
+  anatomy(argument).plain = false;
+  return UT_SUCCESS;
+}
+const ut_visitor visitor = {visit_basic, visit_product, visit_scaled, visit_timestamp, visit_logarithm};
+
+ut_status visit_scaled(const ut_unit*, double scale, const ut_unit* underlying, double offset, void* argument) {
+  anatomy(argument).scale *= scale;
+  if (offset != 0.0) anatomy(argument).plain = false;
+  return ut_accept_visitor(underlying, &visitor, argument);
+}
+
+/// The unit database. UDUNITS keeps global state while it parses, so one mutex guards all of it.
+class UnitSystem {
+ public:
+  static UnitSystem& instance() {
+    static UnitSystem system;
+    return system;
+  }
+
+  std::optional<Anatomy> dissect(const std::string& unit) {
+    const std::lock_guard lock(mutex_);
+    Unit parsed(ut_parse(system_.get(), unit.c_str(), UT_UTF8));
+    if (!parsed) parsed.reset(ut_parse(system_.get(), inertia_apart(unit).c_str(), UT_UTF8));
+    if (!parsed) return std::nullopt;
+    Anatomy result;
+    if (ut_accept_visitor(parsed.get(), &visitor, &result) != UT_SUCCESS) return std::nullopt;
+    std::erase_if(result.dimension, [](const auto& power) { return power.second == 0; });
+    if (!(std::isfinite(result.scale) && result.scale > 0.0)) return std::nullopt;
+    return result;
+  }
+
+ private:
+  UnitSystem() {
+    ut_set_error_message_handler(ut_ignore);
+    system_.reset(ut_read_xml(nullptr));
+    if (!system_) {
+      throw std::runtime_error(
+          "cannot read the UDUNITS-2 unit database; install it, or name it in the environment variable "
+          "UDUNITS2_XML_PATH");
+    }
+    // The database knows only the long names of these.
+    const Unit radian(ut_get_unit_by_name(system_.get(), "radian"));
+    add("deg", ut_scale(pi / 180.0, radian.get()));
+    add("rev", ut_scale(two_pi, radian.get()));
+    // Products as they stand in catalogues; UDUNITS puts its prefixes before them: mAh, mNm, uNm.
+    for (const auto& [symbol, definition] : products) add(symbol, ut_parse(system_.get(), definition, UT_UTF8));
+  }
+
+  static constexpr std::pair<const char*, const char*> products[] = {
+      {"Ah", "A h"},   {"Wh", "W h"},     {"Nm", "N m"},     {"Ncm", "N cm"}, {"Nmm", "N mm"},
+      {"Nms", "N m s"}, {"Vs", "V s"},     {"RPM", "rpm"}};
+
+  /// "gcm2" as "g cm2". No symbol can say this: UDUNITS takes the exponent for that of the whole word.
+  static std::string inertia_apart(const std::string& unit) {
+    static const std::regex together("(^|[^A-Za-z_])([kmu]?g)([cm]?m)(2|\\^2|\\*\\*2|\u00b2)(?![0-9])");
+    return std::regex_replace(unit, together, "$1$2 $3$4");
+  }
+
+  void add(const char* symbol, ut_unit* unit) {
+    const Unit owner(unit);
+    ut_map_symbol_to_unit(symbol, UT_UTF8, owner.get());
+  }
+
+  std::mutex mutex_;
+  std::unique_ptr<ut_system, FreeSystem> system_;
+};
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Of the signs beyond ASCII that UDUNITS reads only these are letters, which may bear an exponent.
+bool ends_in_letter(std::string_view text) {
+  constexpr std::string_view letters[] = {"\u03a9", "\u2126", "\u00c5", "\u212b"};  // ohm twice, angstrom twice
+  return std::any_of(std::begin(letters), std::end(letters), [&](auto letter) { return text.ends_with(letter); });
+}
+
+/// A number inside a unit that is no exponent. UDUNITS would multiply by it.
+bool has_stray_number(std::string_view unit) {
+  if (unit == "1") return false;
+  for (std::size_t n = 0; n < unit.size(); ++n) {
+    if (!is_digit(unit[n]) || (n > 0 && is_digit(unit[n - 1]))) continue;
+    std::size_t before = n;
+    if (before > 0 && (unit[before - 1] == '-' || unit[before - 1] == '+')) --before;
+    if (before == 0) {
+      const bool reciprocal = unit.size() > 1 && unit[0] == '1' && (unit[1] == '/' || unit.substr(1, 2) == " /");
+      if (reciprocal) continue;
+      return true;
+    }
+    const auto previous = static_cast<unsigned char>(unit[before - 1]);
+    const bool power = previous == '^' || (previous == '*' && before > 1 && unit[before - 2] == '*');
+    if (!(std::isalpha(previous) || previous == ')' || power || ends_in_letter(unit.substr(0, before)))) return true;
+  }
+  return false;
+}
+
+std::string_view trim(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
+}
+
+/// Spaces and powers as word processors write them, in the form that UDUNITS reads.
+std::string typewritten(std::string_view text) {
+  static constexpr std::pair<std::string_view, std::string_view> replacements[] = {
+      {"\u00a0", " "}, {"\u2009", " "}, {"\u202f", " "}, {"\u2074", "^4"}, {"\u2075", "^5"}, {"\u03bc", "\u00b5"}};
+  std::string result(text);
+  for (const auto& [from, to] : replacements) {
+    for (auto at = result.find(from); at != std::string::npos; at = result.find(from, at + to.size())) {
+      result.replace(at, from.size(), to);
+    }
+  }
+  return std::string(trim(result));
+}
+
+/// number * factor, exact where the factor is a power of ten: the decimal point is moved in the text.
+double scaled(std::string_view number, double value, double factor) {
+  if (factor == 1.0 || value == 0.0) return value;
+  const double power = std::round(std::log10(factor));
+  if (std::abs(factor / std::pow(10.0, power) - 1.0) > 1e-13) return value * factor;
+  const auto e = number.find_first_of("eE");
+  long exponent = 0;
+  if (e != std::string_view::npos) {
+    std::string_view digits = number.substr(e + 1);
+    if (digits.starts_with('+')) digits.remove_prefix(1);
+    if (std::from_chars(digits.data(), digits.data() + digits.size(), exponent).ec != std::errc{}) {
+      return value * factor;
+    }
+  }
+  const std::string moved = fmt::format("{}e{}", number.substr(0, e), exponent + long(power));
+  double result = value * factor;
+  std::from_chars(moved.data(), moved.data() + moved.size(), result);
+  return result;
+}
+
+struct Factor {
+  double value = 1.0;
+  std::string complaint;  ///< what is wrong with the unit beyond its dimension, or empty
+  bool ok = true;
+  bool of_reciprocal = false;  ///< not ok, but `value` converts the reciprocal: a speed for a torque constant
+};
+
+Factor refuse(std::string complaint) { return {1.0, std::move(complaint), false}; }
+
+bool are_reciprocals(const Anatomy& a, const Anatomy& b) {
+  return a.dimension.size() == b.dimension.size() &&
+         std::all_of(a.dimension.begin(), a.dimension.end(), [&](const auto& power) {
+           const auto other = b.dimension.find(power.first);
+           return other != b.dimension.end() && other->second == -power.second;
+         });
+}
+
+Factor factor_for(const std::string& unit, std::string_view expected_unit) {
+  if (unit.empty()) return {};
+  const bool garbled = unit.size() > longest_unit || unit.find('\0') != std::string::npos;
+  std::optional<Anatomy> given;
+  if (!garbled) {
+    if (has_stray_number(unit)) return refuse(", which holds a second number");
+    given = UnitSystem::instance().dissect(unit);
+  }
+  if (!given) return refuse(fmt::format(" with the unknown unit {}", in_quotes(unit)));
+  const std::optional<Anatomy> expected = UnitSystem::instance().dissect(std::string(expected_unit));
+  if (!expected) throw std::logic_error(fmt::format("{} is not a unit", in_quotes(expected_unit)));
+
+  if (!given->plain) return refuse(fmt::format("; {} has an offset or a logarithm", in_quotes(unit)));
+  static const std::map<std::string, int> rate = {{"s", -1}};
+  static const std::map<std::string, int> torque_constant = {{"kg", 1}, {"m", 2}, {"s", -2}, {"A", -1}};
+  if (expected->dimension == torque_constant && expected->angle == 0 && are_reciprocals(*given, *expected)) {
+    if (given->angle == 0) return refuse("; a speed constant names the angle, as in rpm/V or rad/s/V");
+    if (given->angle != 1) return refuse("");
+    return {given->scale * expected->scale, "; a speed constant is the reciprocal of a torque constant", false, true};
+  }
+  if (given->dimension != expected->dimension) return refuse("");
+  const Factor converts{given->scale / expected->scale, ""};
+  if (expected->dimension == rate) {
+    if (given->angle == expected->angle) return converts;
+    if (given->angle == 1 && expected->angle == 0) return {converts.value / two_pi, ""};
+    return refuse(expected->angle == 1 ? "; name the angle, as in rad/s, deg/s or rpm" : "");
+  }
+  if (unit.find("Hz") != std::string::npos || unit.find("hertz") != std::string::npos) {
+    return refuse("; a cycle is 2 pi rad, so write s or rad/s instead of Hz");
+  }
+  if (given->angle == expected->angle) return converts;
+  if (expected->dimension.empty()) return refuse("");
+  if (given->angle == 0) return converts;
+  if (expected->dimension == torque_constant && expected->angle == 0 && given->angle == -1) return converts;
+  return refuse("");
+}
+
+std::string refusal(std::string_view text, std::string_view unit, std::string_view complaint) {
+  return fmt::format("expected {}, got {}{}", quantity_example(unit), in_quotes(text), complaint);
+}
+
+}  // namespace
+
+std::string one_line(std::string_view text, std::size_t longest) {
+  const bool cut = text.size() > longest;
+  if (cut) {
+    std::size_t end = longest;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // not inside a UTF-8 sequence
+    text = text.substr(0, end);
+  }
+  std::string result;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '\n') {
+      result += "\\n";
+    } else if (c == '\t') {
+      result += "\\t";
+    } else if (byte < 0x20 || byte == 0x7F) {
+      result += fmt::format("\\x{:02x}", byte);
+    } else {
+      result += c;
+    }
+  }
+  return result + (cut ? "..." : "");
+}
+
+std::string in_quotes(std::string_view text) { return '"' + one_line(text) + '"'; }
+
+std::string quantity_example(std::string_view unit) {
+  static constexpr std::pair<std::string_view, std::string_view> examples[] = {
+      {"1", "a number such as 2"},
+      {"m", "a length such as \"5 mm\""},
+      {"kg", "a mass such as \"3 g\""},
+      {"s", "a time such as \"5 ms\""},
+      {"V", "a voltage such as \"3 V\""},
+      {"A", "a current such as \"0.2 A\""},
+      {"C", "an electric charge such as \"50 mA h\""},
+      {"Hz", "a frequency such as \"22 Hz\""},
+      {"rad", "an angle such as \"40 deg\""},
+      {"rad/s", "an angular speed such as \"100 rad/s\""},
+      {"ohm", "a resistance such as \"9 ohm\""},
+      {"H", "an inductance such as \"29 mH\""},
+      {"N m/A", "a torque constant such as \"0.01 N m/A\""},
+      {"kg m2", "a moment of inertia such as \"1.5e-7 kg m2\""},
+      {"N m", "a torque such as \"0.1 mN m\""},
+      {"N m/rad", "a torsional stiffness such as \"1.4e-3 N m/rad\""},
+      {"N m s/rad", "a torsional damping such as \"3.6e-6 N m s/rad\""},
+      {"N m s2/rad2", "a quadratic damping such as \"2e-8 N m s2/rad2\""},
+      {"kg/m", "a mass over a length such as \"2 g/m\""},
+      {"kg/m3", "a density such as \"1.225 kg/m3\""},
+      {"m4", "a chord moment such as \"2.5e-6 m4\""},
+      {"m5", "a chord moment such as \"1e-7 m5\""}};
+  for (const auto& [known, example] : examples) {
+    if (known == unit) return std::string(example);
+  }
+  return fmt::format("a quantity in {}", unit);
+}
+
+double unit_factor(std::string_view unit, std::string_view expected_unit) {
+  const Factor factor = factor_for(typewritten(unit), expected_unit);
+  if (!factor.ok) throw UnitError(refusal(unit, expected_unit, factor.complaint));
+  return factor.value;
+}
+
+double parse_quantity(std::string_view text, std::string_view expected_unit, SpeedConstant speed_constant) {
+  const auto fail = [&](std::string_view complaint) -> double {
+    throw UnitError(refusal(text, expected_unit, complaint));
+  };
+  const std::string whole = typewritten(text);
+  std::string_view number = whole;
+  if (number.starts_with('+')) number.remove_prefix(1);
+  // from_chars also reads "inf" and "nan", and the beginning of "nano".
+  const std::string_view digits = number.substr(number.starts_with('-') && number.size() == whole.size() ? 1 : 0);
+  if (digits.empty() || !(is_digit(digits[0]) || (digits[0] == '.' && digits.size() > 1 && is_digit(digits[1])))) {
+    return fail(", which does not begin with a number");
+  }
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+  if (error != std::errc{}) return fail(", a number too large or too small to store");
+  const std::string_view mantissa = number.substr(0, std::size_t(end - number.data()));
+  const std::string unit(trim(number.substr(mantissa.size())));
+  if (unit.starts_with(',')) return fail("; write a decimal point, not a comma");
+  const Factor factor = factor_for(unit, expected_unit);
+  if (factor.of_reciprocal) {
+    const double reciprocal = 1.0 / scaled(mantissa, value, factor.value);
+    if (!(reciprocal > 0.0 && std::isfinite(reciprocal))) return fail("; a speed constant must be > 0");
+    if (speed_constant == SpeedConstant::inverted) return reciprocal;
+    return fail(fmt::format("{}: write {:.6g} {}", factor.complaint, reciprocal, expected_unit));
+  }
+  if (!factor.ok) return fail(factor.complaint);
+  const double result = scaled(mantissa, value, factor.value);
+  if (!std::isfinite(result)) return fail(", a number too large or too small to store");
+  return result;
+}
+
+}  // namespace wingbeat

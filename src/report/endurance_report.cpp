@@ -1,0 +1,348 @@
+#include "wingbeat/report/endurance_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <stdexcept>
+#include <vector>
+
+#include "report/figure.hpp"
+#include "report/report_tools.hpp"
+#include "wingbeat/report/report.hpp"
+
+namespace wingbeat {
+namespace {
+
+using detail::Json, detail::number_or_null;
+
+double ratio(double a, double b) { return b > 0.0 ? a / b : absent; }
+
+/// Totals and means of a whole flight.
+struct Flight {
+  explicit Flight(const EnduranceResult& r) : rows(r.rows), last(r.rows.back()) {
+    time = last.time;
+    drawn = r.capacity * (rows.front().charge - last.charge);
+    chemical = last.energy_electrical + last.energy_internal;
+    current = ratio(drawn, time);
+    power = ratio(last.energy_electrical, time);
+    lift = ratio(last.lift_impulse, time);
+    aerodynamic = ratio(last.energy_aerodynamic, time);
+    efficiency = ratio(last.energy_aerodynamic, last.energy_electrical);
+  }
+  const std::vector<EnduranceRow>& rows;
+  const EnduranceRow& last;
+  double time, drawn, chemical, current, power, lift, aerodynamic, efficiency;
+};
+
+/// A column of the history: JSON, data set.
+struct Column {
+  const char* key;
+  const char* unit;
+  const char* long_name;
+  double EnduranceRow::*value;
+};
+constexpr Column columns[] = {
+    {"time_s", "s", "time since the start", &EnduranceRow::time},
+    {"charge", "1", "state of charge", &EnduranceRow::charge},
+    {"open_circuit_voltage_v", "V", "open-circuit voltage of the battery", &EnduranceRow::open_circuit_voltage},
+    {"energy_electrical_j", "J", "energy delivered at the terminals since the start", &EnduranceRow::energy_electrical},
+    {"energy_internal_j", "J", "energy lost inside the battery since the start", &EnduranceRow::energy_internal},
+    {"energy_aerodynamic_j", "J", "energy given to the air since the start", &EnduranceRow::energy_aerodynamic}};
+
+/// Rows outside the model's domain, and every limit that they exceed.
+std::pair<std::size_t, DomainStatus> outside(const EnduranceResult& result) {
+  std::pair<std::size_t, DomainStatus> sum{0, {}};
+  for (const EnduranceRow& row : result.rows) {
+    sum.first += row.domain.any();
+    sum.second |= row.domain;
+  }
+  return sum;
+}
+
+Json metrics_json(const Metrics<double>& metrics) {
+  Json json = Json::object();
+  for (int m = 0; m < metric_count; ++m) {
+    json[metric_info(Metric(m)).key] = number_or_null(metrics.values[std::size_t(m)]);
+  }
+  return json;
+}
+
+std::string duration(double seconds) {
+  if (!std::isfinite(seconds)) return "-";
+  return seconds < 100.0 ? readable(seconds, "s") : fmt::format("{:.1f} s", seconds);
+}
+
+std::string minutes(double seconds) {
+  return seconds < 100.0 ? "" : fmt::format("{:.2f} min", seconds / 60.0);
+}
+
+}  // namespace
+
+const char* name_of(EnduranceEnd end) {
+  switch (end) {
+    case EnduranceEnd::never_starts: return "never starts";
+    case EnduranceEnd::empty: return "empty";
+    case EnduranceEnd::cutoff: return "cut-off voltage";
+    case EnduranceEnd::stops: return "stops flapping";
+  }
+  return "unknown";
+}
+
+const char* name_of(Hover hover) {
+  switch (hover) {
+    case Hover::unknown: return "unknown";
+    case Hover::never: return "never";
+    case Hover::outside: return "outside domain";
+    case Hover::lost: return "lost";
+    case Hover::kept: return "kept";
+  }
+  return "unknown";
+}
+
+std::string json_endurance(const EnduranceResult& result) {
+  Json json;
+  json["status"] = name_of(result.status);
+  json["status_detail"] = result.detail;
+  json["end"] = name_of(result.end);
+  json["endurance_s"] = result.endurance();
+  json["hover"] = name_of(result.hover);
+  json["domain"] = result.rows.empty() ? Json(nullptr) : Json(name_of(outside(result).second));
+  Json moment = nullptr;
+  if (const auto& at = result.hover_lost) {
+    moment = {{"time_s", at->time}, {"charge", at->charge}, {"open_circuit_voltage_v", at->open_circuit_voltage}};
+    moment.update(metrics_json(at->metrics));
+  }
+  json["hover_lost"] = moment;
+  if (!result.rows.empty()) {
+    const Flight f(result);
+    json["charge_initial"] = f.rows.front().charge;
+    json["charge_final"] = f.last.charge;
+    json["charge_drawn_c"] = f.drawn;
+    json["energy_chemical_j"] = f.chemical;
+    json["energy_electrical_j"] = f.last.energy_electrical;
+    json["energy_internal_j"] = f.last.energy_internal;
+    json["energy_aerodynamic_j"] = f.last.energy_aerodynamic;
+    json["current_mean_a"] = number_or_null(f.current);
+    json["power_electrical_w"] = number_or_null(f.power);
+    json["power_aerodynamic_w"] = number_or_null(f.aerodynamic);
+    json["lift_mean_n"] = number_or_null(f.lift);
+    json["efficiency_system"] = number_or_null(f.efficiency);
+    json["initial"] = metrics_json(f.rows.front().metrics);
+    json["final"] = metrics_json(f.last.metrics);
+    Json history = Json::object();
+    for (const Column& c : columns) {
+      for (const EnduranceRow& row : f.rows) history[c.key].push_back(number_or_null(row.*c.value));
+    }
+    for (const Metric m : {Metric::voltage, Metric::current_mean, Metric::frequency, Metric::power_electrical,
+                           Metric::power_aerodynamic, Metric::lift_mean, Metric::lift_to_weight,
+                           Metric::efficiency_system}) {
+      const char* key = metric_info(m).key;
+      for (const EnduranceRow& row : f.rows) history[key].push_back(number_or_null(row.metrics[m]));
+    }
+    for (const EnduranceRow& row : f.rows) history["domain"].push_back(name_of(row.domain));
+    json["history"] = history;
+  } else {
+    for (const char* key : {"charge_initial", "charge_final", "charge_drawn_c", "energy_chemical_j",
+                            "energy_electrical_j", "energy_internal_j", "energy_aerodynamic_j", "current_mean_a", "power_electrical_w",
+                            "power_aerodynamic_w", "lift_mean_n", "efficiency_system", "initial", "final", "history"}) {
+      json[key] = nullptr;
+    }
+  }
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string text_endurance(const Design<double>& design, const EnduranceResult& result) {
+  std::string text;
+  auto out = std::back_inserter(text);
+  const auto line = [&](std::string_view name, const std::string& value, const std::string& remark = "") {
+    std::string s = fmt::format("  {:<32}{:>14}   {}", name, value, remark);
+    while (s.back() == ' ') s.pop_back();
+    text += s + "\n";
+  };
+  const auto charge = [](double c) { return fmt::format("{:.2f} %", 100.0 * c); };
+  if (!design.name.empty()) text += wrapped(design.name, 88, 0) + "\n";
+  if (const auto [rows, limits] = outside(result); rows > 0) {
+    text += wrapped(fmt::format("OUTSIDE THE MODEL'S DOMAIN ({}) in {} of {} rows of the discharge: what they give is "
+                                "extrapolated.",
+                                name_of(limits), rows, result.rows.size()), 88, 2) + "\n";
+  }
+  text += wrapped(fmt::format("{}: {}.", name_of(result.end), result.detail), 88, 2) + "\n";
+  if (result.rows.empty()) return text;
+  const Flight f(result);
+
+  text += "\nFlight\n";
+  line("endurance", duration(f.time), minutes(f.time));
+  switch (result.hover) {
+    case Hover::unknown: line("hover", "-", "the vehicle file gives no mass"); break;
+    case Hover::never: line("hover", "never", "below weight from the start: cannot hover"); break;
+    case Hover::outside: line("hover", "not claimed", "lift exceeds the weight, but outside the model's domain"); break;
+    case Hover::kept: line("hover", "to the end", "lift exceeds the weight throughout"); break;
+    case Hover::lost: {
+      const EnduranceRow& at = *result.hover_lost;
+      line("hover lost after", duration(at.time), minutes(at.time));
+      line("  at a charge of", charge(at.charge));
+      line("  terminal voltage", readable(at.metrics[Metric::voltage], "V"),
+           fmt::format("{} without load", readable(at.open_circuit_voltage, "V")));
+      line("  mean current", readable(at.metrics[Metric::current_mean], "A"));
+      line("  flapping frequency", readable(at.metrics[Metric::frequency], "Hz"));
+      break;
+    }
+  }
+
+  text += "\nBattery\n";
+  line("charge drawn", readable(f.drawn / 3.6, "mA h"),
+       fmt::format("from {} to {}", charge(f.rows.front().charge), charge(f.last.charge)));
+  line("energy of the cells", readable(f.chemical, "J"));
+  const auto share = [&](double energy) { return fmt::format("{:>6.2f} %", 100.0 * energy / f.chemical); };
+  if (f.chemical > 0.0) {
+    line("  at the terminals", readable(f.last.energy_electrical, "J"), share(f.last.energy_electrical));
+    line("  lost inside the battery", readable(f.last.energy_internal, "J"), share(f.last.energy_internal));
+    line("  given to the air", readable(f.last.energy_aerodynamic, "J"), share(f.last.energy_aerodynamic));
+  }
+
+  fmt::format_to(out, "\n{:<24}{:>14}{:>14}{:>14}\n", "Over the flight", "first", "mean", "last");
+  const EnduranceRow& first = f.rows.front();
+  const auto course = [&](const char* name, Metric m, const char* unit, double mean) {
+    fmt::format_to(out, "  {:<22}{:>14}{:>14}{:>14}\n", name, readable(first.metrics[m], unit), readable(mean, unit),
+                   readable(f.last.metrics[m], unit));
+  };
+  const auto percent = [](double x) { return std::isfinite(x) ? fmt::format("{:.2f} %", 100.0 * x) : "-"; };
+  course("terminal voltage", Metric::voltage, "V", ratio(f.last.energy_electrical, f.drawn));
+  course("mean current", Metric::current_mean, "A", f.current);
+  course("electrical power", Metric::power_electrical, "W", f.power);
+  course("aerodynamic power", Metric::power_aerodynamic, "W", f.aerodynamic);
+  fmt::format_to(out, "  {:<22}{:>14}{:>14}{:>14}\n", "system efficiency", percent(first.metrics[Metric::efficiency_system]),
+                 percent(f.efficiency), percent(f.last.metrics[Metric::efficiency_system]));
+  course("mean lift", Metric::lift_mean, "N", f.lift);
+  if (const auto mass = total_mass(design)) {
+    const double weight = *mass * standard_gravity;
+    fmt::format_to(out, "  {:<22}{:>14.4g}{:>14.4g}{:>14.4g}\n", "mean lift / weight", first.metrics[Metric::lift_to_weight],
+                   f.lift / weight, f.last.metrics[Metric::lift_to_weight]);
+  }
+  course("flapping frequency", Metric::frequency, "Hz", absent);
+  return text;
+}
+
+void plot_endurance(const Design<double>& design, const EnduranceResult& result, PlotFormat format,
+                    const std::filesystem::path& file) {
+  if (!(result.endurance() > 0.0)) throw std::runtime_error("no flight to plot");
+  const auto& rows = result.rows;
+  const bool weighed = total_mass(design).has_value();
+  const double weight = total_mass(design).value_or(absent) * standard_gravity;
+  const bool in_minutes = result.endurance() >= 300.0;
+  const double time_scale = in_minutes ? 1.0 / 60.0 : 1.0;
+  double lift_most = weighed ? weight : 0.0, power_most = 0.0;
+  for (const EnduranceRow& r : rows) {
+    lift_most = std::max(lift_most, r.metrics[Metric::lift_mean]);
+    power_most = std::max(power_most, r.metrics[Metric::power_electrical]);
+  }
+  const bool lift_in_newton = lift_most >= 1.0, power_in_watt = power_most >= 1.0;
+  const double lift_scale = lift_in_newton ? 1.0 : 1e3, power_scale = power_in_watt ? 1.0 : 1e3;
+
+  Figure figure(format, 3.5, 5.6);
+  figure.add("$flight << END\n");
+  for (const EnduranceRow& r : rows) {
+    figure.add("{} {} {} {} {} {} {}\n", time_scale * r.time, lift_scale * r.metrics[Metric::lift_mean],
+               power_scale * r.metrics[Metric::power_electrical], power_scale * r.metrics[Metric::power_aerodynamic],
+               r.metrics[Metric::voltage], r.open_circuit_voltage, 100.0 * r.charge);
+  }
+  figure.add("END\nset multiplot\nset xrange [0:{}]\n", time_scale * result.endurance());
+
+  // Margins of the page, in its fractions.
+  constexpr double left = 0.15, right = 0.96, top = 0.93, bottom = 0.075, gap = 0.05;
+  constexpr double height = (top - bottom - 3.0 * gap) / 4.0;
+  figure.add("set lmargin at screen {}\nset rmargin at screen {}\n", left, right);
+  figure.text(fmt::format("{}: {} {}", result.hover == Hover::lost ? "Flight and loss of hover" : "Flight",
+                          duration(result.endurance()), "to the end"),
+              8.0, "screen 0.5,0.982 center");
+  double key_height = 0.0;
+  const auto panel = [&](int index, const std::string& name, double most) {
+    if (index > 0) figure.next_panel();
+    const double panel_top = top - index * (height + gap);
+    key_height = panel_top + 0.014;
+    figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", panel_top, panel_top - height);
+    figure.add("set format x {}\nset yrange [0:{}]\n", index == 3 ? "'%g'" : "''", 1.06 * most);
+    figure.text(name, 7.5, fmt::format("screen 0.026,{} center rotate by 90", panel_top - 0.5 * height));
+    for (std::size_t n = 0; n + 1 < rows.size(); ++n) {
+      if (rows[n].domain.none() && rows[n + 1].domain.none()) continue;
+      figure.add("set object {} rectangle from {},graph 0 to {},graph 1 behind fillcolor rgb '#909090' fillstyle transparent "
+                 "pattern 4 noborder\n",
+                 1000 + n, time_scale * rows[n].time, time_scale * rows[n + 1].time);
+    }
+    // Loss of hover runs through all panels.
+    if (result.hover_lost) {
+      const double at = time_scale * result.hover_lost->time;
+      figure.add("set arrow 90 from {0},graph 0 to {0},graph 1 nohead front dt (3,3) lw 0.8 lc rgb '#404040'\n", at);
+    }
+  };
+
+  panel(0, fmt::format("lift ({})", lift_in_newton ? "N" : "mN"), lift_scale * lift_most);
+  figure.key_entry(left, key_height, blue_solid, "mean lift");
+  if (weighed) {
+    figure.key_entry(left + 0.22, key_height, vermillion_dashed,
+                     fmt::format("weight, {:.4g} {}", lift_scale * weight, lift_in_newton ? "N" : "mN"));
+    if (result.hover_lost) figure.key_entry(left + 0.56, key_height, "dt (3,3) lw 0.8 lc rgb '#404040'", "hover lost");
+  }
+  figure.add("plot $flight using 1:2 with lines {}", blue_solid);
+  if (weighed) figure.add(", {} with lines {}", lift_scale * weight, vermillion_dashed);
+  figure.add("\n");
+
+  panel(1, power_in_watt ? "power (W)" : "power (mW)", power_scale * power_most);
+  figure.key_entry(left, key_height, blue_solid, "electrical");
+  figure.key_entry(left + 0.22, key_height, vermillion_dashed, "aerodynamic");
+  figure.add("plot $flight using 1:3 with lines {}, '' using 1:4 with lines {}\n", blue_solid, vermillion_dashed);
+
+  panel(2, "voltage (V)", rows.front().open_circuit_voltage);
+  figure.key_entry(left, key_height, blue_solid, "terminals");
+  figure.key_entry(left + 0.22, key_height, vermillion_dashed, "open circuit");
+  figure.add("plot $flight using 1:5 with lines {}, '' using 1:6 with lines {}\n", blue_solid, vermillion_dashed);
+
+  panel(3, "charge (%)", 100.0);
+  if (outside(result).first > 0) {
+    figure.text("hatched: outside the model's domain", 6.5, fmt::format("screen {},0.014 right", right));
+  }
+  figure.text(in_minutes ? "time (min)" : "time (s)", 7.5, fmt::format("screen {},0.014 center", 0.5 * (left + right)));
+  figure.key_entry(left, key_height, blue_solid, "state of charge");
+  figure.add("plot $flight using 1:7 with lines {}\n", blue_solid);
+  figure.add("unset multiplot\nunset output\n");
+  run_gnuplot(figure.script(), file);
+}
+
+void write_endurance(const EnduranceResult& result, const Provenance& provenance, const std::filesystem::path& path) {
+  if (result.rows.empty()) throw std::runtime_error("no flight to write");
+  NetcdfFile file(path);
+  const NetcdfFile::Dimension time = file.define_dimension("time_s", result.rows.size());
+  std::vector<NetcdfFile::Variable> variables;
+  for (const Column& c : columns) {
+    variables.push_back(file.define_variable(c.key, {time}, c.unit, c.long_name));
+  }
+  for (const MetricInfo& m : metric_table()) variables.push_back(file.define_variable(m.key, {time}, m.unit, m.long_name));
+  const auto domain = file.define_dense("domain", {time}, "1", "limits of the model's domain that are exceeded",
+                                        NetcdfFile::Storage::flag);
+  std::vector<std::string> limits;
+  for (const DomainLimitInfo& limit : domain_limit_table()) limits.push_back(limit.key);
+  file.set_flag_masks(domain, limits);
+  file.set_attribute("end", name_of(result.end));
+  file.set_attribute("end_detail", result.detail);
+  file.set_attribute("hover", name_of(result.hover));
+  write_provenance(file, provenance);
+  std::vector<double> values(result.rows.size());
+  const auto write = [&](const NetcdfFile::Variable& variable, const auto& value) {
+    std::transform(result.rows.begin(), result.rows.end(), values.begin(), value);
+    file.write(variable, values);
+  };
+  for (std::size_t c = 0; c < std::size(columns); ++c) {
+    write(variables[c], [&](const EnduranceRow& row) { return row.*columns[c].value; });
+  }
+  std::vector<std::int8_t> exceeded;
+  for (const EnduranceRow& row : result.rows) exceeded.push_back(std::int8_t(row.domain.to_ulong()));
+  file.write_run(domain, 0, std::span<const std::int8_t>(exceeded));
+  for (std::size_t m = 0; m < std::size_t(metric_count); ++m) {
+    write(variables[std::size(columns) + m], [&](const EnduranceRow& row) { return row.metrics.values[m]; });
+  }
+  file.close();
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,93 @@
+// What the plots share: a gnuplot script under way, and gnuplot itself.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <iterator>
+#include <string>
+#include <utility>
+
+#include "wingbeat/report/plot.hpp"
+
+namespace wingbeat {
+
+/// Runs gnuplot on a script; what it draws goes to `output`. The script comes in, and the drawing goes out, through
+/// open files: no name and no label ever passes a shell or gnuplot's own parser of file names. Throws
+/// std::runtime_error.
+void run_gnuplot(const std::string& script, const std::filesystem::path& output);
+
+/// A string for gnuplot: nothing in it is special but the quote.
+std::string quoted(const std::string& text);
+
+/// How a curve or its key is drawn: colours of Okabe and Ito, told apart with any colour vision; dash types tell them
+/// apart in grey.
+inline constexpr const char* blue_solid = "dt 1 lw 1.3 lc rgb '#0072b2'";
+inline constexpr const char* vermillion_dashed = "dt (12,6) lw 1.3 lc rgb '#d55e00'";
+inline constexpr const char* black_dotted = "dt (3,3) lw 1.3 lc rgb '#000000'";
+
+/// A gnuplot script under way. Sizes are those of the printed figure, text in points; everything is placed by its
+/// anchor on the page, because terminals disagree about the width of text.
+class Figure {
+ public:
+  Figure(PlotFormat format, double width, double height) {
+    switch (format) {
+      case PlotFormat::svg:
+        // A browser shows it twice as large as it prints, and may scale it freely.
+        points_ = 192.0 / 72.0;
+        add("set terminal svg noenhanced size {:.0f},{:.0f} dynamic butt font 'sans-serif,{}' lw 2.4 dl 0.6 "
+            "background '#ffffff'\n",
+            192.0 * width, 192.0 * height, 7.5 * points_);
+        break;
+      case PlotFormat::pdf:
+        points_ = 0.75;
+        add("set terminal pdfcairo noenhanced size {:.3f}in,{:.3f}in butt font 'Sans,{}' fontscale 1 lw 1.8 dl 1.1\n",
+            width, height, 7.5 * points_);
+        break;
+      case PlotFormat::png:
+        points_ = 300.0 / 96.0;
+        add("set terminal pngcairo noenhanced size {:.0f},{:.0f} butt font 'Sans,{}' lw 3.75 dl 1.2\n", 300.0 * width,
+            300.0 * height, 7.5 * points_);
+        break;
+    }
+    add("set encoding utf8\n"
+        "set border 3 lw 0.6 lc rgb '#404040'\n"
+        "set tics nomirror out scale 0.5\n"
+        "set grid x y back lt 1 dt 1 lw 0.35 lc rgb '#d8d8d8'\n"
+        "unset key\n");
+  }
+
+  template <class... Args>
+  void add(fmt::format_string<Args...> pattern, Args&&... args) {
+    fmt::format_to(std::back_inserter(script_), pattern, std::forward<Args>(args)...);
+  }
+  /// `placement`: position, anchor and further options of a gnuplot label.
+  void text(const std::string& content, double size, const std::string& placement) {
+    add("set label {} {} at {} front font ',{}'\n", ++labels_, quoted(content), placement, size * points_);
+  }
+  /// A sample of a line with its name, starting at (x, y) of the page.
+  void key_entry(double x, double y, const char* line, const std::string& name) {
+    add("set arrow {} from screen {},{} to screen {},{} nohead front {}\n", ++arrows_, x, y, x + 0.057, y, line);
+    text(name, 7.0, fmt::format("screen {},{} left", x + 0.065, y));
+  }
+  void box(const std::string& from_to, const char* fill) {
+    add("set object {} rectangle {} front fillcolor rgb '{}' fillstyle solid border lc rgb '#202020' lw 0.4\n",
+        ++objects_, from_to, fill);
+  }
+  /// A circle around a point of the plot, as large in every format; `fill` as gnuplot writes it.
+  void circle(double x, double y, double radius, const char* fill, const char* colour) {
+    add("set object {} circle at {},{} size screen {} front noclip {} border lc rgb '{}' lw 0.9\n", ++objects_, x, y, radius,
+        fill, colour);
+  }
+  /// Forgets labels and arrows, which belong to one panel only.
+  void next_panel() { add("unset label\nunset arrow\n"); }
+
+  const std::string& script() const { return script_; }
+
+ private:
+  std::string script_;
+  double points_ = 1.0;  ///< a point in the terminal's unit of font size
+  int labels_ = 0, arrows_ = 0, objects_ = 0;
+};
+
+}  // namespace wingbeat

@@ -1,0 +1,332 @@
+#include "wingbeat/report/fit_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/report_tools.hpp"
+#include "files/design_write.hpp"
+#include "wingbeat/files/design_file.hpp"
+#include "wingbeat/report/plot_panels.hpp"
+#include "wingbeat/report/report.hpp"
+#include "wingbeat/files/units.hpp"
+
+namespace wingbeat {
+namespace {
+
+using detail::Json, detail::number_or_null;
+
+std::string row_name(const BenchFit& fit, std::size_t log, std::size_t row) {
+  return fmt::format("{}:{}", fit.logs[log].file, fit.logs[log].rows[row].line);
+}
+
+std::string given_text(const BenchFit& fit, std::size_t log, std::size_t row) {
+  const BenchLog& l = fit.logs[log];
+  return fmt::format("{:.4g} {}, {}", l.rows[row].given, l.given == Given::voltage ? "V" : "Hz",
+                     condition_name(l.condition, l.springs));
+}
+
+std::string short_number(double x, int digits = 4) {
+  return std::isfinite(x) ? fmt::format("{:.{}g}", x, digits) : "-";
+}
+
+/// Correlations, what the data determine, and which condition contributes what.
+std::string identifiability(const FitResult& r) {
+  std::string text;
+  text += "\nCorrelation\n";
+  for (std::size_t a = 0; a < r.parameters.size(); ++a) {
+    if (!r.parameters[a].value) continue;
+    text += fmt::format("  {:<31}", r.parameters[a].key);
+    for (std::size_t b = 0; b <= a; ++b) {
+      if (r.parameters[b].value) text += fmt::format("{:>7.2f}", r.correlation[a][b]);
+    }
+    text += "\n";
+  }
+  text += "\nWhat the data can tell\n";
+  for (const std::string& sentence : r.verdict) text += "  " + wrapped(sentence, 88, 4) + "\n";
+
+  text += "\nShare of the information, the other parameters known\n";
+  text += fmt::format("  {:<31}", "");
+  for (const ConditionShare& c : r.conditions) text += fmt::format("{:>18}", c.name);
+  text += "\n";
+  for (std::size_t k = 0; k < r.parameters.size(); ++k) {
+    text += fmt::format("  {:<31}", r.parameters[k].key);
+    for (const ConditionShare& c : r.conditions) text += fmt::format("{:>16.0f} %", 100.0 * c.share[k]);
+    text += "\n";
+  }
+  text += fmt::format("  {:<31}", "values; rms residual / deviation");
+  for (const ConditionShare& c : r.conditions)
+    text += fmt::format("{:>17}", fmt::format("{}; {}", c.points, short_number(c.rms, 3)));
+  text += "\n";
+  return text;
+}
+
+std::string residuals_by_quantity(const FitResult& r) {
+  std::string text = fmt::format("\n{:<40}{:>8}{:>18}{:>20}\n", "Residuals", "values", "rms / deviation", "measured / fitted");
+  for (const QuantityResiduals& q : r.quantities) {
+    text += fmt::format("  {:<38}{:>8}{:>18}{:>20}\n", name_of(q.quantity), q.values, short_number(q.rms, 3),
+                        short_number(q.measured_over_fitted, 4));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string text_fit(const BenchFit& fit, const FitResult& r) {
+  std::string text;
+  int rows = 0;
+  for (const BenchLog& log : fit.logs) rows += int(log.rows.size());
+  const auto counted = [](std::size_t n, const char* what) {
+    return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+  };
+  if (!r.misfit.empty()) {
+    text += wrapped(fmt::format("MISFIT: the model does not describe the data: {}. The values below are the closest found "
+                                "and no estimates; no intervals follow from them.", r.misfit), 88, 2) + "\n";
+  }
+  text += fmt::format("{}, {} with {} in {}; {}\n", counted(fit.parameters.size(), "parameter"),
+                      counted(std::size_t(rows), "row"), counted(r.points.size(), "measured value"),
+                      counted(fit.logs.size(), "log"),
+                      r.converged ? r.misfit.empty() ? "converged" : "the search converged" : "NOT converged: " + r.message);
+  if (fit.starts > 1) {
+    text += fmt::format("{} of {} starts end in this least, {} in a higher one\n", r.starts_converged, fit.starts,
+                        r.starts_elsewhere);
+  }
+  if (r.degrees_of_freedom > 0) {
+    text += fmt::format("chi square {:.1f} with {} degrees of freedom, AICc {:.1f}\n", r.chi_square,
+                        r.degrees_of_freedom, r.aicc);
+  }
+  text += fmt::format("\n{:<32}{:>11}{:>9}  {:^22}  unit\n", "Parameter", "value", "+-", "95 % interval");
+  for (const FittedParameter& p : r.parameters) {
+    if (!p.value) {
+      text += fmt::format("{:<32}{:>11}  {}\n", p.key, "unknown", p.reason);
+      continue;
+    }
+    if (!std::isfinite(p.standard_error)) {
+      text += fmt::format("{:<32}{:>11.4e}{:>9}  {:^22}  {}{}\n", p.key, *p.value, "-", "-", p.unit,
+                          p.at_bound ? "  AT ITS BOUND" : "");
+      continue;
+    }
+    const bool profiled = std::isfinite(p.profile_lower_95) && std::isfinite(p.profile_upper_95);
+    text += fmt::format("{:<32}{:>11.4e}{:>9.1e}  {:>10.3e} .. {:<9.3e}{} {}{}\n", p.key, *p.value, p.standard_error,
+                        profiled ? p.profile_lower_95 : p.lower_95, profiled ? p.profile_upper_95 : p.upper_95,
+                        profiled ? "" : "*", p.unit, p.at_bound ? "  AT ITS BOUND" : "");
+  }
+  const bool starred = std::any_of(r.parameters.begin(), r.parameters.end(), [](const FittedParameter& p) {
+    return p.value && std::isfinite(p.standard_error) &&
+           !(std::isfinite(p.profile_lower_95) && std::isfinite(p.profile_upper_95));
+  });
+  if (starred) text += "* from the standard error; the others from the likelihood's profile\n";
+
+  text += r.misfit.empty() ? identifiability(r) : residuals_by_quantity(r);
+  if (!r.estimated_deviations.empty()) {
+    text += "\nStandard deviations estimated from the residuals\n";
+    for (const auto& [q, d] : r.estimated_deviations) {
+      text += fmt::format("  {:<40}{}\n", name_of(q), readable(d, unit_of(q)));
+    }
+  }
+  if (!r.unreached.empty()) {
+    text += "\nRows that the fitted model does not reach (not in the statistics above)\n";
+    for (const UnreachedRow& u : r.unreached) {
+      text += "  " + wrapped(fmt::format("{} ({}): {}: {}", row_name(fit, u.log, u.row), given_text(fit, u.log, u.row),
+                                         name_of(u.status), u.detail), 88, 4) + "\n";
+    }
+  }
+  std::vector<const FitPoint*> outliers;
+  for (const FitPoint& p : r.points) {
+    if (std::isfinite(p.fitted) && std::abs(p.residual()) > 4.0) outliers.push_back(&p);
+  }
+  if (!outliers.empty()) {
+    std::stable_sort(outliers.begin(), outliers.end(), [](const FitPoint* a, const FitPoint* b) {
+      return std::abs(a->residual()) > std::abs(b->residual());
+    });
+    text += "\nValues more than 4 standard deviations off\n";
+    for (std::size_t n = 0; n < std::min<std::size_t>(outliers.size(), 10); ++n) {
+      const FitPoint& p = *outliers[n];
+      const MeasuredQuantity& q = fit.logs[p.log].columns[p.column];
+      text += "  " + wrapped(fmt::format("{} ({}): {} {:.4g}, fitted {:.4g} {}: {:+.1f}", row_name(fit, p.log, p.row),
+                                         given_text(fit, p.log, p.row), name_of(q), p.measured, p.fitted, unit_of(q),
+                                         p.residual()), 88, 4) + "\n";
+    }
+    if (outliers.size() > 10) text += fmt::format("  and {} more\n", outliers.size() - 10);
+  }
+  return text;
+}
+
+std::string text_friction(std::span<const FrictionCandidate> candidates) {
+  std::string text = "\nFriction laws, best first\n";
+  text += fmt::format("  {:<19}{:>11}{:>13}{:>22}", "law", "AICc - best", "rms residual", "left-out prediction");
+  const bool springs = std::any_of(candidates.begin(), candidates.end(),
+                                   [](const auto& c) { return std::isfinite(c.spring_frequency); });
+  if (springs) text += fmt::format("{:>21}", "springs, power ratio");
+  text += "\n";
+  for (const FrictionCandidate& c : candidates) {
+    double squares = 0.0;
+    int count = 0;
+    for (const FitPoint& p : c.result.points) {
+      if (!std::isfinite(p.fitted)) continue;
+      squares += p.residual() * p.residual();
+      ++count;
+    }
+    text += fmt::format("  {:<19}{:>11.1f}{:>13.2f}{:>22}", law_name(c.law), c.aicc_excess,
+                        std::sqrt(squares / std::max(count, 1)), short_number(c.prediction_error, 3));
+    if (springs) text += fmt::format("{:>21}", short_number(c.power_springs_on / c.power_springs_off, 3));
+    if (!c.result.unreached.empty()) text += fmt::format("  {} rows not reached", c.result.unreached.size());
+    text += "\n";
+  }
+  text += "  left-out prediction: rms error, in standard deviations, of each condition predicted from the others\n";
+  for (const FrictionCandidate& c : candidates) {
+    if (!std::isfinite(c.spring_frequency)) continue;
+    text += fmt::format("  power ratio: electrical input with over without springs at {:.4g} Hz in air\n",
+                        c.spring_frequency);
+    break;
+  }
+  return text;
+}
+
+std::string json_fit(const BenchFit& fit, const FitResult& r, std::span<const FrictionCandidate> candidates) {
+  Json json;
+  json["converged"] = r.converged;
+  json["message"] = r.message;
+  json["misfit"] = r.misfit.empty() ? Json(nullptr) : Json(r.misfit);
+  json["chi_square"] = r.chi_square;
+  json["degrees_of_freedom"] = r.degrees_of_freedom;
+  json["p_value"] = number_or_null(r.p_value);
+  json["aicc"] = number_or_null(r.aicc);
+  json["starts"] = {{"same_least", r.starts_converged}, {"higher", r.starts_elsewhere}};
+  json["parameters"] = Json::array();
+  for (const FittedParameter& p : r.parameters) {
+    Json profile = Json::array();
+    for (const auto& point : p.profile) profile.push_back({point.value, number_or_null(point.excess)});
+    json["parameters"].push_back({{"key", p.key},
+                                  {"unit", p.unit},
+                                  {"value", p.value ? Json(*p.value) : Json(nullptr)},
+                                  {"standard_error", p.value ? number_or_null(p.standard_error) : Json(nullptr)},
+                                  {"lower_95", number_or_null(p.lower_95)},
+                                  {"upper_95", number_or_null(p.upper_95)},
+                                  {"profile_lower_95", number_or_null(p.profile_lower_95)},
+                                  {"profile_upper_95", number_or_null(p.profile_upper_95)},
+                                  {"at_bound", p.at_bound},
+                                  {"reason", p.reason},
+                                  {"profile", profile}});
+  }
+  const auto matrix = [](const std::vector<std::vector<double>>& m) {
+    Json rows = Json::array();
+    for (const auto& row : m) {
+      Json line = Json::array();
+      for (const double x : row) line.push_back(number_or_null(x));
+      rows.push_back(line);
+    }
+    return rows;
+  };
+  json["covariance"] = matrix(r.covariance);
+  json["correlation"] = matrix(r.correlation);
+  json["directions"] = Json::array();
+  for (const FitDirection& d : r.directions) {
+    json["directions"].push_back({{"components", d.components}, {"relative_error", number_or_null(d.relative_error)}});
+  }
+  json["verdict"] = r.verdict;
+  json["conditions"] = Json::array();
+  for (const ConditionShare& c : r.conditions) {
+    Json without = Json::array();
+    for (const double e : c.error_without) without.push_back(number_or_null(e));
+    json["conditions"].push_back({{"name", c.name}, {"values", c.points}, {"rms_residual", number_or_null(c.rms)},
+                                  {"share", c.share}, {"standard_error_without", without}});
+  }
+  json["unreached"] = Json::array();
+  for (const UnreachedRow& u : r.unreached) {
+    json["unreached"].push_back(
+        {{"row", row_name(fit, u.log, u.row)}, {"status", name_of(u.status)}, {"detail", u.detail}});
+  }
+  json["points"] = Json::array();
+  for (const FitPoint& p : r.points) {
+    json["points"].push_back({{"row", row_name(fit, p.log, p.row)},
+                              {"quantity", name_of(fit.logs[p.log].columns[p.column])},
+                              {"measured", p.measured}, {"fitted", number_or_null(p.fitted)}, {"deviation", p.deviation}});
+  }
+  json["friction"] = candidates.empty() ? Json(nullptr) : Json::array();
+  for (const FrictionCandidate& c : candidates) {
+    Json left = Json::object();
+    for (const auto& [name, rms] : c.left_out) left[name] = number_or_null(rms);
+    Json parameters = Json::object();
+    for (const FittedParameter& p : c.result.parameters) parameters[p.key] = p.value ? Json(*p.value) : Json(nullptr);
+    json["friction"].push_back({{"law", law_name(c.law)},
+                                {"aicc", number_or_null(c.result.aicc)},
+                                {"aicc_excess", number_or_null(c.aicc_excess)},
+                                {"parameters", parameters},
+                                {"left_out", left},
+                                {"prediction_error", number_or_null(c.prediction_error)},
+                                {"spring_frequency_hz", number_or_null(c.spring_frequency)},
+                                {"power_springs_off_w", number_or_null(c.power_springs_off)},
+                                {"power_springs_on_w", number_or_null(c.power_springs_on)}});
+  }
+  return json.dump(2) + "\n";
+}
+
+std::string fitted_vehicle_head(const BenchFit& fit, const FitResult& r, const std::string& made_by) {
+  std::string text = fmt::format("# {}\n", one_line(made_by, 200));
+  for (const FittedParameter& p : r.parameters) {
+    if (p.value) {
+      text += fmt::format("# {} = {:.6g} +- {:.2g} {}\n", p.key, *p.value, p.standard_error, p.unit);
+    } else {
+      text += fmt::format("# {}: not determined ({}); keeps {:.6g} {}\n", p.key, p.reason, p.kept, p.unit);
+    }
+  }
+  for (const UnreachedRow& u : r.unreached) {
+    text += fmt::format("# not reached: {} ({})\n", one_line(row_name(fit, u.log, u.row), 120),
+                        given_text(fit, u.log, u.row));
+  }
+  return text + "\n";
+}
+
+std::string covariance_file(const FitResult& r, const std::string& vehicle_name, const std::string& made_by) {
+  std::vector<std::size_t> known;
+  for (std::size_t k = 0; k < r.parameters.size(); ++k) {
+    if (r.parameters[k].value) known.push_back(k);
+  }
+  std::string text =
+      fmt::format("# {}\n# Covariance of the fitted parameters, SI units, normal approximation.\n\nvehicle = {}\n",
+                  one_line(made_by, 200), toml_text(vehicle_name));
+  for (const std::size_t k : known) {
+    const FittedParameter& p = r.parameters[k];
+    text += fmt::format("\n[[parameter]]\nkey = \"{}\"\nunit = \"{}\"\nvalue = {:#}\nstandard_error = {:#}\n", p.key,
+                        p.unit, *p.value, p.standard_error);
+  }
+  text += "\n[covariance]\nmatrix = [\n";
+  for (const std::size_t a : known) {
+    text += "  [";
+    for (const std::size_t b : known) text += fmt::format("{}{:#}", b == known.front() ? "" : ", ", r.covariance[a][b]);
+    text += "],\n";
+  }
+  return text + "]\n";
+}
+
+void plot_residuals(const BenchFit& fit, const FitResult& r, PlotFormat format, const std::filesystem::path& file) {
+  std::vector<PointPanel> panels;
+  bool frequencies = false, voltages = false;
+  for (const FitPoint& p : r.points) {
+    if (!std::isfinite(p.fitted)) continue;
+    const BenchLog& log = fit.logs[p.log];
+    const std::string title = condition_name(log.condition, log.springs) + (log.waveform ? ", waveform" : "");
+    auto panel =
+        std::find_if(panels.begin(), panels.end(), [&](const PointPanel& known) { return known.title == title; });
+    if (panel == panels.end()) panel = panels.insert(panels.end(), PointPanel{title, {}});
+    const MeasuredQuantity& q = log.columns[p.column];
+    std::string name = q.waveform ? name_of(q.quantity) : metric_info(q.metric).long_name;
+    std::replace(name.begin(), name.end(), '_', ' ');
+    auto series =
+        std::find_if(panel->series.begin(), panel->series.end(), [&](const auto& s) { return s.name == name; });
+    if (series == panel->series.end()) series = panel->series.insert(panel->series.end(), PointSeries{name, {}});
+    const BenchRow& row = log.rows[p.row];
+    (log.given == Given::voltage ? voltages : frequencies) = true;
+    series->points.emplace_back(log.waveform ? degrees_per_radian * row.crank_angle : row.given, p.residual());
+  }
+  const bool waveforms = std::any_of(fit.logs.begin(), fit.logs.end(), [](const auto& l) { return l.waveform; });
+  std::string x = voltages && frequencies ? "voltage (V) or frequency (Hz)"
+                  : voltages              ? "voltage (V)"
+                                          : "frequency (Hz)";
+  if (waveforms) x += "; waveform: crank angle (deg)";
+  plot_panels(panels, {"Residuals of the fit", x, "measured - fitted, in standard deviations", 3.0}, format, file);
+}
+
+}  // namespace wingbeat

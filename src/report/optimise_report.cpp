@@ -1,0 +1,246 @@
+#include "wingbeat/report/optimise_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "report/report_tools.hpp"
+#include "wingbeat/report/report.hpp"
+
+namespace wingbeat {
+namespace {
+
+using detail::Json, detail::number_or_null, detail::with_unit;
+using Outcome = OptimiseResult::Outcome;
+
+constexpr int width = 100;
+
+/// What holds an optimum and how flat it is.
+template <class Out>
+void text_neighbourhood(Out& out, const OptimiseStudy& study, const OptimiseResult& r) {
+  fmt::format_to(out, "\nWhat holds it{:>52}\n", "tightened by 1 %: worse by");
+  for (const ActiveLimit& a : r.active) {
+    const std::string worse = std::isfinite(a.sensitivity) ? fmt::format("{:.2g} %", a.sensitivity) : "-";
+    fmt::format_to(out, "  {:<44}{:>18}\n", a.name, worse);
+  }
+  if (r.active.empty()) fmt::format_to(out, "  no constraint and no bound: the optimum lies inside\n");
+  if (std::any_of(r.active.begin(), r.active.end(), [](const ActiveLimit& a) { return a.domain; })) {
+    fmt::format_to(out, "{}\n", wrapped("  The model's domain limits this optimum: a better one would lie where the model no "
+                                        "longer holds.", width, 2));
+  }
+
+  fmt::format_to(out, "\nHow flat it is: moving along each direction until the objective is {:g} % worse\n",
+                 100.0 * flat_loss);
+  if (r.directions.empty()) fmt::format_to(out, "  the active limits leave no freedom\n");
+  int n = 0;
+  for (const FlatDirection& d : r.directions) {
+    fmt::format_to(out, "  direction {}, {:.0f} % of the bounds{}\n", ++n, 100.0 * d.width, d.flat ? ": FLAT" : "");
+    for (std::size_t k = 0; k < study.parameters.size(); ++k) {
+      const OptimisedParameter& p = study.parameters[k];
+      // Only what moves visibly.
+      if (std::abs(d.to[k] - d.from[k]) < 1e-3 * (p.upper - p.lower)) continue;
+      fmt::format_to(out, "    {:<32}{:>13.5g} .. {:<.5g}{}\n", p.parameter.key, d.from[k], d.to[k],
+                     p.parameter.unit == "1" ? "" : " " + p.parameter.unit);
+    }
+  }
+}
+
+std::string explanation(const OptimiseStudy& study, const OptimiseResult& r) {
+  return explanation(r.reason, r.outcome == Outcome::nothing_flaps, study.constraints, r.screen);
+}
+
+Json result_json(const OptimiseFile& file, const OptimiseResult& r) {
+  const OptimiseStudy& study = file.study;
+  Json json;
+  const char* outcomes[] = {"found", "infeasible", "nothing_flaps"};
+  json["outcome"] = outcomes[int(r.outcome)];
+  json["objective"] = metric_info(study.objective).key;
+  json["maximise"] = study.maximise;
+  for (int s = 0; s < sweep_status_count; ++s) {
+    json["screened"][name_of(SweepStatus(s))] = r.screen.status[std::size_t(s)];
+  }
+  json["screened"]["feasible"] = r.screen.feasible;
+  json["screened"]["outside_domain"] = r.screen.outside;
+  json["allow_extrapolation"] = study.allow_extrapolation;
+  if (r.outcome != Outcome::found) {
+    json["reason"] = explanation(study, r);
+    for (const char* key : {"domain", "limited_by_domain", "value", "parameters", "metrics", "active", "directions", "starts",
+                            "evaluations"}) {
+      json[key] = nullptr;
+    }
+    return json;
+  }
+  json["reason"] = nullptr;
+  json["domain"] = name_of(r.point.domain);
+  json["limited_by_domain"] =
+      std::any_of(r.active.begin(), r.active.end(), [](const ActiveLimit& a) { return a.domain; });
+  json["value"] = r.point.metrics[study.objective];
+  for (std::size_t k = 0; k < study.parameters.size(); ++k) {
+    json["parameters"][study.parameters[k].parameter.key] = r.parameters[k];
+  }
+  for (int m = 0; m < metric_count; ++m) {
+    json["metrics"][metric_info(Metric(m)).key] = number_or_null(r.point.metrics.values[std::size_t(m)]);
+  }
+  json["active"] = Json::array();
+  for (const ActiveLimit& a : r.active) {
+    json["active"].push_back({{"limit", a.name}, {"sensitivity", number_or_null(a.sensitivity)}});
+  }
+  json["directions"] = Json::array();
+  for (const FlatDirection& d : r.directions) {
+    json["directions"].push_back({{"flat", d.flat}, {"width", d.width}, {"curvature", number_or_null(d.curvature)},
+                                  {"from", d.from}, {"to", d.to}});
+  }
+  json["starts"] = {{"all", r.starts}, {"same", r.same}, {"elsewhere", r.elsewhere}, {"failed", r.failed}};
+  json["evaluations"] = r.evaluations;
+  return json;
+}
+
+}  // namespace
+
+std::string explanation(const std::string& reason, bool nothing_flaps, std::span<const MetricConstraint> constraints,
+                        const ScreenCounts& screen) {
+  std::string text = reason;
+  if (nothing_flaps) {
+    std::string counts;
+    for (int s = 1; s < sweep_status_count; ++s) {
+      const std::uint64_t n = screen.status[std::size_t(s)];
+      if (n > 0) counts += fmt::format("{}{} {}", counts.empty() ? ": " : ", ", n, name_of(SweepStatus(s)));
+    }
+    return text + counts;
+  }
+  if (screen.outside > 0) {
+    std::string limits;
+    for (std::size_t k = 0; k < screen.beyond.size(); ++k) {
+      if (screen.beyond[k] == 0) continue;
+      limits += fmt::format("{}{} {}", limits.empty() ? "" : ", ", screen.beyond[k], domain_limit_table()[k].key);
+    }
+    text += fmt::format("; {} of {} that flap are outside the model's domain ({})", screen.outside, screen.status[0],
+                        limits);
+  }
+  for (std::size_t c = 0; c < constraints.size(); ++c) {
+    if (screen.violated[c] == 0) continue;
+    text += fmt::format("; {}: {} of {} {} break it, the best of them reaches {}", name_of(constraints[c]),
+                        screen.violated[c], screen.status[0] - screen.outside,
+                        screen.outside > 0 ? "inside" : "that flap",
+                        with_unit(screen.closest[c], metric_info(constraints[c].metric).unit));
+  }
+  return text;
+}
+
+std::string text_optimum(const OptimiseFile& file, const OptimiseResult& r) {
+  const OptimiseStudy& study = file.study;
+  std::string text;
+  auto out = std::back_inserter(text);
+  if (!file.title.empty()) fmt::format_to(out, "{}\n", wrapped(file.title, width, 0));
+  const MetricInfo& objective = metric_info(study.objective);
+  fmt::format_to(out, "{} {}", study.maximise ? "maximise" : "minimise", objective.key);
+  for (std::size_t c = 0; c < study.constraints.size(); ++c) {
+    fmt::format_to(out, "{}{}", c == 0 ? " with " : ", ", name_of(study.constraints[c]));
+  }
+  if (study.options.frequency) fmt::format_to(out, "; flapping held at {:.6g} Hz", *study.options.frequency);
+  const std::uint64_t screened = std::accumulate(r.screen.status.begin(), r.screen.status.end(), std::uint64_t(0));
+  fmt::format_to(out, "\nscreened {} designs: {} flap, {} of these within every constraint\n", screened,
+                 r.screen.status[0], r.screen.feasible);
+  if (r.screen.outside > 0) {
+    fmt::format_to(out, "{} that flap are outside the model's domain and do not count\n", r.screen.outside);
+  }
+  if (study.allow_extrapolation) fmt::format_to(out, "designs outside the model's domain count: extrapolation is allowed\n");
+  if (r.outcome != Outcome::found) {
+    fmt::format_to(out, "{}\n", wrapped("No design found: " + explanation(study, r), width, 2));
+    return text;
+  }
+  fmt::format_to(out, "{} starts: {} ended in the best optimum, {} in a worse one, {} found nothing\n\n", r.starts,
+                 r.same, r.elsewhere, r.failed);
+  fmt::format_to(out, "{} {}: {}\n", study.maximise ? "most" : "least", objective.long_name,
+                 with_unit(r.point.metrics[study.objective], objective.unit));
+  if (r.point.domain.any()) {
+    fmt::format_to(out, "{}\n", wrapped(fmt::format("OUTSIDE THE MODEL'S DOMAIN ({}): these numbers are extrapolated",
+                                                    name_of(r.point.domain)), width, 2));
+  }
+  if (!study.parameters.empty()) {
+    fmt::format_to(out, "\n{:<36}{:>13}{:>13}{:>13}\n", "Parameter", "optimum", "lower", "upper");
+  }
+  for (std::size_t k = 0; k < study.parameters.size(); ++k) {
+    const OptimisedParameter& p = study.parameters[k];
+    fmt::format_to(out, "  {:<34}{:>13.5g}{:>13.5g}{:>13.5g} {}\n", p.parameter.key, r.parameters[k], p.lower, p.upper,
+                   p.parameter.unit == "1" ? "" : p.parameter.unit);
+  }
+  if (!study.parameters.empty()) text_neighbourhood(out, study, r);
+  fmt::format_to(out, "\nThe design\n");
+  for (const Metric m : {Metric::voltage, Metric::frequency, Metric::lift_to_weight, Metric::lift_mean,
+                         Metric::power_electrical, Metric::efficiency_system, Metric::current_peak,
+                         Metric::stroke_amplitude, Metric::rod_force_peak}) {
+    if (!std::isfinite(r.point.metrics[m])) continue;
+    fmt::format_to(out, "  {:<36}{}\n", metric_info(m).key, with_unit(r.point.metrics[m], metric_info(m).unit));
+  }
+  return text;
+}
+
+std::string text_motors(const OptimiseFile& file, std::span<const MotorTrial> trials) {
+  const OptimiseStudy& study = file.study;
+  std::vector<const MotorTrial*> order;
+  for (const MotorTrial& t : trials) order.push_back(&t);
+  const auto rank = [&](const MotorTrial* t) {
+    if (t->refused()) return std::pair(3, 0.0);
+    if (t->result.outcome != Outcome::found) return std::pair(int(t->result.outcome), 0.0);
+    return std::pair(0, (study.maximise ? -1.0 : 1.0) * t->result.point.metrics[study.objective]);
+  };
+  std::stable_sort(order.begin(), order.end(), [&](const auto* a, const auto* b) { return rank(a) < rank(b); });
+  std::string text;
+  auto out = std::back_inserter(text);
+  const MotorTrial* best = best_trial(file, trials);
+  fmt::format_to(out, "{:<30}{}\n", file.motors.empty() ? "Choice" : "Motor", metric_info(study.objective).key);
+  for (const MotorTrial* t : order) {
+    std::string what;
+    if (t->refused()) {
+      what = t->motor->refused;
+    } else if (t->result.outcome != Outcome::found) {
+      what = explanation(study, t->result);
+    } else {
+      what = with_unit(t->result.point.metrics[study.objective], metric_info(study.objective).unit);
+      for (std::size_t k = 0; k < study.parameters.size(); ++k) {
+        const DesignParameter& p = study.parameters[k].parameter;
+        what += fmt::format("; {} {}", p.key, with_unit(t->result.parameters[k], p.unit));
+      }
+      if (t->motor) {
+        for (const std::string& derived : t->motor->derived) what += "; " + derived;
+      }
+    }
+    const std::string name = name_of(file, *t);
+    if (name.size() > 29) fmt::format_to(out, "{}\n", name);
+    // The name's columns are a stand-in while lines are broken.
+    fmt::format_to(out, "{:<30}{}\n", name.size() > 29 ? "" : name,
+                   wrapped(std::string(30, '_') + what, width, 30).substr(30));
+  }
+  if (!best) {
+    return text + (file.motors.empty() ? "\nNone of the choices does it.\n" : "\nNo motor of the catalogue does it.\n");
+  }
+  return text + "\nBest: " + name_of(file, *best) + "\n\n" + text_optimum(file, best->result);
+}
+
+std::string json_optimum(const OptimiseFile& file, const OptimiseResult& result) {
+  return result_json(file, result).dump(2) + "\n";
+}
+
+std::string json_motors(const OptimiseFile& file, std::span<const MotorTrial> trials) {
+  const MotorTrial* best = best_trial(file, trials);
+  Json json;
+  json["best"] = best ? Json(name_of(file, *best)) : Json(nullptr);
+  for (const MotorTrial& t : trials) {
+    Json entry = {{"model", t.motor ? Json(t.motor->model) : Json(nullptr)}};
+    if (t.refused()) {
+      entry["refused"] = t.motor->refused;
+    } else {
+      for (std::size_t k = 0; k < file.choices.size(); ++k) {
+        entry["choices"][file.choices[k].parameter.key] = t.choices[k];
+      }
+      entry["result"] = result_json(file, t.result);
+    }
+    json[file.motors.empty() ? "choices" : "motors"].push_back(entry);
+  }
+  return json.dump(2) + "\n";
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,428 @@
+#include "wingbeat/report/pareto_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/figure.hpp"
+#include "report/report_tools.hpp"
+#include "wingbeat/files/design_file.hpp"
+#include "wingbeat/files/design_keys.hpp"
+#include "wingbeat/files/netcdf.hpp"
+#include "wingbeat/report/optimise_report.hpp"
+#include "wingbeat/report/report.hpp"
+
+namespace wingbeat {
+namespace {
+
+using detail::Json, detail::number_or_null, detail::with_unit;
+using Outcome = ParetoResult::Outcome;
+
+constexpr int width = 100;
+
+const char* name_of(EvolutionMethod method) { return method == EvolutionMethod::nsga2 ? "NSGA-II" : "MOEA/D"; }
+
+/// Parameters, then choices: all that a design of the study sets.
+std::vector<const DesignParameter*> parameters_of(const ParetoStudy& study) {
+  std::vector<const DesignParameter*> all;
+  for (const OptimisedParameter& p : study.parameters) all.push_back(&p.parameter);
+  for (const DiscreteParameter& p : study.choices) all.push_back(&p.parameter);
+  return all;
+}
+
+/// Product of the objectives' units, for UDUNITS.
+std::string hypervolume_unit(const ParetoStudy& study) {
+  std::string unit;
+  for (const ParetoObjective& o : study.objectives) {
+    const std::string_view of = metric_info(o.metric).unit;
+    if (of != "1") unit += fmt::format("{}{}", unit.empty() ? "" : " ", of);
+  }
+  return unit.empty() ? "1" : unit;
+}
+
+std::string reference_text(const ParetoStudy& study, const ParetoResult& r) {
+  std::string text;
+  for (std::size_t m = 0; m < study.objectives.size(); ++m) {
+    const MetricInfo& metric = metric_info(study.objectives[m].metric);
+    text += fmt::format("{}{} = {}", m == 0 ? "" : ", ", metric.key, with_unit(r.reference[m], metric.unit));
+  }
+  return text;
+}
+
+/// Metrics that constraints ask for and objectives do not.
+std::vector<Metric> limited_metrics(const ParetoStudy& study) {
+  std::vector<Metric> metrics;
+  for (const MetricConstraint& c : study.constraints) {
+    const bool objective = std::any_of(study.objectives.begin(), study.objectives.end(),
+                                       [&](const ParetoObjective& o) { return o.metric == c.metric; });
+    if (!objective && std::find(metrics.begin(), metrics.end(), c.metric) == metrics.end()) metrics.push_back(c.metric);
+  }
+  return metrics;
+}
+
+struct VehicleCount {
+  std::size_t solved = 0, flap = 0, feasible = 0, front = 0;
+};
+
+std::vector<VehicleCount> count_vehicles(const ParetoStudy& study, const ParetoResult& r) {
+  std::vector<VehicleCount> counts(study.vehicles.size());
+  for (std::size_t n = 0; n < r.evaluated.size(); ++n) {
+    VehicleCount& c = counts[r.evaluated[n].vehicle];
+    ++c.solved;
+    c.flap += r.status[n] == SweepStatus::flapping;
+    c.feasible += r.feasible[n];
+  }
+  for (const ParetoDesign& d : r.front) ++counts[d.vehicle].front;
+  return counts;
+}
+
+/// The picked designs in the order of the front, each with its shortest name.
+std::vector<std::pair<std::string, std::size_t>> columns_of(const ParetoStudy& study, const ParetoResult& r) {
+  std::vector<std::pair<std::string, std::size_t>> columns;
+  const auto add = [&](std::string name, std::size_t place) {
+    const bool there = std::any_of(columns.begin(), columns.end(), [&](const auto& c) { return c.second == place; });
+    if (!there) columns.emplace_back(std::move(name), place);
+  };
+  for (std::size_t m = 0; m < study.objectives.size(); ++m) add(fmt::format("end {}", m + 1), r.picks.ends[m]);
+  add("knee", r.picks.knee);
+  for (std::size_t n = 0; n < r.picks.even.size(); ++n) add(fmt::format("even {}", n + 1), r.picks.even[n]);
+  std::stable_sort(columns.begin(), columns.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  return columns;
+}
+
+}  // namespace
+
+std::vector<std::string> pick_names(std::span<const ParetoObjective> objectives, std::size_t even) {
+  std::vector<std::string> names;
+  for (const ParetoObjective& o : objectives) names.push_back(fmt::format("end-{}", metric_info(o.metric).key));
+  names.push_back("knee");
+  for (std::size_t n = 1; n <= even; ++n) names.push_back(fmt::format("even-{}", n));
+  return names;
+}
+
+std::vector<std::pair<std::string, std::size_t>> named_picks(const ParetoStudy& study, const ParetoResult& result) {
+  std::vector<std::pair<std::string, std::size_t>> picks;
+  if (result.front.empty()) return picks;
+  std::vector<std::size_t> places = result.picks.ends;
+  places.push_back(result.picks.knee);
+  places.insert(places.end(), result.picks.even.begin(), result.picks.even.end());
+  const std::vector<std::string> names = pick_names(study.objectives, result.picks.even.size());
+  for (std::size_t n = 0; n < names.size(); ++n) picks.emplace_back(names[n], places[n]);
+  return picks;
+}
+
+std::string text_front(const OptimiseFile& file, const ParetoStudy& study, const ParetoResult& r) {
+  std::string text;
+  auto out = std::back_inserter(text);
+  if (!file.title.empty()) fmt::format_to(out, "{}\n", wrapped(file.title, width, 0));
+  std::string aims;
+  for (const ParetoObjective& o : study.objectives) {
+    aims += fmt::format("{}{} {}", aims.empty() ? "" : ", ", o.maximise ? "maximise" : "minimise", metric_info(o.metric).key);
+  }
+  for (std::size_t c = 0; c < study.constraints.size(); ++c) {
+    aims += (c == 0 ? " with " : ", ") + name_of(study.constraints[c]);
+  }
+  if (study.frequency) aims += fmt::format("; flapping held at {:.6g} Hz", *study.frequency);
+  fmt::format_to(out, "{}\nscreened {} designs: {} flap, {} of these within every constraint\n", wrapped(aims, width, 0),
+                 study.screen, r.screen.status[0], r.screen.feasible);
+  if (r.screen.outside > 0) {
+    fmt::format_to(out, "{} that flap are outside the model's domain and do not count\n", r.screen.outside);
+  }
+  if (study.allow_extrapolation) fmt::format_to(out, "designs outside the model's domain count: extrapolation is allowed\n");
+  const auto motors = [&] {
+    if (file.motors.empty()) return;
+    fmt::format_to(out, "\n{:<30}{:>10}{:>10}{:>10}{:>14}\n", "Motor", "solved", "flap", "feasible", "on the front");
+    const std::vector<VehicleCount> counts = count_vehicles(study, r);
+    for (std::size_t v = 0; v < counts.size(); ++v) {
+      fmt::format_to(out, "{:<30}{:>10}{:>10}{:>10}{:>14}\n", study.vehicles[v].name, counts[v].solved, counts[v].flap,
+                     counts[v].feasible, counts[v].front);
+    }
+    for (const MotorCandidate& motor : file.motors) {
+      if (motor.refused.empty()) continue;
+      fmt::format_to(out, "{:<30}{}\n", motor.model,
+                     wrapped(std::string(30, '_') + motor.refused, width, 30).substr(30));
+    }
+  };
+  if (r.outcome != Outcome::found) {
+    const bool nothing = r.outcome == Outcome::nothing_flaps;
+    fmt::format_to(out, "{}\n", wrapped("No design found: " + explanation(r.reason, nothing, study.constraints, r.screen),
+                                        width, 2));
+    motors();
+    return text;
+  }
+  fmt::format_to(out, "{}: {} generations of {}, {} designs solved, {} of them feasible\n\n",
+                 name_of(study.evolution.method), study.evolution.generations, study.evolution.population,
+                 r.evaluated.size(), std::count(r.feasible.begin(), r.feasible.end(), true));
+  fmt::format_to(out, "front of {} designs; hypervolume {:.6g} {} up to\n  {}\n", r.front.size(), r.hypervolume,
+                 hypervolume_unit(study), reference_text(study, r));
+  if (r.hypervolume > 0.0) {
+    fmt::format_to(out, "  after the screening {:.1f} % of it, after half of the generations {:.2f} %\n\n",
+                   100.0 * r.history.front() / r.hypervolume,
+                   100.0 * r.history[r.history.size() / 2] / r.hypervolume);
+  } else {
+    fmt::format_to(out, "  no design is better than the reference in every objective: choose a reference that is worse\n\n");
+  }
+
+  const auto columns = columns_of(study, r);
+  const std::size_t fit = 6;  // beside the names
+  for (std::size_t first = 0; first < columns.size(); first += fit) {
+    const std::size_t last = std::min(columns.size(), first + fit);
+    if (first > 0) text += "\n";
+    fmt::format_to(out, "{:<40}", "Design");
+    for (std::size_t c = first; c < last; ++c) fmt::format_to(out, "{:>10}", columns[c].first);
+    text += "\n";
+    const auto row = [&](std::string_view name, std::string_view unit, const auto& value) {
+      fmt::format_to(out, "  {:<38}", unit == "1" ? std::string(name) : fmt::format("{} ({})", name, unit));
+      for (std::size_t c = first; c < last; ++c) fmt::format_to(out, "{:>10.4g}", value(r.front[columns[c].second]));
+      text += "\n";
+    };
+    const auto metric = [&](Metric m) {
+      row(metric_info(m).key, metric_info(m).unit, [&](const ParetoDesign& d) { return d.metrics[m]; });
+    };
+    for (const ParetoObjective& o : study.objectives) metric(o.metric);
+    for (const Metric m : limited_metrics(study)) metric(m);
+    const auto parameters = parameters_of(study);
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      row(parameters[k]->key, parameters[k]->unit, [&](const ParetoDesign& d) { return d.parameters[k]; });
+    }
+    if (study.vehicles.size() > 1) {
+      for (std::size_t c = first; c < last; ++c) {
+        fmt::format_to(out, "  motor of {}: {}\n", columns[c].first,
+                       study.vehicles[r.front[columns[c].second].vehicle].name);
+      }
+    }
+  }
+  motors();
+  return text;
+}
+
+std::string json_front(const OptimiseFile& file, const ParetoStudy& study, const ParetoResult& r) {
+  Json json;
+  const char* outcomes[] = {"found", "infeasible", "nothing_flaps"};
+  json["outcome"] = outcomes[int(r.outcome)];
+  for (const ParetoObjective& o : study.objectives) {
+    json["objectives"].push_back({{"metric", metric_info(o.metric).key}, {"maximise", o.maximise}});
+  }
+  json["method"] = study.evolution.method == EvolutionMethod::nsga2 ? "nsga2" : "moead";
+  json["population"] = study.evolution.population;
+  json["generations"] = study.evolution.generations;
+  for (int s = 0; s < sweep_status_count; ++s) {
+    json["screened"][name_of(SweepStatus(s))] = r.screen.status[std::size_t(s)];
+  }
+  json["screened"]["feasible"] = r.screen.feasible;
+  json["screened"]["outside_domain"] = r.screen.outside;
+  json["allow_extrapolation"] = study.allow_extrapolation;
+  if (!file.motors.empty()) {
+    const std::vector<VehicleCount> counts = count_vehicles(study, r);
+    for (std::size_t v = 0; v < counts.size(); ++v) {
+      json["motors"].push_back({{"model", study.vehicles[v].name}, {"solved", counts[v].solved},
+                                {"flap", counts[v].flap}, {"feasible", counts[v].feasible},
+                                {"front", counts[v].front}});
+    }
+    for (const MotorCandidate& motor : file.motors) {
+      if (!motor.refused.empty()) json["motors"].push_back({{"model", motor.model}, {"refused", motor.refused}});
+    }
+  }
+  if (r.outcome != Outcome::found) {
+    json["reason"] = explanation(r.reason, r.outcome == Outcome::nothing_flaps, study.constraints, r.screen);
+    return json.dump(2) + "\n";
+  }
+  json["evaluations"] = r.evaluated.size();
+  for (std::size_t m = 0; m < study.objectives.size(); ++m) {
+    json["reference"][metric_info(study.objectives[m].metric).key] = r.reference[m];
+  }
+  json["hypervolume"] = r.hypervolume;
+  json["hypervolume_history"] = r.history;
+  for (const auto& [name, place] : named_picks(study, r)) json["picks"][name] = place;
+  const auto parameters = parameters_of(study);
+  for (const ParetoDesign& d : r.front) {
+    Json entry;
+    if (!study.vehicles[d.vehicle].name.empty()) entry["motor"] = study.vehicles[d.vehicle].name;
+    for (std::size_t k = 0; k < parameters.size(); ++k) entry["parameters"][parameters[k]->key] = d.parameters[k];
+    for (int m = 0; m < metric_count; ++m) {
+      entry["metrics"][metric_info(Metric(m)).key] = number_or_null(d.metrics.values[std::size_t(m)]);
+    }
+    entry["domain"] = name_of(d.domain);
+    json["front"].push_back(std::move(entry));
+  }
+  return json.dump(2) + "\n";
+}
+
+void write_front(const ParetoStudy& study, const ParetoResult& r, const std::string& title, const std::string& input,
+                 const std::string& version, const std::filesystem::path& file) {
+  NetcdfFile data(file);
+  write_provenance(data, {.title = title.empty() ? "Pareto front" : title,
+                          .command = "optimise",
+                          .version = version,
+                          .vehicle = write_design(study.vehicles[0].design),
+                          .study = input,
+                          .condition = name_of(study.condition),
+                          .method = name_of(study.evolution.method)});
+  const auto parameters = parameters_of(study);
+  const auto designs = [&](const std::string& dimension, const std::string& prefix, const char* of,
+                           std::span<const ParetoDesign> list, const MetricSet& metrics) {
+    const auto along = data.define_dimension(dimension, list.size());
+    std::vector<double> values(list.size());
+    const auto column = [&](const std::string& name, std::string_view unit, const std::string& meaning,
+                            const auto& value) {
+      std::transform(list.begin(), list.end(), values.begin(), value);
+      const auto variable = data.define_variable(prefix + name, {along}, std::string(unit), meaning + of);
+      data.write(variable, values);
+      return variable;
+    };
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      std::string name = parameters[k]->key;
+      std::replace(name.begin(), name.end(), '.', '_');
+      const std::string& key = parameters[k]->key;
+      data.set_key(column(name, parameters[k]->unit, std::string(find_key<double>(key)->meaning),
+                          [k](const ParetoDesign& d) { return d.parameters[k]; }),
+                   key);
+    }
+    for (std::size_t m = 0; m < metric_count; ++m) {
+      if (!metrics[m]) continue;
+      column(metric_table()[m].key, metric_table()[m].unit, metric_table()[m].long_name,
+             [m](const ParetoDesign& d) { return d.metrics.values[m]; });
+    }
+    const auto domain = data.define_dense(prefix + "domain", {along}, "1",
+                                          std::string("limits of the model's domain that are exceeded") + of,
+                                          NetcdfFile::Storage::flag);
+    std::vector<std::string> limits;
+    for (const DomainLimitInfo& limit : domain_limit_table()) limits.push_back(limit.key);
+    data.set_flag_masks(domain, limits);
+    std::vector<std::int8_t> exceeded;
+    for (const ParetoDesign& d : list) exceeded.push_back(std::int8_t(d.domain.to_ulong()));
+    data.write_run(domain, 0, std::span<const std::int8_t>(exceeded));
+    if (study.vehicles.size() > 1) {
+      std::vector<std::string> names;
+      for (const ParetoDesign& d : list) names.push_back(study.vehicles[d.vehicle].name);
+      data.define_texts(prefix + "motor", along, names, std::string("motor of the catalogue") + of);
+    }
+    return along;
+  };
+  const auto along = designs("design", "", "", r.front, all_metrics());
+  std::vector<std::string> picks(r.front.size());
+  for (const auto& [name, place] : named_picks(study, r)) picks[place] += (picks[place].empty() ? "" : " ") + name;
+  data.define_texts("pick", along, picks, "names under which the design is picked");
+
+  MetricSet asked;
+  for (const ParetoObjective& o : study.objectives) asked.set(std::size_t(o.metric));
+  for (const MetricConstraint& c : study.constraints) asked.set(std::size_t(c.metric));
+  const auto solved = designs("evaluated", "evaluated_", ", of every design solved", r.evaluated, asked);
+  const auto flag = [&](const char* name, const char* meaning, const std::vector<std::string>& names,
+                        const auto& value) {
+    const auto variable = data.define_dense(name, {solved}, "1", meaning, NetcdfFile::Storage::flag);
+    data.set_flags(variable, names);
+    std::vector<std::int8_t> values;
+    for (std::size_t n = 0; n < r.evaluated.size(); ++n) values.push_back(std::int8_t(value(n)));
+    data.write_run(variable, 0, std::span<const std::int8_t>(values));
+  };
+  std::vector<std::string> statuses;
+  for (int s = 0; s < sweep_status_count; ++s) statuses.push_back(name_of(SweepStatus(s)));
+  flag("evaluated_status", "what became of the design", statuses, [&](std::size_t n) { return r.status[n]; });
+  flag("evaluated_feasible", "flapping, inside the model's domain and within every constraint", {"no", "yes"},
+       [&](std::size_t n) { return r.feasible[n] ? 1 : 0; });
+
+  const auto objective = data.define_dimension("objective", study.objectives.size());
+  std::vector<std::string> names, senses;
+  for (const ParetoObjective& o : study.objectives) {
+    names.push_back(metric_info(o.metric).key);
+    senses.push_back(o.maximise ? "maximise" : "minimise");
+  }
+  data.define_texts("objective", objective, names, "metric");
+  data.define_texts("sense", objective, senses, "whether the objective is minimised or maximised");
+  data.write(data.define_variable("reference", {objective}, "1",
+                                  "reference point of the hypervolume, in the unit of the objective"),
+             r.reference);
+  const std::string unit = hypervolume_unit(study);
+  data.write(data.define_variable("hypervolume", {}, unit, "hypervolume that the front dominates up to the reference"),
+             std::span(&r.hypervolume, 1));
+  const auto generation = data.define_dimension("generation", r.history.size());
+  data.write(data.define_variable("hypervolume_history", {generation}, unit,
+                                  "hypervolume after the screening and after each generation"),
+             r.history);
+  data.close();
+}
+
+void plot_front(const ParetoStudy& study, const ParetoResult& r, const std::string& title, PlotFormat format,
+                const std::filesystem::path& file) {
+  const std::size_t m = study.objectives.size();
+  std::vector<std::pair<std::size_t, std::size_t>> panels = {{0, 1}};
+  if (m == 3) panels = {{0, 1}, {0, 2}, {1, 2}};
+  const double panel = 2.45, inches = 0.45 + panel * double(panels.size());
+  Figure figure(format, 3.5, inches);
+  const auto y = [&](double from_top) { return 1.0 - from_top / inches; };
+  const auto value = [&](const ParetoDesign& d, std::size_t k) { return d.metrics[study.objectives[k].metric]; };
+
+  // A drawing with every design solved would be too large; those left out look like their neighbours.
+  std::vector<const ParetoDesign*> cloud;
+  for (std::size_t n = 0; n < r.evaluated.size(); ++n) {
+    if (r.feasible[n]) cloud.push_back(&r.evaluated[n]);
+  }
+  const std::size_t stride = cloud.size() / 1500 + 1;
+  const auto block = [&](const char* name, const auto& each) {
+    figure.add("${} << END\n", name);
+    each([&](const ParetoDesign& d) {
+      for (std::size_t k = 0; k < m; ++k) figure.add("{} ", value(d, k));
+      figure.add("\n");
+    });
+    figure.add("END\n");
+  };
+  block("cloud", [&](const auto& put) {
+    for (std::size_t n = 0; n < cloud.size(); n += stride) put(*cloud[n]);
+  });
+  block("front", [&](const auto& put) {
+    for (const ParetoDesign& d : r.front) put(d);
+  });
+  block("ends", [&](const auto& put) {
+    for (const std::size_t n : r.picks.ends) put(r.front[n]);
+  });
+  block("knee", [&](const auto& put) { put(r.front[r.picks.knee]); });
+
+  figure.add("set multiplot\nset lmargin at screen 0.16\nset rmargin at screen 0.96\n");
+  const std::string heading = title.empty() ? "Pareto front" : title;
+  figure.text(heading, 8.0 * std::min(1.0, 52.0 / double(heading.size())), fmt::format("screen 0.5,{} center", y(0.12)));
+  int keys = 900;
+  const auto key = [&](double x, const char* style, const char* name) {
+    figure.add("set label {} '' at screen {},{} point {}\n", ++keys, x, y(0.32), style);
+    figure.text(name, 7.0, fmt::format("screen {},{} left", x + 0.02, y(0.32)));
+  };
+  const char *grey = "pt 7 ps 0.2 lc rgb '#bdbdbd'", *blue = "pt 7 ps 0.3 lc rgb '#0072b2'";
+  const char *end = "pt 9 ps 0.8 lc rgb '#d55e00'", *knee = "pt 5 ps 0.75 lc rgb '#009e73'";
+  key(0.16, grey, "feasible designs");
+  key(0.48, blue, "front");
+  key(0.66, end, "ends");
+  key(0.82, knee, "knee");
+  const auto label = [&](std::size_t k) {
+    const MetricInfo& metric = metric_info(study.objectives[k].metric);
+    return std::string(metric.long_name) + (std::string_view(metric.unit) == "1" ? "" : fmt::format(" ({})", metric.unit));
+  };
+  const auto range = [&](const char* axis, std::size_t k) {
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    const auto take = [&](const ParetoDesign& d) {
+      low = std::min(low, value(d, k));
+      high = std::max(high, value(d, k));
+    };
+    for (const ParetoDesign* d : cloud) take(*d);
+    for (const ParetoDesign& d : r.front) take(d);
+    const double margin = high > low ? 0.04 * (high - low) : std::max(0.04 * std::abs(low), 1e-12);
+    figure.add("set {}range [{}:{}]\n", axis, low - margin, high + margin);
+  };
+  for (std::size_t p = 0; p < panels.size(); ++p) {
+    const auto [a, b] = panels[p];
+    const double top = 0.5 + panel * double(p), bottom = top + panel - 0.55;
+    if (p > 0) figure.next_panel();
+    figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", y(top), y(bottom));
+    figure.text(label(a), 7.5, fmt::format("screen 0.56,{} center", y(bottom + 0.36)));
+    figure.text(label(b), 7.5, fmt::format("screen 0.035,{} center rotate by 90", y(0.5 * (top + bottom))));
+    range("x", a);
+    range("y", b);
+    figure.add("plot $cloud using {0}:{1} with points {2}, $front using {0}:{1} with points {3}, "
+               "$ends using {0}:{1} with points {4}, $knee using {0}:{1} with points {5}\n",
+               a + 1, b + 1, grey, blue, end, knee);
+  }
+  figure.add("unset multiplot\nunset output\n");
+  run_gnuplot(figure.script(), file);
+}
+
+}  // namespace wingbeat

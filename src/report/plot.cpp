@@ -1,0 +1,197 @@
+#include "wingbeat/report/plot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "report/figure.hpp"
+
+namespace wingbeat {
+
+std::optional<PlotFormat> plot_format(const std::filesystem::path& file) {
+  const std::string extension = file.extension().string();
+  if (extension == ".svg") return PlotFormat::svg;
+  if (extension == ".pdf") return PlotFormat::pdf;
+  if (extension == ".png") return PlotFormat::png;
+  return std::nullopt;
+}
+
+void plot_cycle(std::span<const WaveformRow> rows, const std::string& title, PlotFormat format,
+                const std::filesystem::path& file) {
+  if (rows.size() < 2) throw std::runtime_error("no cycle to plot");
+  const double period = rows.back().time - rows.front().time;
+
+  // Times in a unit that leaves readable numbers.
+  const bool in_seconds = period >= 10.0;
+  const double time_scale = in_seconds ? 1.0 : 1e3;
+  double lift_mean = 0.0, lift_most = 0.0, power_most = 0.0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (k > 0) lift_mean += 0.5 * (rows[k].lift + rows[k - 1].lift) * (rows[k].time - rows[k - 1].time) / period;
+    lift_most = std::max(lift_most, std::abs(rows[k].lift));
+    power_most = std::max(power_most, std::abs(rows[k].power_electrical));
+  }
+  const bool lift_in_newton = lift_most >= 1.0, power_in_watt = power_most >= 10.0;
+  const double lift_scale = lift_in_newton ? 1.0 : 1e3, power_scale = power_in_watt ? 1.0 : 1e3;
+
+  // Without a rod its panel shows the current.
+  const bool rod = std::isfinite(rows.front().rod_force);
+
+  Figure figure(format, 3.5, 5.6);
+  figure.add("$cycle << END\n");
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const WaveformRow& r = rows[k];
+    figure.add("{} {} {} {} {} {} {} {}\n", time_scale * (r.time - rows.front().time),
+               degrees_per_radian * r.stroke_angle, r.flapping_velocity, lift_scale * r.lift, rod ? r.rod_force : 1e3 * r.current,
+               power_scale * r.power_electrical, power_scale * r.power_motor, power_scale * r.power_aerodynamic);
+  }
+  figure.add("END\nset multiplot\nset xrange [0:{}]\n", time_scale * period);
+
+  // Margins of the page, in its fractions.
+  constexpr double left = 0.15, right = 0.85, top = 0.93, bottom = 0.075, gap = 0.05;
+  constexpr double height = (top - bottom - 3.0 * gap) / 4.0;
+  figure.add("set lmargin at screen {}\nset rmargin at screen {}\n", left, right);
+  figure.text(title, 8.0, "screen 0.5,0.982 center");
+  double key_height = 0.0;
+  const auto panel = [&](int index, const std::string& name) {
+    if (index > 0) figure.next_panel();
+    const double panel_top = top - index * (height + gap);
+    key_height = panel_top + 0.014;
+    figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", panel_top, panel_top - height);
+    figure.add("set format x {}\n", index == 3 ? "'%g'" : "''");
+    figure.text(name, 7.5, fmt::format("screen 0.026,{} center rotate by 90", panel_top - 0.5 * height));
+  };
+
+  panel(0, "stroke angle (deg)");
+  figure.text("velocity (rad/s)", 7.5,
+              fmt::format("screen 0.974,{} center rotate by 90", top - 0.5 * height));
+  figure.key_entry(left, key_height, blue_solid, "stroke angle");
+  figure.key_entry(left + 0.28, key_height, vermillion_dashed, "flapping velocity (right)");
+  figure.add("set y2tics nomirror out scale 0.5\nset border 11\n");
+  figure.add("plot $cycle using 1:2 with lines {}, '' using 1:3 axes x1y2 with lines {}\n", blue_solid,
+             vermillion_dashed);
+  figure.add("unset y2tics\nset border 3\n");
+
+  const char* lift_unit = lift_in_newton ? "N" : "mN";
+  panel(1, fmt::format("lift ({})", lift_unit));
+  figure.key_entry(left, key_height, blue_solid, "lift of all wings");
+  figure.key_entry(left + 0.36, key_height, vermillion_dashed,
+                   fmt::format("mean, {:.4g} {}", lift_scale * lift_mean, lift_unit));
+  figure.add("plot $cycle using 1:4 with lines {}, {} with lines {}\n", blue_solid, lift_scale * lift_mean,
+             vermillion_dashed);
+
+  panel(2, rod ? "rod force (N)" : "current (mA)");
+  figure.key_entry(left, key_height, blue_solid, rod ? "rod force, positive as it pushes the slider up" : "current");
+  figure.add("plot $cycle using 1:5 with lines {}\n", blue_solid);
+
+  panel(3, power_in_watt ? "power (W)" : "power (mW)");
+  figure.text(in_seconds ? "time (s)" : "time (ms)", 7.5, fmt::format("screen {},0.014 center", 0.5 * (left + right)));
+  figure.key_entry(left, key_height, black_dotted, "electrical");
+  figure.key_entry(left + 0.205, key_height, blue_solid, "motor output");
+  figure.key_entry(left + 0.465, key_height, vermillion_dashed, "aerodynamic");
+  figure.add("plot $cycle using 1:6 with lines {}, '' using 1:7 with lines {}, '' using 1:8 with lines {}\n",
+             black_dotted, blue_solid, vermillion_dashed);
+  figure.add("unset multiplot\nunset output\n");
+  run_gnuplot(figure.script(), file);
+}
+
+void plot_powers(std::span<const PowerBar> bars, const std::string& title, PlotFormat format,
+                 const std::filesystem::path& file) {
+  if (bars.empty()) throw std::runtime_error("no power breakdown to plot");
+  struct Part {
+    const char* name;
+    double EnergyAudit::*power;
+    const char* fill;
+    bool light;    ///< needs dark text
+    double key_x;  ///< where its key starts, fraction of the page
+  };
+  constexpr Part parts[] = {{"copper", &EnergyAudit::copper, "#d55e00", false, 0.04},
+                            {"viscous", &EnergyAudit::viscous, "#f0e442", true, 0.216},
+                            {"friction", &EnergyAudit::friction, "#56b4e9", true, 0.398},
+                            {"aerodynamic", &EnergyAudit::aerodynamic, "#00507c", false, 0.575},
+                            {"residual", &EnergyAudit::residual, "#bbbbbb", true, 0.829}};
+
+  double most = 0.0;
+  for (const PowerBar& bar : bars) most = std::max(most, bar.audit.electrical);
+  if (!(most > 0.0)) throw std::runtime_error("no power breakdown to plot: no electrical input");
+  const bool in_watt = most >= 10.0;
+  const double scale = in_watt ? 1.0 : 1e3;
+  const char* unit = in_watt ? "W" : "mW";
+
+  const int decimals = scale * most >= 1000.0 ? 0 : scale * most >= 100.0 ? 1 : 2;
+  const auto shown = [&](double power) { return fmt::format("{:.{}f}", power, decimals); };
+
+  const double count = double(bars.size());
+  const double inches = 0.91 + 0.58 * count;
+  Figure figure(format, 3.5, inches);
+  figure.add("set border 1\nunset ytics\nset grid noy\n");
+  const double longest = scale * most;
+  const double span = 1.2 * longest;
+  double least = 0.0;
+  for (std::size_t b = 0; b < bars.size(); ++b) {
+    const EnergyAudit& audit = bars[b].audit;
+    const double y = count - 1.0 - double(b);
+    double right = 0.0, left = 0.0;
+    struct Narrow {
+      double at;
+      const char* fill;
+      std::string text;
+    };
+    std::vector<Narrow> narrow;
+    for (const Part& part : parts) {
+      const double power = scale * audit.*part.power;
+      // A formulation can also add power: such a part stands left of zero.
+      const double from = power >= 0.0 ? right : left + power;
+      const double to = power >= 0.0 ? right + power : left;
+      (power >= 0.0 ? right : left) += power;
+      least = std::min(least, left);
+      if (std::abs(power) < 1e-4 * longest) continue;
+      figure.box(fmt::format("from {},{} to {},{}", from, y - 0.26, to, y + 0.14), part.fill);
+      const double share = 100.0 * audit.*part.power / audit.electrical;
+      const std::string percent = fmt::format("{:.{}f} %", share, std::abs(share) < 9.95 ? 1 : 0);
+      const double middle = 0.5 * (from + to);
+      if (to - from > 0.09 * span) {
+        const char* colour = part.light ? "#000000" : "#ffffff";
+        figure.text(shown(power), 6.5, fmt::format("{},{} center textcolor rgb '{}'", middle, y + 0.025, colour));
+        figure.text(percent, 6.5, fmt::format("{},{} center textcolor rgb '{}'", middle, y - 0.145, colour));
+      } else {
+        narrow.push_back({middle, part.fill, fmt::format("{} ({})", shown(power), percent)});
+      }
+    }
+    // What has no room inside stands above, with the part's colour, pushed aside by its neighbours.
+    std::sort(narrow.begin(), narrow.end(), [](const Narrow& p, const Narrow& q) { return p.at < q.at; });
+    const double room = 0.215 * span;
+    double limit = least + 0.5 * room;
+    for (Narrow& n : narrow) limit = (n.at = std::max(n.at, limit)) + room;
+    limit = span - 0.5 * room;
+    for (auto n = narrow.rbegin(); n != narrow.rend(); ++n) limit = (n->at = std::min(n->at, limit)) - room;
+    for (const Narrow& n : narrow) {
+      const double start = n.at - 0.45 * room;
+      figure.box(fmt::format("from {},{} to {},{}", start, y + 0.2, start + 0.018 * span, y + 0.27), n.fill);
+      figure.text(n.text, 6.5, fmt::format("{},{} left", start + 0.025 * span, y + 0.235));
+    }
+    figure.text(bars[b].label, 7.0, fmt::format("0,{} left", y + 0.44));
+    figure.text(fmt::format("{} {}", shown(scale * audit.electrical), unit), 7.0,
+                fmt::format("{},{} left", right + 0.012 * span, y - 0.06));
+  }
+  figure.add("set xrange [{}:{}]\nset yrange [-0.36:{}]\n", least, span, count - 0.4);
+  figure.add("set lmargin at screen 0.04\nset rmargin at screen 0.97\nset tmargin at screen {}\n"
+             "set bmargin at screen {}\n",
+             1.0 - 0.38 / inches, 0.42 / inches);
+  figure.text(fmt::format("power ({})", unit), 7.5, fmt::format("screen 0.505,screen {} center", 0.08 / inches));
+  figure.text(title, 8.0, fmt::format("screen 0.04,screen {} left", 1.0 - 0.1 / inches));
+  const double key_height = 1.0 - 0.27 / inches;
+  for (const Part& part : parts) {
+    figure.box(fmt::format("from screen {},screen {} to screen {},screen {}", part.key_x, key_height - 0.035 / inches,
+                           part.key_x + 0.03, key_height + 0.035 / inches),
+               part.fill);
+    figure.text(part.name, 6.5, fmt::format("screen {},screen {} left", part.key_x + 0.037, key_height));
+  }
+  figure.add("plot NaN\nunset output\n");
+  run_gnuplot(figure.script(), file);
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,232 @@
+#include "wingbeat/report/reference.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "files/toml_document.hpp"
+#include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/files/design_keys.hpp"
+#include "wingbeat/report/report.hpp"
+#include "wingbeat/files/units.hpp"
+
+namespace wingbeat {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+bool holds(std::string_view text, std::string_view part) {
+  const auto same = [](char a, char b) {
+    return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+  };
+  return std::search(text.begin(), text.end(), part.begin(), part.end(), same) != text.end();
+}
+
+std::vector<const KeyText*> keys_with(const std::string& filter) {
+  std::vector<const KeyText*> found;
+  for (const auto& key : vehicle_keys<double>()) {
+    if (holds(key.path, filter) || holds(key.meaning, filter) || key.unit == filter) found.push_back(&key);
+  }
+  return found;
+}
+
+std::vector<const MetricInfo*> metrics_with(const std::string& filter) {
+  std::vector<const MetricInfo*> found;
+  for (const MetricInfo& metric : metric_table()) {
+    if (holds(metric.key, filter) || holds(metric.long_name, filter) || metric.unit == filter) found.push_back(&metric);
+  }
+  return found;
+}
+
+std::string unit_shown(std::string_view unit) {
+  return unit.empty() ? "text" : unit == "1" ? "number" : std::string(unit);
+}
+
+std::string choices_of(std::string_view only_with) {
+  std::string text(only_with);
+  for (auto bar = text.find('|'); bar != std::string::npos; bar = text.find('|', bar)) text.replace(bar, 1, " or ");
+  return text;
+}
+
+/// What a new vehicle states, by key. All else it may state is offered as a comment.
+using Statement = std::pair<std::string_view, std::string_view>;
+constexpr Statement slider_crank[] = {{"vehicle.mass", "3.34 g"},
+                                      {"supply.type", "constant"},
+                                      {"supply.voltage", "3 V"},
+                                      {"motor.armature_resistance", "9 ohm"},
+                                      {"motor.armature_inductance", "29 mH"},
+                                      {"motor.torque_constant", "10 mN m/A"},
+                                      {"motor.inertia", "1.5e-7 kg m2"},
+                                      {"motor.viscous_damping", "3.6e-6 N m s/rad"},
+                                      {"transmission.type", "slider-crank"},
+                                      {"transmission.formulation", "virtual-work"},
+                                      {"transmission.crank_radius", "5 mm"},
+                                      {"transmission.rod_length", "20 mm"},
+                                      {"transmission.hinge_offset", "6 mm"},
+                                      {"friction.type", "load-proportional"},
+                                      {"friction.radius", "2.5 mm"},
+                                      {"wing.count", "2"},
+                                      {"wing.inertia", "7.2e-8 kg m2"},
+                                      {"wing.planform.shape", "semi-ellipse"},
+                                      {"wing.planform.length", "63 mm"},
+                                      {"wing.planform.root_chord", "25 mm"},
+                                      {"aerodynamics.air_density", "1.225 kg/m3"},
+                                      {"aerodynamics.pitch_coefficient", "5 ms"},
+                                      {"aerodynamics.coefficients", "translational-2022"}};
+constexpr Statement direct[] = {{"vehicle.mass", "3.34 g"},
+                                {"supply.type", "sine"},
+                                {"supply.amplitude", "3 V"},
+                                {"supply.frequency", "22 Hz"},
+                                {"motor.armature_resistance", "9 ohm"},
+                                {"motor.armature_inductance", "29 mH"},
+                                {"motor.torque_constant", "10 mN m/A"},
+                                {"motor.inertia", "1.5e-7 kg m2"},
+                                {"motor.viscous_damping", "3.6e-6 N m s/rad"},
+                                {"transmission.type", "direct"},
+                                {"friction.type", "none"},
+                                {"spring.resonance", "22 Hz"},
+                                {"wing.count", "2"},
+                                {"wing.inertia", "7.2e-8 kg m2"},
+                                {"wing.planform.shape", "semi-ellipse"},
+                                {"wing.planform.length", "63 mm"},
+                                {"wing.planform.root_chord", "25 mm"},
+                                {"aerodynamics.air_density", "1.225 kg/m3"},
+                                {"aerodynamics.pitch_coefficient", "5 ms"},
+                                {"aerodynamics.coefficients", "translational-2022"}};
+
+const std::string_view* stated(std::span<const Statement> statements, std::string_view path) {
+  const auto found = std::find_if(statements.begin(), statements.end(), [&](const auto& s) { return s.first == path; });
+  return found == statements.end() ? nullptr : &found->second;
+}
+
+/// "5 mm" as `"5 mm"`, 2 as it is.
+std::string toml_value(const KeyText& key, std::string_view value) {
+  return key.unit == "1" ? std::string(value) : fmt::format("\"{}\"", value);
+}
+
+/// A value to put in for a key that a new vehicle does not state: the example of its unit.
+std::string example_of(const KeyText& key) {
+  if (key.unit.empty()) return "\"...\"";
+  const std::string example = quantity_example(key.unit);
+  const auto quote = example.find('"');
+  if (quote != std::string::npos) return example.substr(quote);
+  return key.unit == "1" ? "1" : fmt::format("\"1 {}\"", key.unit);
+}
+
+/// Lines of at most 120 columns that begin with #.
+std::string commented(const std::string& comment) {
+  std::string lines = "# ";
+  for (const char c : wrapped(comment, 116, 0)) lines += c == '\n' ? std::string("\n#   ") : std::string(1, c);
+  return lines + "\n";
+}
+
+bool has_place(const KeyText& key, std::span<const Statement> statements) {
+  if (key.only_with.empty()) return true;
+  const Requirement requirement = requirement_of(key.only_with);
+  const std::string_view* choice = stated(statements, requirement.key);
+  return choice && requirement.allows(*choice);
+}
+
+std::string comment_on(const KeyText& key, bool is_stated, std::span<const Statement> statements) {
+  std::string text = fmt::format("{}; {}", key.meaning, key.range);
+  const bool has_other = key.fallback.starts_with("required or ");
+  const std::string section(key.path.substr(0, key.path.rfind('.') + 1));
+  const Key<double>* other = has_other ? find_key<double>(section + std::string(key.fallback.substr(12))) : nullptr;
+  if (other && has_place(*other, statements)) {
+    text += fmt::format("; {} {}{}", is_stated ? "or" : "instead of", key.fallback.substr(12), is_stated ? " instead" : "");
+  } else if (!is_stated && !has_other && key.fallback != "required") {
+    text += fmt::format("; default: {}", key.fallback);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string text_keys(const std::string& filter) {
+  std::string text;
+  for (const KeyText* key : keys_with(filter)) {
+    text += fmt::format("{}  [{}]  {}; default: {}\n", key->path, unit_shown(key->unit), key->range, key->fallback);
+    std::string meaning(key->meaning);
+    if (!key->only_with.empty()) meaning += fmt::format(" (only with {})", choices_of(key->only_with));
+    text += fmt::format("    {}\n", wrapped(meaning, 92, 4));
+  }
+  return text;
+}
+
+std::string json_keys(const std::string& filter) {
+  Json json;
+  json["keys"] = Json::array();
+  for (const KeyText* key : keys_with(filter)) {
+    const auto text_or_null = [](std::string_view text) { return text.empty() ? Json(nullptr) : Json(std::string(text)); };
+    json["keys"].push_back({{"key", std::string(key->path)},
+                            {"unit", text_or_null(key->unit)},
+                            {"range", std::string(key->range)},
+                            {"default", std::string(key->fallback)},
+                            {"meaning", std::string(key->meaning)},
+                            {"only_with", text_or_null(choices_of(key->only_with))}});
+  }
+  return json.dump(2) + "\n";
+}
+
+std::string text_metrics(const std::string& filter) {
+  std::string text;
+  for (const MetricInfo* metric : metrics_with(filter)) {
+    text += fmt::format("{:<34}{:<8}{}\n", metric->key, metric->unit, metric->long_name);
+  }
+  return text;
+}
+
+std::string json_metrics(const std::string& filter) {
+  Json json;
+  json["metrics"] = Json::array();
+  for (const MetricInfo* metric : metrics_with(filter)) {
+    json["metrics"].push_back({{"key", metric->key}, {"unit", metric->unit}, {"long_name", metric->long_name}});
+  }
+  return json.dump(2) + "\n";
+}
+
+std::string starting_vehicle(TransmissionType transmission, const std::string& name) {
+  const bool is_direct = transmission == TransmissionType::direct;
+  const std::span<const Statement> statements = is_direct ? std::span<const Statement>(direct) : slider_crank;
+  std::string text =
+      "# A vehicle file for wingbeat. What stands behind # at the beginning of a line is optional or another choice.\n"
+      "# Quantities carry a unit; `wingbeat keys` lists all keys, docs/vehicle-file.md explains them.\n";
+  std::string section;
+  const auto enter = [&](std::string_view path, bool wanted) {
+    const std::string here(path.substr(0, path.rfind('.')));
+    if (here == section) return;
+    section = here;
+    text += fmt::format("\n{}[{}]\n", wanted ? "" : "# ", section);
+  };
+  const auto section_is_stated = [&](std::string_view path) {
+    const std::string_view here = path.substr(0, path.rfind('.') + 1);
+    return here == "vehicle." || std::any_of(statements.begin(), statements.end(), [&](const Statement& s) {
+             return s.first.starts_with(here) && s.first.find('.', here.size()) == std::string_view::npos;
+           });
+  };
+  for (const auto& key : vehicle_keys<double>()) {
+    // Single coefficients would take the place of the named set: too many for a beginning.
+    if (!has_place(key, statements) || key.path.starts_with("aerodynamics.coefficients.")) continue;
+    enter(key.path, section_is_stated(key.path));
+    const std::string_view leaf = key.path.substr(key.path.rfind('.') + 1);
+    const std::string_view* value = stated(statements, key.path);
+    const bool is_stated = value || key.path == "vehicle.name";
+    std::string line = key.path == "vehicle.name" ? fmt::format("{} = \"{}\"", leaf, name)
+                       : value                    ? fmt::format("{} = {}", leaf, toml_value(key, *value))
+                                                  : fmt::format("# {} = {}", leaf, example_of(key));
+    const std::string comment = comment_on(key, is_stated, statements);
+    if (44 + comment.size() <= 118) {
+      text += fmt::format("{:<44}# {}\n", line, comment);
+    } else {
+      text += fmt::format("{}{}\n", commented(fmt::format("{}: {}", leaf, comment)), line);
+    }
+  }
+  return text;
+}
+
+}  // namespace wingbeat

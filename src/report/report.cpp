@@ -1,0 +1,269 @@
+#include "wingbeat/report/report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <utility>
+
+#include "report/report_tools.hpp"
+#include "wingbeat/cycle/energy_audit.hpp"
+
+namespace wingbeat {
+namespace {
+
+constexpr int table_width = 88;
+
+using detail::Json, detail::number_or_null;
+
+std::map<TransientEvent::Kind, int> event_counts(const TransientResult& start_up) {
+  std::map<TransientEvent::Kind, int> counts;
+  for (const TransientEvent& event : start_up.events) ++counts[event.kind];
+  return counts;
+}
+
+Json start_up_json(const TransientResult& s) {
+  Json events = Json::object();
+  using Kind = TransientEvent::Kind;
+  const auto counts = event_counts(s);
+  for (const Kind kind :
+       {Kind::revolution, Kind::force_sign_change, Kind::standstill, Kind::breakaway, Kind::jam}) {
+    const auto found = counts.find(kind);
+    std::string name = name_of(kind);
+    for (char& c : name) c = c == ' ' || c == '-' ? '_' : c;
+    events[name] = found == counts.end() ? 0 : found->second;
+  }
+  return {{"settled", s.settled},
+          {"time_to_steady_s", number_or_null(s.time_to_steady)},
+          {"inrush_current_a", number_or_null(s.inrush_current)},
+          {"inrush_current_time_s", number_or_null(s.inrush_current_time)},
+          {"simulated_time_s", number_or_null(s.end_time)},
+          {"laps", s.laps},
+          {"averaged_laps", s.averaged_laps},
+          {"lap_scatter", number_or_null(s.lap_scatter)},
+          {"current_ripple_a", s.current_ripple ? Json(*s.current_ripple) : Json(nullptr)},
+          {"events", events}};
+}
+
+/// Builds the lines of the table: groups of quantities, names left, values right.
+class Table {
+ public:
+  explicit Table(const Metrics<double>& metrics) : metrics_(metrics) {}
+
+  void group(const char* name) { fmt::format_to(out_, "\n{}\n", name); }
+  void line(std::string_view name, const std::string& value, std::string_view remark = "") {
+    fmt::format_to(out_, "  {:<32}{:>14}", name, value);
+    if (!remark.empty()) fmt::format_to(out_, "   {}", remark);
+    while (text_.back() == ' ') text_.pop_back();
+    text_ += '\n';
+  }
+  void metric(std::string_view name, Metric which, std::string_view unit, std::string_view remark = "") {
+    line(name, readable(metrics_[which], unit), remark);
+  }
+  void angle(std::string_view name, double degrees, std::string_view remark = "") {
+    line(name, std::isfinite(degrees) ? fmt::format("{:.2f} deg", degrees) : "-", remark);
+  }
+  void percent(std::string_view name, Metric which, std::string_view remark = "") {
+    const double x = metrics_[which];
+    line(name, std::isfinite(x) ? fmt::format("{:.2f} %", 100.0 * x) : "-", remark);
+  }
+  void text(const std::string& s) { text_ += s; }
+  std::string take() { return std::move(text_); }
+
+ private:
+  const Metrics<double>& metrics_;
+  std::string text_;
+  std::back_insert_iterator<std::string> out_{text_};
+};
+
+void power_group(Table& table, const Metrics<double>& m) {
+  const EnergyAudit a = energy_audit(m);
+  const auto share = [&](double power) {
+    const double percent = 100.0 * power / a.electrical;
+    return fmt::format("{:>7.2f} %", std::abs(percent) < 0.005 ? 0.0 : percent);
+  };
+  table.group("Power, mean over a cycle                              of input");
+  const auto power = [&](const char* name, double value, const char* remark) {
+    table.line(name, readable(value, "W"), fmt::format("{}   {}", share(value), remark));
+  };
+  power("electrical input", a.electrical, "v i");
+  power("  copper loss", a.copper, "R_a i^2");
+  power("  viscous loss of the motor", a.viscous, "b omega^2");
+  power("  friction", a.friction, "T_f omega");
+  power("  aerodynamic", a.aerodynamic, "M_aero beta'");
+  power("  lost by the formulation", a.residual, "F (h omega - g beta')");
+  table.line("  imbalance of these books", readable(a.imbalance, "W"),
+             fmt::format("{:>9.0e}   input minus the above", std::abs(a.imbalance / a.electrical)));
+  power("motor output", m[Metric::power_motor], "T_m omega");
+  if (std::isfinite(m[Metric::power_motor_reference])) {
+    power("  as a test bench estimates it", m[Metric::power_motor_reference], "2 pi f K_ref i");
+  }
+  power("all but aerodynamic", m[Metric::power_loss], "");
+  power("reactive, mean magnitude", m[Metric::power_reactive], "");
+}
+
+void start_up_group(Table& table, const TransientResult& s, bool flapping) {
+  using Kind = TransientEvent::Kind;
+  auto counts = event_counts(s);
+  table.group("Start-up from rest");
+  table.line(flapping ? "time to steady flapping" : "time until it rests or jams", readable(s.time_to_steady, "s"),
+             flapping ? "frequency within 1 % from there on" : "");
+  table.line("inrush current", readable(s.inrush_current, "A"),
+             fmt::format("at {}", readable(s.inrush_current_time, "s")));
+  table.line("simulated", readable(s.end_time, "s"), fmt::format("{} laps, {} steps", s.laps, s.steps));
+  if (s.averaged_laps > 1) {
+    table.line("averaged", fmt::format("{} laps", s.averaged_laps),
+               fmt::format("durations within {:.2g} % of their mean", 100.0 * s.lap_scatter));
+  }
+  if (s.current_ripple) {
+    table.line("ripple of the current", readable(*s.current_ripple, "A"), "peak to peak within a switching period");
+  }
+  table.line("changes of the rod force's sign", fmt::format("{}", counts[Kind::force_sign_change]));
+  table.line("standstills", fmt::format("{}", counts[Kind::standstill]));
+}
+
+}  // namespace
+
+std::string readable(double value, std::string_view unit) {
+  if (!std::isfinite(value)) return "-";
+  constexpr std::pair<double, const char*> prefixes[] = {{1e6, "M"}, {1e3, "k"}, {1.0, ""}, {1e-3, "m"}, {1e-6, "u"}};
+  const double size = std::abs(value);
+  double scale = 1e-9;
+  const char* prefix = "n";
+  for (const auto& [factor, name] : prefixes) {
+    // Rounding to four digits must not carry into a fifth.
+    if (size >= 0.99995 * factor) {
+      scale = factor;
+      prefix = name;
+      break;
+    }
+  }
+  if (size < 0.99995e-9) {
+    if (size == 0.0) return fmt::format("0 {}", unit);
+    return fmt::format("{:.1e} {}", value, unit);
+  }
+  const double x = value / scale;
+  const int decimals = std::abs(x) >= 999.95 ? 0 : std::abs(x) >= 99.995 ? 1 : std::abs(x) >= 9.9995 ? 2 : 3;
+  return fmt::format("{:.{}f} {}{}", x, decimals, prefix, unit);
+}
+
+std::string wrapped(std::string_view text, int width, int indent) {
+  const auto columns = [](std::string_view s) {
+    int n = 0;
+    for (const char c : s) n += (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+    return n;
+  };
+  std::string out;
+  int column = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t end = at;
+    while (end < text.size() && static_cast<unsigned char>(text[end]) > 0x20 && text[end] != 0x7F) ++end;
+    const std::string_view word = text.substr(at, end - at);
+    if (!word.empty()) {
+      if (column > 0 && column + 1 + columns(word) > width) {
+        out += '\n' + std::string(std::size_t(indent), ' ');
+        column = indent;
+      } else if (column > 0) {
+        out += ' ';
+        ++column;
+      }
+      out += word;
+      column += columns(word);
+    }
+    at = end + 1;
+  }
+  return out;
+}
+
+std::string json_report(const RunResult& result) {
+  Json json;
+  json["status"] = result.status == FlappingStatus::undecided ? Json(nullptr) : Json(name_of(result.status));
+  json["status_detail"] = result.detail;
+  const bool judged = result.status == FlappingStatus::flapping && std::isfinite(result.metrics[Metric::frequency]);
+  json["domain"] = judged ? Json(name_of(result.domain)) : Json(nullptr);
+  json["domain_detail"] = result.domain_detail.empty() ? Json(nullptr) : Json(result.domain_detail);
+  json["warnings"] = result.warnings;
+  const auto& table = metric_table();
+  for (std::size_t m = 0; m < table.size(); ++m) json[table[m].key] = number_or_null(result.metrics.values[m]);
+  if (result.design.supply.type == SupplyType::pwm) json["supply_duty"] = result.design.supply.duty;
+  if (result.start_up) json["start_up"] = start_up_json(*result.start_up);
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string text_report(const RunResult& result, const RunOptions& options) {
+  const Metrics<double>& m = result.metrics;
+  const bool flapping = result.status == FlappingStatus::flapping;
+  Table table(m);
+  if (!result.design.name.empty()) table.text(wrapped(result.design.name, table_width, 0) + "\n");
+  if (result.domain.any()) {
+    table.text(wrapped(fmt::format("OUTSIDE THE MODEL'S DOMAIN ({}): {}. The numbers below are extrapolated.",
+                                   name_of(result.domain), result.domain_detail),
+                       table_width, 2) +
+               "\n");
+  }
+  table.text(wrapped(fmt::format("{}: {}.", name_of(result.status), result.detail), table_width, 2) + "\n");
+  for (const std::string& warning : result.warnings) {
+    table.text(wrapped(fmt::format("warning: {}.", warning), table_width, 2) + "\n");
+  }
+  std::string how = fmt::format("{}, by {}, tolerance {:.0e}", name_of(options.condition),
+                                options.method == Method::orbit && !result.simulated_cycle ? "periodic orbit"
+                                                                                           : "simulation from rest",
+                                options.tolerance);
+  if (options.method == Method::orbit && result.orbit.laps > 0 && !result.simulated_cycle) {
+    how += fmt::format("; {} lap{}", result.orbit.laps, result.orbit.laps == 1 ? "" : "s");
+    if (result.orbit.newton_steps > 0) how += fmt::format(", {} Newton steps", result.orbit.newton_steps);
+    if (flapping) how += fmt::format(", closed to {:.0e}", result.orbit.residual);
+  }
+  table.text(wrapped(how, table_width, 2) + "\n");
+  if (result.start_up) start_up_group(table, *result.start_up, flapping);
+  if (!std::isfinite(m[Metric::frequency])) return table.take();
+
+  table.group("Operating point");
+  table.metric("voltage", Metric::voltage, "V");
+  if (result.design.supply.type == SupplyType::pwm) {
+    table.line("duty", fmt::format("{:.4g}", result.design.supply.duty),
+               fmt::format("of {}", readable(result.design.supply.voltage, "V")));
+  }
+  table.metric("flapping frequency", Metric::frequency, "Hz");
+  table.metric("mean current", Metric::current_mean, "A");
+  table.metric("peak current", Metric::current_peak, "A");
+  table.metric("rms current", Metric::current_rms, "A");
+  power_group(table, m);
+
+  table.group("Efficiency");
+  table.percent("system", Metric::efficiency_system, "aerodynamic / electrical");
+  table.percent("motor", Metric::efficiency_motor, "motor output / electrical");
+  table.percent("mechanism", Metric::efficiency_mechanism, "aerodynamic / motor output");
+
+  table.group("Lift, all wings");
+  table.metric("mean lift", Metric::lift_mean, "N");
+  table.metric("peak lift", Metric::lift_peak, "N");
+  if (std::isfinite(m[Metric::lift_to_weight])) {
+    // A voltage found for hovering gives the weight to within the tolerance.
+    const bool hovers = m[Metric::lift_to_weight] >= 1.0 - 10.0 * options.tolerance;
+    table.line("mean lift / weight", fmt::format("{:.4g}", m[Metric::lift_to_weight]),
+               !hovers               ? "below weight: cannot hover"
+               : result.domain.any() ? "outside the model's domain: not claimed"
+                                     : "can hover");
+  }
+
+  table.group("Mechanism and wings");
+  table.metric("peak rod force, magnitude", Metric::rod_force_peak, "N");
+  table.metric("mean rod force, magnitude", Metric::rod_force_mean, "N");
+  table.angle("stroke amplitude", degrees_per_radian * m[Metric::stroke_amplitude], "half peak to peak");
+  table.metric("peak flapping velocity", Metric::flapping_velocity_peak, "rad/s");
+  table.angle("smallest angle of attack", m[Metric::angle_of_attack_min]);
+  table.metric("lowest crank speed", Metric::crank_speed_min, "rad/s");
+  table.metric("highest crank speed", Metric::crank_speed_max, "rad/s");
+
+  if (std::isfinite(m[Metric::floquet_multiplier_max])) {
+    const double multiplier = m[Metric::floquet_multiplier_max];
+    table.group("Stability");
+    table.line("largest Floquet multiplier", fmt::format("{:.3g}", multiplier),
+               multiplier < 1.0 ? "below 1: stable" : "not below 1: disturbances do not die out");
+  }
+  return table.take();
+}
+
+}  // namespace wingbeat

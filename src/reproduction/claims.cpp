@@ -1,0 +1,293 @@
+#include "wingbeat/reproduction/claims.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <stdexcept>
+#include <utility>
+
+#include "reproduction/statement_answers.hpp"
+#include "wingbeat/report/report.hpp"
+#include "wingbeat/study/bench_fit.hpp"
+
+namespace wingbeat {
+namespace {
+
+constexpr int loss_points = 13;
+constexpr double max_loss_stiffness = 1.5;  ///< of the springs of the vehicle that has them
+
+std::string spaced(std::string text) {
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return text;
+}
+
+std::string design_words(const std::string& design) {
+  return design == "spring_off" ? "without springs" : design == "spring_on" ? "with springs" : "of " + spaced(design);
+}
+std::string ratio_words(const std::string& design, const std::string& other) {
+  return design == "spring_on" && other == "spring_off" ? "with / without springs"
+                                                        : fmt::format("{} / {}", spaced(design), spaced(other));
+}
+
+/// A number for reading.
+std::string shown(double x, const std::string& unit) {
+  if (!std::isfinite(x)) return "-";
+  if (unit == "1") return fmt::format("{:#.4g}", x);
+  return readable(x, unit);
+}
+
+StatementOutcome outcome_of(const Claim& c) {
+  if (!c.reason.empty()) return StatementOutcome::not_checkable;
+  if (c.published_text == "-") return StatementOutcome::no_published_value;
+  if (c.within[0] && c.within[1]) return StatementOutcome::reproduced;
+  return c.within[0] || c.within[1] ? StatementOutcome::depends_on_formulation : StatementOutcome::not_reproduced;
+}
+
+/// The two published peak lifts, without and with springs at one frequency, that S_2 and S_3 were calibrated to.
+struct LiftTargets {
+  SpringPair pair;
+  double frequency;
+  std::array<double, 2> lift_peaks;
+};
+std::optional<LiftTargets> lift_targets(const PublishedFile& file) {
+  const PublishedValue* found[2] = {nullptr, nullptr};
+  for (const PublishedValue& v : file.values) {
+    if (v.metric != Metric::lift_peak || v.basis != Basis::calibrated || v.relative_to || !v.frequency) continue;
+    found[resolve(file.designs.at(v.design)).spring.stiffness > 0.0 ? 1 : 0] = &v;
+  }
+  if (!found[0] || !found[1] || *found[0]->frequency != *found[1]->frequency) return std::nullopt;
+  return LiftTargets{{file.designs.at(found[0]->design), file.designs.at(found[1]->design)},
+                     *found[0]->frequency,
+                     {found[0]->published, found[1]->published}};
+}
+
+PublishedFile with_formulation(PublishedFile file, Formulation formulation) {
+  for (auto& [name, design] : file.designs) design.transmission.formulation = formulation;
+  return file;
+}
+
+LawPrediction predict(PublishedFile file, FrictionLaw law, std::size_t variant) {
+  const PublishedValue& target = calibration_value(file);
+  Design<double> calibrated = file.designs.at(target.design);
+  calibrated.supply = {SupplyType::constant, *target.voltage, 0.0, 1.0};
+  LawPrediction p;
+  p.variant = variant;
+  p.law = calibrate_friction(calibrated, law, target.published);
+  double stiffness = 0.0;
+  for (auto& [name, design] : file.designs) {
+    design.friction = {law, p.law.coefficient};
+    stiffness = std::max(stiffness, resolve(design).spring.stiffness);
+  }
+  p.comparison = compare(file);
+  double squares = 0.0;
+  std::optional<double> frequency;
+  for (std::size_t n = 0; n < p.comparison.values.size(); ++n) {
+    const PublishedValue& v = p.comparison.values[n].published;
+    if (v.design == target.design) continue;
+    if (v.frequency) frequency = v.frequency;
+    if (v.basis == Basis::calibrated) {
+      p.seen.push_back(n);
+      continue;
+    }
+    p.tests.push_back(n);
+    squares += std::pow(p.comparison.values[n].deviation, 2.0);
+  }
+  p.rms = p.tests.empty() ? absent : std::sqrt(squares / double(p.tests.size()));
+  if (frequency && stiffness > 0.0 && variant != recalibrated) {
+    p.loss =
+        loss_along_stiffness(file.designs.at(target.design), *frequency, max_loss_stiffness * stiffness, loss_points);
+  }
+  return p;
+}
+
+Claim claim_of(const PublishedValue& v, const Assessment& a, std::size_t n) {
+  const MetricInfo& info = metric_info(v.metric);
+  Claim c;
+  const std::string at = operating_point(v.voltage, v.frequency);
+  c.statement = v.relative_to
+                    ? fmt::format("{}, ratio {} at {}", info.long_name, ratio_words(v.design, *v.relative_to), at)
+                    : fmt::format("{} {} at {}", info.long_name, design_words(v.design), at);
+  c.where = v.where;
+  c.basis = v.basis;
+  c.unit = v.relative_to ? "1" : info.unit;
+  c.published = v.published;
+  c.published_text = v.published_text;
+  c.tolerance = v.tolerance;
+  for (std::size_t f = 0; f < a.variants; ++f) {
+    c.ours[f] = a.comparisons[f].values[n].computed;
+    c.ours_text[f] = shown(c.ours[f], c.unit);
+  }
+  return c;
+}
+
+Claim claim_of(const PublishedTrend& t, const Assessment& a, const std::vector<Answer>& answers) {
+  using Kind = PublishedTrend::Kind;
+  Claim c;
+  c.statement = t.statement;
+  c.where = t.where;
+  c.basis = t.basis;
+  c.unit = t.unit;
+  c.reason = t.reason;
+  c.note = t.note;
+  c.erratum = t.erratum;
+  c.restates = t.restates;
+  if (t.over == "transmission.crank_radius") c.reading = readings[t.hold_stroke ? 1 : 0];
+  c.published = t.published;
+  if (t.published_end) c.published = 0.5 * (*t.published + *t.published_end);
+  const bool of_numbers = t.published.has_value();
+  if (of_numbers && t.bound == PublishedTrend::Bound::none) c.tolerance = t.tolerance;
+  c.published_text = of_numbers ? t.published_text : "-";
+  if (t.kind == Kind::difference && t.unit == "1") {
+    if (const auto at = c.published_text.rfind(" %"); at != std::string::npos) {
+      c.published_text.replace(at, 2, " percentage points");
+    }
+  }
+  const bool yes_or_no = t.kind == Kind::between || t.kind == Kind::steadier || t.kind == Kind::saturates;
+  if (yes_or_no || t.kind == Kind::initial_guesses) c.published_text = "as stated";
+  for (std::size_t f = 0; f < a.variants; ++f) {
+    c.ours[f] = answers[f].value;
+    c.ours_text[f] = answers[f].text;
+    c.outside[f] = answers[f].outside;
+    c.within[f] = yes_or_no && answers[f].holds;
+    if (of_numbers && t.bound != PublishedTrend::Bound::none) {
+      c.within[f] = t.bound == PublishedTrend::Bound::below ? c.ours[f] < *c.published : c.ours[f] > *c.published;
+    }
+  }
+  if (t.kind == Kind::best_friction_law) {
+    for (std::size_t f = 0; f < a.variants; ++f) {
+      const auto first = a.laws.begin() + long(f * std::size(compared_friction_laws));
+      const auto best = std::min_element(first, first + long(std::size(compared_friction_laws)),
+                                         [](const LawPrediction& p, const LawPrediction& q) { return p.rms < q.rms; });
+      c.ours_text[f] = fmt::format("{} ({:.1f} % rms)", law_name(best->law.law), 100.0 * best->rms);
+      c.within[f] = t.published_law == best->law.law;
+    }
+    c.published_text = t.published_law ? law_name(*t.published_law) : "-";
+  }
+  return c;
+}
+
+/// Deviations, and what is within the tolerance.
+void settle(Claim& c) {
+  const bool compared = c.published && std::isfinite(c.tolerance) && c.reason.empty();
+  for (std::size_t f = 0; f < variant_count && compared; ++f) {
+    if (!std::isfinite(c.ours[f])) continue;
+    c.deviation[f] = c.ours[f] / *c.published - 1.0;
+    c.within[f] = std::abs(c.deviation[f]) <= c.tolerance;
+  }
+  c.outcome = outcome_of(c);
+}
+
+}  // namespace
+
+const char* name_of(StatementOutcome outcome) {
+  constexpr const char* names[] = {"reproduced", "not reproduced", "depends on the formulation", "not checkable",
+                                   "no published value"};
+  return names[std::size_t(outcome)];
+}
+
+const char* variant_name(std::size_t variant) {
+  constexpr const char* names[variant_count] = {"rod-force", "virtual-work", "virtual-work, own calibration"};
+  return names[variant];
+}
+
+bool Claim::counted() const {
+  return basis == Basis::predicted && !restates && outcome != StatementOutcome::not_checkable &&
+         outcome != StatementOutcome::no_published_value;
+}
+
+int Assessment::count(StatementOutcome outcome) const {
+  return int(std::count_if(claims.begin(), claims.end(), [&](const Claim& c) { return c.outcome == outcome; }));
+}
+
+Score Assessment::score(const std::string& reading, std::optional<double> tolerance) const {
+  Score s;
+  double squares = 0.0;
+  int radii = 0;
+  for (const Claim& c : claims) {
+    if (!c.counted() || c.reading != reading) continue;
+    ++s.statements;
+    std::array<bool, variant_count> within = c.within;
+    for (std::size_t f = 0; f < variants; ++f) {
+      if (tolerance && std::isfinite(c.tolerance)) within[f] = std::abs(c.deviation[f]) <= *tolerance;
+      s.met[f] += within[f];
+    }
+    (within[0] && within[1] ? s.reproduced : within[0] || within[1] ? s.depends : s.not_reproduced) += 1;
+    if (c.unit == "m" && std::isfinite(c.deviation[0])) {
+      squares += c.deviation[0] * c.deviation[0];
+      ++radii;
+    }
+  }
+  if (radii > 0) s.rms_crank_radius = std::sqrt(squares / radii);
+  return s;
+}
+
+double Assessment::rms_of_predicted_values(std::size_t variant) const {
+  double squares = 0.0;
+  int count = 0;
+  for (const ComparedValue& v : comparisons[variant].values) {
+    if (v.published.basis != Basis::predicted) continue;
+    squares += v.deviation * v.deviation;
+    ++count;
+  }
+  return count > 0 ? std::sqrt(squares / count) : absent;
+}
+
+const PublishedValue& calibration_value(const PublishedFile& file) {
+  for (const PublishedValue& v : file.values) {
+    if (v.metric == Metric::frequency && v.voltage && !v.relative_to) return v;
+  }
+  throw std::runtime_error("the published values hold no flapping frequency at a voltage to calibrate friction to");
+}
+
+Assessment assess(const PublishedFile& file, const ForEach& for_each, const std::function<void(double)>& done) {
+  Assessment a;
+  std::array<PublishedFile, variant_count> files;
+  for (std::size_t f = 0; f < 2; ++f) files[f] = with_formulation(file, both_formulations[f]);
+  if (const auto targets = lift_targets(file)) {
+    a.calibrations.resize(2);
+    for_each(2, [&](std::size_t f) {
+      a.calibrations[f] =
+          calibrate_moments(targets->pair, both_formulations[f], targets->frequency, targets->lift_peaks);
+    });
+    if (std::isfinite(a.calibrations[1].s3)) {
+      files[recalibrated] = file;
+      for (auto& [name, design] : files[recalibrated].designs) design = with_moments(design, a.calibrations[1]);
+      a.variants = variant_count;
+    }
+  }
+  const std::size_t trends = file.trends.size();
+  std::vector<std::vector<Answer>> answers(trends, std::vector<Answer>(variant_count));
+  const bool laws_wanted = std::any_of(file.trends.begin(), file.trends.end(), [](const PublishedTrend& t) {
+    return t.kind == PublishedTrend::Kind::best_friction_law;
+  });
+  std::vector<std::function<void()>> tasks;
+  for (std::size_t f = 0; f < a.variants; ++f) {
+    tasks.push_back([&, f] { a.comparisons[f] = compare(files[f]); });
+    for (std::size_t t = 0; t < trends; ++t) {
+      tasks.push_back([&, f, t] { answers[t][f] = answer_to(files[f], file.trends[t]); });
+    }
+  }
+  if (laws_wanted) {
+    constexpr std::size_t laws = std::size(compared_friction_laws);
+    a.laws.resize(a.variants * laws);
+    for (std::size_t n = 0; n < a.laws.size(); ++n) {
+      tasks.push_back([&, n] { a.laws[n] = predict(files[n / laws], compared_friction_laws[n % laws], n / laws); });
+    }
+  }
+  std::mutex mutex;
+  std::size_t finished = 0;
+  for_each(tasks.size(), [&](std::size_t n) {
+    tasks[n]();
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (done) done(double(++finished) / double(tasks.size()));
+  });
+
+  for (std::size_t n = 0; n < file.values.size(); ++n) a.claims.push_back(claim_of(file.values[n], a, n));
+  for (std::size_t n = 0; n < trends; ++n) a.claims.push_back(claim_of(file.trends[n], a, answers[n]));
+  for (Claim& c : a.claims) settle(c);
+  return a;
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,237 @@
+// Figures 4 to 7 and 9 to 19 of the 2022 friction paper.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "reproduction/trend_figure.hpp"
+
+namespace wingbeat::reproduction {
+namespace {
+
+using enum Formulation;
+
+/// One quantity of the four cycles over the fraction of the period.
+Sheet cycle_sheet(int number, const std::vector<CycleCase>& cycles, double WaveformRow::*value, double scale,
+                  const char* name, const char* unit, std::string label, std::string what) {
+  Sheet s = sheet(number, std::move(what), "cycles");
+  Chart chart;
+  chart.x = "time / period (1)";
+  chart.key = springs_key();
+  chart.panel_height = 1.9;
+  ChartPanel panel;
+  panel.y = std::move(label);
+  for (const CycleCase& c : cycles) {
+    if (c.run.cycle.empty()) continue;
+    const auto& rows = c.run.cycle;
+    std::vector<double> fraction, time, angle, y;
+    for (const WaveformRow& row : rows) {
+      fraction.push_back((row.time - rows.front().time) / (rows.back().time - rows.front().time));
+      time.push_back(row.time);
+      angle.push_back(row.crank_angle);
+      y.push_back(row.*value);
+    }
+    const std::string which =
+        fmt::format("{}_{}", springs_name(c.of.springs), underscored(wingbeat::name_of(c.of.formulation)));
+    const std::string words =
+        fmt::format("{} springs, {}", c.of.springs ? "with" : "without", wingbeat::name_of(c.of.formulation));
+    if (s.table.columns.empty())
+      s.table.add("cycle_fraction", "1", "time over period, from crank angle zero", fraction);
+    s.table.add("time_s_" + which, "s", "time since crank angle zero, " + words, time);
+    s.table.add("crank_angle_rad_" + which, "rad", "crank angle, " + words, angle);
+    s.table.add(fmt::format("{}_{}", name, which), unit, fmt::format("{}, {}", name, words), y);
+    panel.curves.push_back({fraction, scaled(y, scale), style_of(c.of, false)});
+  }
+  chart.panels.push_back(std::move(panel));
+  finish(s, std::move(chart));
+  return s;
+}
+
+}  // namespace
+
+std::vector<Sheet> paper_sheets(const Material& m) {
+  std::vector<Sheet> sheets;
+  const Reproduction& r = m.computed;
+  const TrendSet& f = r.frequency;
+  const double f0 = r.options.frequency;
+  const FlappingCase off{rod_force, false, Condition::air}, on{rod_force, true, Condition::air},
+      empty{rod_force, false, Condition::vacuum}, bare{rod_force, false, Condition::wingless};
+  const auto by_condition = [](const TrendCurve& c) { return !c.of.springs; };
+  const auto by_springs = [](const TrendCurve& c) { return c.of.condition == Condition::air; };
+  const auto condition_style = [](const TrendCurve& c) { return std::optional(style_of(c.of, true)); };
+  const auto springs_style = [](const TrendCurve& c) { return std::optional(style_of(c.of, false)); };
+
+  const auto frequency_sheet = [&](int number, std::string what, bool conditions, std::string caption,
+                                   const std::vector<std::tuple<Metric, const char*, const char*>>& panels) {
+    Sheet s = sheet(number, std::move(what), conditions ? "conditions" : "springs");
+    TrendFigure figure(frequency_axis(r), 1.0, frequency_label);
+    figure.chart().key = conditions ? condition_key() : springs_key();
+    figure.chart().panel_height = panels.size() == 1 ? 1.9 : panels.size() == 2 ? 1.5 : 1.15;
+    for (const auto& [metric, label, title] : panels) {
+      if (conditions)
+        figure.panel(f, metric, label, title, by_condition, condition_style);
+      else
+        figure.panel(f, metric, label, title, by_springs, springs_style);
+    }
+    s.caption = std::move(caption);
+    figure.into(s);
+    sheets.push_back(std::move(s));
+  };
+  const auto value = [&](const FlappingCase& of, Metric metric) { return at(f, of, metric, f0); };
+  const auto three = [&](Metric metric) {
+    return fmt::format("At {:g} Hz: {} in air, {} in vacuum, {} without wings", f0, mw(value(off, metric)),
+                       mw(value(empty, metric)), mw(value(bare, metric)));
+  };
+  const auto two = [&](Metric metric) {
+    return fmt::format("At {:g} Hz: {} without springs, {} with them", f0, mw(value(off, metric)),
+                       mw(value(on, metric)));
+  };
+
+  frequency_sheet(
+      4, "Electrical input power in air, in vacuum and without wings", true,
+      three(Metric::power_electrical) +
+          " (rod-force, no springs). Most of the input is spent in the motor and the mechanism, even without air. "
+          "Virtual-work (thin) needs less in air and vacuum; without wings the formulations are the same. The paper's "
+          "curves are not available numerically.",
+      {{Metric::power_electrical, "electrical input power (mW)", ""}});
+  frequency_sheet(5, "Motor output power as a test bench estimates it (eq 17)", true,
+                  three(Metric::power_motor_reference) +
+                      ". The estimate is the bench's torque constant times current and speed, so that it contains the "
+                      "motor viscous loss: without wings it is not zero, although the motor output is.",
+                  {{Metric::power_motor_reference, "estimated motor output (mW)", ""}});
+  Sheet lift = sheet(6, "Mean lift against flapping frequency", "conditions");
+  {
+    TrendFigure figure(frequency_axis(r), 1.0, frequency_label);
+    figure.chart().key = {{"without springs", springs_off}, {"thin: virtual-work", plain_thin}};
+    figure.chart().panel_height = 1.9;
+    figure.panel(
+        f, Metric::lift_mean, "mean lift (mN)", "",
+        [](const TrendCurve& c) { return c.of.condition == Condition::air && !c.of.springs; }, springs_style);
+    const double a = at(f, off, Metric::lift_mean, 10.0), b = at(f, off, Metric::lift_mean, 20.0);
+    lift.caption = fmt::format(
+        "In air, without springs. From 10 to 20 Hz the mean lift grows {:.2f}-fold, more than the square of the "
+        "frequency ({:.0f}-fold): the wings pitch more at higher flapping velocity, which raises the lift coefficient. "
+        "{:.2f} mN at {:g} Hz.",
+        b / a, 4.0, 1e3 * value(off, Metric::lift_mean), f0);
+    figure.into(lift);
+    sheets.push_back(std::move(lift));
+  }
+  frequency_sheet(
+      7, "(a) Input power and total loss, (b) motor output and friction loss", true,
+      fmt::format(
+          "(a) In air the loss is {:.0f} % of the input at {:g} Hz; in vacuum and without wings all of it. (b) "
+          "Friction takes {} of {} motor output in air, {} of {} in vacuum: it follows the inertial load at stroke "
+          "reversal, which does not depend on air. The paper says that motor output minus friction equals the "
+          "aerodynamic power; ratio at {:g} Hz: {}. The difference by rod-force is its formulation residual.",
+          100.0 * value(off, Metric::power_loss) / value(off, Metric::power_electrical), f0,
+          mw(value(off, Metric::power_friction)), mw(value(off, Metric::power_motor)),
+          mw(value(empty, Metric::power_friction)), mw(value(empty, Metric::power_motor)), f0,
+          beside(m.assessment, "motor output minus friction")),
+      {{Metric::power_electrical, "power (mW)", "(a) electrical input"},
+       {Metric::power_loss, "power (mW)", "(a) total loss"},
+       {Metric::power_motor, "power (mW)", "(b) motor output"},
+       {Metric::power_friction, "power (mW)", "(b) friction loss"}});
+  frequency_sheet(
+      9, "Input and motor output power with and without springs", false,
+      two(Metric::power_electrical) +
+          fmt::format(
+              " (electrical, rod-force). Springs raise the input below a frequency and lower it above: {}. Ratio at "
+              "{:g} Hz: {}.",
+              beside(m.assessment, "springs raise"), f0, beside(m.assessment, "mean electrical input power, ratio")),
+      {{Metric::power_electrical, "power (mW)", "electrical input"},
+       {Metric::power_motor, "power (mW)", "motor output"}});
+  {
+    // The last frequency at which springs add.
+    const TrendCurve &with = curve_of(f, on), &without = curve_of(f, off);
+    const auto reactive = [](const TrendCurve& c, std::size_t n) { return c.metrics[n][Metric::power_reactive]; };
+    std::string said = fmt::format(" Frequency of its minimum with springs: {}.",
+                                   beside(m.assessment, "with springs the mean absolute reactive power"));
+    for (std::size_t n = f.axis.size(); n-- > 0;) {
+      if (!(reactive(with, n) > reactive(without, n))) continue;
+      said += fmt::format(" Up to {:.3g} Hz it is higher than without springs: the springs are too stiff there.",
+                          f.axis[n]);
+      break;
+    }
+    frequency_sheet(10, "Mean absolute reactive power with and without springs", false,
+                    two(Metric::power_reactive) + "." + said, {{Metric::power_reactive, "reactive power (mW)", ""}});
+  }
+  frequency_sheet(
+      11, "Losses with and without springs", false,
+      fmt::format(
+          "All losses at {:g} Hz: {} without springs, {} with. Friction falls from {} to {}, and the copper loss "
+          "from {} to {}: less friction torque needs less current. The motor viscous loss depends on speed alone and "
+          "is "
+          "almost unaffected by the springs.",
+          f0, mw(value(off, Metric::power_loss)), mw(value(on, Metric::power_loss)),
+          mw(value(off, Metric::power_friction)), mw(value(on, Metric::power_friction)),
+          mw(value(off, Metric::power_copper)), mw(value(on, Metric::power_copper))),
+      {{Metric::power_loss, "power (mW)", "all losses"},
+       {Metric::power_copper, "power (mW)", "copper"},
+       {Metric::power_friction, "power (mW)", "friction"},
+       {Metric::power_viscous, "power (mW)", "motor viscous loss"}});
+  frequency_sheet(
+      12, "Efficiency: (a) system, (b) motor and mechanism, with and without springs", false,
+      fmt::format(
+          "Frequency of maximum system efficiency with springs: {}. Of maximum mechanism efficiency: {}. Gain of the "
+          "system at {:g} Hz: {}. The motor efficiency is almost unaffected by the springs; at 3 V without springs: "
+          "{}.",
+          beside(m.assessment, "with springs the system"), beside(m.assessment, "with springs the mechanism"), f0,
+          beside(m.assessment, "gain in system efficiency"), beside(m.assessment, "motor efficiency in the flapper")),
+      {{Metric::efficiency_system, "efficiency (%)", "(a) system"},
+       {Metric::efficiency_motor, "efficiency (%)", "(b) motor"},
+       {Metric::efficiency_mechanism, "efficiency (%)", "(b) mechanism"}});
+  frequency_sheet(
+      13, "Mean lift with and without springs", false,
+      fmt::format("At prescribed frequency springs change the velocity profile, not the stroke amplitude: the wings "
+                  "are faster in "
+                  "mid-stroke. Ratio at {:g} Hz: {}.",
+                  f0, beside(m.assessment, fmt::format("mean lift, ratio with / without springs at {:g} Hz", f0))),
+      {{Metric::lift_mean, "mean lift (mN)", ""}});
+
+  using R = WaveformRow;
+  const auto cycles = [&](int number, bool held, double R::*quantity, double scale, const char* name, const char* unit,
+                          std::string label, const char* what, const std::string& said) {
+    Sheet s = cycle_sheet(number, held ? r.at_frequency : r.at_voltage, quantity, scale, name, unit, std::move(label),
+                          fmt::format("{} over a cycle at {}", what,
+                                      held ? fmt::format("{:g} Hz", f0) : fmt::format("{:g} V", r.options.voltage)));
+    s.caption = said;
+    sheets.push_back(std::move(s));
+  };
+  const std::string hz = fmt::format("{:g} Hz", f0), v = fmt::format("{:g} V", r.options.voltage);
+  const auto& j = m.assessment;
+  cycles(14, true, &R::flapping_velocity, 1.0, "flapping_velocity_rad_per_s", "rad/s", "flapping velocity (rad/s)",
+         "Flapping velocity",
+         fmt::format("With springs the velocity's peaks are higher at the same frequency: springs accelerate the wings "
+                     "after stroke reversal. Ratio of the peaks: {}.",
+                     beside(j, "peak flapping velocity, ratio with / without springs at " + hz)));
+  cycles(15, true, &R::lift, 1e3, "lift_n", "N", "lift (mN)", "Lift",
+         fmt::format("Two peaks, one for each half-stroke. Peak without springs: {}. With springs: {}.",
+                     beside(j, "peak lift without springs at " + hz), beside(j, "peak lift with springs at " + hz)));
+  cycles(16, true, &R::rod_force, 1e3, "rod_force_n", "N", "rod force (mN)", "Rod force",
+         fmt::format("Springs carry part of the inertial load at stroke reversal. The paper calls the rod force the "
+                     "crank reaction force. Peak magnitude without "
+                     "springs: {}. With springs: {}.",
+                     beside(j, "peak magnitude of the rod force without springs at " + hz),
+                     beside(j, "peak magnitude of the rod force with springs at " + hz)));
+  const auto frequency_at = [&](bool springs) {
+    const CycleCase* c = cycle_of(r.at_voltage, rod_force, springs);
+    return c ? c->run.metrics[Metric::frequency] : absent;
+  };
+  cycles(
+      17, false, &R::lift, 1e3, "lift_n", "N", "lift (mN)", "Lift",
+      fmt::format(
+          "At the same voltage the vehicle with springs also flaps faster, {:.2f} instead of {:.2f} Hz (rod-force; the "
+          "axis is scaled to each period). Mean lift, ratio with / without springs: {}.",
+          frequency_at(true), frequency_at(false), beside(j, "mean lift, ratio with / without springs at " + v)));
+  cycles(18, false, &R::flapping_velocity, 1.0, "flapping_velocity_rad_per_s", "rad/s", "flapping velocity (rad/s)",
+         "Flapping velocity",
+         fmt::format("Ratio of the peaks, with / without springs: {}.",
+                     beside(j, "peak flapping velocity, ratio with / without springs at " + v)));
+  cycles(19, false, &R::rod_force, 1e3, "rod_force_n", "N", "rod force (mN)", "Rod force",
+         fmt::format(
+             "The mean magnitude of the force falls although the wings beat faster, ratio with / without springs: {}.",
+             beside(j, "mean magnitude of the rod force, ratio with / without springs at " + v)));
+
+  return sheets;
+}
+
+}  // namespace wingbeat::reproduction

@@ -1,0 +1,28 @@
+// Pieces of the report's HTML.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "reproduction/sheet.hpp"
+
+namespace wingbeat::reproduction {
+
+std::string escaped(std::string_view text);
+
+/// What the report says before any figure: how many predictions are met, what is not, errors of the paper, equation
+/// (1).
+std::string summary_html(const Material& m);
+/// Parameters with where each one stands, and how S_2 and S_3 were calibrated.
+std::string parameters_html(const Material& m);
+/// Section 5 in both readings, and which of them the numbers support.
+std::string readings_html(const Material& m);
+/// The table of all statements.
+std::string claims_html(const Assessment& a);
+/// The title question.
+std::string question_html(const Material& m);
+
+/// The prediction of a friction law by a variant; nullptr where it was not asked for.
+const LawPrediction* law_of(const Assessment& a, FrictionLaw law, std::size_t variant);
+
+}  // namespace wingbeat::reproduction

@@ -1,0 +1,88 @@
+// The title question in figures: how the loss of each friction law depends on the force in the mechanism.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "reproduction/sheet.hpp"
+#include "wingbeat/report/report.hpp"
+#include "wingbeat/study/bench_fit.hpp"
+
+namespace wingbeat::reproduction {
+namespace {
+
+constexpr CurveStyle law_styles[] = {{"#000000", "(3,3)", 2},
+                                     {"#009e73", "(14,4,3,4)", 6},
+                                     {"#cc79a7", "(8,3)", 8},
+                                     {"#d55e00", "(12,6)", 4},
+                                     {"#0072b2", "1", 7}};
+
+std::string underscored(std::string text) {
+  for (char& c : text) c = c == '-' ? '_' : c;
+  return text;
+}
+
+}  // namespace
+
+std::vector<Sheet> friction_sheets(const Material& m) {
+  std::vector<Sheet> sheets;
+  if (m.assessment.laws.empty() || m.assessment.laws.front().loss.stiffness.empty()) return sheets;
+  Sheet s;
+  s.id = "friction-laws";
+  s.heading = fmt::format("Friction loss and input power as springs are added, {:g} Hz", m.computed.options.frequency);
+  s.section = "question";
+  Chart chart;
+  chart.x = "spring stiffness / stiffness for resonance (1)";
+  chart.panel_height = 1.35;
+  ChartPanel force, loss, input;
+  force.y = "mean |F| (mN)";
+  force.title = "mean magnitude of the rod force";
+  loss.y = "power (mW)";
+  loss.title = "friction loss";
+  input.y = "power (mW)";
+  input.title = "electrical input";
+  for (std::size_t n = 0; n < m.assessment.laws.size(); ++n) {
+    const LawPrediction& p = m.assessment.laws[n];
+    if (p.variant == recalibrated) continue;
+    const CurveStyle style = law_styles[n % std::size(compared_friction_laws)];
+    const bool first = p.law.formulation == Formulation::rod_force;
+    std::vector<double> x, f, l, e, f_si, l_si, e_si;
+    const double whole = p.loss.stiffness.back() / 1.5;
+    for (std::size_t k = 0; k < p.loss.stiffness.size(); ++k) {
+      const Metrics<double>& metrics = p.loss.metrics[k];
+      x.push_back(p.loss.stiffness[k] / whole);
+      f_si.push_back(metrics[Metric::rod_force_mean]);
+      l_si.push_back(metrics[Metric::power_friction]);
+      e_si.push_back(metrics[Metric::power_electrical]);
+      f.push_back(1e3 * f_si.back());
+      l.push_back(1e3 * l_si.back());
+      e.push_back(1e3 * e_si.back());
+    }
+    if (s.table.columns.empty()) {
+      s.table.add("spring_stiffness_nm_per_rad", "N m/rad", "stiffness of each hinge spring", p.loss.stiffness);
+    }
+    const std::string which =
+        fmt::format("{}_{}", underscored(law_name(p.law.law)), underscored(wingbeat::name_of(p.law.formulation)));
+    const std::string words = fmt::format("{} friction, {}", law_name(p.law.law), wingbeat::name_of(p.law.formulation));
+    s.table.add("rod_force_mean_n_" + which, "N", "mean magnitude of the rod force, " + words, f_si);
+    s.table.add("power_friction_w_" + which, "W", "mean friction loss, " + words, l_si);
+    s.table.add("power_electrical_w_" + which, "W", "mean electrical input power, " + words, e_si);
+    if (!first) continue;
+    chart.key.push_back({law_name(p.law.law), style});
+    force.curves.push_back({x, f, style});
+    loss.curves.push_back({x, l, style});
+    input.curves.push_back({x, e, style});
+  }
+  chart.panels = {force, loss, input};
+  s.caption =
+      "Each law was calibrated to the same operating point without springs (rod-force; virtual-work in the data). "
+      "Springs reduce the mean rod force at prescribed frequency, whatever the law, since the motion is almost the "
+      "same. "
+      "Only a loss that depends on the force falls with it. Viscous, quadratic and constant friction depend on the "
+      "speed "
+      "alone, whose mean does not change, and predict almost no saving of friction.";
+  s.draw = [chart](PlotFormat format, const std::filesystem::path& file) { reproduction::draw(chart, format, file); };
+  sheets.push_back(std::move(s));
+  return sheets;
+}
+
+}  // namespace wingbeat::reproduction

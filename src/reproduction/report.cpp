@@ -1,0 +1,225 @@
+// report.html: everything in one file that needs neither network nor script.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "reproduction/html.hpp"
+
+namespace wingbeat::reproduction {
+namespace {
+
+constexpr const char* style = R"(
+:root { --ink: #1a1a1a; --soft: #595959; --line: #d4d4d4; --accent: #00507c; }
+* { box-sizing: border-box; }
+body { margin: 0 auto; padding: 2rem 1.25rem 4rem; max-width: 68rem; color: var(--ink); background: #fff;
+  font: 16px/1.55 Georgia, "Times New Roman", serif; }
+h1 { font-size: 1.9rem; line-height: 1.2; margin: 0 0 .4rem; }
+h2 { font-size: 1.35rem; margin: 2.8rem 0 .6rem; padding-top: .6rem; border-top: 2px solid var(--accent); }
+h3 { font-size: 1.05rem; margin: 1.6rem 0 .4rem; }
+p, ul, ol { max-width: 46rem; }
+.lead { color: var(--soft); }
+nav ol { columns: 2; padding-left: 1.4rem; }
+a { color: var(--accent); }
+.figures { display: grid;
+  grid-template-columns: repeat(auto-fill, minmax(min(100%, 26rem), 1fr)); gap: 1.6rem 2rem; align-items: start; }
+figure { margin: 0; }
+figure svg { width: 100%; height: auto; display: block; border: 1px solid var(--line); }
+figcaption { font-size: .87rem; line-height: 1.45; margin-top: .45rem; }
+figcaption b { display: block; }
+.files { color: var(--soft); }
+.wide { overflow-x: auto; }
+table { border-collapse: collapse; font: .82rem/1.4 Arial, Helvetica, sans-serif; margin: .8rem 0 1.2rem; }
+th, td { text-align: left; vertical-align: top; padding: .28rem .6rem; border-bottom: 1px solid var(--line); }
+thead th { border-bottom: 2px solid var(--ink); }
+td:first-child { min-width: 13rem; }
+table.laws { font-size: .78rem; }
+table.laws td.n { white-space: normal; min-width: 5.2rem; }
+th.group { background: #eef3f6; padding-top: .5rem; }
+td.n { text-align: right; white-space: nowrap; }
+.v { white-space: nowrap; }
+.yes::before { content: "\25CF  "; color: #007a5a; }
+.no::before { content: "\25CB  "; color: #b03a00; }
+.part::before { content: "\25D0  "; color: #7a5c00; }
+.erratum { color: #a02c00; }
+table.claims { font-size: .76rem; }
+pre { background: #f5f5f5; border: 1px solid var(--line); padding: .7rem .9rem; overflow-x: auto; font-size: .85rem; line-height: 1.4; }
+code { font-size: .9em; }
+@media print { body { max-width: none; padding: 0; font-size: 10pt; } h2 { break-after: avoid; }
+  figure, tr { break-inside: avoid; }
+  .figures { grid-template-columns: 1fr 1fr; }
+  nav { display: none; }
+  .wide { overflow: visible; } table, table.laws { width: 100%; font-size: 6.6pt; }
+  th, td { padding: .2rem .3rem; } td:first-child { min-width: 9rem; }
+  td.n, table.laws td.n, .v { white-space: normal; min-width: 0; } pre { white-space: pre-wrap; } }
+)";
+
+void replace_all(std::string& text, std::string_view from, std::string_view to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
+}
+
+/// A drawing as part of the page: without prologue, with names of its own.
+std::string inlined(std::string svg, const std::string& id, const std::string& title) {
+  const auto begin = svg.find("<svg");
+  if (begin != std::string::npos) svg.erase(0, begin);
+  const std::string mark = id + "-";
+  for (const char quote : {'\'', '"'}) {
+    replace_all(svg, fmt::format(" id={}", quote), fmt::format(" id={}{}", quote, mark));
+    replace_all(svg, fmt::format("href={}#", quote), fmt::format("href={}#{}", quote, mark));
+  }
+  replace_all(svg, "url(#", fmt::format("url(#{}", mark));
+  replace_all(svg, "<title>Gnuplot</title>", fmt::format("<title>{}</title>", escaped(title)));
+  const auto desc = svg.find("<desc>"), end = svg.find("</desc>");
+  if (desc != std::string::npos && end != std::string::npos) svg.erase(desc, end + 7 - desc);
+  return svg;
+}
+
+}  // namespace
+
+std::string report_html(const Material& m, const std::vector<Sheet>& sheets, const std::string& version,
+                        const std::function<std::string(const Sheet&)>& svg_of) {
+  const Assessment& a = m.assessment;
+  std::string html;
+  auto out = std::back_inserter(html);
+  const auto figures = [&](const std::string& section) {
+    html += "<div class=\"figures\">\n";
+    for (const Sheet& s : sheets) {
+      if (s.section != section) continue;
+      fmt::format_to(out,
+                     "<figure id=\"{0}\">{1}<figcaption><b>{2}</b> {3} <span class=\"files\">Files: {0} .svg .pdf .csv "
+                     ".nc</span></figcaption></figure>\n",
+                     s.id, inlined(svg_of(s), s.id + "-drawing", s.heading), escaped(s.heading), escaped(s.caption));
+      if (!s.animation.empty()) {
+        fmt::format_to(out,
+                       "<figure>{}<figcaption><b>Animation.</b> One computed cycle, repeated: the crank speed "
+                       "is not constant. "
+                       "<span class=\"files\">File: {}-moving.svg</span></figcaption></figure>\n",
+                       inlined(s.animation, s.id + "-moving", s.heading), s.id);
+      }
+    }
+    html += "</div>\n";
+  };
+  const std::pair<const char*, const char*> sections[] = {{"summary", "Summary"},
+                                                          {"vehicle", "The vehicle"},
+                                                          {"conditions", "Air, vacuum, no wings (figures 4 to 7)"},
+                                                          {"springs", "With and without springs (figures 9 to 13)"},
+                                                          {"cycles", "Over a cycle (figures 14 to 19)"},
+                                                          {"section5", "Section 5 in two readings (figures 20 to 22)"},
+                                                          {"claims", "Reproducibility assessment"},
+                                                          {"question", "Should friction losses be included?"},
+                                                          {"energy", "Where the energy goes"},
+                                                          {"how", "How each number was computed"}};
+  const auto begin = [&](const char* id) {
+    for (std::size_t n = 0; n < std::size(sections); ++n) {
+      if (sections[n].first == std::string_view(id)) {
+        fmt::format_to(out, "<section>\n<h2 id=\"{}\">{}. {}</h2>\n", id, n + 1, sections[n].second);
+      }
+    }
+  };
+  const auto end = [&] { html += "</section>\n"; };
+
+  fmt::format_to(
+      out,
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\">\n"
+      "<title>The 2022 friction paper, reproduced</title>\n<link rel=\"icon\" "
+      "href=\"data:,\">\n<style>{}</style></head>\n<body>\n<header>\n"
+      "<h1>The 2022 friction paper: a reproducibility assessment</h1>\n<p class=\"lead\">{}. Made by wingbeat {} with "
+      "<code>wingbeat reproduce friction2022</code>{}.</p>\n</header>\n<nav><ol>\n",
+      style, escaped(m.file.source), version, m.computed.options.coarse ? ", coarse setting" : "");
+  for (const auto& [id, name] : sections) fmt::format_to(out, "<li><a href=\"#{}\">{}</a></li>\n", id, name);
+  html += "</ol></nav>\n<main>\n";
+
+  begin("summary");
+  html += summary_html(m);
+  end();
+
+  begin("vehicle");
+  html +=
+      "<p>A geared DC motor turns a crank; a rod moves a slider up and down its guide; the slider swings two wings about "
+      "fixed hinges. Springs in the hinges, where fitted, store energy at the ends of the stroke.</p>\n" +
+      parameters_html(m);
+  figures("vehicle");
+  end();
+  begin("conditions");
+  html +=
+      "<p>The frequency is held by the voltage. Thick curves with marks are rod-force, the paper's formulation; thin "
+      "curves without marks of the same colour and dash are virtual-work. Without springs.</p>\n";
+  figures("conditions");
+  end();
+  begin("springs");
+  html +=
+      "<p>In air, at prescribed frequency. Springs raise the input power where they are too stiff for the frequency, and "
+      "lower it near resonance.</p>\n";
+  figures("springs");
+  end();
+  begin("cycles");
+  fmt::format_to(
+      out,
+      "<p>Each cycle begins at crank angle zero, the slider in mid-stroke and rising. First at the same frequency, "
+      "{:g} Hz, which the springs reach at a lower voltage; then at the same voltage, {:g} V, at which the vehicle with "
+      "springs flaps faster.</p>\n",
+      m.computed.options.frequency, m.computed.options.voltage);
+  figures("cycles");
+  end();
+  begin("section5");
+  html += readings_html(m);
+  figures("section5");
+  end();
+  begin("claims");
+  fmt::format_to(out,
+                 "<p>The deviation is computed over published minus 1. A number is met within {:g} %, the same for every "
+                 "statement; a bound (\"below\", \"above\") where it holds. ● met in both formulations, ◐ in one, ○ in "
+                 "neither; the outcome compares rod-force and virtual-work with the same chord moments, the third column "
+                 "has those calibrated for virtual-work. Also as claims.csv and claims.json.</p>\n",
+                 100.0 * m.file.tolerance);
+  html += claims_html(a);
+  end();
+  begin("question");
+  html += question_html(m);
+  figures("question");
+  end();
+  begin("energy");
+  html +=
+      "<p>What the supply delivers over a cycle leaves as copper loss, motor viscous loss, friction and aerodynamic power "
+      "- and, with the paper's equation (1) as printed, as a formulation residual that no part of the vehicle receives. "
+      "The sums close to the solver's accuracy.</p>\n";
+  figures("energy");
+  end();
+  begin("how");
+  html +=
+      R"(<p>Each result: the steady cycle is a periodic orbit in crank angle, found to a relative tolerance of 1e-7 or
+better; peaks and crossings of the table are searched for on the orbits themselves, not read off the curves,
+so that they do not depend on the number of points drawn. The commands below run in a checkout, where
+<code>scripts/test</code> or <code>scripts/demo</code> has built the program.</p>
+<h3>This report</h3>
+<pre>build/release/wingbeat reproduce friction2022 -o out/friction2022</pre>
+<h3>One point of figures 4 to 13</h3>
+<pre>build/release/wingbeat run data/designs/friction2022.toml --frequency "22 Hz" --condition vacuum
+build/release/wingbeat run data/designs/friction2022-springs.toml --frequency "22 Hz"
+build/release/wingbeat run data/designs/friction2022.toml --frequency "22 Hz" --set transmission.formulation=virtual-work</pre>
+<h3>The cycles of figures 14 to 19</h3>
+<pre>build/release/wingbeat run data/designs/friction2022-springs.toml --frequency "22 Hz" --waveforms cycle.csv
+build/release/wingbeat run data/designs/friction2022-springs.toml --voltage "3 V" --plot cycle.svg</pre>
+<h3>The curves of figures 20 to 22, as data sets of their own</h3>
+<pre>build/release/wingbeat sweep data/studies/trend-crank-fixed-hinge.toml -o crank.nc
+build/release/wingbeat sweep data/studies/trend-rod.toml -o rod.nc
+build/release/wingbeat sweep data/studies/trend-voltage.toml -o voltage.nc</pre>
+<h3>The published values alone</h3>
+<pre>build/release/wingbeat compare data/published/friction2022.toml</pre>
+<h3>A friction law</h3>
+<pre>build/release/wingbeat run data/designs/friction2022-springs.toml --frequency "22 Hz" --set friction.type=constant )";
+  const LawPrediction* constant = law_of(a, FrictionLaw::constant, 0);
+  fmt::format_to(out, "--set friction.torque=\"{:.6g} N m\"</pre>\n", constant ? constant->law.coefficient : 7e-4);
+  html +=
+      "<p>Published values, the tolerance and where they stand: <code>data/published/friction2022.toml</code>. The "
+      "vehicles: "
+      "<code>data/designs/friction2022.toml</code> and <code>friction2022-springs.toml</code>. Both are carried in the "
+      "program itself.</p>\n";
+  end();
+  html += "</main>\n</body></html>\n";
+  return html;
+}
+
+}  // namespace wingbeat::reproduction

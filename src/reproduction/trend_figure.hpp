@@ -1,0 +1,218 @@
+// What the figures along an axis share: styles, columns, panels.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "reproduction/sheet.hpp"
+#include "wingbeat/report/report.hpp"
+
+namespace wingbeat::reproduction {
+
+using enum Formulation;
+
+// Colours of Okabe and Ito.
+inline constexpr CurveStyle springs_on{"#0072b2", "1", 7};
+inline constexpr CurveStyle springs_off{"#d55e00", "(12,6)", 4};
+inline constexpr CurveStyle wingless{"#000000", "(3,3)", 8};
+inline constexpr CurveStyle vacuum{"#009e73", "(14,4,3,4)", 6};
+inline constexpr CurveStyle air{"#0072b2", "1", 7};
+inline constexpr CurveStyle plain_thin{"#606060", "1", 0, 0.55};
+inline constexpr CurveStyle radii[] = {
+    {"#d55e00", "(12,6)", 4}, {"#0072b2", "1", 7}, {"#009e73", "(14,4,3,4)", 6}, {"#000000", "(3,3)", 8}};
+
+inline const char* springs_name(bool springs) { return springs ? "springs_on" : "springs_off"; }
+
+inline std::string underscored(std::string text) {
+  std::replace(text.begin(), text.end(), '-', '_');
+  return text;
+}
+
+inline std::vector<double> scaled(const std::vector<double>& x, double factor) {
+  std::vector<double> y;
+  for (const double v : x) y.push_back(factor * v);
+  return y;
+}
+
+inline std::vector<double> column(const TrendCurve& curve, Metric metric) {
+  std::vector<double> y;
+  for (const Metrics<double>& m : curve.metrics) y.push_back(m[metric]);
+  return y;
+}
+
+inline double scale_of(Metric metric) {
+  const std::string_view unit = metric_info(metric).unit;
+  return unit == "1" ? 100.0 : 1e3;  // per cent, mW and mN
+}
+
+inline Sheet sheet(int number, std::string what, std::string section) {
+  Sheet s;
+  s.id = fmt::format("figure-{:02}", number);
+  s.heading = fmt::format("Figure {}. {}", number, what);
+  s.section = std::move(section);
+  return s;
+}
+
+inline void finish(Sheet& s, Chart chart) {
+  s.draw = [chart = std::move(chart)](PlotFormat format, const std::filesystem::path& file) {
+    reproduction::draw(chart, format, file);
+  };
+}
+
+inline CurveStyle style_of(const FlappingCase& of, bool by_condition) {
+  CurveStyle style = by_condition ? of.condition == Condition::air      ? air
+                                    : of.condition == Condition::vacuum ? vacuum
+                                                                        : wingless
+                     : of.springs ? springs_on
+                                  : springs_off;
+  return of.formulation == rod_force ? style : thin(style);
+}
+
+inline std::vector<ChartKey> springs_key() {
+  return {{"with springs", springs_on}, {"without springs", springs_off}, {"thin: virtual-work", plain_thin}};
+}
+
+inline std::vector<ChartKey> condition_key() {
+  return {{"air", air}, {"vacuum", vacuum}, {"without wings", wingless}, {"thin: virtual-work", plain_thin}};
+}
+
+/// A figure of metrics along an axis, one panel for each metric.
+class TrendFigure {
+ public:
+  TrendFigure(const TableColumn& axis, double scale, std::string label) : scale_(scale) {
+    table_.add(axis.name, axis.unit, axis.long_name, axis.values);
+    chart_.x = std::move(label);
+  }
+
+  /// Draws and tabulates one metric of the curves that `wanted` lets pass; `tag` tells columns of several sets apart.
+  template <class Wanted, class Style>
+  void panel(const TrendSet& set, Metric metric, std::string label, std::string title, const Wanted& wanted,
+             const Style& style, const std::string& tag = "") {
+    const MetricInfo& info = metric_info(metric);
+    ChartPanel panel;
+    panel.y = std::move(label);
+    panel.title = std::move(title);
+    for (const TrendCurve& curve : set.curves) {
+      if (!wanted(curve)) continue;
+      const std::vector<double> y = column(curve, metric);
+      const std::optional<CurveStyle> drawn = style(curve);
+      if (drawn) draw_curve(panel, set, curve, scaled(y, scale_of(metric)), *drawn);
+      std::string name = fmt::format("{}_{}", condition_of(curve), springs_name(curve.of.springs));
+      std::string meaning =
+          fmt::format("{}, {}", condition_of(curve), curve.of.springs ? "with springs" : "without springs");
+      if (std::isfinite(curve.crank_radius)) {
+        name += fmt::format("_crank_{:g}_mm", 1e3 * curve.crank_radius);
+        meaning += fmt::format(", crank radius {:g} mm", 1e3 * curve.crank_radius);
+      }
+      if (!tag.empty()) {
+        name += fmt::format("_{}", underscored(tag));
+        meaning += ", " + tag;
+        std::replace(name.begin(), name.end(), ' ', '_');
+      }
+      if (curve.of.condition != Condition::wingless) {
+        name += fmt::format("_{}", underscored(wingbeat::name_of(curve.of.formulation)));
+        meaning += fmt::format(", {}", wingbeat::name_of(curve.of.formulation));
+      }
+      tabulate(fmt::format("{}_{}", info.key, name), info.unit, fmt::format("{}, {}", info.long_name, meaning), y);
+      std::vector<double> domain;
+      for (std::size_t n = 0; n < y.size(); ++n) {
+        const bool flaps = std::isfinite(curve.metrics[n][Metric::power_electrical]);
+        domain.push_back(flaps ? double(curve.domain[n].to_ulong()) : absent);
+      }
+      tabulate("domain_" + name, "1", fmt::format("limits of the domain that are exceeded ({}), {}", bits(), meaning),
+               domain);
+    }
+    chart_.panels.push_back(std::move(panel));
+  }
+
+  Chart& chart() { return chart_; }
+  void into(Sheet& s) {
+    s.table = table_;
+    finish(s, chart_);
+  }
+
+ private:
+  /// A point outside the domain is drawn as a grey dotted line in place of the curve, so that it is seen not to count.
+  void draw_curve(ChartPanel& panel, const TrendSet& set, const TrendCurve& curve, const std::vector<double>& y,
+                  const CurveStyle& style) {
+    std::vector<double> inside = y, outside(y.size(), absent);
+    bool left = false;
+    for (std::size_t n = 0; n < y.size(); ++n) {
+      if (!std::isfinite(y[n]) || curve.domain[n].none()) continue;
+      outside[n] = y[n];
+      if (n > 0 && curve.domain[n - 1].none()) outside[n - 1] = y[n - 1];
+      if (n + 1 < y.size() && curve.domain[n + 1].none()) outside[n + 1] = y[n + 1];
+      inside[n] = absent;
+      left = true;
+    }
+    const std::vector<double> x = scaled(set.axis, scale_);
+    panel.curves.push_back({x, std::move(inside), style});
+    if (!left) return;
+    CurveStyle grey = style;
+    grey.colour = "#909090";
+    grey.dash = "(2,3)";
+    grey.mark = 0;
+    panel.curves.push_back({x, std::move(outside), grey});
+    if (!outside_) chart_.key.push_back({"outside the domain", {"#909090", "(2,3)", 0, style.weight}});
+    outside_ = true;
+  }
+
+  void tabulate(const std::string& name, const std::string& unit, const std::string& meaning, std::vector<double> y) {
+    const auto known = [&](const TableColumn& c) { return c.name == name; };
+    if (std::none_of(table_.columns.begin(), table_.columns.end(), known)) {
+      table_.add(name, unit, meaning, std::move(y));
+    }
+  }
+  static std::string bits() {
+    std::string text;
+    for (std::size_t n = 0; n < std::size_t(domain_limit_count); ++n) {
+      text += fmt::format("{}{} {}", n == 0 ? "sum of " : ", ", 1UL << n, domain_limit_table()[n].key);
+    }
+    return text;
+  }
+  static const char* condition_of(const TrendCurve& curve) { return wingbeat::name_of(curve.of.condition); }
+  double scale_;
+  bool outside_ = false;
+  Chart chart_;
+  Table table_;
+};
+
+inline const TrendCurve& curve_of(const TrendSet& set, const FlappingCase& of, double radius = absent) {
+  for (const TrendCurve& c : set.curves) {
+    if (c.of == of && (!std::isfinite(radius) || c.crank_radius == radius)) return c;
+  }
+  throw std::runtime_error("a curve is missing");
+}
+
+/// A metric at the place of an axis nearest to x.
+inline double at(const TrendSet& set, const FlappingCase& of, Metric metric, double x) {
+  std::size_t best = 0;
+  for (std::size_t n = 0; n < set.axis.size(); ++n) {
+    if (std::abs(set.axis[n] - x) < std::abs(set.axis[best] - x)) best = n;
+  }
+  return curve_of(set, of).metrics[best][metric];
+}
+
+inline TableColumn frequency_axis(const Reproduction& r) {
+  return {"frequency_hz", "Hz", "flapping frequency", r.frequency.axis};
+}
+inline constexpr const char* frequency_label = "flapping frequency (Hz)";
+
+inline std::string mw(double watt) { return fmt::format("{:.0f} mW", 1e3 * watt); }
+
+/// "published 1.142; rod-force 1.144, virtual-work 1.129: reproduced" for the statement of that beginning.
+inline std::string beside(const Assessment& a, const std::string& beginning) {
+  for (const Claim& c : a.claims) {
+    if (c.statement.rfind(beginning, 0) != 0) continue;
+    const std::string published = c.published_text == "-" ? "" : fmt::format("published {}; ", c.published_text);
+    return published +
+           fmt::format("rod-force {}, virtual-work {}: {}", c.ours_text[0], c.ours_text[1], outcome_text(c));
+  }
+  return "not available numerically";
+}
+
+}  // namespace wingbeat::reproduction

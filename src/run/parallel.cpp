@@ -1,0 +1,16 @@
+#include "wingbeat/run/parallel.hpp"
+
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <optional>
+
+namespace wingbeat {
+
+void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& act, int threads) {
+  std::optional<tbb::global_control> limit;
+  if (threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
+  tbb::parallel_for(std::size_t(0), count, act);
+}
+
+}  // namespace wingbeat
