@@ -1,4 +1,4 @@
-// What every src/lane_blocks_*.cpp compiles for its instruction set.
+// What every src/ensemble/instruction_sets/lane_blocks_*.cpp compiles for its instruction set.
 #pragma once
 
 #include <type_traits>
