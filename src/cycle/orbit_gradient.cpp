@@ -42,11 +42,11 @@ class Repetition {
     starts_.reserve(lap_.steps.size());
     for (std::size_t at = 0; at < lap_.steps.size(); ++at) {
       const auto& step = lap_.steps[at];
-      solve::carry_over<true>(jets_, lap_.steps, at, y, &totals_);
+      solver::carry_over<true>(jets_, lap_.steps, at, y, &totals_);
       starts_.push_back(y);
-      const auto signs = solve::signs_of<Jets>(step);
+      const auto signs = solver::signs_of<Jets>(step);
       const auto first = jets_.template rates<true>(J(step.x), y, signs);
-      const auto result = solve::take_step<true>(lap_.method, jets_, J(step.x), y, J(step.h), signs, first);
+      const auto result = solver::take_step<true>(lap_.method, jets_, J(step.x), y, J(step.h), signs, first);
       for (std::size_t q = 0; q < totals_.size(); ++q) totals_[q] += result.dq[q];
       y = result.y;
     }
@@ -59,7 +59,7 @@ class Repetition {
         }
         change[row] = y[row].v[k];
       }
-      if (!solve::solve_linear(N, matrix, change)) return false;
+      if (!solver::solve_linear(N, matrix, change)) return false;
       for (int row = 0; row < N; ++row) start_change_[row][k] = change[row];
     }
     return true;
@@ -88,7 +88,7 @@ class Repetition {
     for (const Extreme e : System::extremes) {
       const auto c = std::size_t(e);
       const JetState y = state_at(places[c].step, places[c].x);
-      const auto signs = solve::signs_of<Jets>(lap_.steps[places[c].step]);
+      const auto signs = solver::signs_of<Jets>(lap_.steps[places[c].step]);
       const Motion<J> m = jets_.motion(J(places[c].x), y, signs);
       peaks[c] = total(jets_.candidates(m, y, signs)[c]);
     }
@@ -99,7 +99,7 @@ class Repetition {
     std::size_t n = lap_.steps.size() - 1;
     while (n > 0 && lap_.steps[n].x > theta) --n;
     const JetState y = state_at(n, theta);
-    const auto signs = solve::signs_of<Jets>(lap_.steps[n]);
+    const auto signs = solver::signs_of<Jets>(lap_.steps[n]);
     const Motion<J> m = jets_.motion(J(theta), y, signs);
     const Branch<J> branch = Jets::branch(signs);
     const J stroke_speed = branch.stroke * m.stroke_velocity;
@@ -124,9 +124,9 @@ class Repetition {
   JetState state_at(std::size_t step, double x) const {
     const auto& s = lap_.steps[step];
     if (x == s.x) return starts_[step];
-    const auto signs = solve::signs_of<Jets>(s);
+    const auto signs = solver::signs_of<Jets>(s);
     const auto first = jets_.template rates<false>(J(s.x), starts_[step], signs);
-    return solve::take_step<false>(lap_.method, jets_, J(s.x), starts_[step], J(x - s.x), signs, first).y;
+    return solver::take_step<false>(lap_.method, jets_, J(s.x), starts_[step], J(x - s.x), signs, first).y;
   }
 
   /// The state with its derivative along the solution.
@@ -151,11 +151,11 @@ class Repetition {
       for (std::size_t k = before.signs.size(); k-- > 0;) {
         if (before.signs[k] == after.signs[k]) continue;
         flipped = k;
-        stays = stays || k >= switches || solve::jumps(system_, k);
+        stays = stays || k >= switches || solver::jumps(system_, k);
       }
       if (flipped == switches || stays) continue;
       const auto rates = along_.template rates<false>(Jet<1>(after.x, 0), moving(after.y, after.first.dy),
-                                                      solve::signs_of<Along>(after));
+                                                      solver::signs_of<Along>(after));
       const Jet<1> which = rates.switches[flipped];
       const double move = -which.a / which.v[0];
       if (!(std::abs(move) < 0.25 * std::min(before.h, after.h))) continue;
@@ -187,7 +187,7 @@ class Repetition {
         const double t = double(k) / pieces;
         Sample sample{step.x + t * step.h, {}};
         const State y = k == 0 ? step.y
-                               : solve::detail::hermite<System>(step.y, step.first.dy, y1, dy1, step.h, t);
+                               : solver::detail::hermite<System>(step.y, step.first.dy, y1, dy1, step.h, t);
         sample.value = candidates(n, sample.x, y);
         for (const Extreme e : System::extremes) {
           const auto c = std::size_t(e);
@@ -218,7 +218,7 @@ class Repetition {
         for (int iteration = 0; iteration < 60; ++iteration) {
           const double previous = x;
           x = b.d0 - b.d1 > 0.0 ? b.x0 + (b.x1 - b.x0) * b.d0 / (b.d0 - b.d1) : 0.5 * (b.x0 + b.x1);
-          const auto inside = solve::evaluate_inside<false>(system_, lap_, step, x);
+          const auto inside = solver::evaluate_inside<false>(system_, lap_, step, x);
           const Jet<1> at = candidates(b.step, x, inside.y)[c];
           value = at.a;
           if (std::abs(x - previous) < 1e-11 || at.v[0] == 0.0) break;
@@ -242,13 +242,13 @@ class Repetition {
   }
 
   CycleExtremes<Jet<1>> candidates(std::size_t n, double x, const State& y) const {
-    const auto signs = solve::signs_of<Along>(lap_.steps[n]);
+    const auto signs = solver::signs_of<Along>(lap_.steps[n]);
     const auto state = moving(y, system_.template rates<false>(x, y, lap_.steps[n].signs).dy);
     return along_.candidates(along_.motion(Jet<1>(x, 0), state, signs), state, signs);
   }
 
   System system_;
-  solve::Lap<System> lap_;
+  solver::Lap<System> lap_;
   Jets jets_;
   Along along_ = system_.template cast<Jet<1>>();
   CycleIntegrals<J> totals_;

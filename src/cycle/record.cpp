@@ -7,10 +7,10 @@ namespace {
 
 /// `pace` receives d theta / dt [rad/s].
 template <class Recorded>
-WaveformRow row_inside(const Recorded& recorded, const solve::Step<decltype(Recorded::system)>& step, double start_time,
+WaveformRow row_inside(const Recorded& recorded, const solver::Step<decltype(Recorded::system)>& step, double start_time,
                        double theta, double& pace) {
   const auto& system = recorded.system;
-  const auto result = solve::evaluate_inside<true>(system, recorded.lap, step, theta);
+  const auto result = solver::evaluate_inside<true>(system, recorded.lap, step, theta);
   const Motion<double> m = system.motion(theta, result.y, step.signs);
   pace = system.pace(result.y);
   return waveform_row(system.vehicle, m, start_time + result.dq[std::size_t(Integral::time)],
@@ -69,7 +69,7 @@ WaveformRow CycleRecord::at(double theta) const {
   return std::visit(
       [&](const auto& recorded) {
         double time = 0.0;
-        const auto& step = solve::step_at(recorded.lap, theta);
+        const auto& step = solver::step_at(recorded.lap, theta);
         for (const auto* before = recorded.lap.steps.data(); before != &step; ++before) {
           time += before->dq[std::size_t(Integral::time)];
         }

@@ -134,7 +134,7 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
   if (statics.can_jam()) {
     result.status = FlappingStatus::jammed;
     result.detail = jam_detail(statics);
-  } else if (result.summary.status == solve::PeriodicStatus::converged) {
+  } else if (result.summary.status == solver::PeriodicStatus::converged) {
     result.status = FlappingStatus::undecided;
     result.detail = format("the only orbit found, at %.4g Hz, is unstable (Floquet multiplier %.4g), and nobody says what "
                            "start-up does", orbit.frequency(), orbit.multiplier());

@@ -58,7 +58,7 @@ Plan plan_for(const EnsembleOptions& options) {
   // of peaks little more than it; a sweep gains about two digits.
   const double digits = -std::log10(options.tolerance);
   const bool peaks = std::any_of(s.wanted.begin(), s.wanted.end(), [](bool on) { return on; });
-  const auto even = [](double x) { return std::clamp(2 * int(std::ceil(0.5 * x)), 6, solve::most_collocation_intervals); };
+  const auto even = [](double x) { return std::clamp(2 * int(std::ceil(0.5 * x)), 6, solver::most_collocation_intervals); };
   want(Quantity::velocity, velocity || options.domain);
   s.velocity_aside = options.domain && !velocity;
   s.segments = digits > 5.0 ? 8 : 6;
@@ -74,7 +74,7 @@ Plan plan_for(const EnsembleOptions& options) {
     ++finer.sweeps;
     finer.segments = std::min(finer.segments + 2, most_half_segments);
     again = finer;
-    finer.intervals = std::min(finer.intervals + 2, solve::most_collocation_intervals);
+    finer.intervals = std::min(finer.intervals + 2, solver::most_collocation_intervals);
   }
   plan.from_rest = s;
   plan.from_rest.approach = LaneApproach::from_rest;

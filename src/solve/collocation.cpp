@@ -5,7 +5,7 @@
 
 #include "wingbeat/core/math.hpp"
 
-namespace wingbeat::solve {
+namespace wingbeat::solver {
 namespace {
 
 /// Legendre polynomials 0 .. n + 1 at t, and their derivatives.
@@ -70,4 +70,4 @@ const CollocationRule& collocation_rule(int intervals) {
   return rules[std::size_t(intervals / 2 - 1)];
 }
 
-}  // namespace wingbeat::solve
+}  // namespace wingbeat::solver

@@ -7,7 +7,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-namespace wingbeat::solve {
+namespace wingbeat::solver {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -56,4 +56,4 @@ double spectral_radius(int n, const double* matrix) {
   return A.eigenvalues().cwiseAbs().maxCoeff();
 }
 
-}  // namespace wingbeat::solve
+}  // namespace wingbeat::solver

@@ -7,7 +7,7 @@
 
 #include "wingbeat/solve/implicit_step.hpp"
 
-namespace wingbeat::solve {
+namespace wingbeat::solver {
 namespace {
 
 constexpr int s = RadauTableau::stages;
@@ -78,4 +78,4 @@ const RadauTableau& radau_tableau() {
   return tableau;
 }
 
-}  // namespace wingbeat::solve
+}  // namespace wingbeat::solver

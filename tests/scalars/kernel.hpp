@@ -65,7 +65,7 @@ std::array<S, step_size> crank_step(const Vehicle<S>& v, const S& theta, const s
   std::array<S, step_size> out;
   const auto take = [&](const auto& system, const auto& start) {
     const auto first = system.template rates<true>(theta, start, signs);
-    const auto result = solve::explicit_step<true>(system, theta, start, h, signs, first);
+    const auto result = solver::explicit_step<true>(system, theta, start, h, signs, first);
     out[1] = S(0.0);
     for (std::size_t n = 0; n < start.size(); ++n) out[n] = result.y[n];
     for (std::size_t n = 0; n < result.dq.size(); ++n) out[2 + n] = result.dq[n];

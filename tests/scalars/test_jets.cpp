@@ -129,7 +129,7 @@ struct StepOf {
     if (!implicit) return crank_step<S>(in.vehicle, in.theta, state, S(0.3), signs);
     const CrankSystem<S, 2> system{in.vehicle, S(0.0), S(1.0)};
     const auto first = system.template rates<true>(in.theta, state, signs);
-    const auto result = solve::implicit_step<true>(system, in.theta, state, S(0.3), signs, first);
+    const auto result = solver::implicit_step<true>(system, in.theta, state, S(0.3), signs, first);
     EXPECT_TRUE(result.admissible);
     std::array<S, step_size> out;
     out[0] = result.y[0];

@@ -9,7 +9,7 @@
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/solve/lap.hpp"
 
-namespace wingbeat::solve {
+namespace wingbeat::solver {
 
 /// What a test system needs besides its rates; members are hidden by those of the system where they differ.
 template <class S, std::size_t states, std::size_t integrals = 1, std::size_t switch_count = 1>
@@ -230,4 +230,4 @@ struct FixedNodeSystem : TestSystem<S, 1> {
   }
 };
 
-}  // namespace wingbeat::solve
+}  // namespace wingbeat::solver

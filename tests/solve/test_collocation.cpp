@@ -5,7 +5,7 @@
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/solve/collocation.hpp"
 
-namespace wingbeat::solve {
+namespace wingbeat::solver {
 namespace {
 
 class Collocation : public testing::TestWithParam<int> {};
@@ -76,4 +76,4 @@ INSTANTIATE_TEST_SUITE_P(Each, Collocation, testing::Values(2, 4, 6, 8, 10, 12, 
                          [](const auto& intervals) { return std::to_string(intervals.param); });
 
 }  // namespace
-}  // namespace wingbeat::solve
+}  // namespace wingbeat::solver

@@ -6,7 +6,7 @@
 #include "solve/oscillators.hpp"
 #include "wingbeat/solve/floquet.hpp"
 
-namespace wingbeat::solve {
+namespace wingbeat::solver {
 namespace {
 
 TEST(Floquet, ProductsNeitherOverflowNorUnderflow) {
@@ -58,4 +58,4 @@ TEST(Floquet, StepsBeyondStabilityDoNotGrow) {
 }
 
 }  // namespace
-}  // namespace wingbeat::solve
+}  // namespace wingbeat::solver

@@ -6,7 +6,7 @@
 #include "solve/oscillators.hpp"
 #include "wingbeat/solve/periodic.hpp"
 
-namespace wingbeat::solve {
+namespace wingbeat::solver {
 namespace {
 
 /// The undamped bilinear oscillator from x = 0, v = 1: half periods pi / sqrt(k) of sines.
@@ -261,4 +261,4 @@ TEST(Lap, MonodromyOfTheLinearOscillatorIsItsMatrixExponential) {
 }
 
 }  // namespace
-}  // namespace wingbeat::solve
+}  // namespace wingbeat::solver

@@ -7,7 +7,7 @@
 
 #include "wingbeat/solve/linear.hpp"
 
-namespace wingbeat::solve {
+namespace wingbeat::solver {
 namespace {
 
 TEST(Linear, SolvesOneAndTwoUnknowns) {
@@ -89,4 +89,4 @@ TEST(Linear, SpectralRadius) {
 }
 
 }  // namespace
-}  // namespace wingbeat::solve
+}  // namespace wingbeat::solver

@@ -6,7 +6,7 @@
 #include "solve/oscillators.hpp"
 #include "wingbeat/solve/periodic.hpp"
 
-namespace wingbeat::solve {
+namespace wingbeat::solver {
 namespace {
 
 template <class System>
@@ -225,4 +225,4 @@ TEST(Periodic, UnstableOscillatorDoesNotPassForAnOrbit) {
 }
 
 }  // namespace
-}  // namespace wingbeat::solve
+}  // namespace wingbeat::solver

@@ -5,7 +5,7 @@
 
 #include "solve/oscillators.hpp"
 
-namespace wingbeat::solve {
+namespace wingbeat::solver {
 namespace {
 
 TEST(Dop853, RowsSumToTheirNodes) {
@@ -207,4 +207,4 @@ TEST(Steps, StepOutOfTheAdmissibleRegionSaysSo) {
 }
 
 }  // namespace
-}  // namespace wingbeat::solve
+}  // namespace wingbeat::solver

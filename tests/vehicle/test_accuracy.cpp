@@ -117,12 +117,12 @@ TEST(Accuracy, MultipliersAreTheContractionOfLaps) {
     if (multiplier < 0.3) continue;
     // The other multiplier is far smaller: after one lap its part has gone.
     const CrankSystem<double, 2> system{v, 1e-4 * no_load_speed(v), v.voltage / circuit_resistance(v)};
-    solve::Lap<CrankSystem<double, 2>> lap;
+    solver::Lap<CrankSystem<double, 2>> lap;
     std::array<double, 2> y = {orbit.crank_speed * (1.0 + 1e-4), orbit.current};
     double apart[4];
     for (double& distance : apart) {
-      solve::run_lap<false>(system, y, {.tolerance = 1e-13, .max_steps = 5000}, lap);
-      ASSERT_EQ(lap.status, solve::LapStatus::complete);
+      solver::run_lap<false>(system, y, {.tolerance = 1e-13, .max_steps = 5000}, lap);
+      ASSERT_EQ(lap.status, solver::LapStatus::complete);
       y = lap.end;
       distance = y[0] - orbit.crank_speed;
     }

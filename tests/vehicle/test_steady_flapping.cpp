@@ -90,8 +90,8 @@ TEST(SteadyFlapping, FloquetMultiplierIsThatOfTheLapMapByDifferences) {
   const Vehicle<double> vehicle = reference_vehicle(true);
   const SteadyFlapping found = find_steady_flapping(vehicle, {.tolerance = tightest});
   CrankSystem<double, 2> system{vehicle, 1e-3, 1.0 / 3.0};
-  solve::Lap<CrankSystem<double, 2>> lap;
-  solve::LapOptions options{.tolerance = 1e-13};
+  solver::Lap<CrankSystem<double, 2>> lap;
+  solver::LapOptions options{.tolerance = 1e-13};
   // The lap map's derivative by central differences; its eigenvalues are a complex pair here.
   double matrix[4];
   const double size[2] = {1e-4 * found.crank_speed, 1e-4 * found.current};
@@ -100,14 +100,14 @@ TEST(SteadyFlapping, FloquetMultiplierIsThatOfTheLapMapByDifferences) {
     for (const int side : {0, 1}) {
       std::array<double, 2> y = {found.crank_speed, found.current};
       y[column] += (side == 0 ? -1.0 : 1.0) * size[column];
-      solve::run_lap<false>(system, y, options, lap);
+      solver::run_lap<false>(system, y, options, lap);
       ends[side] = lap.end;
     }
     for (std::size_t row = 0; row < 2; ++row) {
       matrix[2 * row + column] = (ends[1][row] - ends[0][row]) / (2.0 * size[column]);
     }
   }
-  EXPECT_NEAR(solve::spectral_radius(2, matrix) / found.metrics[Metric::floquet_multiplier_max], 1.0, 1e-4);
+  EXPECT_NEAR(solver::spectral_radius(2, matrix) / found.metrics[Metric::floquet_multiplier_max], 1.0, 1e-4);
 }
 
 TEST(SteadyFlapping, WinglessSpeedIsTheClosedForm) {

@@ -45,8 +45,8 @@ struct CrankSystem {
   static double period() { return two_pi; }
 
   /// beta' changes sign where dy/dtheta = 0: at the dead centres.
-  static const std::array<solve::FixedNode, 2>& fixed_nodes() {
-    static constexpr std::array<solve::FixedNode, 2> nodes = {{{0.5 * pi, stroke}, {1.5 * pi, stroke}}};
+  static const std::array<solver::FixedNode, 2>& fixed_nodes() {
+    static constexpr std::array<solver::FixedNode, 2> nodes = {{{0.5 * pi, stroke}, {1.5 * pi, stroke}}};
     return nodes;
   }
   static Signs start_signs() { return {S(1.0), S(1.0), S(1.0), S(1.0)}; }
@@ -110,10 +110,10 @@ struct CrankSystem {
   static S shaft_angle(const S& theta, const State&) { return theta; }
 
   template <bool quadratures>
-  solve::Rates<CrankSystem> rates(const S& theta, const State& y, const Signs& signs) const {
+  solver::Rates<CrankSystem> rates(const S& theta, const State& y, const Signs& signs) const {
     const Motion<S> m = motion(theta, y, signs);
     const S per_omega = S(1.0) / y[0];
-    solve::Rates<CrankSystem> r;
+    solver::Rates<CrankSystem> r;
     r.dy[0] = m.crank_acceleration * per_omega;
     if constexpr (N == 2) r.dy[1] = m.voltage_reserve / vehicle.motor.armature_inductance * per_omega;
     r.switches = {m.force_switch, pitch_margin(vehicle.wings, S(signs[stroke] * m.stroke_velocity)), m.stored_moment};

@@ -52,8 +52,8 @@ struct DirectSystem {
   }
 
   static double period() { return two_pi; }
-  static const std::array<solve::FixedNode, 0>& fixed_nodes() {
-    static constexpr std::array<solve::FixedNode, 0> none = {};
+  static const std::array<solver::FixedNode, 0>& fixed_nodes() {
+    static constexpr std::array<solver::FixedNode, 0> none = {};
     return none;
   }
   static bool admissible(const State&) { return true; }
@@ -155,12 +155,12 @@ struct DirectSystem {
   }
 
   template <bool quadratures>
-  solve::Rates<DirectSystem> rates(const S& phi, const State& y, const Signs& signs) const {
+  solver::Rates<DirectSystem> rates(const S& phi, const State& y, const Signs& signs) const {
     using std::abs;
     const Motion<S> m = motion(phi, y, signs);
     const S per_pace = S(1.0) / pace();
     const bool stuck = value_of(signs[slip]) < 0.0;
-    solve::Rates<DirectSystem> r;
+    solver::Rates<DirectSystem> r;
     r.dy[0] = m.stroke_velocity * per_pace;
     r.dy[1] = m.crank_acceleration * per_pace;
     if constexpr (N == 3) r.dy[2] = m.voltage_reserve / vehicle.motor.armature_inductance * per_pace;

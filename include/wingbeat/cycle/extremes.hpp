@@ -13,7 +13,7 @@ namespace wingbeat {
 /// Maxima over the lap of extreme_candidates(), to the relative accuracy `tolerance`; absent those that the system has
 /// not.
 template <class System>
-CycleExtremes<double> lap_extremes(const System& system, const solve::Lap<System>& lap, double tolerance) {
+CycleExtremes<double> lap_extremes(const System& system, const solver::Lap<System>& lap, double tolerance) {
   using Derivative = Jet<1>;
   using State = typename System::State;
   using Candidates = CycleExtremes<Derivative>;
@@ -36,7 +36,7 @@ CycleExtremes<double> lap_extremes(const System& system, const solve::Lap<System
 
   // A piece of a step on which the slope falls from d0 > 0 to d1 < 0.
   struct Bracket {
-    const solve::Step<System>* step;
+    const solver::Step<System>* step;
     double x0, v0, d0, x1, v1, d1;
     double x, estimate;  // of the maximum
   };
@@ -72,7 +72,7 @@ CycleExtremes<double> lap_extremes(const System& system, const solve::Lap<System
     const auto& y1 = last ? lap.end : lap.steps[n + 1].y;
     const double x1 = step.x + step.h;
     // Where the rates may jump, those of the next step do not belong to this one's end.
-    const State dy1 = solve::jumps(system, 0) ? system.template rates<false>(x1, y1, step.signs).dy
+    const State dy1 = solver::jumps(system, 0) ? system.template rates<false>(x1, y1, step.signs).dy
                       : last                  ? lap.steps.front().first.dy
                                               : lap.steps[n + 1].first.dy;
     const Candidates end = candidates(x1, y1, dy1, step.signs);
@@ -83,7 +83,7 @@ CycleExtremes<double> lap_extremes(const System& system, const solve::Lap<System
       if (!(bracket.d0 > 0.0 && bracket.d1 < 0.0)) {
         const double t = between_turns(step.h, bracket.v0, bracket.d0, bracket.v1, bracket.d1);
         if (t == 0.0) continue;
-        const auto y = solve::detail::hermite<System>(step.y, step.first.dy, y1, dy1, step.h, t);
+        const auto y = solver::detail::hermite<System>(step.y, step.first.dy, y1, dy1, step.h, t);
         const double x = step.x + t * step.h;
         const auto dy = system.template rates<false>(x, y, step.signs).dy;
         const Derivative middle = candidates(x, y, dy, step.signs)[c];
@@ -110,7 +110,7 @@ CycleExtremes<double> lap_extremes(const System& system, const solve::Lap<System
       const double doubt = 0.2 * (b.estimate - std::min(b.v0, b.v1)) + 5e-3 * (highest - lowest_candidate);
       if (b.estimate + doubt < highest) continue;
       for (int iteration = 0; iteration < 30; ++iteration) {
-        const auto inside = solve::evaluate_inside<false>(system, lap, *b.step, b.x);
+        const auto inside = solver::evaluate_inside<false>(system, lap, *b.step, b.x);
         const auto rates = system.template rates<false>(b.x, inside.y, b.step->signs);
         const Derivative value = candidates(b.x, inside.y, rates.dy, b.step->signs)[c];
         const double v = value.a, d = value.v[0];

@@ -30,33 +30,33 @@ class OrbitSearch {
 
   /// One search from a state at the start of a lap.
   bool search(const State& guess) {
-    solve::PeriodicOptions periodic{.tolerance = options_.tolerance, .stability = options_.stability};
+    solver::PeriodicOptions periodic{.tolerance = options_.tolerance, .stability = options_.stability};
     const int laps_before = summary_.laps;
-    summary_ = solve::solve_periodic(system_, guess, periodic, lap_);
-    if (summary_.status == solve::PeriodicStatus::too_many_steps) {
-      periodic.method = solve::Method::radau;
-      summary_ = solve::solve_periodic(system_, guess, periodic, lap_);
+    summary_ = solver::solve_periodic(system_, guess, periodic, lap_);
+    if (summary_.status == solver::PeriodicStatus::too_many_steps) {
+      periodic.method = solver::Method::radau;
+      summary_ = solver::solve_periodic(system_, guess, periodic, lap_);
     }
-    if (summary_.status == solve::PeriodicStatus::too_many_steps && !System::has_rod) {
+    if (summary_.status == solver::PeriodicStatus::too_many_steps && !System::has_rod) {
       // Not stiff then, but hard: a shaft that hardly breaks away.
-      periodic.method = solve::Method::explicit_pair;
+      periodic.method = solver::Method::explicit_pair;
       periodic.max_steps *= 20;
-      summary_ = solve::solve_periodic(system_, guess, periodic, lap_);
+      summary_ = solver::solve_periodic(system_, guess, periodic, lap_);
     }
     summary_.laps += laps_before;
-    return summary_.status == solve::PeriodicStatus::converged;
+    return summary_.status == solver::PeriodicStatus::converged;
   }
 
   /// The same from a state close to the orbit. Explicit steps that are unstable may end at the edge as well as take too
   /// many: implicit ones tell.
   bool search_near(const State& guess) {
-    solve::PeriodicOptions periodic{.tolerance = options_.tolerance, .stability = options_.stability, .near = true};
-    for (const auto method : {solve::Method::explicit_pair, solve::Method::radau}) {
+    solver::PeriodicOptions periodic{.tolerance = options_.tolerance, .stability = options_.stability, .near = true};
+    for (const auto method : {solver::Method::explicit_pair, solver::Method::radau}) {
       periodic.method = method;
       const int laps_before = summary_.laps;
-      summary_ = solve::solve_periodic(system_, guess, periodic, lap_);
+      summary_ = solver::solve_periodic(system_, guess, periodic, lap_);
       summary_.laps += laps_before;
-      if (summary_.status == solve::PeriodicStatus::converged) return true;
+      if (summary_.status == solver::PeriodicStatus::converged) return true;
     }
     return false;
   }
@@ -67,11 +67,11 @@ class OrbitSearch {
     if (std::isfinite(summary_.floquet_multiplier_max)) return summary_.floquet_multiplier_max;
     if (summary_.newton_steps == 0) return 0.0;
     constexpr int n = int(std::tuple_size_v<State>);
-    return solve::monodromy_product(system_, system_.template cast<Jet<n>>(), lap_).spectral_radius();
+    return solver::monodromy_product(system_, system_.template cast<Jet<n>>(), lap_).spectral_radius();
   }
 
   const System& system() const { return system_; }
-  const solve::PeriodicSummary& summary() const { return summary_; }
+  const solver::PeriodicSummary& summary() const { return summary_; }
   const State& start() const { return lap_.steps.front().y; }
   double frequency() const {
     double period = 0.0;
@@ -91,8 +91,8 @@ class OrbitSearch {
  private:
   const SteadyOptions& options_;
   System system_;
-  solve::Lap<System> lap_;
-  solve::PeriodicSummary summary_;
+  solver::Lap<System> lap_;
+  solver::PeriodicSummary summary_;
 };
 
 }  // namespace wingbeat::detail

@@ -40,7 +40,7 @@ WaveformRow waveform_row(const Vehicle<double>& vehicle, const Motion<double>& m
 template <class System>
 struct RecordedLap {
   System system;
-  solve::Lap<System> lap;
+  solver::Lap<System> lap;
 };
 
 /// A lap of the crank or of a direct drive, each with or without inductance.

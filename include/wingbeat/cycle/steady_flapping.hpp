@@ -44,7 +44,7 @@ struct SteadyOptions {
 struct SteadyFlapping {
   FlappingStatus status = FlappingStatus::stalled;
   std::string detail;              ///< one sentence: what was found, with the evidence
-  solve::PeriodicSummary summary;  ///< of the orbit search
+  solver::PeriodicSummary summary;  ///< of the orbit search
   StaticBalance balance{};
   Metrics<double> metrics;  ///< all absent unless flapping
   CycleRecord record;       ///< the orbit's cycle; empty unless flapping, and where the cycle was simulated in time

@@ -80,9 +80,9 @@ struct HalfLap {
   }
 
   template <bool quadratures>
-  solve::Rates<HalfLap> rates_of(const Motion<S>& m, const State& y, const S& force) const {
+  solver::Rates<HalfLap> rates_of(const Motion<S>& m, const State& y, const S& force) const {
     const S per_omega = inverse_of(y[0]);
-    solve::Rates<HalfLap> r;
+    solver::Rates<HalfLap> r;
     r.dy[0] = m.crank_acceleration * per_omega;
     if constexpr (N == 2) r.dy[1] = m.voltage_reserve * per_inductance * per_omega;
     r.switches[0] = m.force_switch;
@@ -100,7 +100,7 @@ struct HalfLap {
 template <bool quadratures, class System>
 [[gnu::noinline, gnu::flatten]] void evaluate(const System& system, const Place<typename System::Real>& place,
                                               const typename System::State& y, const typename System::Real& force,
-                                              solve::Rates<System>& out) {
+                                              solver::Rates<System>& out) {
   out = system.template rates_of<quadratures>(system.motion(place, y, force), y, force);
 }
 

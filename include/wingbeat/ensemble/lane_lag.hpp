@@ -42,8 +42,8 @@ void LaneOrbit<L, N>::let_current_lag() {
 /// Where the course bends, at a sign change of the rod force, the current goes on from what it was before and has relaxed
 /// within a time constant: what that adds to state and integrals, up to the square of the angle it takes.
 template <class L, int N>
-auto LaneOrbit<L, N>::relaxation(System system, std::size_t base, const L& force) const -> solve::Rates<System> {
-  solve::Rates<System> after, before;
+auto LaneOrbit<L, N>::relaxation(System system, std::size_t base, const L& force) const -> solver::Rates<System> {
+  solver::Rates<System> after, before;
   evaluate<true>(system, place_of(base), course_[base], force, after);
   system.drop = drop_[base - 1];
   evaluate<true>(system, place_of(base), course_[base], force, before);
@@ -71,13 +71,13 @@ L LaneOrbit<L, N>::electrical_to_mechanical_time() const {
 
 /// Takes the rates below and above a node's speed again with what the inductance makes of the change of acceleration.
 template <class L, int N>
-void LaneOrbit<L, N>::lag_with(System system, std::size_t node, const L& by, const L& force, solve::Rates<System>& below,
-                               solve::Rates<System>& above) const {
+void LaneOrbit<L, N>::lag_with(System system, std::size_t node, const L& by, const L& force, solver::Rates<System>& below,
+                               solver::Rates<System>& above) const {
   const L per_acceleration = vehicle_.motor.armature_inductance * vehicle_.motor.torque_constant *
                              inverse_of(circuit_resistance(vehicle_));
   const State& y = course_[node];
   const L acceleration = rates_[node][0] * y[0];
-  for (solve::Rates<System>* rates : {&below, &above}) {
+  for (solver::Rates<System>* rates : {&below, &above}) {
     State moved = y;
     moved[0] = rates == &below ? y[0] - by : y[0] + by;
     for (int repeat = 0; repeat < 2; ++repeat) {

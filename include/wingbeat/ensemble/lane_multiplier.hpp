@@ -14,7 +14,7 @@ L LaneOrbit<L, N>::floquet_multiplier() {
     for (std::size_t column = 0; column < N; ++column) M[row][column] = L(row == column ? 1.0 : 0.0);
   }
   std::array<Matrix, nodes_per_segment> jacobian, path, moves;
-  solve::Rates<System> below, above;
+  solver::Rates<System> below, above;
   for (int half = 0; half < 2; ++half) {
     System system = half_lap(half);
     const HalfMesh<L>& mesh = mesh_[std::size_t(half)];

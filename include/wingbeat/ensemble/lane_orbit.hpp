@@ -64,8 +64,8 @@ struct PeakBracket {
 template <class L, int N>
 struct SegmentCourse {
   L half, u, length, force;
-  std::array<std::array<L, N>, solve::CollocationRule::most + 1> legendre;  ///< coefficients of the state
-  std::array<L, solve::CollocationRule::most + 1> drop;                     ///< and of HalfLap::drop
+  std::array<std::array<L, N>, solver::CollocationRule::most + 1> legendre;  ///< coefficients of the state
+  std::array<L, solver::CollocationRule::most + 1> drop;                     ///< and of HalfLap::drop
 };
 
 template <class L, int N>
@@ -75,13 +75,13 @@ class LaneOrbit {
   using System = HalfLap<L, N>;
   using Matrix = std::array<std::array<L, N>, N>;
   static constexpr double quarter = 0.5 * pi;
-  static constexpr std::size_t nodes_per_segment = solve::CollocationRule::most;
+  static constexpr std::size_t nodes_per_segment = solver::CollocationRule::most;
   static constexpr std::size_t most_nodes = 2 * most_half_segments * nodes_per_segment;
   static constexpr int coarse_samples = 2 * coarse_half_steps + 1;
 
  public:
   LaneOrbit(const Vehicle<L>& vehicle, const LaneSettings& settings)
-      : vehicle_(vehicle), settings_(settings), rule_(solve::collocation_rule(settings.intervals)),
+      : vehicle_(vehicle), settings_(settings), rule_(solver::collocation_rule(settings.intervals)),
         segments_(settings.segments) {
     no_load_ = no_load_speed(vehicle);
     floor_ = L(1e-4) * no_load_;
@@ -139,11 +139,11 @@ class LaneOrbit {
   [[gnu::noinline, gnu::flatten]] void propose(std::size_t base, const L& h, State& end);
   [[gnu::noinline, gnu::flatten]] void correct(State end);
   [[gnu::noinline, gnu::flatten]] void let_current_lag();
-  [[gnu::noinline, gnu::flatten]] solve::Rates<System> relaxation(System system, std::size_t base, const L& force) const;
+  [[gnu::noinline, gnu::flatten]] solver::Rates<System> relaxation(System system, std::size_t base, const L& force) const;
   L lag_left_out() const;
   L electrical_to_mechanical_time() const;
   [[gnu::noinline, gnu::flatten]] void visit_node(const System& system, std::size_t node, const L& force,
-                                                  solve::Rates<System>& rates);
+                                                  solver::Rates<System>& rates);
   [[gnu::noinline, gnu::flatten]] void add_tails(const std::array<std::array<L, nodes_per_segment>, 4>& controlled,
                                                  std::size_t base, const L& h);
   [[gnu::noinline, gnu::flatten]] void read(const System& system, const L& u, const State& y, const L& force,
@@ -163,7 +163,7 @@ class LaneOrbit {
   [[gnu::noinline, gnu::flatten]] L lift_peak(const L& highest_velocity) const;
   [[gnu::noinline, gnu::flatten]] L floquet_multiplier();
   [[gnu::noinline]] void lag_with(System system, std::size_t node, const L& by, const L& force,
-                                  solve::Rates<System>& below, solve::Rates<System>& above) const;
+                                  solver::Rates<System>& below, solver::Rates<System>& above) const;
   template <class RatesAt>
   Matrix derivatives(const State& y, const State& rates, const RatesAt& rates_at) const;
   [[gnu::noinline]] Matrix jacobian_at(const System& system, const Place<L>& place, const State& y, const State& rates,
@@ -195,7 +195,7 @@ class LaneOrbit {
 
   const Vehicle<L>& vehicle_;
   const LaneSettings& settings_;
-  const solve::CollocationRule& rule_;
+  const solver::CollocationRule& rule_;
   int segments_;  ///< of half a lap
   CrankGeometry<L> geometry_;
   L per_inductance_, current_scale_, no_load_, floor_;
@@ -257,7 +257,7 @@ auto LaneOrbit<L, N>::derivatives(const State& y, const State& rates, const Rate
 template <class L, int N>
 auto LaneOrbit<L, N>::jacobian_at(const System& system, const Place<L>& place, const State& y, const State& rates,
                                   const L& force) const -> Matrix {
-  solve::Rates<System> at;
+  solver::Rates<System> at;
   return derivatives(y, rates, [&](const State& moved) -> const State& {
     evaluate<false>(system, place, moved, force, at);
     return at.dy;
@@ -547,7 +547,7 @@ template <class L, int N>
 template <bool last>
 void LaneOrbit<L, N>::sweep() {
   const std::size_t intervals = std::size_t(rule_.intervals);
-  solve::Rates<System> rates;
+  solver::Rates<System> rates;
   State end;
   end.fill(L(0.0));
   correction_[0] = end;
@@ -597,7 +597,7 @@ void LaneOrbit<L, N>::sweep() {
         const L half_off = select<L>(switches, L(0.5) * off, L(0.0));
         for (std::size_t n = 0; n < N; ++n) jump[n] = jump[n] - half_off * (rates_[base - 1][n] - rates_[base][n]);
         if (lags_) {
-          const solve::Rates<System> by = relaxation(system, base, sign);
+          const solver::Rates<System> by = relaxation(system, base, sign);
           for (std::size_t n = 0; n < N; ++n) jump[n] = jump[n] + select<L>(switches, by.dy[n], L(0.0));
           if constexpr (last) {
             for (std::size_t q = 0; q < integrals_.size(); ++q) {
@@ -723,7 +723,7 @@ void LaneOrbit<L, N>::read(const System& system, const L& u, const State& y, con
 
 /// Rates and readings at a node.
 template <class L, int N>
-void LaneOrbit<L, N>::visit_node(const System& system, std::size_t node, const L& force, solve::Rates<System>& rates) {
+void LaneOrbit<L, N>::visit_node(const System& system, std::size_t node, const L& force, solver::Rates<System>& rates) {
   const Motion<L> motion = system.motion(place_of(node), course_[node], force);
   rates = system.template rates_of<true>(motion, course_[node], force);
   if (!reads_) return;

@@ -251,7 +251,7 @@ void LaneOrbit<L, N>::coarse_lap() {
 /// A lap from y_ by the classical fourth-order method with one step per segment; corrects the switches.
 template <class L, int N>
 void LaneOrbit<L, N>::march() {
-  solve::Rates<System> k1, k2, k3, k4;
+  solver::Rates<System> k1, k2, k3, k4;
   for (int half = 0; half < 2; ++half) {
     const System system = half_lap(half);
     build_mesh(half);
@@ -289,7 +289,7 @@ void LaneOrbit<L, N>::march() {
       }
       if (settings_.implicit) {
         const Mask stiff = is_stiff(stretch.jacobian[0], h);
-        solve::Rates<System> rates;
+        solver::Rates<System> rates;
         const State by_implicit = implicit_step(y_, h, [&](const L& part, const State& y) {
           Place<L> place;
           find_place(system, mesh.u[s] + part * h, place);

@@ -5,7 +5,7 @@
 /// Equations II", 2nd ed., Springer 1996, section IV.5: Lobatto IIIA.)
 #pragma once
 
-namespace wingbeat::solve {
+namespace wingbeat::solver {
 
 inline constexpr int most_collocation_intervals = 16;
 
@@ -22,4 +22,4 @@ struct CollocationRule {
 /// The rule with an even number of intervals, 2 to most_collocation_intervals.
 const CollocationRule& collocation_rule(int intervals);
 
-}  // namespace wingbeat::solve
+}  // namespace wingbeat::solver

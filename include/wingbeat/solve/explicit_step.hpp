@@ -12,7 +12,7 @@
 
 #include "wingbeat/core/scalar.hpp"
 
-namespace wingbeat::solve {
+namespace wingbeat::solver {
 
 namespace dop853 {
 inline constexpr int stages = 12;
@@ -180,4 +180,4 @@ StepResult<System> explicit_step(const System& system, const typename System::Re
   return result;
 }
 
-}  // namespace wingbeat::solve
+}  // namespace wingbeat::solver

@@ -17,7 +17,7 @@
 #include "wingbeat/solve/lap.hpp"
 #include "wingbeat/solve/linear.hpp"
 
-namespace wingbeat::solve {
+namespace wingbeat::solver {
 
 /// A product of n x n matrices, exp(log_scale) times `scaled`, with the logarithm of its determinant's magnitude.
 template <std::size_t n>
@@ -71,7 +71,7 @@ struct MatrixProduct {
       const double half_difference = 0.5 * (scaled[0] - scaled[3]);
       if (half_difference * half_difference + scaled[1] * scaled[2] < 0.0) return std::exp(0.5 * log_determinant);
     }
-    return solve::spectral_radius(int(n), scaled.data()) * std::exp(log_scale);
+    return solver::spectral_radius(int(n), scaled.data()) * std::exp(log_scale);
   }
 };
 
@@ -175,4 +175,4 @@ auto monodromy(const System& system, const JetSystem& jets, const Lap<System>& l
   return monodromy_product(system, jets, lap).matrix();
 }
 
-}  // namespace wingbeat::solve
+}  // namespace wingbeat::solver

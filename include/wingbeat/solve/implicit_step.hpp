@@ -12,7 +12,7 @@
 #include "wingbeat/solve/explicit_step.hpp"
 #include "wingbeat/solve/linear.hpp"
 
-namespace wingbeat::solve {
+namespace wingbeat::solver {
 
 struct RadauTableau {
   static constexpr int stages = 5;
@@ -144,4 +144,4 @@ StepResult<System> implicit_step(const System& system, const typename System::Re
   return result;
 }
 
-}  // namespace wingbeat::solve
+}  // namespace wingbeat::solver

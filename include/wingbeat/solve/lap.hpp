@@ -18,7 +18,7 @@
 #include "wingbeat/solve/explicit_step.hpp"
 #include "wingbeat/solve/implicit_step.hpp"
 
-namespace wingbeat::solve {
+namespace wingbeat::solver {
 
 /// A branch sign that flips at a known position. Signs with index below the number of switches are located instead.
 struct FixedNode {
@@ -599,4 +599,4 @@ StepResult<System> evaluate_inside(const System& system, const Lap<System>& lap,
   return take_step<quadratures>(lap.method, system, step.x, step.y, x - step.x, step.signs, step.first);
 }
 
-}  // namespace wingbeat::solve
+}  // namespace wingbeat::solver

@@ -1,7 +1,7 @@
 // Dense linear algebra for systems of a few states, kept out of the templates.
 #pragma once
 
-namespace wingbeat::solve {
+namespace wingbeat::solver {
 
 /// Solves A x = b in place (A row-major n x n, destroyed; b becomes x) by LU with partial pivoting.
 /// False if A is singular to working precision.
@@ -22,4 +22,4 @@ double norm(int n, const double* matrix);
 /// Largest modulus of the eigenvalues of a row-major n x n matrix.
 double spectral_radius(int n, const double* matrix);
 
-}  // namespace wingbeat::solve
+}  // namespace wingbeat::solver

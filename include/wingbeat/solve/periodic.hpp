@@ -18,7 +18,7 @@
 #include "wingbeat/solve/lap.hpp"
 #include "wingbeat/solve/linear.hpp"
 
-namespace wingbeat::solve {
+namespace wingbeat::solver {
 
 struct PeriodicOptions {
   double tolerance = 1e-6;      ///< wanted relative accuracy of the orbit and its integrals
@@ -326,4 +326,4 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   return summary;
 }
 
-}  // namespace wingbeat::solve
+}  // namespace wingbeat::solver

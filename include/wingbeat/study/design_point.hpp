@@ -14,7 +14,7 @@ namespace wingbeat {
 
 struct DesignPointOptions {
   Condition condition = Condition::air;
-  std::optional<double> frequency;  ///< held [Hz]; the voltage follows
+  std::optional<double> frequency = {};  ///< held [Hz]; the voltage follows
   double tolerance = 1e-6;          ///< of the orbit
   bool peaks = true;                ///< differentiate metrics that are peaks
 };

@@ -44,7 +44,7 @@ struct RunResult {
   std::string domain_detail;   ///< the same in words with numbers; empty inside
   std::vector<std::string> warnings;  ///< what a reader of the metrics should know beside the domain
   std::vector<WaveformRow> cycle;
-  solve::PeriodicSummary orbit;            ///< of Method::orbit
+  solver::PeriodicSummary orbit;            ///< of Method::orbit
   std::optional<TransientResult> start_up; ///< of Method::transient
   std::optional<FrequencySearch> search;   ///< where a frequency or a lift was asked for
   Design<double> design;                   ///< as computed: with the voltage or duty that was found

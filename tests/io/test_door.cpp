@@ -1,0 +1,71 @@
+// wingbeat/wingbeat.hpp says what the storeys below it say.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "wingbeat/wingbeat.hpp"
+
+namespace wingbeat {
+namespace {
+
+const std::string springs = WINGBEAT_DATA "/designs/friction2022-springs.toml";
+
+TEST(Door, SolvesSimulatesAndDifferentiates) {
+  Design<double> design = read_design(springs);
+  const RunResult found = solve(design, {.tolerance = 1e-9});
+  ASSERT_EQ(found.status, FlappingStatus::flapping);
+  const double lift = found.metrics[Metric::lift_mean];
+
+  const TransientResult start = simulate(design);
+  ASSERT_EQ(start.status, FlappingStatus::flapping);
+  EXPECT_NEAR((*start.metrics)[Metric::lift_mean] / lift, 1.0, 1e-6);
+  EXPECT_GT(start.time_to_steady, 0.0);
+
+  const DesignPoint slopes = gradient(design, {"supply.voltage", "transmission.crank_radius"}, {.tolerance = 1e-10});
+  ASSERT_EQ(slopes.gradients.size(), 2U);
+  const double step = 1e-5;
+  const auto lift_with = [&](double change) {
+    Design<double> other = design;
+    other.transmission.crank_radius += change;
+    return solve(other, {.tolerance = 1e-12}).metrics[Metric::lift_mean];
+  };
+  const double difference = (lift_with(step) - lift_with(-step)) / (2.0 * step);
+  EXPECT_NEAR(slopes.gradients[1][std::size_t(Metric::lift_mean)] / difference, 1.0, 1e-5);
+}
+
+TEST(Door, StartUpIsAssessedWithoutBeingAsked) {
+  Design<double> design = read_design(springs);
+  design.supply.voltage = 0.4;
+  EXPECT_EQ(solve(design).status, FlappingStatus::locked);
+  EXPECT_EQ(simulate(design).status, FlappingStatus::locked);
+  EXPECT_EQ(solve_ensemble(std::vector(3, design))[1].status, FlappingStatus::locked);
+}
+
+TEST(Door, EnsemblesAreWhatEachDesignGives) {
+  std::vector<Design<double>> designs(40, read_design(springs));
+  for (std::size_t n = 0; n < designs.size(); ++n) designs[n].supply.voltage = 0.3 + 0.1 * double(n);
+  const std::vector<EnsembleOutcome> outcomes = solve_ensemble(designs);
+  for (std::size_t n = 0; n < designs.size(); ++n) {
+    const RunResult alone = solve(designs[n]);
+    EXPECT_EQ(outcomes[n].status, alone.status) << designs[n].supply.voltage;
+    if (alone.status != FlappingStatus::flapping) continue;
+    EXPECT_NEAR(outcomes[n].metrics[Metric::lift_mean] / alone.metrics[Metric::lift_mean], 1.0, 2e-6);
+  }
+}
+
+TEST(Door, BadParametersAreNamed) {
+  Design<double> design = read_design(springs);
+  EXPECT_THROW(gradient(design, {"transmission.crank"}), ParameterError);
+  design.transmission.crank_radius = -1.0;
+  EXPECT_THROW(solve(design), ParameterError);
+  EXPECT_THROW(simulate(design), ParameterError);
+  try {
+    solve_ensemble(std::vector<Design<double>>{read_design(springs), design});
+    FAIL() << "accepted";
+  } catch (const ParameterError& error) {
+    EXPECT_EQ(error.key(), "transmission.crank_radius");
+    EXPECT_THAT(error.what(), testing::HasSubstr("design 1: must"));
+  }
+}
+
+}  // namespace
+}  // namespace wingbeat
