@@ -9,8 +9,8 @@
 #include "options.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/output_file.hpp"
-#include "wingbeat/report/plot.hpp"
 #include "wingbeat/files/published.hpp"
+#include "wingbeat/report/plot.hpp"
 #include "wingbeat/reproduction/comparison.hpp"
 
 namespace wingbeat::app {
@@ -44,8 +44,8 @@ int run(const Arguments& arguments) {
   bool all_flap = true;
   std::vector<PowerBar> bars;
   for (const Comparison::Run& r : comparison.runs) {
-    if (r.result.status != FlappingStatus::flapping || r.result.search.value_or(FrequencySearch{}).outcome ==
-                                                           FrequencyOutcome::too_high) {
+    if (r.result.status != FlappingStatus::flapping ||
+        r.result.search.value_or(FrequencySearch{}).outcome == FrequencyOutcome::too_high) {
       complain(fmt::format("{} at {} does not flap: {}", spaced(r.design), operating_point(r.voltage, r.frequency),
                            r.result.detail));
       all_flap = false;
@@ -77,7 +77,8 @@ void add_compare(CLI::App& program, Action& action) {
   command->footer(
       "Example:\n"
       "  wingbeat compare friction2022\n\n"
-      "Exit status: 0 done, whatever the deviations, 2 bad input or usage, 3 a vehicle does not flap, 1 anything else.");
+      "Exit status: 0 done, whatever the deviations, 2 bad input or usage, 3 a vehicle does not flap, "
+      "1 anything else.");
   command->callback([a, &action] {
     action = [a] {
       a->file = find_input(a->file, InputKind::published).string();

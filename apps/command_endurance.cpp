@@ -10,8 +10,8 @@
 #include "command.hpp"
 #include "options.hpp"
 #include "wingbeat/files/design_file.hpp"
-#include "wingbeat/report/endurance_report.hpp"
 #include "wingbeat/files/output_file.hpp"
+#include "wingbeat/report/endurance_report.hpp"
 
 namespace wingbeat::app {
 namespace {

@@ -60,8 +60,8 @@ int run(const Arguments& arguments) {
   }
   if (terminal) clear();
 
-  const std::string made_by = fmt::format("Fitted by wingbeat {} to {}", version,
-                                          std::filesystem::path(arguments.file).filename().string());
+  const std::string made_by =
+      fmt::format("Fitted by wingbeat {} to {}", version, std::filesystem::path(arguments.file).filename().string());
   if (output && result.misfit.empty()) {
     output->write(fitted_vehicle_head(fit, result, made_by) +
                   edited_design(vehicle_of_bench(arguments.file), vehicle, result.design));
@@ -110,9 +110,10 @@ void add_fit(CLI::App& program, Action& action) {
   command->add_option("--plot", a->plot, "Plot the residuals by condition to FILE.svg, .pdf or .png")
       ->type_name("FILE");
   add_force(*command, a->force);
-  command->footer("Example:\n  wingbeat fit flapper -o fitted.toml\n\n"
-                  "Exit status: 0 fitted, 1 not converged, 2 bad input or usage, 3 the model does not describe the data, or\n"
-                  "cannot reach some rows.");
+  command->footer(
+      "Example:\n  wingbeat fit flapper -o fitted.toml\n\n"
+      "Exit status: 0 fitted, 1 not converged, 2 bad input or usage, 3 the model does not describe the data, or\n"
+      "cannot reach some rows.");
   command->callback([a, &action] {
     action = [a] {
       a->file = find_input(a->file, InputKind::bench).string();

@@ -77,8 +77,9 @@ void add_identify_motor(CLI::App& program, Action& action) {
       ->allow_extra_args(false);
   add_force(*command, a->force);
   add_json(command, a->json);
-  command->footer("Example:\n  wingbeat identify-motor 0816K003SR -o motor.toml\n\n"
-                  "Exit status: 0 identified, 2 bad input, or the sheet does not determine the motor.");
+  command->footer(
+      "Example:\n  wingbeat identify-motor 0816K003SR -o motor.toml\n\n"
+      "Exit status: 0 identified, 2 bad input, or the sheet does not determine the motor.");
   command->callback([a, &action] {
     action = [a] {
       a->file = find_input(a->file, InputKind::datasheet).string();

@@ -12,16 +12,16 @@
 #include <vector>
 
 #include "command.hpp"
-#include "wingbeat/files/design_edit.hpp"
 #include "options.hpp"
+#include "wingbeat/files/design_edit.hpp"
 #include "wingbeat/files/design_file.hpp"
-#include "wingbeat/report/optimise_report.hpp"
-#include "wingbeat/run/evolution_module.hpp"
 #include "wingbeat/files/optimise_data.hpp"
 #include "wingbeat/files/optimise_file.hpp"
 #include "wingbeat/files/output_file.hpp"
-#include "wingbeat/report/pareto_report.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/report/optimise_report.hpp"
+#include "wingbeat/report/pareto_report.hpp"
+#include "wingbeat/run/evolution_module.hpp"
 #include "wingbeat/run/parallel.hpp"
 #include "wingbeat/study/run.hpp"
 
@@ -46,7 +46,9 @@ std::string file_name(const Arguments& arguments) {
 /// Refuses before the search what write_designs() would meet after it.
 void check_designs(const Arguments& arguments, const OptimiseFile& file) {
   namespace fs = std::filesystem;
-  const auto refuse = [&](const std::string& why) { throw InputError("--designs " + arguments.designs, 0, 0, "", why); };
+  const auto refuse = [&](const std::string& why) {
+    throw InputError("--designs " + arguments.designs, 0, 0, "", why);
+  };
   const fs::path folder = arguments.designs;
   std::error_code error;
   if (!fs::exists(folder, error)) {
@@ -71,8 +73,8 @@ void write_designs(const std::string& folder, const Arguments& arguments, const 
   if (error) throw InputError("--designs " + folder, 0, 0, "", "cannot be made: " + error.message());
   for (const auto& [name, place] : named_picks(study, result)) {
     const ParetoDesign& design = result.front[place];
-    std::string head = fmt::format("# {} of the front found by wingbeat {} optimise {}:\n#", name, version,
-                                   file_name(arguments));
+    std::string head =
+        fmt::format("# {} of the front found by wingbeat {} optimise {}:\n#", name, version, file_name(arguments));
     for (const ParetoObjective& o : study.objectives) {
       head += fmt::format(" {} = {:.6g}", metric_info(o.metric).key, design.metrics[o.metric]);
     }
@@ -171,10 +173,9 @@ int run(const Arguments& arguments) {
     write_optimum(file, trials, read_text_file(arguments.study), version, output->temporary());
     output->commit();
   } else if (output && best) {
-    std::string head = fmt::format("# Found by wingbeat {} optimise {}: {} = {:.6g}\n", version,
-                                   file_name(arguments),
-                                   metric_info(file.study.objective).key,
-                                   best->result.point.metrics[file.study.objective]);
+    std::string head =
+        fmt::format("# Found by wingbeat {} optimise {}: {} = {:.6g}\n", version, file_name(arguments),
+                    metric_info(file.study.objective).key, best->result.point.metrics[file.study.objective]);
     if (best->motor) head += fmt::format("# Motor: {}\n", one_line(best->motor->model));
     output->write(head + "\n" + edited_design(file.vehicle_file, arguments.output, best->result.design));
     output->commit();
@@ -195,10 +196,14 @@ void add_optimise(CLI::App& program, Action& action) {
   const auto a = std::make_shared<Arguments>();
   add_input(command, a->study, "study", "Study file (TOML): objective, parameters, constraints, motors", "STUDY");
   add_set(command, a->overrides);
-  command->add_option("-o,--output", a->output,
-                      "Write the optimum as a vehicle file, or what was found on the way, and any front, as FILE.nc (NetCDF-4)")
+  command
+      ->add_option(
+          "-o,--output", a->output,
+          "Write the optimum as a vehicle file, or what was found on the way, and any front, as FILE.nc (NetCDF-4)")
       ->type_name("FILE");
-  command->add_option("--plot", a->plot, "Draw the optimum and its neighbourhood, or the front, to FILE.svg, .pdf or .png")->type_name("FILE");
+  command
+      ->add_option("--plot", a->plot, "Draw the optimum and its neighbourhood, or the front, to FILE.svg, .pdf or .png")
+      ->type_name("FILE");
   command->add_option("--designs", a->designs, "Write designs of the front as vehicle files: ends, knee, even steps")
       ->type_name("FOLDER");
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
@@ -206,9 +211,10 @@ void add_optimise(CLI::App& program, Action& action) {
   add_force(*command, a->force);
   add_json(command, a->json);
   add_threads(command, a->threads);
-  command->footer("Example:\n  wingbeat optimise optimise-hover -o hover.toml\n"
-                  "  wingbeat optimise optimise-pareto --plot front.svg --designs front\n\n"
-                  "Exit status: 0 found, 2 bad input or usage, 3 no design within the constraints, 1 anything else.");
+  command->footer(
+      "Example:\n  wingbeat optimise optimise-hover -o hover.toml\n"
+      "  wingbeat optimise optimise-pareto --plot front.svg --designs front\n\n"
+      "Exit status: 0 found, 2 bad input or usage, 3 no design within the constraints, 1 anything else.");
   command->callback([a, &action] {
     action = [a] {
       a->study = find_input(a->study, InputKind::study).string();

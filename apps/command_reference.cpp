@@ -12,8 +12,8 @@
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/design_keys.hpp"
 #include "wingbeat/files/output_file.hpp"
-#include "wingbeat/report/reference.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/report/reference.hpp"
 
 namespace wingbeat::app {
 namespace {
@@ -28,8 +28,9 @@ int show(const Arguments& a, std::string (*text)(const std::string&), std::strin
   if (text(a.filter).empty()) {
     const std::string_view near = nearest_name(a.filter, names);
     throw InputError(in_quotes(a.filter), 0, 0, "",
-                     near.empty() ? fmt::format("no {} has this in its name, unit or meaning", what)
-                                  : fmt::format("no {} has this in its name, unit or meaning; did you mean {}?", what, near));
+                     near.empty()
+                         ? fmt::format("no {} has this in its name, unit or meaning", what)
+                         : fmt::format("no {} has this in its name, unit or meaning; did you mean {}?", what, near));
   }
   print(a.json ? json(a.filter) : text(a.filter));
   return done;
@@ -102,7 +103,9 @@ void add_metrics(CLI::App& program, Action& action) {
 void add_new(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("new", "Write a vehicle file to start from, every key explained");
   const auto a = std::make_shared<NewArguments>();
-  command->add_option("file", a->file, "NAME or NAME.toml (default vehicle.toml), never overwritten; - for standard output")
+  command
+      ->add_option("file", a->file,
+                   "NAME or NAME.toml (default vehicle.toml), never overwritten; - for standard output")
       ->type_name("FILE");
   command->add_option("--transmission", a->transmission, "slider-crank (default) or direct")->type_name("TYPE");
   command->footer("Example:\n  wingbeat new flapper.toml");

@@ -6,10 +6,10 @@
 
 #include "command.hpp"
 #include "options.hpp"
-#include "wingbeat/reproduction/claims.hpp"
 #include "wingbeat/files/optimise_file.hpp"
-#include "wingbeat/reproduction/reproduce.hpp"
 #include "wingbeat/files/written_files.hpp"
+#include "wingbeat/reproduction/claims.hpp"
+#include "wingbeat/reproduction/reproduce.hpp"
 #include "wingbeat/run/parallel.hpp"
 
 namespace wingbeat::app {
@@ -48,8 +48,8 @@ int run(const Arguments& arguments) {
     print(json_claims(result.file, result.assessment));
   } else {
     print(text_claims(result.file, result.assessment) + fmt::format("{} figures written to {}; open {}\n",
-                                                                   result.figures, arguments.output,
-                                                                   (options.output / "report.html").string()));
+                                                                    result.figures, arguments.output,
+                                                                    (options.output / "report.html").string()));
   }
   return done;
 }

@@ -12,10 +12,10 @@
 #include "options.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/output_file.hpp"
-#include "wingbeat/report/plot.hpp"
-#include "wingbeat/report/report.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/files/waveform_file.hpp"
+#include "wingbeat/report/plot.hpp"
+#include "wingbeat/report/report.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat::app {
@@ -87,8 +87,9 @@ void apply_voltage(Supply<double>& supply, const std::string& text) {
     throw InputError("--voltage", 0, 0, "", "the supply is a sine; use --set supply.amplitude=\"3 V\"");
   }
   if (supply.type == SupplyType::battery) {
-    throw InputError("--voltage", 0, 0, "", "the supply is a battery, whose charge gives its voltage; use --set "
-                                            "supply.charge=0.5, or --set supply.cell_voltage=\"3.7 V\"");
+    throw InputError("--voltage", 0, 0, "",
+                     "the supply is a battery, whose charge gives its voltage; use --set "
+                     "supply.charge=0.5, or --set supply.cell_voltage=\"3.7 V\"");
   }
   supply.voltage = quantity("--voltage", text, "V");
   if (supply.voltage < 0.0) throw InputError("--voltage", 0, 0, "", "must be >= 0 V");
@@ -164,16 +165,16 @@ int run(const Arguments& arguments) {
       if (waveforms_csv_wanted) {
         waveforms->write(waveforms_csv(result.cycle));
       } else {
-        write_waveforms_netcdf(waveforms->temporary(), result.cycle,
-                               {.title = fmt::format("One flapping cycle of {}",
-                                                     design.name.empty() ? arguments.vehicle : design.name),
-                                .command = "run",
-                                .version = version,
-                                .vehicle = write_design(result.design),
-                                .condition = name_of(options.condition),
-                                .method = name_of(options.method),
-                                .domain = name_of(result.domain),
-                                .tolerance = options.tolerance});
+        write_waveforms_netcdf(
+            waveforms->temporary(), result.cycle,
+            {.title = fmt::format("One flapping cycle of {}", design.name.empty() ? arguments.vehicle : design.name),
+             .command = "run",
+             .version = version,
+             .vehicle = write_design(result.design),
+             .condition = name_of(options.condition),
+             .method = name_of(options.method),
+             .domain = name_of(result.domain),
+             .tolerance = options.tolerance});
       }
       waveforms->commit();
     }
@@ -208,10 +209,11 @@ void add_run(CLI::App& program, Action& action) {
   CLI::Option* voltage =
       command->add_option("--voltage", a->voltage, "Supply voltage (pwm: while switched on), as \"3 V\"")
           ->type_name("QUANTITY");
-  CLI::Option* frequency = command->add_option("--frequency", a->frequency, "Find the voltage that gives this flapping frequency, as \"22 Hz\"");
+  CLI::Option* frequency = command->add_option("--frequency", a->frequency,
+                                               "Find the voltage that gives this flapping frequency, as \"22 Hz\"");
   frequency->type_name("QUANTITY")->excludes(voltage);
-  CLI::Option* lift =
-      command->add_option("--lift", a->lift, "Find the voltage (pwm: the duty) that gives this mean lift, as \"20 mN\"");
+  CLI::Option* lift = command->add_option("--lift", a->lift,
+                                          "Find the voltage (pwm: the duty) that gives this mean lift, as \"20 mN\"");
   lift->type_name("QUANTITY")->excludes(voltage)->excludes(frequency);
   command->add_option("--lift-to-weight", a->lift_to_weight, "The same for lift over weight; 1: hover")
       ->type_name("NUMBER")
@@ -219,8 +221,7 @@ void add_run(CLI::App& program, Action& action) {
       ->excludes(frequency)
       ->excludes(lift);
   command->add_option("--condition", a->condition, "air (default), vacuum or wingless")->type_name("CONDITION");
-  command->add_option("--method", a->method, "orbit (default), or transient: simulated from rest")
-      ->type_name("METHOD");
+  command->add_option("--method", a->method, "orbit (default), or transient: simulated from rest")->type_name("METHOD");
   command->add_option("--tolerance", a->tolerance, "Relative accuracy of every metric, 1e-12 to 1e-2 (default 1e-6)")
       ->type_name("NUMBER");
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
@@ -235,12 +236,12 @@ void add_run(CLI::App& program, Action& action) {
       "Example:\n"
       "  wingbeat run friction2022 --frequency \"22 Hz\" \\\n"
       "    --set friction.radius=\"2 mm\" --plot cycle.svg\n\n"
-      "--frequency finds the voltage for a flapping frequency, --lift the lowest one for a mean lift. Both keep to the\n"
-      "domain of validity (angles of attack from 0 to 90 deg and more) unless --allow-extrapolation; a refusal says how\n"
-      "far it reaches. With a pwm supply the orbit and the searches see the mean voltage; --frequency changes its\n"
-      "voltage, --lift its duty. The charge of a battery gives its voltage, so neither is for batteries. A direct drive\n"
-      "takes --frequency as that of its sine and --lift by its amplitude; a crank on a sine needs --method transient,\n"
-      "which also reports the start-up.\n\n"
+      "--frequency finds the voltage for a flapping frequency, --lift the lowest one for a mean lift. Both keep\n"
+      "to the domain of validity (angles of attack from 0 to 90 deg and more) unless --allow-extrapolation; a\n"
+      "refusal says how far it reaches. With a pwm supply the orbit and the searches see the mean voltage;\n"
+      "--frequency changes its voltage, --lift its duty. The charge of a battery gives its voltage, so neither is\n"
+      "for batteries. A direct drive takes --frequency as that of its sine and --lift by its amplitude; a crank on a\n"
+      "sine needs --method transient, which also reports the start-up.\n\n"
       "Exit status: 0 steady flapping, 2 bad input or usage, 3 the vehicle does not flap, 1 anything else.");
   command->callback([a, &action] {
     action = [a] {

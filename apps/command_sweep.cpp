@@ -16,12 +16,12 @@
 #include "options.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/output_file.hpp"
+#include "wingbeat/files/units.hpp"
+#include "wingbeat/files/written_files.hpp"
 #include "wingbeat/report/plot.hpp"
 #include "wingbeat/report/report.hpp"
 #include "wingbeat/report/sweep_plot.hpp"
 #include "wingbeat/run/sweep_run.hpp"
-#include "wingbeat/files/units.hpp"
-#include "wingbeat/files/written_files.hpp"
 
 namespace wingbeat::app {
 namespace {
@@ -47,7 +47,7 @@ void on_signal(int signal) {
 
 /// The first signal ends the sweep after the chunks under way, the second at once.
 void catch_signals() {
-  struct sigaction action {};
+  struct sigaction action{};
   action.sa_handler = on_signal;
   action.sa_flags = SA_RESTART;
   for (const int signal : {SIGINT, SIGTERM}) ::sigaction(signal, &action, nullptr);
@@ -102,7 +102,7 @@ std::string description(const Sweep& sweep, std::uint64_t index) {
       } else {
         const double x = axis.value(q, place[a]);
         const bool prefixed = quantity.unit == "m" || quantity.unit == "V" || quantity.unit == "Hz";
-        text += prefixed             ? readable(x, quantity.unit)
+        text += prefixed               ? readable(x, quantity.unit)
                 : quantity.unit == "1" ? fmt::format("{:.4g}", x)
                                        : fmt::format("{:.4g} {}", x, quantity.unit);
       }
@@ -130,10 +130,13 @@ std::string summary(const Study& study, const SweepResult& result) {
                    rate(double(p.computed), p.seconds));
   }
   text += '\n';
-  constexpr const char* meanings[sweep_status_count] = {
-      "", "the motor never starts", "the crank comes to rest at an angle",
-      "the equations of motion lose their unique solution on the way", "flapping, but not at the frequency asked for",
-      "a parameter out of its range beside the others", "start-up came to no end within the solvers' limits"};
+  constexpr const char* meanings[sweep_status_count] = {"",
+                                                        "the motor never starts",
+                                                        "the crank comes to rest at an angle",
+                                                        "the equations of motion lose their unique solution on the way",
+                                                        "flapping, but not at the frequency asked for",
+                                                        "a parameter out of its range beside the others",
+                                                        "start-up came to no end within the solvers' limits"};
   for (int s = 0; s < sweep_status_count; ++s) {
     const std::uint64_t n = digest.designs[std::size_t(s)];
     if (n == 0 && s > 0) continue;
@@ -147,18 +150,21 @@ std::string summary(const Study& study, const SweepResult& result) {
     std::string limits;
     for (std::size_t k = 0; k < digest.beyond.size(); ++k) {
       if (digest.beyond[k] == 0) continue;
-      limits += fmt::format("{}{} {}", limits.empty() ? "" : ", ", grouped(digest.beyond[k]), domain_limit_table()[k].key);
+      limits +=
+          fmt::format("{}{} {}", limits.empty() ? "" : ", ", grouped(digest.beyond[k]), domain_limit_table()[k].key);
     }
     fmt::format_to(out, "  {:<12}{:>14}{:>9.2f} %   flapping outside the model's domain ({})\n", "outside",
                    grouped(digest.outside), 100.0 * double(digest.outside) / double(sweep.size()), limits);
-    if (sweep.allow_extrapolation) fmt::format_to(out, "extrapolation is allowed: designs outside the domain may be best\n");
+    if (sweep.allow_extrapolation)
+      fmt::format_to(out, "extrapolation is allowed: designs outside the domain may be best\n");
   }
   const auto best = [&](const char* what, const SweepBest& b, const auto& value) {
     if (!b.design()) return;
-    fmt::format_to(out, "{}\n",
-                   wrapped(fmt::format("{}: {}, {}{}", what, value(b.design()->value), description(sweep, b.design()->index),
-                                       b.carries_weight() ? " (of those that carry their weight)" : ""),
-                           88, 2));
+    fmt::format_to(
+        out, "{}\n",
+        wrapped(fmt::format("{}: {}, {}{}", what, value(b.design()->value), description(sweep, b.design()->index),
+                            b.carries_weight() ? " (of those that carry their weight)" : ""),
+                88, 2));
   };
   best("maximum mean lift", digest.lift, [](double lift) { return readable(lift, "N"); });
   best("maximum efficiency", digest.efficiency, [](double share) { return fmt::format("{:.2f} %", 100.0 * share); });
@@ -218,7 +224,8 @@ std::string known_instruction_sets() {
 Study study_of(const Arguments& arguments) {
   const bool data_set = std::filesystem::path(arguments.study).extension() == ".nc";
   if (data_set && !arguments.overrides.empty()) {
-    throw InputError("--set", 0, 0, "", "a data set of an earlier sweep is computed again as it is; give its study file");
+    throw InputError("--set", 0, 0, "",
+                     "a data set of an earlier sweep is computed again as it is; give its study file");
   }
   Study study = data_set ? read_study_in_data_set(arguments.study) : read_study(arguments.study, arguments.overrides);
   study.sweep.allow_extrapolation |= arguments.allow_extrapolation;

@@ -12,9 +12,9 @@
 #include "options.hpp"
 #include "wingbeat/files/output_file.hpp"
 #include "wingbeat/files/tolerance_data.hpp"
+#include "wingbeat/files/tolerance_file.hpp"
 #include "wingbeat/report/tolerance_report.hpp"
 #include "wingbeat/run/sweep_run.hpp"
-#include "wingbeat/files/tolerance_file.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat::app {
@@ -99,8 +99,9 @@ void add_tolerance(CLI::App& program, Action& action) {
       ->needs(plot)
       ->type_name("METRIC");
   add_force(*command, a->force);
-  command->footer("Example:\n  wingbeat tolerance tolerance-hover --plot tolerance.svg\n\n"
-                  "Exit status: 0 done, 2 bad input or usage, 3 no vehicle flaps, 1 anything else.");
+  command->footer(
+      "Example:\n  wingbeat tolerance tolerance-hover --plot tolerance.svg\n\n"
+      "Exit status: 0 done, 2 bad input or usage, 3 no vehicle flaps, 1 anything else.");
   command->callback([a, &action] {
     action = [a] {
       a->study = find_input(a->study, InputKind::study).string();

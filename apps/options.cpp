@@ -56,8 +56,9 @@ std::string unknown_option(const CLI::App& program, const CLI::App& command, con
 }  // namespace
 
 void add_input(CLI::App* command, std::string& file, const char* name, const char* description, const char* type) {
-  command->add_option(name, file, fmt::format("{}; - for standard input, or the name of one that comes with the program",
-                                              description))
+  command
+      ->add_option(name, file,
+                   fmt::format("{}; - for standard input, or the name of one that comes with the program", description))
       ->required()
       ->type_name(type);
 }

@@ -54,11 +54,12 @@ bool fill_standard_streams() {
 
 int run(int argc, char** argv) {
   CLI::App program("Electromechanical model of flapping-wing micro air vehicles.", "wingbeat");
-  program.set_version_flag("--version", fmt::format("wingbeat {} ({}, {} build)", WINGBEAT_VERSION, WINGBEAT_COMPILER,
-                                                    WINGBEAT_BUILD_TYPE));
+  program.set_version_flag(
+      "--version", fmt::format("wingbeat {} ({}, {} build)", WINGBEAT_VERSION, WINGBEAT_COMPILER, WINGBEAT_BUILD_TYPE));
   program.require_subcommand(1);
-  program.footer("Example:\n  wingbeat run friction2022\n\n"
-                 "Exit status: 0 done, 1 something failed, 2 bad input or usage, 3 the vehicle does not flap.");
+  program.footer(
+      "Example:\n  wingbeat run friction2022\n\n"
+      "Exit status: 0 done, 1 something failed, 2 bad input or usage, 3 the vehicle does not flap.");
   program.get_formatter()->column_width(34);
   Action action;
   add_run(program, action);

@@ -1,7 +1,8 @@
 // How far the metrics of random vehicles are from those of a far tighter tolerance, over the tolerance asked for:
 //   benchmarks/accuracy orbit|transient|batched [VEHICLES] [TOLERANCE] [BOX] [SEED]
-// VEHICLES of each box of tests/vehicle/wide_design.hpp (1000, 1e-6, all, 1 unless given). Exit status 1 if more than one
-// vehicle in a thousand is off by more than the tolerance, or any by more than three times. With LIST in the environment, the worst of each box are listed.
+// VEHICLES of each box of tests/vehicle/wide_design.hpp (1000, 1e-6, all, 1 unless given). Exit status 1 if more than
+// one vehicle in a thousand is off by more than the tolerance, or any by more than three times. With LIST in the
+// environment, the worst of each box are listed.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -46,8 +47,9 @@ int main(int argc, char** argv) {
   const int only = argc > 4 ? std::atoi(argv[4]) : -1;
   const unsigned seed = argc > 5 ? unsigned(std::atoi(argv[5])) : 1;
   const bool list = std::getenv("LIST") != nullptr;
-  std::printf("| box | vehicles | compared | outside the tolerance | by three times | largest error / tolerance | metric | "
-              "other orbits | s |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+  std::printf(
+      "| box | vehicles | compared | outside the tolerance | by three times | largest error / tolerance | metric | "
+      "other orbits | s |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
   Sums all;
   std::map<std::string, int> metrics_outside;
   for (int b = 0; b < int(wide_boxes.size()); ++b) {
@@ -60,8 +62,7 @@ int main(int argc, char** argv) {
         const Design<double> design = wide_design(WideBox(b), random);
         vehicles.push_back(resolve(design));
         members.push_back({vehicles.back(), reporting_of(design)});
-      } catch (const ParameterError&) {
-      }
+      } catch (const ParameterError&) {}
     }
     Sums sums;
     sums.vehicles = count;
@@ -97,8 +98,7 @@ int main(int argc, char** argv) {
         f.note = r.detail;
         if (r.status != FlappingStatus::flapping || !r.metrics) continue;
         got = *r.metrics;
-      } else
-      {
+      } else {
         const auto start = std::chrono::steady_clock::now();
         const SteadyFlapping r =
             find_steady_flapping(v, {.tolerance = tolerance, .stability = true, .reporting = reporting});

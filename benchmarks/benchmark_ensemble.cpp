@@ -41,7 +41,8 @@ std::vector<Wanted> wanted_sets() {
   MetricSet no_multipliers = all_metrics();
   no_multipliers.reset(std::size_t(Metric::floquet_multiplier_max));
   MetricSet power_and_lift = no_multipliers;
-  for (const Metric m : {Metric::current_peak, Metric::rod_force_peak, Metric::crank_speed_min, Metric::crank_speed_max}) {
+  for (const Metric m :
+       {Metric::current_peak, Metric::rod_force_peak, Metric::crank_speed_min, Metric::crank_speed_max}) {
     power_and_lift.reset(std::size_t(m));
   }
   MetricSet means = power_and_lift;
@@ -95,11 +96,12 @@ int main(int argc, char** argv) {
   one_by_one.metrics.reset(std::size_t(Metric::floquet_multiplier_max));
   std::vector<EnsembleOutcome> outcomes(members.size());
   const double scalar_time =
-      best_time([&] { solve_ensemble(checked, one_by_one, start_up, std::span(outcomes).first(checked.size())); }, seconds) /
+      best_time([&] { solve_ensemble(checked, one_by_one, start_up, std::span(outcomes).first(checked.size())); },
+                seconds) /
       double(checked.size());
 
-  std::printf("reference box, %zu designs, tolerance %g, one core; scalar solver %.0f designs/s\n\n", design_count, tolerance,
-              1.0 / scalar_time);
+  std::printf("reference box, %zu designs, tolerance %g, one core; scalar solver %.0f designs/s\n\n", design_count,
+              tolerance, 1.0 / scalar_time);
   std::printf("%-8s %-20s %10s %8s %10s %9s   %s\n", "isa", "metrics", "designs/s", "ratio", "recomputed", "no flap",
               "lift error 50 %, 99 %, 99.9 %; worst metric 99.9 %");
   for (const auto& [name, isa] : instruction_sets) {
@@ -146,8 +148,8 @@ int main(int argc, char** argv) {
   for (std::size_t n = 0; n < members.size(); ++n) {
     if (!outcomes[n].scalar) batched.push_back(members[n]);
   }
-  const double without =
-      best_time([&] { solve_ensemble(batched, options, start_up, std::span(outcomes).first(batched.size())); }, seconds);
+  const double without = best_time(
+      [&] { solve_ensemble(batched, options, start_up, std::span(outcomes).first(batched.size())); }, seconds);
   std::printf("\npower and lift, without the %zu recomputed designs: %.0f designs/s, these take %.0f %% of the time\n",
               members.size() - batched.size(), double(batched.size()) / without, 1e2 * (1.0 - without / whole));
 
@@ -161,11 +163,12 @@ int main(int argc, char** argv) {
   const std::vector<EnsembleMember> some(coreless.begin(), coreless.begin() + std::ptrdiff_t(design_count / 16));
   const double one_by_one_time =
       best_time([&] { solve_ensemble(some, one_by_one, start_up, std::span(outcomes).first(some.size())); }, seconds);
-  const double batched_time =
-      best_time([&] { solve_ensemble(coreless, options, start_up, std::span(outcomes).first(coreless.size())); }, seconds);
+  const double batched_time = best_time(
+      [&] { solve_ensemble(coreless, options, start_up, std::span(outcomes).first(coreless.size())); }, seconds);
   const auto recomputed = std::count_if(outcomes.begin(), outcomes.begin() + std::ptrdiff_t(coreless.size()),
                                         [](const EnsembleOutcome& out) { return out.scalar; });
   std::printf("coreless motors, 1 us to 1 ms: %.0f designs/s, scalar %.0f; %td of %zu recomputed\n",
-              double(coreless.size()) / batched_time, double(some.size()) / one_by_one_time, recomputed, coreless.size());
+              double(coreless.size()) / batched_time, double(some.size()) / one_by_one_time, recomputed,
+              coreless.size());
   return 0;
 }

@@ -1,4 +1,5 @@
-// One steady state of the reference vehicle at 1e-6 from a cold start: the orbit solver against CVODE run to steady state.
+// One steady state of the reference vehicle at 1e-6 from a cold start: the orbit solver against CVODE run to steady
+// state.
 //
 //   benchmark_orbit            times by Google Benchmark, then the ratio with the accuracy that each reached
 #include <benchmark/benchmark.h>
@@ -62,8 +63,8 @@ int main(int argc, char** argv) {
     for (int round = 0; round < 30; ++round) {
       constexpr int orbits = 40;
       best_orbit = std::min(best_orbit, seconds([&] {
-                              for (int n = 0; n < orbits; ++n) benchmark::DoNotOptimize(by_orbit(springs));
-                            }) / orbits);
+                                          for (int n = 0; n < orbits; ++n) benchmark::DoNotOptimize(by_orbit(springs));
+                                        }) / orbits);
       best_cvode = std::min(best_cvode, seconds([&] { benchmark::DoNotOptimize(by_cvode(springs)); }));
     }
     const Metrics<double> exact =

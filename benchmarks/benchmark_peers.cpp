@@ -7,24 +7,24 @@
 //
 // Every peer integrates in crank angle, where the period is known, from the same guess; its first laps are coarse; and
 // its tolerance (for AUTO-07p: its number of mesh intervals) is the loosest of a ladder that brings the median lift
-// error to 1e-6 and 99 % of the designs within ten times that. SciPy is asked of /usr/bin/python3, or of what WINGBEAT_PYTHON names; AUTO-07p is expected where
-// Debian puts it, or in AUTO_DIR.
+// error to 1e-6 and 99 % of the designs within ten times that. SciPy is asked of /usr/bin/python3, or of what
+// WINGBEAT_PYTHON names; AUTO-07p is expected where Debian puts it, or in AUTO_DIR.
+#include <cvode/cvode.h>
+#include <nvector/nvector_serial.h>
+#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+#include <unistd.h>
 #include <algorithm>
 #include <boost/numeric/odeint.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cvode/cvode.h>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <numeric>
-#include <nvector/nvector_serial.h>
 #include <sstream>
 #include <string>
-#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
-#include <unistd.h>
 #include <vector>
 
 #include "vehicle/random_vehicle.hpp"
@@ -38,9 +38,9 @@ namespace fs = std::filesystem;
 
 constexpr double goal = 1e-6;              // lift error that every method is to reach at the median
 constexpr double high_goal = 10.0 * goal;  // and at the 99th percentile
-constexpr double periodic = 1e-6;  // a lap that returns to its start within this, relatively, is the orbit
-constexpr double coarse = 1e-4;    // tolerance of the first laps, which only approach the orbit
-constexpr double settled = 3e-2;   // change over a coarse lap below which the real ones begin
+constexpr double periodic = 1e-6;          // a lap that returns to its start within this, relatively, is the orbit
+constexpr double coarse = 1e-4;            // tolerance of the first laps, which only approach the orbit
+constexpr double settled = 3e-2;           // change over a coarse lap below which the real ones begin
 constexpr int most_laps = 60;
 constexpr double lap_start = -0.5 * pi;  // the lower dead centre
 
@@ -83,7 +83,8 @@ struct Peer {
     const double i = u[1] * scale[1];
     const CrankKinematics<double> k = crank_kinematics(geometry, std::sin(theta), std::cos(theta));
     const double stroke = k.stroke_slope >= 0.0 ? 1.0 : -1.0;
-    const Instant<double> at = instant_at(vehicle, k, spring_moment(vehicle, k), omega, i, vehicle.voltage, stroke, 1.0);
+    const Instant<double> at =
+        instant_at(vehicle, k, spring_moment(vehicle, k), omega, i, vehicle.voltage, stroke, 1.0);
     const Branch<double> branch{stroke, at.force_switch >= 0.0 ? 1.0 : -1.0, 1.0, 1.0};
     const Motion<double> m = motion_on(vehicle, at, i, vehicle.voltage, branch);
     const double dt = 1.0 / omega;
@@ -177,8 +178,9 @@ Steady by_odeint(const Peer& peer, double tolerance, std::array<double, 2>* star
     method.integrate(u, lap_start, lap_start + two_pi);
     return std::isfinite(u[0]) && u[0] > 0.0;
   };
-  return flap(peer, tolerance < coarse, [&](int, double* u) { return lap(plain, u); },
-              [&](int, double* u) { return lap(measured, u); }, start);
+  return flap(
+      peer, tolerance < coarse, [&](int, double* u) { return lap(plain, u); },
+      [&](int, double* u) { return lap(measured, u); }, start);
 }
 
 // CVODE: Adams with functional iteration -----------------------------------------------------------------------------
@@ -509,7 +511,8 @@ int main(int argc, char** argv) {
       answers.got.resize(peers.size());
       answers.seconds = seconds_of([&] {
                           for (std::size_t n = 0; n < peers.size(); ++n) answers.got[n] = solve(peers[n], tolerance);
-                        }) / double(peers.size());
+                        }) /
+                        double(peers.size());
       return answers;
     };
   };
@@ -572,12 +575,10 @@ int main(int argc, char** argv) {
                     ours(false, false)});
   rivals.push_back({"wingbeat, batched, all metrics", "", "tolerance %.0e", {goal}, 20, ours(false, true)});
   rivals.push_back({"wingbeat, scalar orbit", "", "tolerance %.0e", {goal}, 5, ours(true, false)});
-  rivals.push_back({"Boost.odeint dopri5", "", "rtol %.1e", tolerances(), 5, each([](const Peer& p, double tolerance) {
-                      return by_odeint(p, tolerance);
-                    })});
-  rivals.push_back({"CVODE, Adams", "", "rtol %.1e", tolerances(), 5, each([&](const Peer& p, double tolerance) {
-                      return by_cvode(plain, measured, p, tolerance);
-                    })});
+  rivals.push_back({"Boost.odeint dopri5", "", "rtol %.1e", tolerances(), 5,
+                    each([](const Peer& p, double tolerance) { return by_odeint(p, tolerance); })});
+  rivals.push_back({"CVODE, Adams", "", "rtol %.1e", tolerances(), 5,
+                    each([&](const Peer& p, double tolerance) { return by_cvode(plain, measured, p, tolerance); })});
   rivals.push_back({"SciPy LSODA", scipy ? "" : "not installed", "rtol %.1e", tolerances(), 2, by_lsoda});
   rivals.push_back({"AUTO-07p, per point",
                     no_auto,

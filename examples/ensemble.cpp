@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
     ++flapping;
     if (!(outcomes[n].metrics[Metric::lift_mean] < outcomes[best].metrics[Metric::lift_mean])) best = n;
   }
-  std::printf("%zu of %zu flap inside the domain; most lift, %.4g mN, at %.4g V and %.4g mm\n", flapping, designs.size(),
-              1e3 * outcomes[best].metrics[Metric::lift_mean], designs[best].supply.voltage,
+  std::printf("%zu of %zu flap inside the domain; most lift, %.4g mN, at %.4g V and %.4g mm\n", flapping,
+              designs.size(), 1e3 * outcomes[best].metrics[Metric::lift_mean], designs[best].supply.voltage,
               1e3 * designs[best].transmission.crank_radius);
 }

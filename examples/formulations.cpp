@@ -2,8 +2,8 @@
 //   example_formulations data/designs/friction2022.toml data/designs/friction2022-springs.toml
 //
 // The chord moments S_2 and S_3 are not published. The first two columns take those of the vehicle files, the last two
-// calibrate them for each formulation to the same two published values: the frequency at 3 V and the peak lift at 22 Hz,
-// both without springs.
+// calibrate them for each formulation to the same two published values: the frequency at 3 V and the peak lift at 22
+// Hz, both without springs.
 #include <array>
 #include <cmath>
 #include <cstdio>

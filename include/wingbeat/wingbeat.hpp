@@ -1,14 +1,15 @@
-// All that most users of the library need: vehicles read, solved, simulated and differentiated, one or very many of them.
+// All that most users of the library need: vehicles read, solved, simulated and differentiated, one or very many of
+// them.
 //
-//   Design<double> design = read_design("friction2022.toml");       // or find_input's shipped ones; fields are plain numbers
-//   RunResult found = solve(design);                                // found.status, found.metrics[Metric::lift_mean]
-//   TransientResult start = simulate(design);                       // from rest, in time
-//   DesignPoint slopes = gradient(design, {"transmission.crank_radius"});
-//   std::vector<EnsembleOutcome> all = solve_ensemble(designs);
-//   metric_table()[std::size_t(Metric::lift_mean)].unit;            // key, unit and meaning of every metric
+//   Design<double> design = read_design("friction2022.toml");       // or find_input's shipped ones; fields are plain
+//   numbers RunResult found = solve(design);                                // found.status,
+//   found.metrics[Metric::lift_mean] TransientResult start = simulate(design);                       // from rest, in
+//   time DesignPoint slopes = gradient(design, {"transmission.crank_radius"}); std::vector<EnsembleOutcome> all =
+//   solve_ensemble(designs); metric_table()[std::size_t(Metric::lift_mean)].unit;            // key, unit and meaning
+//   of every metric
 //
-// Everything is SI and radians. A vehicle that does not flap is a result, never an exception; parameters out of range throw
-// ParameterError, files InputError.
+// Everything is SI and radians. A vehicle that does not flap is a result, never an exception; parameters out of range
+// throw ParameterError, files InputError.
 #pragma once
 
 #include <span>
@@ -22,26 +23,28 @@
 
 namespace wingbeat {
 
-/// What a vehicle does from rest: its steady flapping with all metrics, domain status and energy balance, or the status with
-/// the evidence. Start-up is assessed wherever a doubt is left. Throws ParameterError.
+/// What a vehicle does from rest: its steady flapping with all metrics, domain status and energy balance, or the status
+/// with the evidence. Start-up is assessed wherever a doubt is left. Throws ParameterError.
 RunResult solve(const Design<double>& design, const RunOptions& options = {});
 
-/// Its start-up in time, with events and, where `options.record` asks for them, samples. The supply is the design's. Throws
-/// ParameterError.
-TransientResult simulate(const Design<double>& design, TransientOptions options = {}, Condition condition = Condition::air);
+/// Its start-up in time, with events and, where `options.record` asks for them, samples. The supply is the design's.
+/// Throws ParameterError.
+TransientResult simulate(const Design<double>& design, TransientOptions options = {},
+                         Condition condition = Condition::air);
 
-/// The metrics and their exact derivatives by the numeric keys of the vehicle file: gradients[k][Metric] is SI per SI unit of
-/// keys[k]. With `options.frequency` the flapping frequency is held, otherwise the voltage. Throws ParameterError for an
-/// unknown key and for a parameter without a value in the design.
-DesignPoint gradient(const Design<double>& design, std::span<const std::string> keys, const DesignPointOptions& options = {});
+/// The metrics and their exact derivatives by the numeric keys of the vehicle file: gradients[k][Metric] is SI per SI
+/// unit of keys[k]. With `options.frequency` the flapping frequency is held, otherwise the voltage. Throws
+/// ParameterError for an unknown key and for a parameter without a value in the design.
+DesignPoint gradient(const Design<double>& design, std::span<const std::string> keys,
+                     const DesignPointOptions& options = {});
 inline DesignPoint gradient(const Design<double>& design, std::initializer_list<std::string> keys,
                             const DesignPointOptions& options = {}) {
   return gradient(design, std::span(keys.begin(), keys.size()), options);
 }
 
-/// The outcome of each design, on the calling thread; start-up is assessed. Throws ParameterError, with "design N" in the
-/// reason, for a design out of range.
-std::vector<EnsembleOutcome> solve_ensemble(std::span<const Design<double>> designs, const EnsembleOptions& options = {},
-                                            Condition condition = Condition::air);
+/// The outcome of each design, on the calling thread; start-up is assessed. Throws ParameterError, with "design N" in
+/// the reason, for a design out of range.
+std::vector<EnsembleOutcome> solve_ensemble(std::span<const Design<double>> designs,
+                                            const EnsembleOptions& options = {}, Condition condition = Condition::air);
 
 }  // namespace wingbeat

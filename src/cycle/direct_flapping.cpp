@@ -18,9 +18,10 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
   result.balance.breakaway_torque = balance.breakaway_torque;
   if (balance.stalled()) {
     result.status = FlappingStatus::stalled;
-    result.detail = format("the motor never breaks away: at %.4g Hz the supply gives it a torque of %.4g N m at most, "
-                           "which does not exceed the constant friction %.4g N m",
-                           vehicle.drive_frequency, balance.drive_torque, balance.breakaway_torque);
+    result.detail = format(
+        "the motor never breaks away: at %.4g Hz the supply gives it a torque of %.4g N m at most, "
+        "which does not exceed the constant friction %.4g N m",
+        vehicle.drive_frequency, balance.drive_torque, balance.breakaway_torque);
     return result;
   }
 
@@ -70,9 +71,9 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
   result.summary = orbit.summary();
   if (!found || !is_stable()) {
     result.status = FlappingStatus::undecided;
-    result.detail = found ? format("the periodic response to the supply is unstable (Floquet multiplier %.4g)",
-                                   orbit.multiplier())
-                          : format("no periodic response to the supply was found: %s", orbit.summary().message.c_str());
+    result.detail =
+        found ? format("the periodic response to the supply is unstable (Floquet multiplier %.4g)", orbit.multiplier())
+              : format("no periodic response to the supply was found: %s", orbit.summary().message.c_str());
     return result;
   }
   orbit.fill(result);

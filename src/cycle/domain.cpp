@@ -13,9 +13,7 @@ namespace {
 
 using detail::format;
 
-bool in_air(const Vehicle<double>& v) {
-  return v.wings.air_density > 0.0 && (v.wings.s2 > 0.0 || v.wings.s3 > 0.0);
-}
+bool in_air(const Vehicle<double>& v) { return v.wings.air_density > 0.0 && (v.wings.s2 > 0.0 || v.wings.s3 > 0.0); }
 
 bool has_wings(const Vehicle<double>& v) { return v.wing_inertia > 0.0 || v.wings.s2 > 0.0 || v.wings.s3 > 0.0; }
 
@@ -63,11 +61,10 @@ std::array<S, domain_limit_count> excess_of(const Vehicle<double>& v, const Metr
     at(DomainLimit::angle_of_attack) = (S(range.low) - m[Metric::angle_of_attack_min]) / S(angle_of_attack_highest_deg);
     // At the reversals the wing is upright, whatever its pitching.
     if (range.high < angle_of_attack_highest_deg - angle_slack_deg) {
-      at(DomainLimit::angle_of_attack) = larger(S(1.0 - range.high / angle_of_attack_highest_deg),
-                                                at(DomainLimit::angle_of_attack));
+      at(DomainLimit::angle_of_attack) =
+          larger(S(1.0 - range.high / angle_of_attack_highest_deg), at(DomainLimit::angle_of_attack));
     }
-    at(DomainLimit::flow_speed) =
-        m[Metric::flapping_velocity_peak] * S(reference_radius(v) / flow_speed_max) - S(1.0);
+    at(DomainLimit::flow_speed) = m[Metric::flapping_velocity_peak] * S(reference_radius(v) / flow_speed_max) - S(1.0);
   }
   if (direct) {
     at(DomainLimit::stroke) = m[Metric::stroke_amplitude] * S(degrees_per_radian / direct_stroke_max_deg) - S(1.0);
@@ -138,9 +135,9 @@ DomainExcess domain_excess_slopes(const Vehicle<double>& vehicle, const Metrics<
 
 std::bitset<metric_count> domain_metrics() {
   std::bitset<metric_count> needed;
-  for (const Metric m : {Metric::power_electrical, Metric::power_motor, Metric::power_aerodynamic,
-                         Metric::power_residual, Metric::angle_of_attack_min, Metric::stroke_amplitude,
-                         Metric::flapping_velocity_peak}) {
+  for (const Metric m :
+       {Metric::power_electrical, Metric::power_motor, Metric::power_aerodynamic, Metric::power_residual,
+        Metric::angle_of_attack_min, Metric::stroke_amplitude, Metric::flapping_velocity_peak}) {
     needed.set(std::size_t(m));
   }
   return needed;

@@ -186,8 +186,7 @@ class Repetition {
       for (int k = 0; k <= pieces; ++k) {
         const double t = double(k) / pieces;
         Sample sample{step.x + t * step.h, {}};
-        const State y = k == 0 ? step.y
-                               : solver::detail::hermite<System>(step.y, step.first.dy, y1, dy1, step.h, t);
+        const State y = k == 0 ? step.y : solver::detail::hermite<System>(step.y, step.first.dy, y1, dy1, step.h, t);
         sample.value = candidates(n, sample.x, y);
         for (const Extreme e : System::extremes) {
           const auto c = std::size_t(e);
@@ -257,9 +256,8 @@ class Repetition {
   bool inductance_slots_[slots];
 };
 
-constexpr Metric peak_metrics[] = {Metric::current_peak,        Metric::lift_peak,
-                                   Metric::rod_force_peak,      Metric::flapping_velocity_peak,
-                                   Metric::angle_of_attack_min, Metric::crank_speed_min,
+constexpr Metric peak_metrics[] = {Metric::current_peak,           Metric::lift_peak,           Metric::rod_force_peak,
+                                   Metric::flapping_velocity_peak, Metric::angle_of_attack_min, Metric::crank_speed_min,
                                    Metric::crank_speed_max};
 
 void make_absent(J& x) { x.v.setConstant(absent); }
@@ -281,8 +279,8 @@ OrbitGradient differentiate(const SteadyFlapping& orbit, const RecordedLap<Syste
   if (options.peaks) extremes = lap.extremes();
   g.metrics = cycle_metrics(vehicle, lap.integrals(), extremes, J(orbit.metrics[Metric::floquet_multiplier_max]), {});
   const J bench = voltage_varies ? given.bench_torque_constant : J(absent);
-  g.metrics[Metric::power_motor_reference] = two_pi * bench * g.metrics[Metric::frequency] *
-                                             g.metrics[Metric::current_mean];
+  g.metrics[Metric::power_motor_reference] =
+      two_pi * bench * g.metrics[Metric::frequency] * g.metrics[Metric::current_mean];
   g.metrics[Metric::lift_to_weight] = g.metrics[Metric::lift_mean] / (given.mass * standard_gravity);
   for (const double theta : options.crank_angles) g.instants.push_back(lap.instant(theta));
 

@@ -7,8 +7,8 @@ namespace {
 
 /// `pace` receives d theta / dt [rad/s].
 template <class Recorded>
-WaveformRow row_inside(const Recorded& recorded, const solver::Step<decltype(Recorded::system)>& step, double start_time,
-                       double theta, double& pace) {
+WaveformRow row_inside(const Recorded& recorded, const solver::Step<decltype(Recorded::system)>& step,
+                       double start_time, double theta, double& pace) {
   const auto& system = recorded.system;
   const auto result = solver::evaluate_inside<true>(system, recorded.lap, step, theta);
   const Motion<double> m = system.motion(theta, result.y, step.signs);

@@ -104,8 +104,8 @@ StaticBalance static_balance(const Vehicle<double>& v) {
   std::tie(s.lever_angle, s.lever_least) = least_on_circle(
       [&](double angle) { return kinematics_at(v, angle).wing_lever; }, lever, 0.1 * v.crank.hinge_offset);
   if (springs) {
-    std::tie(s.advance_angle, s.advance_least) = least_on_circle(
-        [&](double angle) { return advance_torque(v, angle); }, advance, 0.2 * s.stall_torque);
+    std::tie(s.advance_angle, s.advance_least) =
+        least_on_circle([&](double angle) { return advance_torque(v, angle); }, advance, 0.2 * s.stall_torque);
   }
   return s;
 }
@@ -125,7 +125,8 @@ std::vector<LockInterval> lock_intervals(const Vehicle<double>& v) {
   for (int n = start + 1; n <= start + samples; ++n) {
     const double angle = two_pi * n / samples, at = margin(angle);
     if (!is_open && at < 0.0 && margin_before < 0.0) {
-      // Thin intervals, down to the single angles that a spring alone leaves, show as a change of the net torque's sign.
+      // Thin intervals, down to the single angles that a spring alone leaves, show as a change of the net torque's
+      // sign.
       const auto net = [&](double x) { return advance_torque(v, x); };
       if ((net(before) > 0.0) != (net(angle) > 0.0)) {
         const double edge = bisect(net, before, angle);

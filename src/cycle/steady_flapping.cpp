@@ -24,9 +24,8 @@ class CrankSearch : public OrbitSearch<CrankSystem<double, N>> {
     const auto& system = this->system();
     if (!(omega > system.speed_floor)) return false;
     if constexpr (N == 2) {
-      return this->search({omega, std::isfinite(current)
-                                      ? current
-                                      : algebraic_current(system.vehicle, system.vehicle.voltage, omega)});
+      return this->search(
+          {omega, std::isfinite(current) ? current : algebraic_current(system.vehicle, system.vehicle.voltage, omega)});
     } else {
       return this->search({omega});
     }
@@ -53,9 +52,10 @@ std::string jam_detail(const StaticBalance& s) {
     return format("the rod force loses its lever on the wings at crank angle %.1f deg (least lever %.3g m)",
                   in_degrees(s.lever_angle), s.lever_least);
   }
-  return format("the equations of motion lose their unique solution at crank angle %.1f deg: the rotor is too light "
-                "for the friction (effective inertia %.3g kg m2)",
-                in_degrees(s.inertia_angle), s.inertia_least);
+  return format(
+      "the equations of motion lose their unique solution at crank angle %.1f deg: the rotor is too light "
+      "for the friction (effective inertia %.3g kg m2)",
+      in_degrees(s.inertia_angle), s.inertia_least);
 }
 
 std::string lock_list(const Vehicle<double>& vehicle) {
@@ -87,8 +87,7 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
     found = balanced.count > 0.0 && orbit.from(balanced.slowest);
     // The fastest start: if laps from there fail, no slower one can be expected to last.
     if (!found) found = orbit.from(no_load_speed(vehicle));
-    ambiguous = balanced.count > 1.0 ||
-                (found && hardly_returns(vehicle, orbit.multiplier(), 1.0 / orbit.frequency()));
+    ambiguous = balanced.count > 1.0 || (found && hardly_returns(vehicle, orbit.multiplier(), 1.0 / orbit.frequency()));
   }
 
   std::optional<StartUpOutcome> outcome;
@@ -136,8 +135,10 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
     result.detail = jam_detail(statics);
   } else if (result.summary.status == solver::PeriodicStatus::converged) {
     result.status = FlappingStatus::undecided;
-    result.detail = format("the only orbit found, at %.4g Hz, is unstable (Floquet multiplier %.4g), and nobody says what "
-                           "start-up does", orbit.frequency(), orbit.multiplier());
+    result.detail = format(
+        "the only orbit found, at %.4g Hz, is unstable (Floquet multiplier %.4g), and nobody says what "
+        "start-up does",
+        orbit.frequency(), orbit.multiplier());
   } else {
     result.status = FlappingStatus::locked;
     result.detail = format("no rotating orbit: laps end at crank angle %.1f deg (%s)", in_degrees(result.summary.stop),
@@ -155,20 +156,22 @@ void detail::fill_simulated(const StartUpOutcome& outcome, const SteadyOptions& 
   const std::string& why = result.summary.message;
   if (!result.simulated) {
     result.status = FlappingStatus::undecided;
-    result.detail = format("it rotates when simulated in time, but neither a periodic orbit in %s (%s) nor a simulated "
-                           "cycle was found that it settles on", variable, why.c_str());
+    result.detail = format(
+        "it rotates when simulated in time, but neither a periodic orbit in %s (%s) nor a simulated "
+        "cycle was found that it settles on",
+        variable, why.c_str());
     return;
   }
   result.status = FlappingStatus::flapping;
   result.metrics = result.simulated->metrics;
   result.crank_speed = outcome.crank_speed;
   result.current = outcome.current;
-  result.detail = format("steady flapping at %.4g Hz, from its cycle simulated in time to %.1g%s: the search for an orbit "
-                         "in %s found none that start-up reaches (%s)",
-                         result.metrics[Metric::frequency], result.simulated->error_estimate,
-                         result.simulated->cycles > 1
-                             ? format(", which repeats after %d turns", result.simulated->cycles).c_str() : "",
-                         variable, why.c_str());
+  result.detail = format(
+      "steady flapping at %.4g Hz, from its cycle simulated in time to %.1g%s: the search for an orbit "
+      "in %s found none that start-up reaches (%s)",
+      result.metrics[Metric::frequency], result.simulated->error_estimate,
+      result.simulated->cycles > 1 ? format(", which repeats after %d turns", result.simulated->cycles).c_str() : "",
+      variable, why.c_str());
 }
 
 SteadyFlapping find_steady_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,

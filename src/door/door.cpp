@@ -15,7 +15,8 @@ TransientResult simulate(const Design<double>& design, TransientOptions options,
   return simulate_start_up(resolve(design, condition), options);
 }
 
-DesignPoint gradient(const Design<double>& design, std::span<const std::string> keys, const DesignPointOptions& options) {
+DesignPoint gradient(const Design<double>& design, std::span<const std::string> keys,
+                     const DesignPointOptions& options) {
   validate(design);
   std::vector<DesignParameter> parameters;
   for (const std::string& key : keys) parameters.push_back(design_parameter(key));

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "wingbeat/ensemble/lane_blocks.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
+#include "wingbeat/ensemble/lane_blocks.hpp"
 #include "wingbeat/solve/collocation.hpp"
 
 namespace wingbeat {
@@ -27,11 +27,9 @@ LaneSolver solver_for(InstructionSet isa) {
   }
 }
 
-/// Angle that a crank turns by at the speed without load while its current decays by a factor of e: up to here lanes take
-/// it for a lag, of which they leave out what is of higher order. Segments are forty times as long.
-double most_lag(double tolerance) {
-  return 0.007 * std::min(std::sqrt(tolerance / 1e-6), 1.0);
-}
+/// Angle that a crank turns by at the speed without load while its current decays by a factor of e: up to here lanes
+/// take it for a lag, of which they leave out what is of higher order. Segments are forty times as long.
+double most_lag(double tolerance) { return 0.007 * std::min(std::sqrt(tolerance / 1e-6), 1.0); }
 
 /// How a tolerance is met.
 struct Plan {
@@ -54,11 +52,13 @@ Plan plan_for(const EnsembleOptions& options) {
   want(Quantity::energy, wanted(Metric::power_reactive));
   s.multipliers = wanted(Metric::floquet_multiplier_max);
 
-  // Where benchmarks/benchmark_ensemble is fastest at 1e-6. The order of the means is twice the number of intervals, that
-  // of peaks little more than it; a sweep gains about two digits.
+  // Where benchmarks/benchmark_ensemble is fastest at 1e-6. The order of the means is twice the number of intervals,
+  // that of peaks little more than it; a sweep gains about two digits.
   const double digits = -std::log10(options.tolerance);
   const bool peaks = std::any_of(s.wanted.begin(), s.wanted.end(), [](bool on) { return on; });
-  const auto even = [](double x) { return std::clamp(2 * int(std::ceil(0.5 * x)), 6, solver::most_collocation_intervals); };
+  const auto even = [](double x) {
+    return std::clamp(2 * int(std::ceil(0.5 * x)), 6, solver::most_collocation_intervals);
+  };
   want(Quantity::velocity, velocity || options.domain);
   s.velocity_aside = options.domain && !velocity;
   s.segments = digits > 5.0 ? 8 : 6;
@@ -97,8 +97,14 @@ class EnsembleRun {
  public:
   EnsembleRun(std::span<const EnsembleMember> members, const EnsembleOptions& options, const StartUp& start_up,
               std::span<EnsembleOutcome> outcomes)
-      : members_(members), options_(options), start_up_(start_up), outcomes_(outcomes), plan_(plan_for(options)),
-        solver_(solver_for(options.isa)), results_(members.size()), rotates_(members.size()) {}
+      : members_(members),
+        options_(options),
+        start_up_(start_up),
+        outcomes_(outcomes),
+        plan_(plan_for(options)),
+        solver_(solver_for(options.isa)),
+        results_(members.size()),
+        rotates_(members.size()) {}
 
   void solve() {
     std::array<std::vector<std::size_t>, kinds> by_kind;

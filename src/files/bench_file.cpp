@@ -126,9 +126,10 @@ class LogReader {
       for (const ColumnName& c : known) names.push_back(c.name);
       if (log_.waveform) names.push_back(crank_angle.name);
       const std::string_view near = nearest_name(cell.text.substr(0, cell.text.find_first_of("[( ")), names);
-      refuse(cell.column, "", fmt::format("unknown column {}; {}", in_quotes(cell.text),
-                                          near.empty() ? fmt::format("known are {}", fmt::join(names, ", "))
-                                                       : fmt::format("did you mean {} with its unit?", near)));
+      refuse(cell.column, "",
+             fmt::format("unknown column {}; {}", in_quotes(cell.text),
+                         near.empty() ? fmt::format("known are {}", fmt::join(names, ", "))
+                                      : fmt::format("did you mean {} with its unit?", near)));
     }
     Column column{best, 1.0, true, best->name};
     if (cell.text != best->full || best->full == best->name) {
@@ -311,8 +312,9 @@ class BenchReader {
     if (!(fit.loss_scale > 0.0)) options->refuse(options->at("loss_scale"), "loss_scale", "must be > 0");
     fit.starts = options->count("starts", 1).value_or(1);
     if (fit.starts > most_fit_starts) {
-      options->refuse(options->at("starts"), "starts",
-                      fmt::format("must be at most {}, got {}; every start is a whole fit", most_fit_starts, fit.starts));
+      options->refuse(
+          options->at("starts"), "starts",
+          fmt::format("must be at most {}, got {}; every start is a whole fit", most_fit_starts, fit.starts));
     }
     fit.seed = std::uint64_t(options->count("seed", 0).value_or(1));
     fit.tolerance = options->quantity("tolerance", "1").value_or(fit.tolerance);
@@ -366,8 +368,7 @@ class BenchReader {
     };
     const auto sections = root_.tables("parameter");
     for (const TomlFields& p : sections) errors_.attempt([&] { read_one(p); });
-    if (sections.empty())
-      root_.refuse("parameter", "missing: which parameters are free? Give [[parameter]] sections");
+    if (sections.empty()) root_.refuse("parameter", "missing: which parameters are free? Give [[parameter]] sections");
   }
 
   void read_logs(BenchFit& fit) {
@@ -455,8 +456,9 @@ class BenchReader {
   void read_deviations(BenchFit& fit) const {
     const auto section = root_.table("deviation");
     if (!section) {
-      root_.refuse("deviation", "missing section [deviation]: how well was each column measured? For example default = "
-                                "{ relative = 0.01 }, or \"estimated\"");
+      root_.refuse("deviation",
+                   "missing section [deviation]: how well was each column measured? For example default = "
+                   "{ relative = 0.01 }, or \"estimated\"");
     }
     std::vector<std::string_view> keys = {"default"};
     for (const ColumnName& c : metric_columns()) keys.push_back(c.name);

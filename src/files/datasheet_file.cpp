@@ -16,7 +16,7 @@ namespace {
 
 struct Field {
   std::string_view key, unit;
-  std::optional<double> MotorDatasheet::*value;
+  std::optional<double> MotorDatasheet::* value;
 };
 constexpr Field fields[] = {{"voltage", "V", &MotorDatasheet::voltage},
                             {"no_load_speed", "rad/s", &MotorDatasheet::no_load_speed},
@@ -33,8 +33,11 @@ constexpr Field fields[] = {{"voltage", "V", &MotorDatasheet::voltage},
                             {"mechanical_time_constant", "s", &MotorDatasheet::mechanical_time_constant},
                             {"rotor_diameter", "m", &MotorDatasheet::rotor_diameter},
                             {"rotor_length", "m", &MotorDatasheet::rotor_length}};
-constexpr Field point_fields[] = {{"voltage", "V", nullptr}, {"torque", "N m", nullptr}, {"speed", "rad/s", nullptr},
-                                  {"current", "A", nullptr}, {"efficiency", "1", nullptr}};
+constexpr Field point_fields[] = {{"voltage", "V", nullptr},
+                                  {"torque", "N m", nullptr},
+                                  {"speed", "rad/s", nullptr},
+                                  {"current", "A", nullptr},
+                                  {"efficiency", "1", nullptr}};
 
 }  // namespace
 
@@ -103,8 +106,8 @@ MotorDatasheet parse_datasheet(std::string_view text, const std::string& file_na
     const bool of_root = error.key().starts_with("fallback");
     const TomlNode* at = of_root ? tree.find("fallback") : sheet->node().find(point ? "point" : error.key());
     const TomlNode& place = at ? *at : sheet->node();
-    throw InputError(file_name, place.line, place.column,
-                     of_root ? error.key() : sheet->name_of(error.key()), error.reason());
+    throw InputError(file_name, place.line, place.column, of_root ? error.key() : sheet->name_of(error.key()),
+                     error.reason());
   }
   return s;
 }

@@ -131,7 +131,9 @@ class Editor {
     return text ? fmt::format("{}{}{}", old.front(), *text, old.front()) : key.text;
   }
 
-  void replace(std::size_t begin, std::size_t end, std::string text) { edits_.push_back({begin, end, std::move(text)}); }
+  void replace(std::size_t begin, std::size_t end, std::string text) {
+    edits_.push_back({begin, end, std::move(text)});
+  }
 
   std::size_t line_begin(std::size_t at) const {
     const auto newline = at == 0 ? std::string_view::npos : text_.rfind('\n', at - 1);
@@ -214,7 +216,8 @@ class Editor {
 };
 
 /// Keys that may name a table file, with its name as it stands there.
-constexpr std::string_view naming[] = {"wing.planform.file", "supply.discharge_curve", "aerodynamics.coefficients.table"};
+constexpr std::string_view naming[] = {"wing.planform.file", "supply.discharge_curve",
+                                       "aerodynamics.coefficients.table"};
 
 /// The text with the names of table files as they are seen from another folder.
 std::string moved(const std::string& text, const fs::path& from, const fs::path& to) {
@@ -242,8 +245,7 @@ std::string edited_design(std::string_view original, const Design<double>& desig
   try {
     const std::string text = Editor(original, parse_design(original, "", {}, tables), design).edit();
     if (agree(keys_of(parse_design(text, "", {}, tables)), keys_of(design))) return text;
-  } catch (const InputError&) {
-  }
+  } catch (const InputError&) {}
   return write_design(design);
 }
 
@@ -255,8 +257,7 @@ std::string edited_design(const fs::path& original, const fs::path& output, cons
     return edited_design(from == to ? text : moved(text, from, to), design,
                          [&](const std::string& name) { return read_text_file(to / name); });
   } catch (const InputError&) {
-  } catch (const fs::filesystem_error&) {
-  }
+  } catch (const fs::filesystem_error&) {}
   return write_design(design);
 }
 

@@ -85,8 +85,7 @@ class Reader {
   void attempt(const Do& act) {
     try {
       errors_.attempt(act);
-    } catch (const Told&) {
-    }
+    } catch (const Told&) {}
   }
 
   /// True if a misspelt or misplaced key, which is told already, was to be this one.
@@ -172,8 +171,8 @@ class Reader {
   }
 
   [[noreturn]] void unsupported(std::string_view path, std::string_view given) const {
-    document_.locate(path).refuse(std::string(path), fmt::format("{} is not supported yet; expected {}", given,
-                                                                 find_key<double>(path)->range));
+    document_.locate(path).refuse(
+        std::string(path), fmt::format("{} is not supported yet; expected {}", given, find_key<double>(path)->range));
   }
 
   double number_of(const Value& value, std::string_view path, std::string_view unit) const {
@@ -212,8 +211,9 @@ class Reader {
     if (document_.find(path)) {
       transmission.formulation = choice(path, formulations);
     } else if (transmission.type == TransmissionType::slider_crank && !is_unread("transmission.type")) {
-      missing(path, "rod-force or virtual-work: virtual-work conserves power and is the choice for a new vehicle, "
-                    "rod-force is equation (1) of the 2022 paper as printed");
+      missing(path,
+              "rod-force or virtual-work: virtual-work conserves power and is the choice for a new vehicle, "
+              "rod-force is equation (1) of the 2022 paper as printed");
     }
   }
 
@@ -278,8 +278,8 @@ class Reader {
     if (!required || first || second || known_to_be_wrong(other)) return;
     const std::string_view unit = find_key<double>(one)->unit;
     missing(one, unit.empty() ? std::string("the name of a CSV file, or chords instead")
-                 : offered     ? fmt::format("{}, or {} instead", quantity_example(unit), leaf(other))
-                               : quantity_example(unit));
+                 : offered    ? fmt::format("{}, or {} instead", quantity_example(unit), leaf(other))
+                              : quantity_example(unit));
   }
 
   void read_coefficients(AerodynamicsDesign<double>& a) const {

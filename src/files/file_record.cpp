@@ -46,7 +46,7 @@ FileRecord& FileRecord::of_this_program() {
 FileRecord::Entry FileRecord::entry_of(const fs::path& file, const std::string& shown) {
   std::error_code error;
   Entry entry{fs::weakly_canonical(fs::absolute(file, error), error), shown, {}};
-  struct stat found {};
+  struct stat found{};
   if (::stat(file.c_str(), &found) == 0) entry.identity.emplace(found.st_dev, found.st_ino);
   return entry;
 }
@@ -59,7 +59,7 @@ const FileRecord::Entry* FileRecord::find(const std::vector<Entry>& entries, con
 }
 
 void FileRecord::add_read(const fs::path& file) {
-  struct stat found {};
+  struct stat found{};
   if (::stat(file.c_str(), &found) != 0 || !S_ISREG(found.st_mode)) return;
   const Entry entry = entry_of(file, file.string());
   const std::lock_guard lock(mutex_);
@@ -146,7 +146,7 @@ fs::path checked_output(const std::string& option, const fs::path& path, const O
   }
   const fs::path target = followed(option, path);
   check_not_read(option, path, target);
-  struct stat existing {};
+  struct stat existing{};
   if (::stat(target.c_str(), &existing) != 0) return target;
   if (S_ISDIR(existing.st_mode)) refuse(option, path, "cannot be written: it is a folder");
   if (!S_ISREG(existing.st_mode)) refuse(option, path, "cannot be written: it is not a regular file");

@@ -54,7 +54,8 @@ NetcdfFile::NetcdfFile(const std::filesystem::path& file) : file_(file.string())
   (void)once;
   const PlainName name(file_, O_RDWR | O_CREAT);
   const int status = nc_create(name.get(), NC_NETCDF4 | NC_CLOBBER, &id_);
-  if (status != NC_NOERR) throw NetcdfError(fmt::format("{}: cannot create the file: {}", file_, reason_of(status, file_)));
+  if (status != NC_NOERR)
+    throw NetcdfError(fmt::format("{}: cannot create the file: {}", file_, reason_of(status, file_)));
 }
 
 NetcdfFile::~NetcdfFile() {
@@ -72,8 +73,7 @@ NetcdfFile::Variable NetcdfFile::define_variable(const std::string& name, const 
   Variable variable{0, dimensions};
   std::vector<int> ids;
   for (const Dimension& d : dimensions) ids.push_back(d.id);
-  check(nc_def_var(id_, name.c_str(), NC_DOUBLE, int(ids.size()), ids.data(), &variable.id),
-        "define variable " + name);
+  check(nc_def_var(id_, name.c_str(), NC_DOUBLE, int(ids.size()), ids.data(), &variable.id), "define variable " + name);
   const double fill = std::numeric_limits<double>::quiet_NaN();
   check(nc_def_var_fill(id_, variable.id, NC_FILL, &fill), "set the fill value of " + name);
   set_attribute(variable, "units", unit);
@@ -82,8 +82,7 @@ NetcdfFile::Variable NetcdfFile::define_variable(const std::string& name, const 
 }
 
 NetcdfFile::Variable NetcdfFile::define_dense(const std::string& name, const std::vector<Dimension>& dimensions,
-                                              const std::string& unit, const std::string& long_name,
-                                              Storage storage) {
+                                              const std::string& unit, const std::string& long_name, Storage storage) {
   Variable variable{0, dimensions};
   std::vector<int> ids;
   for (const Dimension& d : dimensions) ids.push_back(d.id);
@@ -155,8 +154,8 @@ void NetcdfFile::write(const Variable& variable, std::span<const double> values)
   write(variable, start, count, values);
 }
 
-void NetcdfFile::write(const Variable& variable, std::span<const std::size_t> start,
-                       std::span<const std::size_t> count, std::span<const double> values) {
+void NetcdfFile::write(const Variable& variable, std::span<const std::size_t> start, std::span<const std::size_t> count,
+                       std::span<const double> values) {
   std::size_t expected = 1;
   for (const std::size_t n : count) expected *= n;
   const std::size_t rank = variable.dimensions.size();
@@ -221,8 +220,8 @@ void NetcdfFile::check(int status, const std::string& action) const {
   failed_ = true;
   // Of a full disk HDF5 says nothing; the system does.
   const bool by_system = status == NC_EHDFERR && (errno == ENOSPC || errno == EDQUOT || errno == EFBIG || errno == EIO);
-  throw NetcdfError(fmt::format("{}: cannot {}: {}", file_, action,
-                                by_system ? std::strerror(errno) : nc_strerror(status)));
+  throw NetcdfError(
+      fmt::format("{}: cannot {}: {}", file_, action, by_system ? std::strerror(errno) : nc_strerror(status)));
 }
 
 NetcdfReader::NetcdfReader(const std::filesystem::path& file) : file_(file.string()) {

@@ -44,12 +44,14 @@ void write_best(NetcdfFile& data, const OptimiseStudy& study, const OptimiseResu
                std::span(&r.point.metrics.values[std::size_t(m)], 1));
   }
   each_parameter("", ", of the optimum", {}, 1, [&](std::size_t, std::size_t k) { return r.parameters[k]; });
-  each_parameter("lower_", ", lower bound", {}, 1, [&](std::size_t, std::size_t k) { return study.parameters[k].lower; });
-  each_parameter("upper_", ", upper bound", {}, 1, [&](std::size_t, std::size_t k) { return study.parameters[k].upper; });
+  each_parameter("lower_", ", lower bound", {}, 1,
+                 [&](std::size_t, std::size_t k) { return study.parameters[k].lower; });
+  each_parameter("upper_", ", upper bound", {}, 1,
+                 [&](std::size_t, std::size_t k) { return study.parameters[k].upper; });
 
   if (!r.searches.empty()) {
     const auto search = data.define_dimension("search", r.searches.size());
-    const auto at = [&](std::size_t n, std::size_t k, const std::vector<double> SearchEnd::*where) {
+    const auto at = [&](std::size_t n, std::size_t k, const std::vector<double> SearchEnd::* where) {
       const std::vector<double>& x = r.searches[n].*where;
       return x.empty() ? absent : x[k];
     };
@@ -76,13 +78,14 @@ void write_best(NetcdfFile& data, const OptimiseStudy& study, const OptimiseResu
       names.push_back(name_of(c));
       values.push_back(r.point.metrics[c.metric]);
       limits.push_back(c.limit);
-      const auto active = std::find_if(r.active.begin(), r.active.end(),
-                                       [&](const ActiveLimit& a) { return a.name == names.back(); });
+      const auto active =
+          std::find_if(r.active.begin(), r.active.end(), [&](const ActiveLimit& a) { return a.name == names.back(); });
       costs.push_back(active == r.active.end() ? 0.0 : active->sensitivity);
     }
     data.define_texts("constraint", constraint, names, "constraint");
-    data.write(data.define_variable("constraint_value", {constraint}, "1",
-                                    "value at the optimum, in the unit of the metric"), values);
+    data.write(
+        data.define_variable("constraint_value", {constraint}, "1", "value at the optimum, in the unit of the metric"),
+        values);
     data.write(data.define_variable("constraint_limit", {constraint}, "1", "limit, in the unit of the metric"), limits);
     data.write(data.define_variable("constraint_sensitivity", {constraint}, "1",
                                     "relative loss for a relative tightening; 0 where it does not hold the optimum"),
@@ -142,8 +145,8 @@ void write_optimum(const OptimiseFile& file, std::span<const MotorTrial> trials,
   std::vector<std::string> names;
   for (const MotorTrial& t : trials) names.push_back(name_of(file, t));
   data.define_texts("trial", trial, names, "motor of the catalogue and discrete values");
-  const auto outcome = data.define_dense("trial_outcome", {trial}, "1", "what the search found",
-                                         NetcdfFile::Storage::flag);
+  const auto outcome =
+      data.define_dense("trial_outcome", {trial}, "1", "what the search found", NetcdfFile::Storage::flag);
   data.set_flags(outcome, std::vector<std::string>{"found", "infeasible", "nothing_flaps", "refused"});
   std::vector<std::int8_t> outcomes;
   for (const MotorTrial& t : trials) outcomes.push_back(std::int8_t(t.refused() ? 3 : int(t.result.outcome)));

@@ -69,7 +69,8 @@ class OptimiseReader : public detail::StudySections {
   Metric metric_named(const TomlNode& node, const std::string& where, const Design<double>& design) const {
     const std::string name = text_of(node, where, "the name of a metric such as \"power_electrical_w\"");
     const Metric metric = metric_called(node, where, name);
-    if (metric == Metric::floquet_multiplier_max && !several_) refuse(node, where, fmt::format("{} has no derivative", name));
+    if (metric == Metric::floquet_multiplier_max && !several_)
+      refuse(node, where, fmt::format("{} has no derivative", name));
     if (metric == Metric::lift_to_weight && !design.mass) {
       refuse(node, where, "lift_to_weight needs vehicle.mass; give it in the vehicle file or in [set]");
     }
@@ -88,8 +89,9 @@ class OptimiseReader : public detail::StudySections {
     study.maximise = high != nullptr;
     study.objective = metric_named(high ? *high : *low, high ? "objective.maximise" : "objective.minimise", design);
     if (const TomlNode* search = root_.find("search")) {
-      refuse(*search, "search", "belongs to several [[objective]] sections; starts, screen and seed of one stand in "
-                                "[objective]");
+      refuse(*search, "search",
+             "belongs to several [[objective]] sections; starts, screen and seed of one stand in "
+             "[objective]");
     }
     if (const TomlNode* starts = node.find("starts")) {
       study.starts = int(whole_number(*starts, "objective.starts", 1, 10000));
@@ -121,8 +123,7 @@ class OptimiseReader : public detail::StudySections {
         refuse(high ? *high : *low, where, "is an objective already");
       }
       if (const TomlNode* reference = node.find("reference")) {
-        objective.reference =
-            quantity(*reference, "objective.reference", metric_info(objective.metric).unit);
+        objective.reference = quantity(*reference, "objective.reference", metric_info(objective.metric).unit);
       }
       file.objectives.push_back(objective);
     }
@@ -198,8 +199,10 @@ class OptimiseReader : public detail::StudySections {
     combinations *= std::max<std::size_t>(1, file.motors.size());
     const TomlNode& list = *root_.find("parameter");
     if (!several_ && combinations > most) {
-      refuse(list, "parameter.values", fmt::format("{} combinations are more than {}: one objective tries each of them; "
-                                                   "take fewer values, or bounds instead", combinations, most));
+      refuse(list, "parameter.values",
+             fmt::format("{} combinations are more than {}: one objective tries each of them; "
+                         "take fewer values, or bounds instead",
+                         combinations, most));
     }
     if (file.study.parameters.size() + file.choices.size() + 1 > ScrambledSobol::most_dimensions) {
       refuse(list, "parameter", fmt::format("more than {} parameters", ScrambledSobol::most_dimensions - 1));
@@ -299,8 +302,9 @@ class OptimiseReader : public detail::StudySections {
       rest = quantity(*mass, "motors.mass_without", "kg");
       if (!(*rest > 0.0)) refuse(*mass, "motors.mass_without", "must be > 0 kg");
       if (file.study.design.masses.motor) {
-        refuse(*mass, "motors.mass_without", "has no place where the vehicle gives motor.mass: vehicle.mass is without "
-                                             "the motor already");
+        refuse(*mass, "motors.mass_without",
+               "has no place where the vehicle gives motor.mass: vehicle.mass is without "
+               "the motor already");
       }
     }
     read_catalogue(path.string(), read_text_file(path), gear, rest, file);

@@ -23,14 +23,14 @@ OutputFile::OutputFile(std::string option, const fs::path& path, const OutputRul
     refuse(fmt::format("is also the file of {}; give another name", *other));
   }
   mode_t mode = 0666;
-  struct stat existing {};
+  struct stat existing{};
   const bool exists = ::stat(target_.c_str(), &existing) == 0;
   if (exists) mode = existing.st_mode & 07777;
   int file = -1;
   for (int attempt = 0; file < 0; ++attempt) {
     // The extension stays: some writers choose the format by it.
-    temporary_ = target_.parent_path() /
-                 fmt::format(".{}-{}.part{}", ::getpid(), attempt, target_.extension().string());
+    temporary_ =
+        target_.parent_path() / fmt::format(".{}-{}.part{}", ::getpid(), attempt, target_.extension().string());
     file = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
     if (file < 0 && (errno != EEXIST || attempt > 1000)) {
       const int reason = errno;

@@ -108,9 +108,10 @@ class StudyReader : public detail::StudySections {
     } else if (!key) {
       const std::string_view own[] = {"frequency", "condition", "springs"};
       const std::string_view near = nearest_name(q.key, own);
-      refuse(node, where,
-             fmt::format("{}: {}", one_line(q.key),
-                         near.empty() ? unknown_key_message(q.key) : fmt::format("unknown key; did you mean {}?", near)));
+      refuse(
+          node, where,
+          fmt::format("{}: {}", one_line(q.key),
+                      near.empty() ? unknown_key_message(q.key) : fmt::format("unknown key; did you mean {}?", near)));
     } else if (key->set) {
       q.unit = std::string(key->unit);
       q.meaning = std::string(key->meaning);
@@ -122,7 +123,8 @@ class StudyReader : public detail::StudySections {
       q.kind = SweptQuantity::Kind::choice;
       q.meaning = std::string(key->meaning);
     }
-    if ((q.key == "supply.voltage" || q.key == "supply.amplitude") && held_voltage_) refuse(node, where, "study.hold holds the voltage already");
+    if ((q.key == "supply.voltage" || q.key == "supply.amplitude") && held_voltage_)
+      refuse(node, where, "study.hold holds the voltage already");
     origins_[q.key] = place_of(node);
     return q;
   }
@@ -207,16 +209,17 @@ class StudyReader : public detail::StudySections {
       for (const TomlNode& item : node.items) add_value(axis.quantities.front(), item, "axis.values");
     } else {
       if (node.items.size() != axis.quantities.size()) {
-        refuse(node, "axis.values", fmt::format("expected {} arrays of values, one for each of keys, got {}",
-                                                axis.quantities.size(), node.items.size()));
+        refuse(node, "axis.values",
+               fmt::format("expected {} arrays of values, one for each of keys, got {}", axis.quantities.size(),
+                           node.items.size()));
       }
       for (std::size_t q = 0; q < node.items.size(); ++q) {
         const TomlNode& row = node.items[q];
         if (row.kind != Kind::array) wrong(row, "axis.values", "an array of values for each of keys");
         if (row.items.empty() || row.items.size() != node.items.front().items.size()) {
-          refuse(row, "axis.values", fmt::format("{} has {} values, {} has {}", axis.quantities[q].key,
-                                                 row.items.size(), axis.quantities.front().key,
-                                                 node.items.front().items.size()));
+          refuse(row, "axis.values",
+                 fmt::format("{} has {} values, {} has {}", axis.quantities[q].key, row.items.size(),
+                             axis.quantities.front().key, node.items.front().items.size()));
         }
         for (const TomlNode& item : row.items) add_value(axis.quantities[q], item, "axis.values");
       }
@@ -261,8 +264,8 @@ class StudyReader : public detail::StudySections {
     const double last = double(axis.count - 1);
     for (std::uint64_t n = 0; n < axis.count; ++n) {
       const double k = double(n);
-      const double x = q.logarithmic ? q.low * std::pow(q.high / q.low, k / last)
-                                     : ((last - k) * q.low + k * q.high) / last;
+      const double x =
+          q.logarithmic ? q.low * std::pow(q.high / q.low, k / last) : ((last - k) * q.low + k * q.high) / last;
       q.values.push_back(n == 0 ? q.low : n + 1 == axis.count ? q.high : x);
     }
   }
@@ -294,7 +297,8 @@ class StudyReader : public detail::StudySections {
     }
     not_with({"file"});
     const TomlNode& ranges = need(node, "samples", "range", "[[samples.range]] sections");
-    if (ranges.kind != Kind::array || ranges.items.empty()) wrong(ranges, "samples.range", "[[samples.range]] sections");
+    if (ranges.kind != Kind::array || ranges.items.empty())
+      wrong(ranges, "samples.range", "[[samples.range]] sections");
     for (const TomlNode& range : ranges.items) {
       if (range.kind != Kind::table) wrong(range, "samples.range", "[[samples.range]] sections");
       known_keys(range, "samples.range", {"key", "from", "to", "scale"});
@@ -356,8 +360,9 @@ class StudyReader : public detail::StudySections {
           std::string_view unit = trim(cell.substr(bracket));
           if (!unit.empty()) {
             const bool closed = unit.size() > 2 && unit.back() == (unit.front() == '[' ? ']' : ')');
-            if (!closed) refuse_here(fmt::format("{}: the unit stands in brackets, as in \"motor.inertia [kg m2]\"",
-                                                 in_quotes(cell)));
+            if (!closed)
+              refuse_here(
+                  fmt::format("{}: the unit stands in brackets, as in \"motor.inertia [kg m2]\"", in_quotes(cell)));
             unit = trim(unit.substr(1, unit.size() - 2));
           }
           TomlNode key;
@@ -404,8 +409,9 @@ class StudyReader : public detail::StudySections {
       table_lines_.push_back(line_number);
     }
     if (table_lines_.empty()) {
-      throw InputError(file, 0, 0, "", "holds no designs; expected a header such as \"transmission.crank_radius [mm]\" "
-                                       "and a line for each design");
+      throw InputError(file, 0, 0, "",
+                       "holds no designs; expected a header such as \"transmission.crank_radius [mm]\" "
+                       "and a line for each design");
     }
     axis.count = table_lines_.size();
   }
@@ -506,7 +512,8 @@ class StudyReader : public detail::StudySections {
     for (const SweepVariant& v : sweep_->variants) {
       const bool direct = v.design.transmission.type == TransmissionType::direct;
       if (v.design.supply.type == SupplyType::sine && !direct) {
-        refuse(at("supply.type"), "supply.type", "a sine supply gives no steady flapping in crank angle; expected constant or pwm");
+        refuse(at("supply.type"), "supply.type",
+               "a sine supply gives no steady flapping in crank angle; expected constant or pwm");
       }
       if (frequency && v.design.supply.type == SupplyType::battery) {
         refuse(at("supply.type"), "supply.type", no_held_frequency);
@@ -565,8 +572,9 @@ class StudyReader : public detail::StudySections {
       const auto spring = [](const std::optional<double>& x) { return x && *x > 0.0; };
       const auto place = origins_.find("springs");
       if (place != origins_.end() && variant.springs && !spring(d.spring.stiffness) && !spring(d.spring.resonance)) {
-        refuse(place->second, "springs", "the vehicle has none to switch on; give spring.stiffness or spring.resonance "
-                                         "in the vehicle file, in [set] or as an axis");
+        refuse(place->second, "springs",
+               "the vehicle has none to switch on; give spring.stiffness or spring.resonance "
+               "in the vehicle file, in [set] or as an axis");
       }
     }
   }
@@ -578,9 +586,8 @@ class StudyReader : public detail::StudySections {
     for (const SweepVariant& variant : sweep_->variants) {
       for (const double fraction : {0.0, 0.5, 1.0}) {
         Design<double> d = variant.design;
-        for_each_number([&](const SweepAxis& axis, std::size_t q) {
-          axis.quantities[q].set(d, number_at(axis, q, fraction));
-        });
+        for_each_number(
+            [&](const SweepAxis& axis, std::size_t q) { axis.quantities[q].set(d, number_at(axis, q, fraction)); });
         set(d);
         if (!variant.springs) d.spring = {};
         try {

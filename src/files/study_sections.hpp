@@ -19,12 +19,12 @@
 
 #include "files/input_errors.hpp"
 #include "files/toml_document.hpp"
+#include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/design_keys.hpp"
 #include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/units.hpp"
-#include "wingbeat/ensemble/ensemble.hpp"
 
 namespace wingbeat::detail {
 
@@ -169,8 +169,9 @@ class StudySections {
       const std::string_view near = nearest_name(key, names);
       if (!near.empty()) spoiled_.insert({&table, std::string(near)});
       attempt([&, &k = key, &n = node] {
-        refuse(n, within(section, k), near.empty() ? fmt::format("unknown key; known here: {}", joined(names))
-                                                   : fmt::format("unknown key; did you mean {}?", within(section, near)));
+        refuse(n, within(section, k),
+               near.empty() ? fmt::format("unknown key; known here: {}", joined(names))
+                            : fmt::format("unknown key; did you mean {}?", within(section, near)));
       });
     }
   }
@@ -232,7 +233,8 @@ class StudySections {
 
   // ---- --set
 
-  /// The override of the command line that gives a key, or holds or lies within a table given; null where there is none.
+  /// The override of the command line that gives a key, or holds or lies within a table given; null where there is
+  /// none.
   const std::string* override_of(std::string_view key) const {
     const auto within_other = [](std::string_view path, std::string_view above) {
       return path.starts_with(above) && (path.size() == above.size() || path[above.size()] == '.');
@@ -418,8 +420,9 @@ class StudySections {
       const std::string_view only_with = find_key<double>(key)->only_with;
       Design<double> trial = design;
       const bool has_place = parameter.set(trial, 1.0);
-      refuse(node, where, has_place ? fmt::format("{} is not in the vehicle; give it in [set] first", key)
-                                    : fmt::format("{}: only with {}", key, only_with));
+      refuse(node, where,
+             has_place ? fmt::format("{} is not in the vehicle; give it in [set] first", key)
+                       : fmt::format("{}: only with {}", key, only_with));
     }
     return parameter;
   }

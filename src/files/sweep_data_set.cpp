@@ -158,8 +158,8 @@ std::vector<std::uint64_t> prepare_data_set(const fs::path& path, const Study& s
   std::optional<NetcdfFile::Variable> sample;
   for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
     if (!sweep.axes[a].samples) continue;
-    sample = file.define_dense(sweep.axes[a].name, {dimensions[a]}, "1", "number of the sample, from 0",
-                               Storage::whole);
+    sample =
+        file.define_dense(sweep.axes[a].name, {dimensions[a]}, "1", "number of the sample, from 0", Storage::whole);
   }
   const auto define = [&](const char* name, const char* unit, const char* meaning, Storage storage) {
     const auto variable = file.define_dense(name, dimensions, unit, meaning, storage);
@@ -189,7 +189,7 @@ std::vector<std::uint64_t> prepare_data_set(const fs::path& path, const Study& s
   if (!study.input.table.empty()) {
     const std::string texts[] = {study.input.table};
     file.define_texts("samples_file", file.define_dimension("samples_file_count", 1), texts,
-                              "the CSV file of the designs");
+                      "the CSV file of the designs");
   }
 
   std::vector<double> block;
@@ -242,8 +242,8 @@ SweepDigest digest_of(const fs::path& path, const Study& study) {
     file.read_run("recomputed", columns.first, columns.recomputed);
     file.read_run("domain", columns.first, columns.domain);
     for (std::size_t m = 0; m < kept.size(); ++m) {
-      const bool wanted = kept[m] == Metric::lift_mean || kept[m] == Metric::efficiency_system ||
-                          kept[m] == Metric::lift_to_weight;
+      const bool wanted =
+          kept[m] == Metric::lift_mean || kept[m] == Metric::efficiency_system || kept[m] == Metric::lift_to_weight;
       if (wanted) file.read_run(metric_info(kept[m]).key, columns.first, columns.metrics[m]);
     }
     digester.add(columns);
@@ -277,8 +277,7 @@ Study read_study_in_data_set(const fs::path& path) {
   }
 }
 
-Standing standing_of(const fs::path& path, std::uint64_t fingerprint, const std::string& option,
-                     bool force) {
+Standing standing_of(const fs::path& path, std::uint64_t fingerprint, const std::string& option, bool force) {
   const auto refuse = [&](const std::string& reason) {
     throw InputError(fmt::format("{} {}", option, path.string()), 0, 0, "",
                      reason + "; it is left as it is: give another name, or --force to replace it");

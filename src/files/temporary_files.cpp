@@ -63,9 +63,9 @@ void remove_temporaries_and_end(int signal) {
 
 void remove_temporaries_on_signals() {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    struct sigaction now {};
+    struct sigaction now{};
     if (::sigaction(signal, nullptr, &now) != 0 || now.sa_handler == SIG_IGN) continue;
-    struct sigaction action {};
+    struct sigaction action{};
     action.sa_handler = end_on_signal;
     ::sigaction(signal, &action, nullptr);
   }

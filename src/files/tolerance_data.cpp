@@ -21,8 +21,7 @@ void write_tolerance(const ToleranceStudy& study, const ToleranceResult& result,
   const auto sample = data.define_dimension("sample", base);
   const Sweep sweep = tolerance_sweep(study);
   for (const SweptQuantity& q : sweep.axes.front().quantities) {
-    const auto variable =
-        data.define_variable(q.name, {sample}, q.unit, std::string(find_key<double>(q.key)->meaning));
+    const auto variable = data.define_variable(q.name, {sample}, q.unit, std::string(find_key<double>(q.key)->meaning));
     data.set_key(variable, q.key);
     data.write(variable, std::span(q.values).subspan(0, base));
   }
@@ -61,10 +60,9 @@ void write_tolerance(const ToleranceStudy& study, const ToleranceResult& result,
     }
     data.write(data.define_variable(name, {output, factor}, "1", meaning), values);
   };
-  const auto index = [](double SobolIndex::*member) {
-    return [member](const ToleranceOutput& o, std::size_t i) {
-      return o.indices ? o.indices->inputs[i].*member : absent;
-    };
+  const auto index = [](double SobolIndex::* member) {
+    return
+        [member](const ToleranceOutput& o, std::size_t i) { return o.indices ? o.indices->inputs[i].*member : absent; };
   };
   table("sobol_first", "Sobol index of first order", index(&SobolIndex::first));
   table("sobol_first_lower", "its 95 % interval, lower end", index(&SobolIndex::first_lower));
@@ -72,10 +70,9 @@ void write_tolerance(const ToleranceStudy& study, const ToleranceResult& result,
   table("sobol_total", "total Sobol index", index(&SobolIndex::total));
   table("sobol_total_lower", "its 95 % interval, lower end", index(&SobolIndex::total_lower));
   table("sobol_total_upper", "its 95 % interval, upper end", index(&SobolIndex::total_upper));
-  table("linear_share", "share of the variance by the linear prediction", [](const ToleranceOutput& o, std::size_t i) {
-    return o.linear_share.empty() ? absent : o.linear_share[i];
-  });
-  const auto row = [&](const char* name, const char* meaning, double ToleranceOutput::*member) {
+  table("linear_share", "share of the variance by the linear prediction",
+        [](const ToleranceOutput& o, std::size_t i) { return o.linear_share.empty() ? absent : o.linear_share[i]; });
+  const auto row = [&](const char* name, const char* meaning, double ToleranceOutput::* member) {
     std::vector<double> values;
     for (const ToleranceOutput& o : result.outputs) values.push_back(o.*member);
     data.write(data.define_variable(name, {output}, "1", meaning), values);

@@ -42,9 +42,9 @@ class ToleranceReader : public detail::StudySections {
     }
     const std::size_t dimensions = (study.indices ? 2 : 1) * study.parameters.size();
     if (dimensions > ScrambledSobol::most_dimensions) {
-      refuse(*study_, "parameter", fmt::format("{} parameters are more than a study can vary at once ({})",
-                                               study.parameters.size(),
-                                               ScrambledSobol::most_dimensions / (study.indices ? 2 : 1)));
+      refuse(*study_, "parameter",
+             fmt::format("{} parameters are more than a study can vary at once ({})", study.parameters.size(),
+                         ScrambledSobol::most_dimensions / (study.indices ? 2 : 1)));
     }
     check_centre();
     return study;
@@ -79,8 +79,9 @@ class ToleranceReader : public detail::StudySections {
   }
 
   void read_parameter(const TomlNode& node) {
-    known_keys(node, "parameter", {"key", "distribution", "mean", "median", "deviation", "relative_deviation",
-                                   "geometric_deviation", "lower", "upper", "correlation"});
+    known_keys(node, "parameter",
+               {"key", "distribution", "mean", "median", "deviation", "relative_deviation", "geometric_deviation",
+                "lower", "upper", "correlation"});
     UncertainParameter p;
     const TomlNode& key = need(node, "parameter", "key", "a vehicle-file key");
     p.parameter = parameter_named(key, "parameter.key", study_result_->design);
@@ -144,16 +145,17 @@ class ToleranceReader : public detail::StudySections {
       no_override_of(p.parameter.key, "has no effect: the study gives the distribution's centre");
     }
     if (!(d.share_kept() > 1e-6)) {
-      refuse(node, "parameter",
-             fmt::format("the bounds cut off all but {:.1g} of the distribution of {}", d.share_kept(),
-                         p.parameter.key));
+      refuse(
+          node, "parameter",
+          fmt::format("the bounds cut off all but {:.1g} of the distribution of {}", d.share_kept(), p.parameter.key));
     }
     study_result_->parameters.push_back(std::move(p));
     if (const TomlNode* correlation = node.find("correlation")) {
       if (correlation->kind != Kind::array) correlated_.emplace_back(study_result_->parameters.size() - 1, correlation);
-      else for (const TomlNode& item : correlation->items) {
-        correlated_.emplace_back(study_result_->parameters.size() - 1, &item);
-      }
+      else
+        for (const TomlNode& item : correlation->items) {
+          correlated_.emplace_back(study_result_->parameters.size() - 1, &item);
+        }
     }
   }
 
@@ -179,16 +181,18 @@ class ToleranceReader : public detail::StudySections {
       for (const std::size_t k : {first, second}) {
         const Distribution& d = study.parameters[k].distribution;
         if (d.kind != DistributionKind::uniform && !std::isfinite(d.lower) && !std::isfinite(d.upper)) continue;
-        refuse(*node, where, fmt::format("{} must be normal or lognormal without bounds to be correlated",
-                                         study.parameters[k].parameter.key));
+        refuse(*node, where,
+               fmt::format("{} must be normal or lognormal without bounds to be correlated",
+                           study.parameters[k].parameter.key));
       }
       const TomlNode& value = need(*node, where, "value", "a number between -1 and 1");
       const double rho = quantity(value, where + ".value", "1");
       if (!(std::abs(rho) < 1.0)) refuse(value, where + ".value", "must lie between -1 and 1");
       for (const Correlation& c : study.correlations) {
         if (std::minmax(c.first, c.second) != std::minmax(first, second)) continue;
-        refuse(*node, where, fmt::format("the correlation of {} with {} is given already",
-                                         study.parameters[first].parameter.key, other));
+        refuse(*node, where,
+               fmt::format("the correlation of {} with {} is given already", study.parameters[first].parameter.key,
+                           other));
       }
       study.correlations.push_back({first, second, rho});
     }
@@ -199,8 +203,9 @@ class ToleranceReader : public detail::StudySections {
     try {
       tolerance_sweep(trial);
     } catch (const ParameterError&) {
-      refuse(*correlated_.back().second, where, "no parameters can have all the correlations given: their matrix is not "
-                                                "positive definite");
+      refuse(*correlated_.back().second, where,
+             "no parameters can have all the correlations given: their matrix is not "
+             "positive definite");
     }
   }
 

@@ -307,8 +307,9 @@ class Flattener {
                                                                         : "a table";
       const bool list = node.is_array_of_tables();
       document_.spoiled.push_back(path);
-      offend(path, origin, fmt::format("expected {}, got {}", example,
-                                       list ? "a list of tables" : kind_of(value_of_node(node, origin))));
+      offend(path, origin,
+             fmt::format("expected {}, got {}", example,
+                         list ? "a list of tables" : kind_of(value_of_node(node, origin))));
     }
   }
 
@@ -365,13 +366,11 @@ std::optional<toml::table> override_value(std::string_view text, const Origin& o
   if (text.find_first_of("\r\n") == std::string_view::npos) {
     try {
       return parse_toml(fmt::format("value = {}", text), origin);
-    } catch (const InputError&) {
-    }
+    } catch (const InputError&) {}
     try {
       parse_toml(fmt::format("# {}", text), origin);  // a comment too may hold no control characters
       return std::nullopt;
-    } catch (const InputError&) {
-    }
+    } catch (const InputError&) {}
   }
   origin.refuse("", "neither a TOML value nor one line of plain UTF-8 text");
 }
@@ -448,9 +447,8 @@ std::string kind_of(const TomlNode& node) {
 }
 
 bool are_alternatives(std::string_view one, std::string_view other) {
-  return std::any_of(std::begin(alternatives), std::end(alternatives), [&](const auto& pair) {
-    return pair == std::pair(one, other) || pair == std::pair(other, one);
-  });
+  return std::any_of(std::begin(alternatives), std::end(alternatives),
+                     [&](const auto& pair) { return pair == std::pair(one, other) || pair == std::pair(other, one); });
 }
 
 const Value* Document::find(std::string_view path) const {

@@ -42,8 +42,8 @@ struct Document {
   int last_line = 1;
   std::map<std::string, Value, std::less<>> values;     ///< by dotted path
   std::map<std::string, Origin, std::less<>> sections;  ///< by dotted path
-  InputErrors errors;                 ///< keys that are unknown or hold what they cannot
-  std::vector<std::string> spoiled;   ///< these, and what they were to be: not to be called missing as well
+  InputErrors errors;                                   ///< keys that are unknown or hold what they cannot
+  std::vector<std::string> spoiled;  ///< these, and what they were to be: not to be called missing as well
 
   const Value* find(std::string_view path) const;
   bool has_section(std::string_view path) const;

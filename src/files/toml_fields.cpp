@@ -33,8 +33,9 @@ void TomlFields::known_keys(std::span<const std::string_view> keys) const {
     if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
     const std::string_view near = nearest_name(key, keys);
     errors.attempt([&, &k = key, &n = node] {
-      refuse(n, one_line(k), near.empty() ? fmt::format("unknown key; known here: {}", fmt::join(keys, ", "))
-                                          : fmt::format("unknown key; did you mean {}?", near));
+      refuse(n, one_line(k),
+             near.empty() ? fmt::format("unknown key; known here: {}", fmt::join(keys, ", "))
+                          : fmt::format("unknown key; did you mean {}?", near));
     });
   }
   errors.refuse();

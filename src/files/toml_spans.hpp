@@ -10,8 +10,8 @@ namespace wingbeat {
 
 /// A key with its value; offsets into the text [bytes], ends exclusive.
 struct TomlSpan {
-  std::string path;              ///< dotted, from the root
-  std::size_t begin = 0;         ///< of the whole dotted key
+  std::string path;                  ///< dotted, from the root
+  std::size_t begin = 0;             ///< of the whole dotted key
   std::size_t key = 0, key_end = 0;  ///< the last part of it
   std::size_t value = 0, value_end = 0;
   bool in_line = false;  ///< within an inline table

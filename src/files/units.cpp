@@ -113,9 +113,9 @@ class UnitSystem {
     for (const auto& [symbol, definition] : products) add(symbol, ut_parse(system_.get(), definition, UT_UTF8));
   }
 
-  static constexpr std::pair<const char*, const char*> products[] = {
-      {"Ah", "A h"},   {"Wh", "W h"},     {"Nm", "N m"},     {"Ncm", "N cm"}, {"Nmm", "N mm"},
-      {"Nms", "N m s"}, {"Vs", "V s"},     {"RPM", "rpm"}};
+  static constexpr std::pair<const char*, const char*> products[] = {{"Ah", "A h"},   {"Wh", "W h"},   {"Nm", "N m"},
+                                                                     {"Ncm", "N cm"}, {"Nmm", "N mm"}, {"Nms", "N m s"},
+                                                                     {"Vs", "V s"},   {"RPM", "rpm"}};
 
   /// "gcm2" as "g cm2". No symbol can say this: UDUNITS takes the exponent for that of the whole word.
   static std::string inertia_apart(const std::string& unit) {

@@ -41,7 +41,7 @@ struct Column {
   const char* key;
   const char* unit;
   const char* long_name;
-  double EnduranceRow::*value;
+  double EnduranceRow::* value;
 };
 constexpr Column columns[] = {
     {"time_s", "s", "time since the start", &EnduranceRow::time},
@@ -74,9 +74,7 @@ std::string duration(double seconds) {
   return seconds < 100.0 ? readable(seconds, "s") : fmt::format("{:.1f} s", seconds);
 }
 
-std::string minutes(double seconds) {
-  return seconds < 100.0 ? "" : fmt::format("{:.2f} min", seconds / 60.0);
-}
+std::string minutes(double seconds) { return seconds < 100.0 ? "" : fmt::format("{:.2f} min", seconds / 60.0); }
 
 }  // namespace
 
@@ -135,18 +133,19 @@ std::string json_endurance(const EnduranceResult& result) {
     for (const Column& c : columns) {
       for (const EnduranceRow& row : f.rows) history[c.key].push_back(number_or_null(row.*c.value));
     }
-    for (const Metric m : {Metric::voltage, Metric::current_mean, Metric::frequency, Metric::power_electrical,
-                           Metric::power_aerodynamic, Metric::lift_mean, Metric::lift_to_weight,
-                           Metric::efficiency_system}) {
+    for (const Metric m :
+         {Metric::voltage, Metric::current_mean, Metric::frequency, Metric::power_electrical, Metric::power_aerodynamic,
+          Metric::lift_mean, Metric::lift_to_weight, Metric::efficiency_system}) {
       const char* key = metric_info(m).key;
       for (const EnduranceRow& row : f.rows) history[key].push_back(number_or_null(row.metrics[m]));
     }
     for (const EnduranceRow& row : f.rows) history["domain"].push_back(name_of(row.domain));
     json["history"] = history;
   } else {
-    for (const char* key : {"charge_initial", "charge_final", "charge_drawn_c", "energy_chemical_j",
-                            "energy_electrical_j", "energy_internal_j", "energy_aerodynamic_j", "current_mean_a", "power_electrical_w",
-                            "power_aerodynamic_w", "lift_mean_n", "efficiency_system", "initial", "final", "history"}) {
+    for (const char* key :
+         {"charge_initial", "charge_final", "charge_drawn_c", "energy_chemical_j", "energy_electrical_j",
+          "energy_internal_j", "energy_aerodynamic_j", "current_mean_a", "power_electrical_w", "power_aerodynamic_w",
+          "lift_mean_n", "efficiency_system", "initial", "final", "history"}) {
       json[key] = nullptr;
     }
   }
@@ -166,7 +165,9 @@ std::string text_endurance(const Design<double>& design, const EnduranceResult& 
   if (const auto [rows, limits] = outside(result); rows > 0) {
     text += wrapped(fmt::format("OUTSIDE THE MODEL'S DOMAIN ({}) in {} of {} rows of the discharge: what they give is "
                                 "extrapolated.",
-                                name_of(limits), rows, result.rows.size()), 88, 2) + "\n";
+                                name_of(limits), rows, result.rows.size()),
+                    88, 2) +
+            "\n";
   }
   text += wrapped(fmt::format("{}: {}.", name_of(result.end), result.detail), 88, 2) + "\n";
   if (result.rows.empty()) return text;
@@ -213,13 +214,14 @@ std::string text_endurance(const Design<double>& design, const EnduranceResult& 
   course("mean current", Metric::current_mean, "A", f.current);
   course("electrical power", Metric::power_electrical, "W", f.power);
   course("aerodynamic power", Metric::power_aerodynamic, "W", f.aerodynamic);
-  fmt::format_to(out, "  {:<22}{:>14}{:>14}{:>14}\n", "system efficiency", percent(first.metrics[Metric::efficiency_system]),
-                 percent(f.efficiency), percent(f.last.metrics[Metric::efficiency_system]));
+  fmt::format_to(out, "  {:<22}{:>14}{:>14}{:>14}\n", "system efficiency",
+                 percent(first.metrics[Metric::efficiency_system]), percent(f.efficiency),
+                 percent(f.last.metrics[Metric::efficiency_system]));
   course("mean lift", Metric::lift_mean, "N", f.lift);
   if (const auto mass = total_mass(design)) {
     const double weight = *mass * standard_gravity;
-    fmt::format_to(out, "  {:<22}{:>14.4g}{:>14.4g}{:>14.4g}\n", "mean lift / weight", first.metrics[Metric::lift_to_weight],
-                   f.lift / weight, f.last.metrics[Metric::lift_to_weight]);
+    fmt::format_to(out, "  {:<22}{:>14.4g}{:>14.4g}{:>14.4g}\n", "mean lift / weight",
+                   first.metrics[Metric::lift_to_weight], f.lift / weight, f.last.metrics[Metric::lift_to_weight]);
   }
   course("flapping frequency", Metric::frequency, "Hz", absent);
   return text;
@@ -267,9 +269,10 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
     figure.text(name, 7.5, fmt::format("screen 0.026,{} center rotate by 90", panel_top - 0.5 * height));
     for (std::size_t n = 0; n + 1 < rows.size(); ++n) {
       if (rows[n].domain.none() && rows[n + 1].domain.none()) continue;
-      figure.add("set object {} rectangle from {},graph 0 to {},graph 1 behind fillcolor rgb '#909090' fillstyle transparent "
-                 "pattern 4 noborder\n",
-                 1000 + n, time_scale * rows[n].time, time_scale * rows[n + 1].time);
+      figure.add(
+          "set object {} rectangle from {},graph 0 to {},graph 1 behind fillcolor rgb '#909090' fillstyle transparent "
+          "pattern 4 noborder\n",
+          1000 + n, time_scale * rows[n].time, time_scale * rows[n + 1].time);
     }
     // Loss of hover runs through all panels.
     if (result.hover_lost) {
@@ -318,7 +321,8 @@ void write_endurance(const EnduranceResult& result, const Provenance& provenance
   for (const Column& c : columns) {
     variables.push_back(file.define_variable(c.key, {time}, c.unit, c.long_name));
   }
-  for (const MetricInfo& m : metric_table()) variables.push_back(file.define_variable(m.key, {time}, m.unit, m.long_name));
+  for (const MetricInfo& m : metric_table())
+    variables.push_back(file.define_variable(m.key, {time}, m.unit, m.long_name));
   const auto domain = file.define_dense("domain", {time}, "1", "limits of the model's domain that are exceeded",
                                         NetcdfFile::Storage::flag);
   std::vector<std::string> limits;

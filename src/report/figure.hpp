@@ -76,8 +76,8 @@ class Figure {
   }
   /// A circle around a point of the plot, as large in every format; `fill` as gnuplot writes it.
   void circle(double x, double y, double radius, const char* fill, const char* colour) {
-    add("set object {} circle at {},{} size screen {} front noclip {} border lc rgb '{}' lw 0.9\n", ++objects_, x, y, radius,
-        fill, colour);
+    add("set object {} circle at {},{} size screen {} front noclip {} border lc rgb '{}' lw 0.9\n", ++objects_, x, y,
+        radius, fill, colour);
   }
   /// Forgets labels and arrows, which belong to one panel only.
   void next_panel() { add("unset label\nunset arrow\n"); }

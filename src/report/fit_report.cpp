@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/report_tools.hpp"
 #include "files/design_write.hpp"
+#include "report/report_tools.hpp"
 #include "wingbeat/files/design_file.hpp"
+#include "wingbeat/files/units.hpp"
 #include "wingbeat/report/plot_panels.hpp"
 #include "wingbeat/report/report.hpp"
-#include "wingbeat/files/units.hpp"
 
 namespace wingbeat {
 namespace {
@@ -63,7 +63,8 @@ std::string identifiability(const FitResult& r) {
 }
 
 std::string residuals_by_quantity(const FitResult& r) {
-  std::string text = fmt::format("\n{:<40}{:>8}{:>18}{:>20}\n", "Residuals", "values", "rms / deviation", "measured / fitted");
+  std::string text =
+      fmt::format("\n{:<40}{:>8}{:>18}{:>20}\n", "Residuals", "values", "rms / deviation", "measured / fitted");
   for (const QuantityResiduals& q : r.quantities) {
     text += fmt::format("  {:<38}{:>8}{:>18}{:>20}\n", name_of(q.quantity), q.values, short_number(q.rms, 3),
                         short_number(q.measured_over_fitted, 4));
@@ -81,13 +82,17 @@ std::string text_fit(const BenchFit& fit, const FitResult& r) {
     return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
   };
   if (!r.misfit.empty()) {
-    text += wrapped(fmt::format("MISFIT: the model does not describe the data: {}. The values below are the closest found "
-                                "and no estimates; no intervals follow from them.", r.misfit), 88, 2) + "\n";
+    text +=
+        wrapped(fmt::format("MISFIT: the model does not describe the data: {}. The values below are the closest found "
+                            "and no estimates; no intervals follow from them.",
+                            r.misfit),
+                88, 2) +
+        "\n";
   }
-  text += fmt::format("{}, {} with {} in {}; {}\n", counted(fit.parameters.size(), "parameter"),
-                      counted(std::size_t(rows), "row"), counted(r.points.size(), "measured value"),
-                      counted(fit.logs.size(), "log"),
-                      r.converged ? r.misfit.empty() ? "converged" : "the search converged" : "NOT converged: " + r.message);
+  text += fmt::format(
+      "{}, {} with {} in {}; {}\n", counted(fit.parameters.size(), "parameter"), counted(std::size_t(rows), "row"),
+      counted(r.points.size(), "measured value"), counted(fit.logs.size(), "log"),
+      r.converged ? r.misfit.empty() ? "converged" : "the search converged" : "NOT converged: " + r.message);
   if (fit.starts > 1) {
     text += fmt::format("{} of {} starts end in this least, {} in a higher one\n", r.starts_converged, fit.starts,
                         r.starts_elsewhere);
@@ -128,8 +133,11 @@ std::string text_fit(const BenchFit& fit, const FitResult& r) {
   if (!r.unreached.empty()) {
     text += "\nRows that the fitted model does not reach (not in the statistics above)\n";
     for (const UnreachedRow& u : r.unreached) {
-      text += "  " + wrapped(fmt::format("{} ({}): {}: {}", row_name(fit, u.log, u.row), given_text(fit, u.log, u.row),
-                                         name_of(u.status), u.detail), 88, 4) + "\n";
+      text += "  " +
+              wrapped(fmt::format("{} ({}): {}: {}", row_name(fit, u.log, u.row), given_text(fit, u.log, u.row),
+                                  name_of(u.status), u.detail),
+                      88, 4) +
+              "\n";
     }
   }
   std::vector<const FitPoint*> outliers;
@@ -144,9 +152,12 @@ std::string text_fit(const BenchFit& fit, const FitResult& r) {
     for (std::size_t n = 0; n < std::min<std::size_t>(outliers.size(), 10); ++n) {
       const FitPoint& p = *outliers[n];
       const MeasuredQuantity& q = fit.logs[p.log].columns[p.column];
-      text += "  " + wrapped(fmt::format("{} ({}): {} {:.4g}, fitted {:.4g} {}: {:+.1f}", row_name(fit, p.log, p.row),
-                                         given_text(fit, p.log, p.row), name_of(q), p.measured, p.fitted, unit_of(q),
-                                         p.residual()), 88, 4) + "\n";
+      text += "  " +
+              wrapped(fmt::format("{} ({}): {} {:.4g}, fitted {:.4g} {}: {:+.1f}", row_name(fit, p.log, p.row),
+                                  given_text(fit, p.log, p.row), name_of(q), p.measured, p.fitted, unit_of(q),
+                                  p.residual()),
+                      88, 4) +
+              "\n";
     }
     if (outliers.size() > 10) text += fmt::format("  and {} more\n", outliers.size() - 10);
   }
@@ -230,8 +241,11 @@ std::string json_fit(const BenchFit& fit, const FitResult& r, std::span<const Fr
   for (const ConditionShare& c : r.conditions) {
     Json without = Json::array();
     for (const double e : c.error_without) without.push_back(number_or_null(e));
-    json["conditions"].push_back({{"name", c.name}, {"values", c.points}, {"rms_residual", number_or_null(c.rms)},
-                                  {"share", c.share}, {"standard_error_without", without}});
+    json["conditions"].push_back({{"name", c.name},
+                                  {"values", c.points},
+                                  {"rms_residual", number_or_null(c.rms)},
+                                  {"share", c.share},
+                                  {"standard_error_without", without}});
   }
   json["unreached"] = Json::array();
   for (const UnreachedRow& u : r.unreached) {
@@ -242,7 +256,9 @@ std::string json_fit(const BenchFit& fit, const FitResult& r, std::span<const Fr
   for (const FitPoint& p : r.points) {
     json["points"].push_back({{"row", row_name(fit, p.log, p.row)},
                               {"quantity", name_of(fit.logs[p.log].columns[p.column])},
-                              {"measured", p.measured}, {"fitted", number_or_null(p.fitted)}, {"deviation", p.deviation}});
+                              {"measured", p.measured},
+                              {"fitted", number_or_null(p.fitted)},
+                              {"deviation", p.deviation}});
   }
   json["friction"] = candidates.empty() ? Json(nullptr) : Json::array();
   for (const FrictionCandidate& c : candidates) {

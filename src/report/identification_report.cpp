@@ -15,9 +15,9 @@ namespace wingbeat {
 namespace {
 
 struct Constant {
-  std::string_view key;   ///< of [motor]
+  std::string_view key;  ///< of [motor]
   std::string_view name, unit;
-  IdentifiedConstant MotorIdentification::*value;
+  IdentifiedConstant MotorIdentification::* value;
 };
 constexpr Constant constants[] = {
     {"armature_resistance", "armature resistance", "ohm", &MotorIdentification::armature_resistance},
@@ -48,7 +48,8 @@ std::string motor_section(const MotorIdentification& motor, const MotorDatasheet
                                  sheet.name.empty() ? "Motor of a data sheet" : one_line(sheet.name, 100), made_by);
   for (const Contradiction& c : motor.contradictions) text += fmt::format("# On the sheet, {}.\n", sentence(c));
   for (const std::string& remark : motor.remarks) text += fmt::format("# {}.\n", remark);
-  if (sheet.gear_efficiency) text += fmt::format("# Of the sheet, not of this section: gear_efficiency = {}\n", *sheet.gear_efficiency);
+  if (sheet.gear_efficiency)
+    text += fmt::format("# Of the sheet, not of this section: gear_efficiency = {}\n", *sheet.gear_efficiency);
   text += "\n[motor]\n";
   for (const Constant& c : constants) {
     text += fmt::format("{} = \"{} {}\"\n", c.key, *(motor.*c.value).value, c.unit);
@@ -113,9 +114,13 @@ std::string json_identification(const MotorIdentification& motor, const MotorDat
   }
   json["contradictions"] = Json::array();
   for (const Contradiction& c : motor.contradictions) {
-    json["contradictions"].push_back({{"constant", c.constant}, {"first", c.first}, {"second", c.second},
-                                      {"first_value", c.first_value}, {"second_value", c.second_value},
-                                      {"size", c.size}, {"sentence", sentence(c)}});
+    json["contradictions"].push_back({{"constant", c.constant},
+                                      {"first", c.first},
+                                      {"second", c.second},
+                                      {"first_value", c.first_value},
+                                      {"second_value", c.second_value},
+                                      {"size", c.size},
+                                      {"sentence", sentence(c)}});
   }
   json["remarks"] = motor.remarks;
   json["missing"] = motor.missing;

@@ -91,8 +91,10 @@ void plot_optimum(const OptimiseFile& file, const MotorTrial& trial, PlotFormat 
     figure.text(fmt::format("optimum between its bounds; bar: within {:g} % of it", 100.0 * flat_loss), 6.5,
                 fmt::format("screen 0.5,{} center", y(bounds_top - 0.12)));
     figure.text("share of the bounds", 7.0, fmt::format("screen 0.71,{} center", y(bounds_top + rows + 0.33)));
-    figure.add("plot $optimum using 3:2:($4-$3):(0) with vectors nohead lw 5 lc rgb '#9ecae1', "
-               "$optimum using 1:2 with points {}\n", ended);
+    figure.add(
+        "plot $optimum using 3:2:($4-$3):(0) with vectors nohead lw 5 lc rgb '#9ecae1', "
+        "$optimum using 1:2 with points {}\n",
+        ended);
   }
 
   if (walks) {
@@ -101,7 +103,8 @@ void plot_optimum(const OptimiseFile& file, const MotorTrial& trial, PlotFormat 
     figure.next_panel();
     figure.add("set lmargin at screen 0.2\nset tmargin at screen {}\nset bmargin at screen {}\n", y(walks_top),
                y(walks_top + panel));
-    figure.add("set border 3\nset ytics nomirror out scale 0.5\nset autoscale x\nset yrange [{}:{}]\n", -5.0 * flat_loss, 110.0 * flat_loss);
+    figure.add("set border 3\nset ytics nomirror out scale 0.5\nset autoscale x\nset yrange [{}:{}]\n",
+               -5.0 * flat_loss, 110.0 * flat_loss);
     const double best = r.point.metrics[study.objective];
     std::string plot;
     double reach = 0.0;
@@ -128,8 +131,8 @@ void plot_optimum(const OptimiseFile& file, const MotorTrial& trial, PlotFormat 
     }
     figure.text("distance along a free direction (ranges of the bounds)", 7.0,
                 fmt::format("screen 0.58,{} center", y(walks_top + panel + 0.33)));
-    figure.text("objective worse by (%)", 6.5, fmt::format("screen 0.03,{} center rotate by 90",
-                                                            y(walks_top + 0.5 * panel)));
+    figure.text("objective worse by (%)", 6.5,
+                fmt::format("screen 0.03,{} center rotate by 90", y(walks_top + 0.5 * panel)));
     figure.add("plot {}\n", plot);
   }
   figure.add("unset multiplot\nunset output\n");

@@ -27,8 +27,10 @@ void text_neighbourhood(Out& out, const OptimiseStudy& study, const OptimiseResu
   }
   if (r.active.empty()) fmt::format_to(out, "  no constraint and no bound: the optimum lies inside\n");
   if (std::any_of(r.active.begin(), r.active.end(), [](const ActiveLimit& a) { return a.domain; })) {
-    fmt::format_to(out, "{}\n", wrapped("  The model's domain limits this optimum: a better one would lie where the model no "
-                                        "longer holds.", width, 2));
+    fmt::format_to(out, "{}\n",
+                   wrapped("  The model's domain limits this optimum: a better one would lie where the model no "
+                           "longer holds.",
+                           width, 2));
   }
 
   fmt::format_to(out, "\nHow flat it is: moving along each direction until the objective is {:g} % worse\n",
@@ -66,8 +68,8 @@ Json result_json(const OptimiseFile& file, const OptimiseResult& r) {
   json["allow_extrapolation"] = study.allow_extrapolation;
   if (r.outcome != Outcome::found) {
     json["reason"] = explanation(study, r);
-    for (const char* key : {"domain", "limited_by_domain", "value", "parameters", "metrics", "active", "directions", "starts",
-                            "evaluations"}) {
+    for (const char* key : {"domain", "limited_by_domain", "value", "parameters", "metrics", "active", "directions",
+                            "starts", "evaluations"}) {
       json[key] = nullptr;
     }
     return json;
@@ -89,8 +91,11 @@ Json result_json(const OptimiseFile& file, const OptimiseResult& r) {
   }
   json["directions"] = Json::array();
   for (const FlatDirection& d : r.directions) {
-    json["directions"].push_back({{"flat", d.flat}, {"width", d.width}, {"curvature", number_or_null(d.curvature)},
-                                  {"from", d.from}, {"to", d.to}});
+    json["directions"].push_back({{"flat", d.flat},
+                                  {"width", d.width},
+                                  {"curvature", number_or_null(d.curvature)},
+                                  {"from", d.from},
+                                  {"to", d.to}});
   }
   json["starts"] = {{"all", r.starts}, {"same", r.same}, {"elsewhere", r.elsewhere}, {"failed", r.failed}};
   json["evaluations"] = r.evaluations;
@@ -121,10 +126,10 @@ std::string explanation(const std::string& reason, bool nothing_flaps, std::span
   }
   for (std::size_t c = 0; c < constraints.size(); ++c) {
     if (screen.violated[c] == 0) continue;
-    text += fmt::format("; {}: {} of {} {} break it, the best of them reaches {}", name_of(constraints[c]),
-                        screen.violated[c], screen.status[0] - screen.outside,
-                        screen.outside > 0 ? "inside" : "that flap",
-                        with_unit(screen.closest[c], metric_info(constraints[c].metric).unit));
+    text +=
+        fmt::format("; {}: {} of {} {} break it, the best of them reaches {}", name_of(constraints[c]),
+                    screen.violated[c], screen.status[0] - screen.outside, screen.outside > 0 ? "inside" : "that flap",
+                    with_unit(screen.closest[c], metric_info(constraints[c].metric).unit));
   }
   return text;
 }
@@ -146,7 +151,8 @@ std::string text_optimum(const OptimiseFile& file, const OptimiseResult& r) {
   if (r.screen.outside > 0) {
     fmt::format_to(out, "{} that flap are outside the model's domain and do not count\n", r.screen.outside);
   }
-  if (study.allow_extrapolation) fmt::format_to(out, "designs outside the model's domain count: extrapolation is allowed\n");
+  if (study.allow_extrapolation)
+    fmt::format_to(out, "designs outside the model's domain count: extrapolation is allowed\n");
   if (r.outcome != Outcome::found) {
     fmt::format_to(out, "{}\n", wrapped("No design found: " + explanation(study, r), width, 2));
     return text;
@@ -156,8 +162,10 @@ std::string text_optimum(const OptimiseFile& file, const OptimiseResult& r) {
   fmt::format_to(out, "{} {}: {}\n", study.maximise ? "most" : "least", objective.long_name,
                  with_unit(r.point.metrics[study.objective], objective.unit));
   if (r.point.domain.any()) {
-    fmt::format_to(out, "{}\n", wrapped(fmt::format("OUTSIDE THE MODEL'S DOMAIN ({}): these numbers are extrapolated",
-                                                    name_of(r.point.domain)), width, 2));
+    fmt::format_to(
+        out, "{}\n",
+        wrapped(fmt::format("OUTSIDE THE MODEL'S DOMAIN ({}): these numbers are extrapolated", name_of(r.point.domain)),
+                width, 2));
   }
   if (!study.parameters.empty()) {
     fmt::format_to(out, "\n{:<36}{:>13}{:>13}{:>13}\n", "Parameter", "optimum", "lower", "upper");
@@ -169,9 +177,9 @@ std::string text_optimum(const OptimiseFile& file, const OptimiseResult& r) {
   }
   if (!study.parameters.empty()) text_neighbourhood(out, study, r);
   fmt::format_to(out, "\nThe design\n");
-  for (const Metric m : {Metric::voltage, Metric::frequency, Metric::lift_to_weight, Metric::lift_mean,
-                         Metric::power_electrical, Metric::efficiency_system, Metric::current_peak,
-                         Metric::stroke_amplitude, Metric::rod_force_peak}) {
+  for (const Metric m :
+       {Metric::voltage, Metric::frequency, Metric::lift_to_weight, Metric::lift_mean, Metric::power_electrical,
+        Metric::efficiency_system, Metric::current_peak, Metric::stroke_amplitude, Metric::rod_force_peak}) {
     if (!std::isfinite(r.point.metrics[m])) continue;
     fmt::format_to(out, "  {:<36}{}\n", metric_info(m).key, with_unit(r.point.metrics[m], metric_info(m).unit));
   }

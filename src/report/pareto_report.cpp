@@ -118,18 +118,20 @@ std::string text_front(const OptimiseFile& file, const ParetoStudy& study, const
   if (!file.title.empty()) fmt::format_to(out, "{}\n", wrapped(file.title, width, 0));
   std::string aims;
   for (const ParetoObjective& o : study.objectives) {
-    aims += fmt::format("{}{} {}", aims.empty() ? "" : ", ", o.maximise ? "maximise" : "minimise", metric_info(o.metric).key);
+    aims += fmt::format("{}{} {}", aims.empty() ? "" : ", ", o.maximise ? "maximise" : "minimise",
+                        metric_info(o.metric).key);
   }
   for (std::size_t c = 0; c < study.constraints.size(); ++c) {
     aims += (c == 0 ? " with " : ", ") + name_of(study.constraints[c]);
   }
   if (study.frequency) aims += fmt::format("; flapping held at {:.6g} Hz", *study.frequency);
-  fmt::format_to(out, "{}\nscreened {} designs: {} flap, {} of these within every constraint\n", wrapped(aims, width, 0),
-                 study.screen, r.screen.status[0], r.screen.feasible);
+  fmt::format_to(out, "{}\nscreened {} designs: {} flap, {} of these within every constraint\n",
+                 wrapped(aims, width, 0), study.screen, r.screen.status[0], r.screen.feasible);
   if (r.screen.outside > 0) {
     fmt::format_to(out, "{} that flap are outside the model's domain and do not count\n", r.screen.outside);
   }
-  if (study.allow_extrapolation) fmt::format_to(out, "designs outside the model's domain count: extrapolation is allowed\n");
+  if (study.allow_extrapolation)
+    fmt::format_to(out, "designs outside the model's domain count: extrapolation is allowed\n");
   const auto motors = [&] {
     if (file.motors.empty()) return;
     fmt::format_to(out, "\n{:<30}{:>10}{:>10}{:>10}{:>14}\n", "Motor", "solved", "flap", "feasible", "on the front");
@@ -146,8 +148,9 @@ std::string text_front(const OptimiseFile& file, const ParetoStudy& study, const
   };
   if (r.outcome != Outcome::found) {
     const bool nothing = r.outcome == Outcome::nothing_flaps;
-    fmt::format_to(out, "{}\n", wrapped("No design found: " + explanation(r.reason, nothing, study.constraints, r.screen),
-                                        width, 2));
+    fmt::format_to(
+        out, "{}\n",
+        wrapped("No design found: " + explanation(r.reason, nothing, study.constraints, r.screen), width, 2));
     motors();
     return text;
   }
@@ -158,10 +161,10 @@ std::string text_front(const OptimiseFile& file, const ParetoStudy& study, const
                  hypervolume_unit(study), reference_text(study, r));
   if (r.hypervolume > 0.0) {
     fmt::format_to(out, "  after the screening {:.1f} % of it, after half of the generations {:.2f} %\n\n",
-                   100.0 * r.history.front() / r.hypervolume,
-                   100.0 * r.history[r.history.size() / 2] / r.hypervolume);
+                   100.0 * r.history.front() / r.hypervolume, 100.0 * r.history[r.history.size() / 2] / r.hypervolume);
   } else {
-    fmt::format_to(out, "  no design is better than the reference in every objective: choose a reference that is worse\n\n");
+    fmt::format_to(out,
+                   "  no design is better than the reference in every objective: choose a reference that is worse\n\n");
   }
 
   const auto columns = columns_of(study, r);
@@ -216,8 +219,10 @@ std::string json_front(const OptimiseFile& file, const ParetoStudy& study, const
   if (!file.motors.empty()) {
     const std::vector<VehicleCount> counts = count_vehicles(study, r);
     for (std::size_t v = 0; v < counts.size(); ++v) {
-      json["motors"].push_back({{"model", study.vehicles[v].name}, {"solved", counts[v].solved},
-                                {"flap", counts[v].flap}, {"feasible", counts[v].feasible},
+      json["motors"].push_back({{"model", study.vehicles[v].name},
+                                {"solved", counts[v].solved},
+                                {"flap", counts[v].flap},
+                                {"feasible", counts[v].feasible},
                                 {"front", counts[v].front}});
     }
     for (const MotorCandidate& motor : file.motors) {
@@ -381,7 +386,8 @@ void plot_front(const ParetoStudy& study, const ParetoResult& r, const std::stri
 
   figure.add("set multiplot\nset lmargin at screen 0.16\nset rmargin at screen 0.96\n");
   const std::string heading = title.empty() ? "Pareto front" : title;
-  figure.text(heading, 8.0 * std::min(1.0, 52.0 / double(heading.size())), fmt::format("screen 0.5,{} center", y(0.12)));
+  figure.text(heading, 8.0 * std::min(1.0, 52.0 / double(heading.size())),
+              fmt::format("screen 0.5,{} center", y(0.12)));
   int keys = 900;
   const auto key = [&](double x, const char* style, const char* name) {
     figure.add("set label {} '' at screen {},{} point {}\n", ++keys, x, y(0.32), style);
@@ -395,7 +401,8 @@ void plot_front(const ParetoStudy& study, const ParetoResult& r, const std::stri
   key(0.82, knee, "knee");
   const auto label = [&](std::size_t k) {
     const MetricInfo& metric = metric_info(study.objectives[k].metric);
-    return std::string(metric.long_name) + (std::string_view(metric.unit) == "1" ? "" : fmt::format(" ({})", metric.unit));
+    return std::string(metric.long_name) +
+           (std::string_view(metric.unit) == "1" ? "" : fmt::format(" ({})", metric.unit));
   };
   const auto range = [&](const char* axis, std::size_t k) {
     double low = HUGE_VAL, high = -HUGE_VAL;
@@ -417,9 +424,10 @@ void plot_front(const ParetoStudy& study, const ParetoResult& r, const std::stri
     figure.text(label(b), 7.5, fmt::format("screen 0.035,{} center rotate by 90", y(0.5 * (top + bottom))));
     range("x", a);
     range("y", b);
-    figure.add("plot $cloud using {0}:{1} with points {2}, $front using {0}:{1} with points {3}, "
-               "$ends using {0}:{1} with points {4}, $knee using {0}:{1} with points {5}\n",
-               a + 1, b + 1, grey, blue, end, knee);
+    figure.add(
+        "plot $cloud using {0}:{1} with points {2}, $front using {0}:{1} with points {3}, "
+        "$ends using {0}:{1} with points {4}, $knee using {0}:{1} with points {5}\n",
+        a + 1, b + 1, grey, blue, end, knee);
   }
   figure.add("unset multiplot\nunset output\n");
   run_gnuplot(figure.script(), file);

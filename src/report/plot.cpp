@@ -45,8 +45,9 @@ void plot_cycle(std::span<const WaveformRow> rows, const std::string& title, Plo
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const WaveformRow& r = rows[k];
     figure.add("{} {} {} {} {} {} {} {}\n", time_scale * (r.time - rows.front().time),
-               degrees_per_radian * r.stroke_angle, r.flapping_velocity, lift_scale * r.lift, rod ? r.rod_force : 1e3 * r.current,
-               power_scale * r.power_electrical, power_scale * r.power_motor, power_scale * r.power_aerodynamic);
+               degrees_per_radian * r.stroke_angle, r.flapping_velocity, lift_scale * r.lift,
+               rod ? r.rod_force : 1e3 * r.current, power_scale * r.power_electrical, power_scale * r.power_motor,
+               power_scale * r.power_aerodynamic);
   }
   figure.add("END\nset multiplot\nset xrange [0:{}]\n", time_scale * period);
 
@@ -66,8 +67,7 @@ void plot_cycle(std::span<const WaveformRow> rows, const std::string& title, Plo
   };
 
   panel(0, "stroke angle (deg)");
-  figure.text("velocity (rad/s)", 7.5,
-              fmt::format("screen 0.974,{} center rotate by 90", top - 0.5 * height));
+  figure.text("velocity (rad/s)", 7.5, fmt::format("screen 0.974,{} center rotate by 90", top - 0.5 * height));
   figure.key_entry(left, key_height, blue_solid, "stroke angle");
   figure.key_entry(left + 0.28, key_height, vermillion_dashed, "flapping velocity (right)");
   figure.add("set y2tics nomirror out scale 0.5\nset border 11\n");
@@ -103,7 +103,7 @@ void plot_powers(std::span<const PowerBar> bars, const std::string& title, PlotF
   if (bars.empty()) throw std::runtime_error("no power breakdown to plot");
   struct Part {
     const char* name;
-    double EnergyAudit::*power;
+    double EnergyAudit::* power;
     const char* fill;
     bool light;    ///< needs dark text
     double key_x;  ///< where its key starts, fraction of the page
@@ -178,9 +178,10 @@ void plot_powers(std::span<const PowerBar> bars, const std::string& title, PlotF
                 fmt::format("{},{} left", right + 0.012 * span, y - 0.06));
   }
   figure.add("set xrange [{}:{}]\nset yrange [-0.36:{}]\n", least, span, count - 0.4);
-  figure.add("set lmargin at screen 0.04\nset rmargin at screen 0.97\nset tmargin at screen {}\n"
-             "set bmargin at screen {}\n",
-             1.0 - 0.38 / inches, 0.42 / inches);
+  figure.add(
+      "set lmargin at screen 0.04\nset rmargin at screen 0.97\nset tmargin at screen {}\n"
+      "set bmargin at screen {}\n",
+      1.0 - 0.38 / inches, 0.42 / inches);
   figure.text(fmt::format("power ({})", unit), 7.5, fmt::format("screen 0.505,screen {} center", 0.08 / inches));
   figure.text(title, 8.0, fmt::format("screen 0.04,screen {} left", 1.0 - 0.1 / inches));
   const double key_height = 1.0 - 0.27 / inches;

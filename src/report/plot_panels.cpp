@@ -23,7 +23,7 @@ void plot_panels(std::span<const PointPanel> panels, const PointAxes& axes, Plot
     }
   }
   // Okabe and Ito's colours; the shapes tell them apart in grey.
-  constexpr std::pair<const char*, int> styles[] = {{"#0072b2", 7}, {"#d55e00", 8}, {"#009e73", 4}, {"#000000", 2},
+  constexpr std::pair<const char*, int> styles[] = {{"#0072b2", 7},  {"#d55e00", 8},  {"#009e73", 4}, {"#000000", 2},
                                                     {"#cc79a7", 10}, {"#e69f00", 12}, {"#56b4e9", 6}, {"#606060", 1}};
   constexpr std::size_t style_count = std::size(styles), per_row = 2;
   const double rows = std::ceil(double(names.size()) / per_row);

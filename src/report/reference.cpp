@@ -12,8 +12,8 @@
 #include "files/toml_document.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/files/design_keys.hpp"
-#include "wingbeat/report/report.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/report/report.hpp"
 
 namespace wingbeat {
 namespace {
@@ -138,7 +138,8 @@ std::string comment_on(const KeyText& key, bool is_stated, std::span<const State
   const std::string section(key.path.substr(0, key.path.rfind('.') + 1));
   const Key<double>* other = has_other ? find_key<double>(section + std::string(key.fallback.substr(12))) : nullptr;
   if (other && has_place(*other, statements)) {
-    text += fmt::format("; {} {}{}", is_stated ? "or" : "instead of", key.fallback.substr(12), is_stated ? " instead" : "");
+    text +=
+        fmt::format("; {} {}{}", is_stated ? "or" : "instead of", key.fallback.substr(12), is_stated ? " instead" : "");
   } else if (!is_stated && !has_other && key.fallback != "required") {
     text += fmt::format("; default: {}", key.fallback);
   }
@@ -162,7 +163,9 @@ std::string json_keys(const std::string& filter) {
   Json json;
   json["keys"] = Json::array();
   for (const KeyText* key : keys_with(filter)) {
-    const auto text_or_null = [](std::string_view text) { return text.empty() ? Json(nullptr) : Json(std::string(text)); };
+    const auto text_or_null = [](std::string_view text) {
+      return text.empty() ? Json(nullptr) : Json(std::string(text));
+    };
     json["keys"].push_back({{"key", std::string(key->path)},
                             {"unit", text_or_null(key->unit)},
                             {"range", std::string(key->range)},

@@ -27,8 +27,7 @@ Json start_up_json(const TransientResult& s) {
   Json events = Json::object();
   using Kind = TransientEvent::Kind;
   const auto counts = event_counts(s);
-  for (const Kind kind :
-       {Kind::revolution, Kind::force_sign_change, Kind::standstill, Kind::breakaway, Kind::jam}) {
+  for (const Kind kind : {Kind::revolution, Kind::force_sign_change, Kind::standstill, Kind::breakaway, Kind::jam}) {
     const auto found = counts.find(kind);
     std::string name = name_of(kind);
     for (char& c : name) c = c == ' ' || c == '-' ? '_' : c;
@@ -206,10 +205,10 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
   for (const std::string& warning : result.warnings) {
     table.text(wrapped(fmt::format("warning: {}.", warning), table_width, 2) + "\n");
   }
-  std::string how = fmt::format("{}, by {}, tolerance {:.0e}", name_of(options.condition),
-                                options.method == Method::orbit && !result.simulated_cycle ? "periodic orbit"
-                                                                                           : "simulation from rest",
-                                options.tolerance);
+  std::string how = fmt::format(
+      "{}, by {}, tolerance {:.0e}", name_of(options.condition),
+      options.method == Method::orbit && !result.simulated_cycle ? "periodic orbit" : "simulation from rest",
+      options.tolerance);
   if (options.method == Method::orbit && result.orbit.laps > 0 && !result.simulated_cycle) {
     how += fmt::format("; {} lap{}", result.orbit.laps, result.orbit.laps == 1 ? "" : "s");
     if (result.orbit.newton_steps > 0) how += fmt::format(", {} Newton steps", result.orbit.newton_steps);

@@ -90,8 +90,8 @@ struct Scale {
   std::string label() const { return name + display.in_brackets(); }
   std::string range(const char* which) const {
     const auto [least, most] = std::minmax_element(at.begin(), at.end());
-    std::string text = fmt::format("set {0}range [{1}:{2}]\n{3} logscale {0}\n", which, *least, *most,
-                                   logarithmic ? "set" : "unset");
+    std::string text =
+        fmt::format("set {0}range [{1}:{2}]\n{3} logscale {0}\n", which, *least, *most, logarithmic ? "set" : "unset");
     if (!logarithmic || *most > 1000.0 * *least) return text;
     // Over few decades powers of ten alone are too few marks; over more, three a decade would overlap.
     const std::vector<double> steps = *most > 30.0 * *least ? std::vector{1.0, 3.0} : std::vector{1.0, 2.0, 5.0};
@@ -153,13 +153,12 @@ SweepBest best_of(const Field& field, const std::vector<double>& weight, const s
 
 // ---- Lines
 
-constexpr const char* curve_styles[most_curves] = {
-    blue_solid,
-    vermillion_dashed,
-    black_dotted,
-    "dt (14,4,3,4) lw 1.3 lc rgb '#009e73'",
-    "dt (20,5) lw 1.3 lc rgb '#cc79a7'",
-    "dt (6,3) lw 1.3 lc rgb '#56b4e9'"};
+constexpr const char* curve_styles[most_curves] = {blue_solid,
+                                                   vermillion_dashed,
+                                                   black_dotted,
+                                                   "dt (14,4,3,4) lw 1.3 lc rgb '#009e73'",
+                                                   "dt (20,5) lw 1.3 lc rgb '#cc79a7'",
+                                                   "dt (6,3) lw 1.3 lc rgb '#56b4e9'"};
 constexpr const char* curve_colours[most_curves] = {"#0072b2", "#d55e00", "#000000", "#009e73", "#cc79a7", "#56b4e9"};
 
 /// "springs on, condition air": the choices of one curve.
@@ -171,7 +170,8 @@ std::string curve_name(const Sweep& sweep, std::uint64_t index) {
     for (const SweptQuantity& q : sweep.axes[a].quantities) {
       if (q.kind != SweptQuantity::Kind::choice) continue;
       const bool says_itself = q.key == "condition" || q.key == "transmission.formulation";
-      name += fmt::format("{}{}{}", name.empty() ? "" : ", ", says_itself ? "" : words(q.key) + " ", q.labels[place[a]]);
+      name +=
+          fmt::format("{}{}{}", name.empty() ? "" : ", ", says_itself ? "" : words(q.key) + " ", q.labels[place[a]]);
     }
   }
   return name;
@@ -290,10 +290,11 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
         return x.logarithmic ? std::sqrt(from * to) : 0.5 * (from + to);
       };
       const auto [first, last] = hatched[h];
-      figure.add("set object {} rectangle from {},graph 0 to {},graph 1 behind fillcolor rgb '#909090' fillstyle transparent "
-                 "pattern 4 noborder\n",
-                 5000 + h, first == 0 ? x.at[order[0]] : between(first - 1, first),
-                 last + 1 == count ? x.at[order[last]] : between(last, last + 1));
+      figure.add(
+          "set object {} rectangle from {},graph 0 to {},graph 1 behind fillcolor rgb '#909090' fillstyle transparent "
+          "pattern 4 noborder\n",
+          5000 + h, first == 0 ? x.at[order[0]] : between(first - 1, first),
+          last + 1 == count ? x.at[order[last]] : between(last, last + 1));
     }
     const Field field(file, metrics[p]);
     const double top = 1.0 - (head + double(p) * (panel + gap)) / inches;
@@ -320,10 +321,10 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
     }
     std::string curves_drawn;
     for (std::size_t c = 0; c < curves.size(); ++c) {
-      curves_drawn += fmt::format("{}$curve_{}_{} using 1:2 with lines {}, $lone_{}_{} using 1:2 with points pt 7 "
-                                  "ps 0.2 lc rgb '{}', $outside_{}_{} using 1:2 with points pt 2 ps 0.3 lc rgb '{}'",
-                                  c == 0 ? "" : ", ", p, c, curve_styles[c], p, c, curve_colours[c], p, c,
-                                  curve_colours[c]);
+      curves_drawn += fmt::format(
+          "{}$curve_{}_{} using 1:2 with lines {}, $lone_{}_{} using 1:2 with points pt 7 "
+          "ps 0.2 lc rgb '{}', $outside_{}_{} using 1:2 with points pt 2 ps 0.3 lc rgb '{}'",
+          c == 0 ? "" : ", ", p, c, curve_styles[c], p, c, curve_colours[c], p, c, curve_colours[c]);
     }
     figure.add("set yrange [*:*]\nset offsets 0,0,graph 0.06,0\nplot {}\n", curves_drawn);
   }
@@ -360,7 +361,7 @@ std::vector<Loop> boundaries(const Grid& g, double level) {
   };
   const auto value = [&](int i, int j) {
     return i >= 0 && j >= 0 && i < nx && j < ny ? g.z[std::size_t(i * ny + j)]
-                                               : -std::numeric_limits<double>::infinity();
+                                                : -std::numeric_limits<double>::infinity();
   };
   struct Edge {
     int i, j;  ///< its lower node
@@ -567,8 +568,8 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
   }
 
   figure.add("set multiplot\n{}{}", x.range("x"), y.range("y"));
-  figure.add("set lmargin at screen {}\nset rmargin at screen {}\nset border 15\nset grid noxtics noytics front\n", left,
-             right);
+  figure.add("set lmargin at screen {}\nset rmargin at screen {}\nset border 15\nset grid noxtics noytics front\n",
+             left, right);
   for (std::size_t p = 0; p < metrics.size(); ++p) {
     if (p > 0) figure.next_panel();
     figure.add("unset object\n");
@@ -605,8 +606,9 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
                              shade(band));
         const double from = bottom + (top - bottom) * double(band) / double(bands);
         const double to = bottom + (top - bottom) * double(band + 1) / double(bands);
-        figure.box(fmt::format("from screen {},screen {} to screen {},screen {}", right + 0.025, from, right + 0.06, to),
-                   shade(band).c_str());
+        figure.box(
+            fmt::format("from screen {},screen {} to screen {},screen {}", right + 0.025, from, right + 0.06, to),
+            shade(band).c_str());
       }
       const std::size_t every = bands > 8 ? 2 : 1;
       for (std::size_t k = 0; k < levels.size(); k += every) {
@@ -615,22 +617,26 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
                     fmt::format("screen {},{} left", right + 0.068, at));
       }
     }
-    drawn += "$idle using 1:2 with filledcurves closed fs solid 1.0 noborder lc rgb '#e4e4e4', "
-             "$idle_outline using 1:2 with lines dt 1 lw 0.8 lc rgb '#606060'";
+    drawn +=
+        "$idle using 1:2 with filledcurves closed fs solid 1.0 noborder lc rgb '#e4e4e4', "
+        "$idle_outline using 1:2 with lines dt 1 lw 0.8 lc rgb '#606060'";
     if (leaves) {
-      drawn += ", $outside using 1:2 with filledcurves closed fs transparent pattern 4 noborder lc rgb '#ffffff', "
-               "$outside_outline using 1:2 with lines dt 1 lw 1.4 lc rgb '#ffffff', "
-               "$outside_outline using 1:2 with lines dt 1 lw 0.7 lc rgb '#b00000'";
+      drawn +=
+          ", $outside using 1:2 with filledcurves closed fs transparent pattern 4 noborder lc rgb '#ffffff', "
+          "$outside_outline using 1:2 with lines dt 1 lw 1.4 lc rgb '#ffffff', "
+          "$outside_outline using 1:2 with lines dt 1 lw 0.7 lc rgb '#b00000'";
     }
     if (carried) {
-      drawn += ", $feasible using 1:2 with lines dt 1 lw 3.2 lc rgb '#ffffff', "
-               "$feasible using 1:2 with lines dt (9,4) lw 1.5 lc rgb '#000000'";
+      drawn +=
+          ", $feasible using 1:2 with lines dt 1 lw 3.2 lc rgb '#ffffff', "
+          "$feasible using 1:2 with lines dt (9,4) lw 1.5 lc rgb '#000000'";
     }
     if (!std::isfinite(least)) {
       std::vector<std::uint64_t> designs(sweep_status_count, 0);
       for (const double s : status) ++designs[std::size_t(s)];
       if (designs[0] == 0) {
-        figure.text(nothing_flaps(designs), 7.0, fmt::format("screen {},{} center", 0.5 * (left + right), 0.5 * (top + bottom)));
+        figure.text(nothing_flaps(designs), 7.0,
+                    fmt::format("screen {},{} center", 0.5 * (left + right), 0.5 * (top + bottom)));
       }
     }
     if (best < status.size()) {

@@ -45,15 +45,17 @@ void plot_statuses(const std::string& title, const std::string& x_label, const s
     }
     figure.add("END\n");
   }
-  figure.add("{}set lmargin at screen 0.2\nset rmargin at screen 0.95\nset tmargin at screen {}\n"
-             "set bmargin at screen {}\n",
-             x_range, y(head), y(head + panel));
+  figure.add(
+      "{}set lmargin at screen 0.2\nset rmargin at screen 0.95\nset tmargin at screen {}\n"
+      "set bmargin at screen {}\n",
+      x_range, y(head), y(head + panel));
   figure.text(title, 8.0, fmt::format("screen 0.5,{} center", y(0.11)));
   figure.text(nothing_flaps(designs), 7.0, fmt::format("screen 0.5,{} center", y(0.29)));
   if (named) {
     for (std::size_t c = 0; c < curves.size(); ++c) {
       const double key_x = c % 2 == 0 ? 0.2 : 0.58, key_y = y(0.47 + 0.15 * double(c / 2));
-      figure.add("set label {} '' at screen {},{} point pt 7 ps 0.4 lc rgb '{}'\n", 900 + c, key_x, key_y, colours[c % 6]);
+      figure.add("set label {} '' at screen {},{} point pt 7 ps 0.4 lc rgb '{}'\n", 900 + c, key_x, key_y,
+                 colours[c % 6]);
       figure.text(curves[c].name, 7.0, fmt::format("screen {},{} left", key_x + 0.02, key_y));
     }
   }
@@ -66,7 +68,8 @@ void plot_statuses(const std::string& title, const std::string& x_label, const s
     plots += fmt::format("{}$statuses_{} using 1:2 with points pt 7 ps 0.3 lc rgb '{}'", c == 0 ? "" : ", ", c,
                          colours[c % 6]);
   }
-  figure.add("set ytics ({})\nset yrange [-0.6:{}]\nplot {}\nunset output\n", tics, double(present.size()) - 0.4, plots);
+  figure.add("set ytics ({})\nset yrange [-0.6:{}]\nplot {}\nunset output\n", tics, double(present.size()) - 0.4,
+             plots);
   run_gnuplot(figure.script(), file);
 }
 

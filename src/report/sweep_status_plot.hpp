@@ -11,8 +11,8 @@
 namespace wingbeat {
 
 struct StatusCurve {
-  std::string name;             ///< the choices; empty where there are none
-  std::vector<int> status;      ///< SweepStatus, one for each x
+  std::string name;         ///< the choices; empty where there are none
+  std::vector<int> status;  ///< SweepStatus, one for each x
 };
 
 /// "nothing flaps: 12 stalled, 9 locked".

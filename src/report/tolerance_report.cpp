@@ -9,8 +9,8 @@
 #include "report/report_tools.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/design_keys.hpp"
-#include "wingbeat/report/report.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/report/report.hpp"
 
 namespace wingbeat {
 namespace {
@@ -125,8 +125,8 @@ std::string text_tolerance(const ToleranceStudy& study, const ToleranceResult& r
   const auto cell = [](double x) { return std::isfinite(x) ? fmt::format("{:.4g}", x) : std::string("-"); };
   for (const ToleranceOutput& o : result.outputs) {
     if (!o.metric || !(o.deviation > 0.0)) continue;
-    fmt::format_to(out, "  {:<32}{:>11}{:>11}{:>11}{:>11} {:>11}{:>11}\n", o.name, cell(o.mean),
-                   cell(o.deviation), cell(o.p025), cell(o.p975), cell(o.linear_mean), cell(o.linear_deviation));
+    fmt::format_to(out, "  {:<32}{:>11}{:>11}{:>11}{:>11} {:>11}{:>11}\n", o.name, cell(o.mean), cell(o.deviation),
+                   cell(o.p025), cell(o.p975), cell(o.linear_mean), cell(o.linear_deviation));
   }
 
   const auto inputs = factors(study);
@@ -153,8 +153,10 @@ std::string text_tolerance(const ToleranceStudy& study, const ToleranceResult& r
     }
     if (sobol) fmt::format_to(out, "  {:<34}{:5.3f}: the rest are interactions and noise\n", "sum of first order", sum);
     if (sobol && o.indices->rows < study.count) {
-      fmt::format_to(out, "{}\n", wrapped(fmt::format("  from {} of {} rows: in the others a vehicle does not flap",
-                                                      o.indices->rows, study.count), 100, 2));
+      fmt::format_to(out, "{}\n",
+                     wrapped(fmt::format("  from {} of {} rows: in the others a vehicle does not flap", o.indices->rows,
+                                         study.count),
+                             100, 2));
     }
   };
   if (const ToleranceOutput* o = main_output(result)) sources(*o);
@@ -182,9 +184,11 @@ std::string json_tolerance(const ToleranceStudy& study, const ToleranceResult& r
   json["vehicles"] = result.vehicles;
   for (std::size_t k = 0; k < study.parameters.size(); ++k) {
     const UncertainParameter& p = study.parameters[k];
-    json["parameters"].push_back({{"key", p.parameter.key}, {"unit", p.parameter.unit},
+    json["parameters"].push_back({{"key", p.parameter.key},
+                                  {"unit", p.parameter.unit},
                                   {"mean", p.distribution.mean()},
-                                  {"deviation", std::sqrt(p.distribution.variance())}, {"correlated", is_correlated(study, k)}});
+                                  {"deviation", std::sqrt(p.distribution.variance())},
+                                  {"correlated", is_correlated(study, k)}});
   }
   for (int s = 0; s < sweep_status_count; ++s) {
     json["probability"][name_of(SweepStatus(s))] = probability(result.status[std::size_t(s)]);
@@ -225,8 +229,8 @@ std::string json_tolerance(const ToleranceStudy& study, const ToleranceResult& r
   return json.dump(2) + "\n";
 }
 
-void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns,
-                    const ToleranceOutput& output, PlotFormat format, const std::filesystem::path& file) {
+void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns, const ToleranceOutput& output,
+                    PlotFormat format, const std::filesystem::path& file) {
   std::vector<double> values;
   const auto all = samples_of(study, columns, *output.metric);
   std::size_t outside = 0;
@@ -305,10 +309,11 @@ void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns,
     figure.text("first order", 6.5, fmt::format("screen 0.49,{} left", y(top - 0.14)));
     figure.text("total", 6.5, fmt::format("screen 0.67,{} left", y(top - 0.14)));
     figure.text("linear", 6.5, fmt::format("screen 0.82,{} left", y(top - 0.14)));
-    figure.add("set label 901 '' at screen 0.475,{0} point pt 7 ps 0.45 lc rgb '#0072b2'\n"
-               "set label 902 '' at screen 0.655,{0} point pt 5 ps 0.45 lc rgb '#009e73'\n"
-               "set label 903 '' at screen 0.805,{0} point pt 8 ps 0.6 lc rgb '#d55e00'\n",
-               y(top - 0.14));
+    figure.add(
+        "set label 901 '' at screen 0.475,{0} point pt 7 ps 0.45 lc rgb '#0072b2'\n"
+        "set label 902 '' at screen 0.655,{0} point pt 5 ps 0.45 lc rgb '#009e73'\n"
+        "set label 903 '' at screen 0.805,{0} point pt 8 ps 0.6 lc rgb '#d55e00'\n",
+        y(top - 0.14));
     figure.add("$sources << END\n");
     double most = 0.1;
     for (std::size_t r = 0; r < order.size(); ++r) {
@@ -328,9 +333,10 @@ void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns,
     }
     figure.add("set xrange [{}:{}]\nset yrange [{}:0.5]\nset border 3\nset datafile missing 'nan'\n", -0.03 * most,
                1.04 * most, 0.5 - double(order.size()));
-    figure.add("plot $sources using 2:($1+0.22):3:4 with xerrorbars pt 7 ps 0.45 lc rgb '#0072b2', "
-               "$sources using 5:1:6:7 with xerrorbars pt 5 ps 0.45 lc rgb '#009e73', "
-               "$sources using 8:($1-0.22) with points pt 8 ps 0.6 lc rgb '#d55e00'\n");
+    figure.add(
+        "plot $sources using 2:($1+0.22):3:4 with xerrorbars pt 7 ps 0.45 lc rgb '#0072b2', "
+        "$sources using 5:1:6:7 with xerrorbars pt 5 ps 0.45 lc rgb '#009e73', "
+        "$sources using 8:($1-0.22) with points pt 8 ps 0.6 lc rgb '#d55e00'\n");
   }
 
   figure.add("unset multiplot\nunset output\n");

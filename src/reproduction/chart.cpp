@@ -66,10 +66,8 @@ void draw(const Chart& chart, PlotFormat format, const std::filesystem::path& fi
       for (std::size_t n = 0; n < curve.x.size(); ++n) {
         x_low = std::min(x_low, curve.x[n]);
         x_high = std::max(x_high, curve.x[n]);
-        if (std::isfinite(curve.y[n]))
-          figure.add("{:.8g} {:.8g}\n", curve.x[n], curve.y[n]);
-        else
-          figure.add("\n");
+        if (std::isfinite(curve.y[n])) figure.add("{:.8g} {:.8g}\n", curve.x[n], curve.y[n]);
+        else figure.add("\n");
       }
       figure.add("END\n");
     }

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "wingbeat/reproduction/claims.hpp"
 #include "wingbeat/report/report.hpp"
+#include "wingbeat/reproduction/claims.hpp"
 #include "wingbeat/study/bench_fit.hpp"
 
 namespace wingbeat {

@@ -254,9 +254,9 @@ std::vector<Sheet> mechanism_sheets(const Material& m) {
                   1e3 * design.friction.coefficient);
     const CycleCase* cycle = cycle_of(m.computed.at_frequency, Formulation::rod_force, springs);
     if (cycle) {
-      s.animation = moving(
-          crank, *cycle,
-          fmt::format("{:g} Hz, {} springs", m.computed.options.frequency, springs ? "with" : "without"));
+      s.animation =
+          moving(crank, *cycle,
+                 fmt::format("{:g} Hz, {} springs", m.computed.options.frequency, springs ? "with" : "without"));
     }
     Table& t = s.table;
     std::vector<double> angle, height, stroke, wing_lever, crank_lever;

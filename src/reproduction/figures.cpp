@@ -11,7 +11,7 @@ namespace {
 using enum Formulation;
 
 /// One quantity of the four cycles over the fraction of the period.
-Sheet cycle_sheet(int number, const std::vector<CycleCase>& cycles, double WaveformRow::*value, double scale,
+Sheet cycle_sheet(int number, const std::vector<CycleCase>& cycles, double WaveformRow::* value, double scale,
                   const char* name, const char* unit, std::string label, std::string what) {
   Sheet s = sheet(number, std::move(what), "cycles");
   Chart chart;
@@ -67,10 +67,8 @@ std::vector<Sheet> paper_sheets(const Material& m) {
     figure.chart().key = conditions ? condition_key() : springs_key();
     figure.chart().panel_height = panels.size() == 1 ? 1.9 : panels.size() == 2 ? 1.5 : 1.15;
     for (const auto& [metric, label, title] : panels) {
-      if (conditions)
-        figure.panel(f, metric, label, title, by_condition, condition_style);
-      else
-        figure.panel(f, metric, label, title, by_springs, springs_style);
+      if (conditions) figure.panel(f, metric, label, title, by_condition, condition_style);
+      else figure.panel(f, metric, label, title, by_springs, springs_style);
     }
     s.caption = std::move(caption);
     figure.into(s);
@@ -188,7 +186,7 @@ std::vector<Sheet> paper_sheets(const Material& m) {
       {{Metric::lift_mean, "mean lift (mN)", ""}});
 
   using R = WaveformRow;
-  const auto cycles = [&](int number, bool held, double R::*quantity, double scale, const char* name, const char* unit,
+  const auto cycles = [&](int number, bool held, double R::* quantity, double scale, const char* name, const char* unit,
                           std::string label, const char* what, const std::string& said) {
     Sheet s = cycle_sheet(number, held ? r.at_frequency : r.at_voltage, quantity, scale, name, unit, std::move(label),
                           fmt::format("{} over a cycle at {}", what,

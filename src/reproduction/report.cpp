@@ -43,7 +43,8 @@ td.n { text-align: right; white-space: nowrap; }
 .part::before { content: "\25D0  "; color: #7a5c00; }
 .erratum { color: #a02c00; }
 table.claims { font-size: .76rem; }
-pre { background: #f5f5f5; border: 1px solid var(--line); padding: .7rem .9rem; overflow-x: auto; font-size: .85rem; line-height: 1.4; }
+pre { background: #f5f5f5; border: 1px solid var(--line); padding: .7rem .9rem; overflow-x: auto; font-size: .85rem;
+  line-height: 1.4; }
 code { font-size: .9em; }
 @media print { body { max-width: none; padding: 0; font-size: 10pt; } h2 { break-after: avoid; }
   figure, tr { break-inside: avoid; }
@@ -137,8 +138,8 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
 
   begin("vehicle");
   html +=
-      "<p>A geared DC motor turns a crank; a rod moves a slider up and down its guide; the slider swings two wings about "
-      "fixed hinges. Springs in the hinges, where fitted, store energy at the ends of the stroke.</p>\n" +
+      "<p>A geared DC motor turns a crank; a rod moves a slider up and down its guide; the slider swings two wings "
+      "about fixed hinges. Springs in the hinges, where fitted, store energy at the ends of the stroke.</p>\n" +
       parameters_html(m);
   figures("vehicle");
   end();
@@ -150,16 +151,16 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
   end();
   begin("springs");
   html +=
-      "<p>In air, at prescribed frequency. Springs raise the input power where they are too stiff for the frequency, and "
-      "lower it near resonance.</p>\n";
+      "<p>In air, at prescribed frequency. Springs raise the input power where they are too stiff for the frequency, "
+      "and lower it near resonance.</p>\n";
   figures("springs");
   end();
   begin("cycles");
   fmt::format_to(
       out,
       "<p>Each cycle begins at crank angle zero, the slider in mid-stroke and rising. First at the same frequency, "
-      "{:g} Hz, which the springs reach at a lower voltage; then at the same voltage, {:g} V, at which the vehicle with "
-      "springs flaps faster.</p>\n",
+      "{:g} Hz, which the springs reach at a lower voltage; then at the same voltage, {:g} V, at which the vehicle "
+      "with springs flaps faster.</p>\n",
       m.computed.options.frequency, m.computed.options.voltage);
   figures("cycles");
   end();
@@ -168,12 +169,13 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
   figures("section5");
   end();
   begin("claims");
-  fmt::format_to(out,
-                 "<p>The deviation is computed over published minus 1. A number is met within {:g} %, the same for every "
-                 "statement; a bound (\"below\", \"above\") where it holds. ● met in both formulations, ◐ in one, ○ in "
-                 "neither; the outcome compares rod-force and virtual-work with the same chord moments, the third column "
-                 "has those calibrated for virtual-work. Also as claims.csv and claims.json.</p>\n",
-                 100.0 * m.file.tolerance);
+  fmt::format_to(
+      out,
+      "<p>The deviation is computed over published minus 1. A number is met within {:g} %, the same for every "
+      "statement; a bound (\"below\", \"above\") where it holds. ● met in both formulations, ◐ in one, ○ in "
+      "neither; the outcome compares rod-force and virtual-work with the same chord moments, the third column "
+      "has those calibrated for virtual-work. Also as claims.csv and claims.json.</p>\n",
+      100.0 * m.file.tolerance);
   html += claims_html(a);
   end();
   begin("question");
@@ -182,9 +184,9 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
   end();
   begin("energy");
   html +=
-      "<p>What the supply delivers over a cycle leaves as copper loss, motor viscous loss, friction and aerodynamic power "
-      "- and, with the paper's equation (1) as printed, as a formulation residual that no part of the vehicle receives. "
-      "The sums close to the solver's accuracy.</p>\n";
+      "<p>What the supply delivers over a cycle leaves as copper loss, motor viscous loss, friction and aerodynamic "
+      "power - and, with the paper's equation (1) as printed, as a formulation residual that no part of the vehicle "
+      "receives. The sums close to the solver's accuracy.</p>\n";
   figures("energy");
   end();
   begin("how");

@@ -78,8 +78,10 @@ namespace {
 
 /// The name a file of a reproduction has.
 bool is_piece(const std::string& name) {
-  const std::string_view begins[] = {"figure-", "friction-laws.", "energy-flow", "power-cycle-", "claims.", "report.html"};
-  return name == notice || std::any_of(std::begin(begins), std::end(begins), [&](auto b) { return name.starts_with(b); });
+  const std::string_view begins[] = {"figure-",      "friction-laws.", "energy-flow",
+                                     "power-cycle-", "claims.",        "report.html"};
+  return name == notice ||
+         std::any_of(std::begin(begins), std::end(begins), [&](auto b) { return name.starts_with(b); });
 }
 
 std::string listed(const std::string& name, std::string_view content) {
@@ -221,10 +223,8 @@ ReproduceResult reproduce_paper(const KnownPaper& paper, const ReproduceOptions&
     for (const auto& [format, extension] : {std::pair(PlotFormat::svg, ".svg"), std::pair(PlotFormat::pdf, ".pdf")}) {
       OutputFile file("-o", folder / (s.id + extension), {"", replace});
       s.draw(format, file.temporary());
-      if (format == PlotFormat::pdf)
-        remove_date(file.temporary());
-      else
-        drawings[n] = read_text_file(file.temporary());
+      if (format == PlotFormat::pdf) remove_date(file.temporary());
+      else drawings[n] = read_text_file(file.temporary());
       file.commit();
     }
     const std::lock_guard<std::mutex> lock(mutex);

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "wingbeat/reproduction/claims.hpp"
 #include "wingbeat/files/netcdf.hpp"
 #include "wingbeat/report/plot.hpp"
+#include "wingbeat/reproduction/claims.hpp"
 
 namespace wingbeat::reproduction {
 

@@ -220,8 +220,7 @@ Answer answer_to(const PublishedFile& file, const PublishedTrend& t) {
     }
     case Kind::peak_at:
     case Kind::trough_at:
-    case Kind::peak:
-      return extreme(ask, t);
+    case Kind::peak: return extreme(ask, t);
     case Kind::value: {
       const Metrics<double> m = ask.here(t.design);
       Answer answer = of_number(m[t.metric], t, is_efficiency(t.metric));
@@ -238,22 +237,17 @@ Answer answer_to(const PublishedFile& file, const PublishedTrend& t) {
       if (!is_efficiency(t.metric)) return of_number(one - other, t, false);
       return {one - other, fmt::format("{:+.2f} percentage points, to {}", 100.0 * (one - other), percent(one)), false};
     }
-    case Kind::best_range:
-      return best_range(ask, t);
+    case Kind::best_range: return best_range(ask, t);
     case Kind::power_balance: {
       const Metrics<double> m = ask.here(t.design);
       const double left = m[Metric::power_motor] - m[Metric::power_friction], air = m[Metric::power_aerodynamic];
       return {left / air, fmt::format("{:#.4g} ({} against {})", left / air, readable(left, "W"), readable(air, "W")),
               false};
     }
-    case Kind::between:
-      return between(ask, t);
-    case Kind::steadier:
-      return steadier(ask, t);
-    case Kind::saturates:
-      return saturates(ask, t);
-    case Kind::initial_guesses:
-      return initial_guesses(ask, t);
+    case Kind::between: return between(ask, t);
+    case Kind::steadier: return steadier(ask, t);
+    case Kind::saturates: return saturates(ask, t);
+    case Kind::initial_guesses: return initial_guesses(ask, t);
     case Kind::constant_load_efficiency:
       return of_number(best_constant_load_efficiency(resolve(file.designs.at(t.design)).motor, *t.voltage), t, true);
     case Kind::spring_resonance: {
@@ -262,8 +256,7 @@ Answer answer_to(const PublishedFile& file, const PublishedTrend& t) {
     }
     case Kind::weight:
       return of_number(total_mass(file.designs.at(t.design)).value_or(absent) * standard_gravity, t, false);
-    case Kind::best_friction_law:
-      break;
+    case Kind::best_friction_law: break;
   }
   return {};
 }

@@ -13,16 +13,11 @@ namespace {
 
 const char* coefficient_unit(FrictionLaw law) {
   switch (law) {
-    case FrictionLaw::viscous:
-      return "N m s/rad";
-    case FrictionLaw::quadratic:
-      return "N m s2/rad2";
-    case FrictionLaw::constant:
-      return "N m";
-    case FrictionLaw::load_proportional:
-      return "m";
-    case FrictionLaw::none:
-      break;
+    case FrictionLaw::viscous: return "N m s/rad";
+    case FrictionLaw::quadratic: return "N m s2/rad2";
+    case FrictionLaw::constant: return "N m";
+    case FrictionLaw::load_proportional: return "m";
+    case FrictionLaw::none: break;
   }
   return "";
 }

@@ -88,9 +88,10 @@ void SweepJournal::refuse(const std::filesystem::path& file, const std::string& 
 }
 
 void SweepJournal::failed(const std::filesystem::path& file, int reason) const {
-  throw std::runtime_error(fmt::format("{}: cannot be written: {}; what is finished is kept: once that is mended, the "
-                                       "same command resumes",
-                                       file.string(), std::strerror(reason)));
+  throw std::runtime_error(
+      fmt::format("{}: cannot be written: {}; what is finished is kept: once that is mended, the "
+                  "same command resumes",
+                  file.string(), std::strerror(reason)));
 }
 
 /// Opens the journal and makes sure that it is of this sweep and that the data set is prepared.
@@ -104,7 +105,7 @@ void SweepJournal::lock(std::uint64_t fingerprint, std::uint64_t size, const Pre
   }
   journal_file_ = ::open(journal_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (journal_file_ < 0) refuse(journal_, fmt::format("cannot be written: {}", std::strerror(errno)));
-  struct stat found {};
+  struct stat found{};
   if (::fstat(journal_file_, &found) != 0 || !S_ISREG(found.st_mode)) {
     refuse(journal_, "cannot be written: it is not a regular file");
   }
@@ -137,14 +138,17 @@ void SweepJournal::lock(std::uint64_t fingerprint, std::uint64_t size, const Pre
   // The places of the columns and the check sum of all around them, written when the data set is prepared.
   std::vector<std::uint64_t> places(layout_.columns() + 2);
   const std::size_t length = places.size() * sizeof places[0];
-  const auto sum_of = [](std::span<const std::uint64_t> p) { return checksum(std::as_bytes(p.first(p.size() - 1)), 8); };
+  const auto sum_of = [](std::span<const std::uint64_t> p) {
+    return checksum(std::as_bytes(p.first(p.size() - 1)), 8);
+  };
   const auto frame_of_file = [&] {
     const int file = ::open(data_set_.c_str(), O_RDONLY | O_CLOEXEC);
     const std::uint64_t sum = frame_sum(file, std::span(places).first(layout_.columns()));
     if (file >= 0) ::close(file);
     return sum;
   };
-  const bool prepared = data_there && same_sweep && read_at(journal_file_, places.data(), length, sizeof header) == ssize_t(length) &&
+  const bool prepared = data_there && same_sweep &&
+                        read_at(journal_file_, places.data(), length, sizeof header) == ssize_t(length) &&
                         places.back() == sum_of(places) && places[layout_.columns()] == frame_of_file();
   if (!prepared) {
     const bool usable = ::ftruncate(journal_file_, 0) == 0;
@@ -183,9 +187,10 @@ void SweepJournal::reserve(std::uint64_t size, bool fresh) const {
   if (reason == 0 && ::fallocate(file, FALLOC_FL_KEEP_SIZE, 0, off_t(size)) != 0 && errno != EOPNOTSUPP) reason = errno;
   if (file >= 0) ::close(file);
   if (reason == 0) return;
-  throw std::runtime_error(fmt::format("{}: cannot be written: {}; the data set needs {:.3g} MB: make room, or keep fewer "
-                                       "metrics (study.metrics)",
-                                       data_set_.string(), std::strerror(reason), double(size) / 1e6));
+  throw std::runtime_error(
+      fmt::format("{}: cannot be written: {}; the data set needs {:.3g} MB: make room, or keep fewer "
+                  "metrics (study.metrics)",
+                  data_set_.string(), std::strerror(reason), double(size) / 1e6));
 }
 
 /// Opens the data set and finds the chunks that it holds.
@@ -220,8 +225,8 @@ bool SweepJournal::transfer(std::uint64_t chunk, std::byte* bytes, bool write) c
     const std::uint64_t at = places_[column] + layout_.first(chunk) * size;
     const std::size_t length = std::size_t(layout_.size(chunk) * size);
     std::byte* const values = bytes + layout_.begin(column);
-    const bool done = write ? write_at(data_file_, values, length, at)
-                            : read_at(data_file_, values, length, at) == ssize_t(length);
+    const bool done =
+        write ? write_at(data_file_, values, length, at) : read_at(data_file_, values, length, at) == ssize_t(length);
     if (!done) return false;
   }
   return true;
@@ -243,7 +248,7 @@ std::uint64_t SweepJournal::frame_sum(int data_file, std::span<const std::uint64
     columns.emplace_back(places[c], places[c] + layout_.designs * layout_.bytes_of_value(c));
   }
   std::sort(columns.begin(), columns.end());
-  struct stat found {};
+  struct stat found{};
   const std::uint64_t size = ::fstat(data_file, &found) == 0 ? std::uint64_t(found.st_size) : 0;
   columns.emplace_back(std::max(size, columns.back().second), 0);
   std::vector<std::byte> bytes;
@@ -264,9 +269,10 @@ std::uint64_t SweepJournal::frame_sum(int data_file, std::span<const std::uint64
 void SweepJournal::finish(const std::filesystem::path& name) {
   if (::fsync(data_file_) != 0) failed(data_set_, errno);
   if (frame_sum(data_file_, places_) != frame_) {
-    throw std::runtime_error(fmt::format("{}: was damaged while the sweep ran, so it does not become {}; the same command "
-                                         "begins anew",
-                                         data_set_.string(), name.string()));
+    throw std::runtime_error(
+        fmt::format("{}: was damaged while the sweep ran, so it does not become {}; the same command "
+                    "begins anew",
+                    data_set_.string(), name.string()));
   }
   if (::rename(data_set_.c_str(), name.c_str()) != 0) failed(name, errno);
   ::unlink(journal_.c_str());

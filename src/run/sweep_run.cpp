@@ -60,9 +60,12 @@ std::span<const std::byte> bytes_of(const std::string& text) { return std::as_by
 
 std::string setup_message(const Study& study) {
   const EnsembleOptions& o = study.sweep.options;
-  return nlohmann::json{{"study_name", study.input.study_name}, {"study", study.input.study},
-                        {"vehicle", study.input.vehicle},       {"table_name", study.input.table_name},
-                        {"table", study.input.table},           {"tolerance", o.tolerance},
+  return nlohmann::json{{"study_name", study.input.study_name},
+                        {"study", study.input.study},
+                        {"vehicle", study.input.vehicle},
+                        {"table_name", study.input.table_name},
+                        {"table", study.input.table},
+                        {"tolerance", o.tolerance},
                         {"isa", int(o.isa)}}
       .dump();
 }
@@ -232,8 +235,7 @@ SweepRelease::~SweepRelease() {
   for (int r = 1; r < ranks_->count(); ++r) {
     try {
       ranks_->send(r, tag_stop);
-    } catch (const std::exception&) {
-    }
+    } catch (const std::exception&) {}
   }
 }
 
@@ -261,7 +263,8 @@ SweepResult run_sweep(const Study& study, const SweepRunOptions& options) {
   for (const auto& [shown, file] : written) {
     check_not_read("-o", shown, file);
     if (const auto other = record.add_output(file, "-o")) {
-      throw InputError("-o " + shown.string(), 0, 0, "", fmt::format("is also the file of {}; give another name", *other));
+      throw InputError("-o " + shown.string(), 0, 0, "",
+                       fmt::format("is also the file of {}; give another name", *other));
     }
   }
   std::optional<tbb::global_control> limit;

@@ -226,8 +226,7 @@ class Bench {
     }
     // At first half as much again as the motor needs without load.
     if (!std::isfinite(v)) {
-      v = 1.5 * two_pi * wanted *
-          (m.torque_constant + m.armature_resistance * m.viscous_damping / m.torque_constant);
+      v = 1.5 * two_pi * wanted * (m.torque_constant + m.armature_resistance * m.viscous_damping / m.torque_constant);
     }
     double v_before = absent, f_before = absent;
     for (int iteration = 0; iteration < 10; ++iteration) {
@@ -267,11 +266,10 @@ class Bench {
     if (point.given == Given::frequency) {
       vehicle.vehicle.drive_frequency = GradientJet(vehicle.vehicle.drive_frequency.a);
     }
-    const OrbitGradient g =
-        orbit_gradient(orbits_[n], vehicle,
-                       {.held = point.given == Given::voltage ? Held::voltage : Held::frequency,
-                        .peaks = point.peaks,
-                        .crank_angles = point.crank_angles});
+    const OrbitGradient g = orbit_gradient(orbits_[n], vehicle,
+                                           {.held = point.given == Given::voltage ? Held::voltage : Held::frequency,
+                                            .peaks = point.peaks,
+                                            .crank_angles = point.crank_angles});
     if (point.given == Given::frequency) {
       VoltageSlopes& slopes = voltage_slopes_[n];
       slopes.voltage = orbits_[n].metrics[Metric::voltage];
@@ -497,8 +495,8 @@ class Fitter {
       if (jacobians && jacobians[0]) {
         for (std::size_t k = 0; k < free_.size(); ++k) {
           const FreeParameter& p = fitter_.fit_.parameters[free_[k]];
-          jacobians[0][k] = fitter_.bench_.jacobian()(Eigen::Index(o_), Eigen::Index(free_[k])) *
-                            (p.upper - p.lower) / fitter_.deviations_[o_];
+          jacobians[0][k] = fitter_.bench_.jacobian()(Eigen::Index(o_), Eigen::Index(free_[k])) * (p.upper - p.lower) /
+                            fitter_.deviations_[o_];
         }
       }
       return true;
@@ -519,7 +517,8 @@ class Fitter {
 void check(const BenchFit& fit) {
   std::set<std::string> keys;
   if (fit.logs.empty()) throw ParameterError("log", "missing: there is nothing to fit to");
-  require(fit.starts >= 1 && fit.starts <= most_fit_starts, "fit.starts", "must lie between 1 and 1000", "1", fit.starts);
+  require(fit.starts >= 1 && fit.starts <= most_fit_starts, "fit.starts", "must lie between 1 and 1000", "1",
+          fit.starts);
   for (const FreeParameter& p : fit.parameters) {
     if (!keys.insert(p.parameter.key).second) throw ParameterError(p.parameter.key, "is given twice");
     if (!(p.lower < p.upper)) throw ParameterError(p.parameter.key, "the lower bound must lie below the upper one");
@@ -571,9 +570,7 @@ void check(const BenchFit& fit) {
 }
 
 /// Scale of relative changes of a parameter.
-double scale_of(const FreeParameter& p, double value) {
-  return value != 0.0 ? std::abs(value) : p.upper - p.lower;
-}
+double scale_of(const FreeParameter& p, double value) { return value != 0.0 ? std::abs(value) : p.upper - p.lower; }
 
 /// The Fisher information of some observations in relative parameter changes.
 Eigen::MatrixXd information(const Fitter& fitter, const Bench& bench, const std::vector<double>& scales,
@@ -798,8 +795,8 @@ void judge(const BenchFit& fit, Fitter& fitter, const std::vector<double>& x, Fi
       if (!std::isfinite(c.error_without[k])) {
         lost += (lost.empty() ? "" : ", ") + p.key;
       } else if (c.error_without[k] > 2.0 * p.standard_error) {
-        wider += format("%s%s %.1f times", wider.empty() ? "" : ", ", p.key.c_str(),
-                        c.error_without[k] / p.standard_error);
+        wider +=
+            format("%s%s %.1f times", wider.empty() ? "" : ", ", p.key.c_str(), c.error_without[k] / p.standard_error);
       }
     }
     if (!lost.empty()) result.verdict.push_back("only " + c.name + " determines " + lost);
@@ -919,8 +916,8 @@ FitResult run_fit(const BenchFit& fit, bool reweight, const std::function<void(c
   for (std::size_t o = 0; o < observations.size(); ++o) {
     const Observation& at_o = observations[o];
     const bool is_reached = bench.predictions()[at_o.point].reached;
-    result.points.push_back({at_o.log, at_o.row, at_o.column, at_o.measured,
-                             is_reached ? bench.fitted()[o] : absent, fitter.deviations()[o], fitter.weight(o)});
+    result.points.push_back({at_o.log, at_o.row, at_o.column, at_o.measured, is_reached ? bench.fitted()[o] : absent,
+                             fitter.deviations()[o], fitter.weight(o)});
     if (!is_reached) continue;
     ++reached;
     result.chi_square += fitter.residual(o) * fitter.residual(o);
@@ -942,8 +939,7 @@ FitResult run_fit(const BenchFit& fit, bool reweight, const std::function<void(c
   assess_misfit(fit, int(free.size()), result);
   if (!result.misfit.empty()) withdraw_intervals(result);
   if (fit.profiles && result.misfit.empty()) {
-    const double quantile =
-        fitter.has_estimates() ? student_95(result.degrees_of_freedom) : normal_95;
+    const double quantile = fitter.has_estimates() ? student_95(result.degrees_of_freedom) : normal_95;
     std::vector<std::size_t> determined;
     for (const std::size_t f : free) {
       if (result.parameters[f].value) determined.push_back(f);
@@ -993,9 +989,7 @@ std::string name_of(const MeasuredQuantity& q) {
   if (q.waveform) return std::string("instantaneous ") + name_of(q.quantity);
   return metric_info(q.metric).key;
 }
-const char* unit_of(const MeasuredQuantity& q) {
-  return q.waveform ? unit_of(q.quantity) : metric_info(q.metric).unit;
-}
+const char* unit_of(const MeasuredQuantity& q) { return q.waveform ? unit_of(q.quantity) : metric_info(q.metric).unit; }
 
 std::string condition_name(Condition condition, bool springs) {
   const char* name = condition == Condition::air ? "air" : condition == Condition::vacuum ? "vacuum" : "wingless";

@@ -64,8 +64,8 @@ class Flight {
     const State start = solve(first, start_up_in_time());
     result_.status = start.status;
     if (!start.flaps) {
-      result_.detail = format("the battery cannot start the vehicle at a charge of %.4g (%.4g V without load): %s", first,
-                              open_circuit_voltage(battery_, first), start.detail.c_str());
+      result_.detail = format("the battery cannot start the vehicle at a charge of %.4g (%.4g V without load): %s",
+                              first, open_circuit_voltage(battery_, first), start.detail.c_str());
       return std::move(result_);
     }
     known_[first] = start;
@@ -265,7 +265,8 @@ class Flight {
     return fine;
   }
 
-  /// integral() from b up to a in parts: the open-circuit voltage is smooth between the rows of the discharge curve alone.
+  /// integral() from b up to a in parts: the open-circuit voltage is smooth between the rows of the discharge curve
+  /// alone.
   Totals integral_between_rows(double b, double a) {
     const auto& curve = battery_.discharge_curve;
     auto row = std::upper_bound(curve.begin(), curve.end(), b, [](double c, const auto& r) { return c < r.first; });
@@ -292,8 +293,15 @@ class Flight {
   }
 
   EnduranceRow row(double charge, const Totals& sum) {
-    return {sum[time],        charge,           open_circuit_voltage(battery_, charge), sum[electrical], sum[internal],
-            sum[aerodynamic], sum[lift], at(charge).metrics, at(charge).domain};
+    return {sum[time],
+            charge,
+            open_circuit_voltage(battery_, charge),
+            sum[electrical],
+            sum[internal],
+            sum[aerodynamic],
+            sum[lift],
+            at(charge).metrics,
+            at(charge).domain};
   }
 
   void discharge(double last, const std::optional<double>& hover) {
@@ -325,17 +333,20 @@ class Flight {
         break;
       case EnduranceEnd::cutoff:
         result_.detail = last.time > 0.0
-                             ? format("the terminal voltage falls to the cut-off voltage, %.4g V in all, after %.4g s, at "
-                                      "a charge of %.4g",
-                                      battery_.cells * *battery_.cutoff_voltage, last.time, last.charge)
-                             : format("the terminal voltage of %.4g V is not above the cut-off voltage, %.4g V in all, "
-                                      "from the start",
-                                      v, battery_.cells * *battery_.cutoff_voltage);
+                             ? format(
+                                   "the terminal voltage falls to the cut-off voltage, %.4g V in all, after %.4g s, at "
+                                   "a charge of %.4g",
+                                   battery_.cells * *battery_.cutoff_voltage, last.time, last.charge)
+                             : format(
+                                   "the terminal voltage of %.4g V is not above the cut-off voltage, %.4g V in all, "
+                                   "from the start",
+                                   v, battery_.cells * *battery_.cutoff_voltage);
         break;
       case EnduranceEnd::stops:
-        result_.detail = format("after %.4g s, at a charge of %.4g and %.4g V at the terminals, the battery no longer "
-                                "turns the crank",
-                                last.time, last.charge, v);
+        result_.detail = format(
+            "after %.4g s, at a charge of %.4g and %.4g V at the terminals, the battery no longer "
+            "turns the crank",
+            last.time, last.charge, v);
         break;
       case EnduranceEnd::never_starts: break;
     }

@@ -66,9 +66,10 @@ void assess_misfit(const BenchFit& fit, int fitted_count, FitResult& result) {
       // At one operating point the spread is noise; its size then tells.
       const bool missed = q.unexplained > misfit_spread && q.relative > misfit_size;
       if (missed && result.misfit.empty()) {
-        result.misfit = format("the residuals of %s are on the average %.3g times the spread of its values and %.3g times "
-                               "their size%s",
-                               name_of(quantity).c_str(), std::sqrt(q.unexplained), q.relative, proportion(q).c_str());
+        result.misfit = format(
+            "the residuals of %s are on the average %.3g times the spread of its values and %.3g times "
+            "their size%s",
+            name_of(quantity).c_str(), std::sqrt(q.unexplained), q.relative, proportion(q).c_str());
       }
     } else {
       chi_square += squares;
@@ -79,16 +80,18 @@ void assess_misfit(const BenchFit& fit, int fitted_count, FitResult& result) {
     if (!q.estimated && (!worst || q.rms > worst->rms)) worst = &q;
   }
   // The parameters fit all values; their share of those with stated deviations counts here.
-  const double freedom = double(stated) - double(fitted_count) * double(stated) / double(std::max<std::size_t>(reached, 1));
+  const double freedom =
+      double(stated) - double(fitted_count) * double(stated) / double(std::max<std::size_t>(reached, 1));
   if (!worst || !(freedom > 0.0)) return;
-  result.p_value = boost::math::cdf(
-      boost::math::complement(boost::math::chi_squared(freedom), std::min(chi_square, 1e300)));
+  result.p_value =
+      boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedom), std::min(chi_square, 1e300)));
   if (result.p_value < misfit_probability && chi_square > misfit_variance * freedom) {
-    result.misfit = format("chi square is %.4g where %.4g degrees of freedom lead to expect %.4g +- %.2g: the values lie %.3g "
-                           "times their stated deviations from the model on the average; worst is %s, %.3g times its "
-                           "deviation%s",
-                           chi_square, freedom, freedom, std::sqrt(2.0 * freedom), std::sqrt(chi_square / double(stated)),
-                           name_of(worst->quantity).c_str(), worst->rms, proportion(*worst).c_str());
+    result.misfit = format(
+        "chi square is %.4g where %.4g degrees of freedom lead to expect %.4g +- %.2g: the values lie %.3g "
+        "times their stated deviations from the model on the average; worst is %s, %.3g times its "
+        "deviation%s",
+        chi_square, freedom, freedom, std::sqrt(2.0 * freedom), std::sqrt(chi_square / double(stated)),
+        name_of(worst->quantity).c_str(), worst->rms, proportion(*worst).c_str());
   }
 }
 

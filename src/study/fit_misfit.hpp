@@ -5,11 +5,12 @@
 
 namespace wingbeat {
 
-/// Residuals with less than this probability of being so large by chance, and over twice the variance stated, are a misfit.
+/// Residuals with less than this probability of being so large by chance, and over twice the variance stated, are a
+/// misfit.
 inline constexpr double misfit_probability = 1e-6;
 inline constexpr double misfit_variance = 2.0;
-/// Where the deviation is estimated from the residuals themselves: shares of the values' own spread (of its variance) and
-/// of their size that residuals must exceed both.
+/// Where the deviation is estimated from the residuals themselves: shares of the values' own spread (of its variance)
+/// and of their size that residuals must exceed both.
 inline constexpr double misfit_spread = 0.5, misfit_size = 0.2;
 
 /// Sums up the residuals of result.points by measured quantity and states in words where the model misses the data;

@@ -44,8 +44,8 @@ class Search {
   }
 
  private:
-  /// The slope between the last two trials: a frequency is so nearly proportional to the voltage that this takes one trial
-  /// more than an exact slope, at half the cost each.
+  /// The slope between the last two trials: a frequency is so nearly proportional to the voltage that this takes one
+  /// trial more than an exact slope, at half the cost each.
   void follow(const VoltageTrial& t) {
     const double x = std::log(t.voltage), y = std::log(t.frequency);
     const double slope = (y - last_y_) / (x - last_x_);
@@ -70,10 +70,11 @@ class Search {
     // At the last bits of the voltage a smooth frequency is as close as its own rounding allows.
     const double gap = high_->frequency - low_->frequency;
     if (gap < (10.0 * trials_.accuracy() + 2.0 * trials_.closeness()) * target_) return reached(*high_);
-    return conclude(FrequencyOutcome::jumps, *high_,
-                    format("at %.5g V the flapping frequency jumps from %.5g Hz to %.5g Hz: %.5g Hz in between cannot be "
-                           "held",
-                           high_->voltage, low_->frequency, high_->frequency, target_));
+    return conclude(
+        FrequencyOutcome::jumps, *high_,
+        format("at %.5g V the flapping frequency jumps from %.5g Hz to %.5g Hz: %.5g Hz in between cannot be "
+               "held",
+               high_->voltage, low_->frequency, high_->frequency, target_));
   }
 
   double next() {
@@ -94,8 +95,8 @@ class Search {
     return guess > low_->voltage && guess < high_->voltage ? guess : middle;
   }
 
-  /// The secant's step in the logarithms of frequency and voltage; somewhat further outside a bracket, so that one is found
-  /// soon, and twice as far where the trial's own error counts.
+  /// The secant's step in the logarithms of frequency and voltage; somewhat further outside a bracket, so that one is
+  /// found soon, and twice as far where the trial's own error counts.
   double secant(const VoltageTrial& t, double most) const {
     const double gap = std::log(target_ / t.frequency);
     double step = gap / slope_;
@@ -108,8 +109,8 @@ class Search {
     const std::string why = trials_.range() == SearchRange::domain
                                 ? trial.limits
                                 : format("the angle of attack falls below %.4g deg", extrapolation_angle_deg);
-    std::string text = format("%.5g Hz cannot be reached%s: at %.4g V, where it flaps at %.4g Hz, %s", target_, trials_.where(),
-                              trial.voltage, trial.frequency, why.c_str());
+    std::string text = format("%.5g Hz cannot be reached%s: at %.4g V, where it flaps at %.4g Hz, %s", target_,
+                              trials_.where(), trial.voltage, trial.frequency, why.c_str());
     VoltageTrial outside = trial, inside = trial;
     for (int n = 0; n < 40 && inside.flaps && !inside.inside; ++n) {
       outside = inside;
@@ -142,9 +143,10 @@ class Search {
   }
   FrequencySearch too_low() {
     if (!low_) {
-      return conclude(FrequencyOutcome::too_low, *high_,
-                      format("%.5g Hz cannot be reached: at %.4g V, the lowest voltage tried, it flaps at %.4g Hz already",
-                             target_, high_->voltage, high_->frequency));
+      return conclude(
+          FrequencyOutcome::too_low, *high_,
+          format("%.5g Hz cannot be reached: at %.4g V, the lowest voltage tried, it flaps at %.4g Hz already", target_,
+                 high_->voltage, high_->frequency));
     }
     FrequencySearch result =
         conclude(FrequencyOutcome::too_low, *high_,
@@ -155,15 +157,15 @@ class Search {
     return result;
   }
   FrequencySearch conclude(FrequencyOutcome outcome, const VoltageTrial& closest, const std::string& text) const {
-    return {outcome,         absent,          closest.status,    text,
-            trials_.count(), closest.flaps ? closest.voltage : absent, closest.frequency};
+    return {outcome,          absent, closest.status, text, trials_.count(), closest.flaps ? closest.voltage : absent,
+            closest.frequency};
   }
 
   VoltageTrials trials_;
   double target_;
-  std::optional<VoltageTrial> low_;      ///< slower than wanted, or not flapping
-  std::optional<VoltageTrial> high_;     ///< faster
-  std::optional<VoltageTrial> ceiling_;  ///< not flapping, above a low_ that flaps
+  std::optional<VoltageTrial> low_;           ///< slower than wanted, or not flapping
+  std::optional<VoltageTrial> high_;          ///< faster
+  std::optional<VoltageTrial> ceiling_;       ///< not flapping, above a low_ that flaps
   double last_x_ = absent, last_y_ = absent;  ///< logarithms of the last trial's voltage and frequency
   double slope_ = 1.0;                        ///< d ln f / d ln v
   double bracket_ = std::numeric_limits<double>::infinity();
@@ -175,11 +177,13 @@ class Search {
 double highest_frequency(const Vehicle<double>& v, SearchRange range) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const BladeElement<double>& w = v.wings;
-  if (v.transmission == TransmissionType::direct || !(w.air_density > 0.0) || !(w.s2 > 0.0 || w.s3 > 0.0)) return infinity;
+  if (v.transmission == TransmissionType::direct || !(w.air_density > 0.0) || !(w.s2 > 0.0 || w.s3 > 0.0))
+    return infinity;
   const bool domain = range == SearchRange::domain;
   double velocity = infinity;  // peak of |beta'| that the range allows
   const double angle = (domain ? angle_of_attack_lowest_deg : extrapolation_angle_deg) / degrees_per_radian;
-  if (w.pitch_coefficient > 0.0 && !(w.angle_of_attack_min >= angle)) velocity = (0.5 * pi - angle) / w.pitch_coefficient;
+  if (w.pitch_coefficient > 0.0 && !(w.angle_of_attack_min >= angle))
+    velocity = (0.5 * pi - angle) / w.pitch_coefficient;
   if (w.s2 > 0.0 && w.s3 > 0.0) {
     velocity = std::min(velocity, (domain ? flow_speed_max : extrapolation_flow_speed) * w.s2 / w.s3);
   }
@@ -191,11 +195,12 @@ FrequencySearch refuse_frequency(const Vehicle<double>& vehicle, double frequenc
   FrequencySearch result;
   result.outcome = FrequencyOutcome::outside_domain;
   result.status = FlappingStatus::flapping;
-  result.detail = format("%.5g Hz cannot be reached %s: at a stroke amplitude of %.4g deg, whatever the voltage, wings that "
-                         "flap at more than %.4g Hz pass %s",
-                         frequency, domain ? "inside the domain of validity" : "in the range that is searched",
-                         degrees_per_radian * stroke_amplitude(vehicle.crank), highest_frequency(vehicle, range),
-                         domain ? "an angle of attack of 0 deg or Mach 0.3" : "an angle of attack of -360 deg or Mach 3");
+  result.detail = format(
+      "%.5g Hz cannot be reached %s: at a stroke amplitude of %.4g deg, whatever the voltage, wings that "
+      "flap at more than %.4g Hz pass %s",
+      frequency, domain ? "inside the domain of validity" : "in the range that is searched",
+      degrees_per_radian * stroke_amplitude(vehicle.crank), highest_frequency(vehicle, range),
+      domain ? "an angle of attack of 0 deg or Mach 0.3" : "an angle of attack of -360 deg or Mach 3");
   return result;
 }
 

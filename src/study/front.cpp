@@ -81,11 +81,11 @@ std::vector<std::size_t> evenly_over(const std::vector<ObjectivePoint>& points, 
   std::vector<std::size_t> picked;
   std::vector<double> nearest(points.size(), std::numeric_limits<double>::infinity());
   for (std::size_t p = 0; p < count; ++p) {
-    const std::size_t next = p < ends.size()
-                                 ? ends[p]
-                                 : std::size_t(std::max_element(nearest.begin(), nearest.end()) - nearest.begin());
+    const std::size_t next =
+        p < ends.size() ? ends[p] : std::size_t(std::max_element(nearest.begin(), nearest.end()) - nearest.begin());
     if (nearest[next] > 0.0) picked.push_back(next);
-    for (std::size_t n = 0; n < points.size(); ++n) nearest[n] = std::min(nearest[n], distance(points[n], points[next]));
+    for (std::size_t n = 0; n < points.size(); ++n)
+      nearest[n] = std::min(nearest[n], distance(points[n], points[next]));
   }
   return picked;
 }
@@ -147,9 +147,9 @@ FrontPicks pick_designs(std::span<const ObjectivePoint> front, std::size_t count
     picks.ends.push_back(std::size_t(std::min_element(points.begin(), points.end(), by) - points.begin()));
   }
   const auto sum = [](const ObjectivePoint& p) { return std::accumulate(p.begin(), p.end(), 0.0); };
-  picks.knee = std::size_t(std::min_element(points.begin(), points.end(), [&](const auto& a, const auto& b) {
-                             return sum(a) < sum(b);
-                           }) - points.begin());
+  picks.knee = std::size_t(
+      std::min_element(points.begin(), points.end(), [&](const auto& a, const auto& b) { return sum(a) < sum(b); }) -
+      points.begin());
   picks.even = m == 2 ? evenly_along(points, count) : evenly_over(points, picks.ends, count);
   return picks;
 }

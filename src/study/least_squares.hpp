@@ -5,8 +5,8 @@
 
 namespace wingbeat {
 
-/// Levenberg-Marquardt on a dense QR factorisation, without output. The tolerances are relative: of the cost, and of the
-/// parameters and the gradient.
+/// Levenberg-Marquardt on a dense QR factorisation, without output. The tolerances are relative: of the cost, and of
+/// the parameters and the gradient.
 inline ceres::Solver::Options least_squares(int iterations, double cost, double parameters) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;

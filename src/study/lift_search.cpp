@@ -91,7 +91,8 @@ class LiftTrace {
     if (std::isfinite(fastest)) most = std::max(most, 10.0 * unloaded_voltage(two_pi * fastest));
     if (v.transmission == TransmissionType::slider_crank) {
       const StaticBalance balance = static_balance(v);
-      const double start = (balance.stall_torque - balance.advance_least) * circuit_resistance(v) / v.motor.torque_constant;
+      const double start =
+          (balance.stall_torque - balance.advance_least) * circuit_resistance(v) / v.motor.torque_constant;
       most = std::max(most, 10.0 * start);
     }
     return most;
@@ -268,8 +269,9 @@ class LiftTrace {
   FrequencySearch refuse(const VoltageTrial& last) const {
     const std::string cannot = format("%.5g N cannot be reached%s", target_, trials_.where());
     const auto conclude = [&](FrequencyOutcome outcome, const VoltageTrial& closest, const std::string& text) {
-      return FrequencySearch{outcome,         absent,          closest.status, text,
-                             trials_.count(), closest.flaps ? closest.voltage : absent, closest.lift};
+      return FrequencySearch{outcome,     absent,          closest.status,
+                             text,        trials_.count(), closest.flaps ? closest.voltage : absent,
+                             closest.lift};
     };
     if (!first_) {
       return conclude(FrequencyOutcome::never_flaps, last,
@@ -278,7 +280,8 @@ class LiftTrace {
     }
     if (!most_) {
       return conclude(FrequencyOutcome::outside_domain, *first_,
-                      cannot + format(": it leaves it at every voltage at which it flaps; at %.4g V ", first_->voltage) +
+                      cannot +
+                          format(": it leaves it at every voltage at which it flaps; at %.4g V ", first_->voltage) +
                           first_->limits);
     }
     if (jump_low_) {
@@ -287,22 +290,24 @@ class LiftTrace {
                              jump_high_->voltage, jump_low_->lift, jump_high_->lift, target_));
     }
     if (outside_root_) {
-      return conclude(FrequencyOutcome::outside_domain, *most_,
-                      cannot + format(": at %.4g V, where it lifts so much, %s; inside it lifts from %.4g N, at %.4g V, to "
-                                      "%.4g N, at %.4g V",
-                                      outside_root_->voltage, outside_root_->limits.c_str(), least_->lift, least_->voltage,
-                                      most_->lift, most_->voltage));
+      return conclude(
+          FrequencyOutcome::outside_domain, *most_,
+          cannot + format(": at %.4g V, where it lifts so much, %s; inside it lifts from %.4g N, at %.4g V, to "
+                          "%.4g N, at %.4g V",
+                          outside_root_->voltage, outside_root_->limits.c_str(), least_->lift, least_->voltage,
+                          most_->lift, most_->voltage));
     }
     if (least_->lift > target_) {
       if (!below_) {
         return conclude(FrequencyOutcome::too_low, *least_,
-                        cannot + format(": at %.4g V, the lowest voltage tried, it lifts %.4g N already", least_->voltage,
-                                        least_->lift));
+                        cannot + format(": at %.4g V, the lowest voltage tried, it lifts %.4g N already",
+                                        least_->voltage, least_->lift));
       }
       FrequencySearch result =
           conclude(FrequencyOutcome::too_low, *first_,
-                   cannot + format(": from rest it flaps only above %.4g V, and there lifts %.4g N already",
-                                   first_->voltage, first_->lift) +
+                   cannot +
+                       format(": from rest it flaps only above %.4g V, and there lifts %.4g N already", first_->voltage,
+                              first_->lift) +
                        detail::describe_below(*below_));
       result.status = below_->status;
       return result;
@@ -339,8 +344,10 @@ FrequencySearch find_voltage_for_lift(const Vehicle<double>& vehicle, double lif
   if (!(w.air_density > 0.0 && w.s2 > 0.0)) {
     const VoltageTrial t = trials.at(where.nominal);
     const FrequencyOutcome outcome = t.flaps ? FrequencyOutcome::too_high : FrequencyOutcome::never_flaps;
-    return {outcome, absent, t.status, format("%.5g N cannot be reached: without wings in air there is no lift", lift),
-            trials.count(), t.flaps ? t.voltage : absent, t.lift};
+    return {outcome,        absent,
+            t.status,       format("%.5g N cannot be reached: without wings in air there is no lift", lift),
+            trials.count(), t.flaps ? t.voltage : absent,
+            t.lift};
   }
   return LiftTrace(std::move(trials), lift, where).run();
 }

@@ -24,9 +24,21 @@ using detail::format;
 /// Unknowns of the fit: ln R, ln K, constant friction and damping over their scales; at the sheet's shaft.
 enum Unknown { resistance, constant, friction, damping, unknowns };
 
-enum class Kind { resistance, torque_constant, speed_constant, no_load_speed, no_load_current, stall_torque,
-                  stall_current, friction_torque, viscous_damping, point_speed, point_current, point_torque,
-                  point_efficiency };
+enum class Kind {
+  resistance,
+  torque_constant,
+  speed_constant,
+  no_load_speed,
+  no_load_current,
+  stall_torque,
+  stall_current,
+  friction_torque,
+  viscous_damping,
+  point_speed,
+  point_current,
+  point_torque,
+  point_efficiency
+};
 
 struct Datum {
   std::string name;
@@ -34,7 +46,7 @@ struct Datum {
   double value;
   double deviation;  ///< relative
   double voltage;
-  double load = 0.0;     ///< of a point: its torque, or its current where that is given instead
+  double load = 0.0;  ///< of a point: its torque, or its current where that is given instead
   bool by_torque = true;
 };
 
@@ -209,9 +221,9 @@ void refuse_contradictions(const std::vector<Datum>& data, MotorIdentification& 
   for (const Contradiction& c : result.contradictions) {
     if (!c.gross) continue;
     const double factor = std::max(c.first_value / c.second_value, c.second_value / c.first_value);
-    const std::string reason = format("%s and %s contradict each other about the %s by a factor of %.3g (%.4g and %.4g)",
-                                      c.first.c_str(), c.second.c_str(), c.constant.c_str(), factor, c.first_value,
-                                      c.second_value);
+    const std::string reason =
+        format("%s and %s contradict each other about the %s by a factor of %.3g (%.4g and %.4g)", c.first.c_str(),
+               c.second.c_str(), c.constant.c_str(), factor, c.first_value, c.second_value);
     std::string& which = c.constant == "rotor inertia" ? inertia : electrical;
     if (which.empty()) which = reason;
   }
@@ -224,8 +236,8 @@ void refuse_contradictions(const std::vector<Datum>& data, MotorIdentification& 
                         check->published, check->identified);
   }
   if (!electrical.empty()) {
-    for (IdentifiedConstant* c : {&result.armature_resistance, &result.torque_constant, &result.viscous_damping,
-                                  &result.friction_torque}) {
+    for (IdentifiedConstant* c :
+         {&result.armature_resistance, &result.torque_constant, &result.viscous_damping, &result.friction_torque}) {
       take_back(*c);
     }
     result.missing.push_back(advice("armature resistance, torque constant and losses", electrical));
@@ -240,8 +252,8 @@ void refuse_contradictions(const std::vector<Datum>& data, MotorIdentification& 
 
 Motor<double> MotorIdentification::motor() const {
   if (!complete()) throw std::logic_error("the motor is not completely identified");
-  return {*armature_resistance.value, *armature_inductance.value, *torque_constant.value,
-          *inertia.value,             *viscous_damping.value,     *friction_torque.value};
+  return {*armature_resistance.value, *armature_inductance.value, *torque_constant.value, *inertia.value,
+          *viscous_damping.value,     *friction_torque.value};
 }
 
 MotorIdentification identify_motor(const MotorDatasheet& s, std::optional<double> frequency) {
@@ -381,14 +393,16 @@ MotorIdentification identify_motor(const MotorDatasheet& s, std::optional<double
   } else {
     if (has_R) result.armature_resistance = {*s.resistance, s.deviation * *s.resistance, "the sheet's"};
     if (!has_R) {
-      result.missing.push_back("armature resistance: give resistance, stall_current with voltage, or points of the "
-                               "performance curve");
+      result.missing.push_back(
+          "armature resistance: give resistance, stall_current with voltage, or points of the "
+          "performance curve");
     }
     const bool K_known = s.torque_constant || s.speed_constant;
     if (K_known) result.torque_constant = {to_output * K, to_output * s.deviation * K, "the sheet's"};
     if (!K_known) {
-      result.missing.push_back("torque constant: give torque_constant, speed_constant, stall_torque with "
-                               "stall_current, or no_load_speed with resistance");
+      result.missing.push_back(
+          "torque constant: give torque_constant, speed_constant, stall_torque with "
+          "stall_current, or no_load_speed with resistance");
     }
     if (has_R && K_known)
       result.missing.push_back("torque constant and resistance: the sheet's values cannot be fitted");
@@ -398,8 +412,8 @@ MotorIdentification identify_motor(const MotorDatasheet& s, std::optional<double
   const double squared = to_output * to_output;
   const bool losses_known = both || one || only_constant;
   if (losses_known) {
-    result.friction_torque = {to_output * x[friction] * scales.friction,
-                              to_output * error(friction) * scales.friction, "fitted"};
+    result.friction_torque = {to_output * x[friction] * scales.friction, to_output * error(friction) * scales.friction,
+                              "fitted"};
     result.viscous_damping = {squared * x[damping] * scales.damping, squared * error(damping) * scales.damping,
                               "fitted"};
     if (both && x[damping] * scales.damping * speed < 1e-6 * loss) {
@@ -418,11 +432,14 @@ MotorIdentification identify_motor(const MotorDatasheet& s, std::optional<double
   } else if (s.assume_typical_damping) {
     result.friction_torque = {0.0, 0.0, "assumed"};
     result.viscous_damping = {n * n * typical_motor_damping, 0.0, "fallback"};
-    result.remarks.push_back(format("fallback: viscous damping %.3g N m s/rad at the motor shaft, a typical value; the "
-                                    "sheet shows no loss", typical_motor_damping));
+    result.remarks.push_back(
+        format("fallback: viscous damping %.3g N m s/rad at the motor shaft, a typical value; the "
+               "sheet shows no loss",
+               typical_motor_damping));
   } else {
-    result.missing.push_back("viscous damping: give no_load_current, friction_torque, viscous_damping or points of the "
-                             "performance curve, or ask for the fallback viscous_damping = \"typical\"");
+    result.missing.push_back(
+        "viscous damping: give no_load_current, friction_torque, viscous_damping or points of the "
+        "performance curve, or ask for the fallback viscous_damping = \"typical\"");
   }
   if (losses_known && s.assume_typical_damping) {
     result.remarks.push_back("the fallback for viscous damping is not used: the sheet shows the losses");
@@ -452,11 +469,14 @@ MotorIdentification identify_motor(const MotorDatasheet& s, std::optional<double
     const double r = 0.5 * *s.rotor_diameter;
     const double J = 0.5 * steel_density * pi * r * r * *s.rotor_length * r * r;
     result.inertia = {n * n * J, 0.0, "fallback"};
-    result.remarks.push_back(format("fallback: rotor inertia %.3g kg m2 of a solid steel cylinder of the rotor's size "
-                                    "(a coreless rotor has less)", J));
+    result.remarks.push_back(
+        format("fallback: rotor inertia %.3g kg m2 of a solid steel cylinder of the rotor's size "
+               "(a coreless rotor has less)",
+               J));
   } else {
-    result.missing.push_back("rotor inertia: give rotor_inertia or mechanical_time_constant, or rotor_diameter and "
-                             "rotor_length with the fallback inertia = \"solid-steel-cylinder\"");
+    result.missing.push_back(
+        "rotor inertia: give rotor_inertia or mechanical_time_constant, or rotor_diameter and "
+        "rotor_length with the fallback inertia = \"solid-steel-cylinder\"");
   }
   if (!inertias.empty() && s.assume_steel_cylinder) {
     result.remarks.push_back("the fallback for the inertia is not used: the sheet determines it");
@@ -480,15 +500,17 @@ MotorIdentification identify_motor(const MotorDatasheet& s, std::optional<double
     result.remarks.push_back(remark);
   }
   if (s.gear_efficiency && at_output) {
-    result.remarks.push_back(format("the gear efficiency of %.4g served to read the sheet's torques at the output; the "
-                                    "[motor] section holds no gear efficiency, so that a vehicle with this motor has an "
-                                    "ideal gearbox: its losses under load are not in any result",
-                                    *s.gear_efficiency));
+    result.remarks.push_back(
+        format("the gear efficiency of %.4g served to read the sheet's torques at the output; the "
+               "[motor] section holds no gear efficiency, so that a vehicle with this motor has an "
+               "ideal gearbox: its losses under load are not in any result",
+               *s.gear_efficiency));
   } else if (s.gear_efficiency) {
-    result.remarks.push_back(format("the gear efficiency of %.4g is NOT USED: the sheet's values stand for the motor shaft, "
-                                    "and the [motor] section holds no gear efficiency, so that a vehicle with this motor "
-                                    "has an ideal gearbox: its losses under load are not in any result",
-                                    *s.gear_efficiency));
+    result.remarks.push_back(
+        format("the gear efficiency of %.4g is NOT USED: the sheet's values stand for the motor shaft, "
+               "and the [motor] section holds no gear efficiency, so that a vehicle with this motor "
+               "has an ideal gearbox: its losses under load are not in any result",
+               *s.gear_efficiency));
   }
 
   // Independent ways to the same constant.
@@ -533,13 +555,17 @@ MotorIdentification identify_motor(const MotorDatasheet& s, std::optional<double
     const auto check = std::find_if(result.checks.begin(), result.checks.end(),
                                     [&](const DatasheetCheck& c) { return c.name == d.name; });
     if (check != result.checks.end() && std::abs(check->deviation) > 3.0 * d.deviation) {
-      result.remarks.push_back(format("%s does not fit the rest of the sheet: %.4g published, %.4g from the identified "
-                                      "motor", spaced(d.name).c_str(), d.value, check->identified));
+      result.remarks.push_back(
+          format("%s does not fit the rest of the sheet: %.4g published, %.4g from the identified "
+                 "motor",
+                 spaced(d.name).c_str(), d.value, check->identified));
     }
   }
   if (result.birge_ratio > 1.05) {
-    result.remarks.push_back(format("the sheet's values scatter %.3g times as widely as their deviations say: the standard "
-                                    "errors are that much larger (Birge ratio)", result.birge_ratio));
+    result.remarks.push_back(
+        format("the sheet's values scatter %.3g times as widely as their deviations say: the standard "
+               "errors are that much larger (Birge ratio)",
+               result.birge_ratio));
   }
   refuse_contradictions(data, result);
   return result;

@@ -115,12 +115,12 @@ class Problem {
       const bool by_geometry =
           limit == std::size_t(DomainLimit::stroke) && study_.design.transmission.type != TransmissionType::direct;
       for (Eigen::Index k = 0; k < size(); ++k) {
-        e.jacobian(c, k) = by_geometry ? stroke_slope(u, k)
-                                       : e.point.domain_slopes[std::size_t(k)][limit] * slope(k, u[k]);
+        e.jacobian(c, k) =
+            by_geometry ? stroke_slope(u, k) : e.point.domain_slopes[std::size_t(k)][limit] * slope(k, u[k]);
       }
     }
-    e.flaps = std::isfinite(e.objective) && e.constraints.allFinite() && e.gradient.allFinite() &&
-              e.jacobian.allFinite();
+    e.flaps =
+        std::isfinite(e.objective) && e.constraints.allFinite() && e.gradient.allFinite() && e.jacobian.allFinite();
     if (!e.flaps) e.objective = HUGE_VAL;
     return e;
   }
@@ -618,7 +618,8 @@ OptimiseResult optimise(const OptimiseStudy& study, const StartUp& start_up, con
   const auto run = [&](std::size_t first, std::size_t last) {
     const auto one = [&](std::size_t n) { searches[first + n].run(problem, starts[first + n]); };
     if (for_each) for_each(last - first, one);
-    else for (std::size_t n = 0; n < last - first; ++n) one(n);
+    else
+      for (std::size_t n = 0; n < last - first; ++n) one(n);
   };
   // Where the screening found nothing within the constraints, a few searches tell whether there is anything at all.
   const std::size_t scouts = result.screen.feasible > 0 ? 0 : std::min<std::size_t>(4, starts.size());

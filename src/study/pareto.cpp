@@ -79,7 +79,8 @@ class Problem {
     };
     const std::size_t parts = (designs.size() + chunk - 1) / chunk;
     if (for_each_ && parts > 1) for_each_(parts, part);
-    else for (std::size_t n = 0; n < parts; ++n) part(n);
+    else
+      for (std::size_t n = 0; n < parts; ++n) part(n);
   }
 
   const MetricSet& wanted() const { return wanted_; }
@@ -160,8 +161,9 @@ class Archive {
         const ObjectivePoint p = problem_.objectives(result_.evaluated[k]);
         for (std::size_t j = 0; j < m; ++j) of[j] = std::min((p[j] - low_[j]) / range_[j], infeasible_from);
       } else {
-        std::fill(of, of + m, std::isfinite(violation_[k]) ? std::min(infeasible_from + violation_[k], not_flapping)
-                                                           : 2.0 * not_flapping);
+        std::fill(of, of + m,
+                  std::isfinite(violation_[k]) ? std::min(infeasible_from + violation_[k], not_flapping)
+                                               : 2.0 * not_flapping);
       }
     }
   }

@@ -111,9 +111,7 @@ Reproduction reproduce(const SpringPair& pair, const ReproductionOptions& option
 
   std::vector<std::function<void()>> tasks;
   const auto task_along = [&](TrendSet& set, std::size_t curve, bool frequency, auto place) {
-    tasks.push_back([&set, curve, frequency, place] {
-      run_along(set.curves[curve], set.axis, frequency, place);
-    });
+    tasks.push_back([&set, curve, frequency, place] { run_along(set.curves[curve], set.axis, frequency, place); });
   };
   for (const Formulation formulation : {rod_force, virtual_work}) {
     for (const FlappingCase& which :

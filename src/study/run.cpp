@@ -79,7 +79,8 @@ void last_lap(const Vehicle<double>& vehicle, const Supply<double>& supply, Tran
 void require_choice_of_voltage(const Supply<double>& supply, const char* wanted, bool lift) {
   const char* why = nullptr;
   if (supply.type == SupplyType::sine) why = "a sine supply has no voltage that sets the %s";
-  if (supply.type == SupplyType::battery) why = "the charge of a battery gives its voltage, so none can be chosen for the %s";
+  if (supply.type == SupplyType::battery)
+    why = "the charge of a battery gives its voltage, so none can be chosen for the %s";
   if (why) throw ParameterError("supply.type", format(why, wanted));
   if (supply.type == SupplyType::pwm && !(supply.duty > 0.0) && !lift) {
     throw ParameterError("supply.duty", format("is 0: no voltage reaches the motor, so none sets the %s", wanted));
@@ -93,9 +94,10 @@ void set_voltage(Supply<double>& supply, double voltage) {
 void set_duty(Supply<double>& supply, double mean, double lift) {
   const double duty = mean / supply.voltage;
   if (!(duty <= 1.0)) {
-    throw ParameterError("supply.voltage", format("%.5g N of lift takes %.4g V on the average, more than the %.4g V that "
-                                                  "the supply gives at a duty of 1",
-                                                  lift, mean, supply.voltage));
+    throw ParameterError("supply.voltage",
+                         format("%.5g N of lift takes %.4g V on the average, more than the %.4g V that "
+                                "the supply gives at a duty of 1",
+                                lift, mean, supply.voltage));
   }
   supply.duty = duty;
 }
@@ -141,7 +143,8 @@ void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunRes
     if (vehicle.transmission == TransmissionType::direct) {
       result.cycle = simulate_start_up(vehicle, transient).cycle;
     } else {
-      last_lap(vehicle, {SupplyType::constant, vehicle.voltage, 0.0, 1.0, {}}, transient, options.waveform_rows, result);
+      last_lap(vehicle, {SupplyType::constant, vehicle.voltage, 0.0, 1.0, {}}, transient, options.waveform_rows,
+               result);
     }
   }
 }
@@ -195,7 +198,8 @@ StartUp start_up_in_time(double tolerance) {
       onward.current = state.current;
       const TransientResult cycle = simulate_start_up(vehicle, onward);
       if (!cycle.settled || !cycle.metrics) return std::optional<SimulatedCycle>();
-      return std::optional(SimulatedCycle{*cycle.metrics, std::max(onward.tolerance, cycle.closure), cycle.averaged_laps});
+      return std::optional(
+          SimulatedCycle{*cycle.metrics, std::max(onward.tolerance, cycle.closure), cycle.averaged_laps});
     };
     return outcome;
   };
@@ -215,8 +219,9 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
   if (options.frequency && !direct) require_choice_of_voltage(supply, "flapping frequency", false);
   if (options.lift && !direct) require_choice_of_voltage(supply, "lift", true);
   if (supply.type == SupplyType::sine && !direct && options.method == Method::orbit) {
-    throw ParameterError("supply.type", "with a sine supply the crank has no periodic orbit in crank angle; simulate "
-                                        "it in time with --method transient");
+    throw ParameterError("supply.type",
+                         "with a sine supply the crank has no periodic orbit in crank angle; simulate "
+                         "it in time with --method transient");
   }
   RunResult result;
   result.metrics.values.fill(absent);

@@ -90,7 +90,8 @@ double ScrambledSobol::operator()(std::uint64_t index, std::size_t dimension) co
   const Dimension& d = dimensions_[dimension];
   std::uint32_t x = 0;
   // Natural order instead of that of Gray codes: the same points in every aligned run of 2^k.
-  for (std::uint32_t rest = std::uint32_t(index); rest != 0; rest &= rest - 1) x ^= d.directions[std::countr_zero(rest)];
+  for (std::uint32_t rest = std::uint32_t(index); rest != 0; rest &= rest - 1)
+    x ^= d.directions[std::countr_zero(rest)];
   return (double(scrambled(x, d.seed)) + 0.5) * 0x1p-32;
 }
 

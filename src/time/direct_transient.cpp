@@ -18,9 +18,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 enum Root { root_motion, root_stored_moment, root_velocity, root_count };  // the last two while measuring
 
 constexpr double stiff_decays_per_period = 500.0;
-constexpr int sticking_pieces = 512;   // of a period: how often a stuck shaft is looked at
-constexpr int creep_periods = 8;       // of ever shorter slips in one direction, that end at rest
-constexpr int contraction_periods = 4; // over which the contraction is taken: complex multipliers make it uneven
+constexpr int sticking_pieces = 512;    // of a period: how often a stuck shaft is looked at
+constexpr int creep_periods = 8;        // of ever shorter slips in one direction, that end at rest
+constexpr int contraction_periods = 4;  // over which the contraction is taken: complex multipliers make it uneven
 
 class DirectStartUp {
  public:
@@ -131,9 +131,8 @@ DirectStartUp::DirectStartUp(const Vehicle<double>& vehicle, const TransientOpti
                              1e-3 * m.torque_constant * speed_scale_ / m.armature_resistance});
 
   const double damping = m.viscous_damping + vehicle_.friction.damping;
-  const double fastest =
-      inductive_ ? std::max(m.armature_resistance / m.armature_inductance, damping / inertia)
-                 : (damping + square(m.torque_constant) / m.armature_resistance) / inertia;
+  const double fastest = inductive_ ? std::max(m.armature_resistance / m.armature_inductance, damping / inertia)
+                                    : (damping + square(m.torque_constant) / m.armature_resistance) / inertia;
   stiff_ = fastest * period_ > stiff_decays_per_period;
   result_.stiff = stiff_;
   relative_tolerance_ = std::max(tightest_, (stiff_ ? 1e-3 : 3e-3) * options.tolerance);
@@ -373,16 +372,17 @@ bool DirectStartUp::rests_for_good() {
   result_.time_to_steady = t_;
   result_.lock_angle = y_[0];
   result_.torque_margin = stuck_ ? holding_torque_ - held : 0.0;
-  result_.detail = stuck_ ? format("rests at stroke angle %.4f deg: the constant friction %.4g N m holds %.4g N m, "
-                                   "all that supply and springs apply at most",
-                                   y_[0] * degrees_per_radian, holding_torque_, held)
+  result_.detail = stuck_ ? format(
+                                "rests at stroke angle %.4f deg: the constant friction %.4g N m holds %.4g N m, "
+                                "all that supply and springs apply at most",
+                                y_[0] * degrees_per_radian, holding_torque_, held)
                           : std::string("no voltage: nothing moves the wings");
   return true;
 }
 
-/// True, with the verdict, where the drive alone cannot break the shaft away and the springs let it creep towards an angle
-/// of rest: from standstill to standstill the angle is a monotone map of itself, and slips in one direction end where there
-/// are none.
+/// True, with the verdict, where the drive alone cannot break the shaft away and the springs let it creep towards an
+/// angle of rest: from standstill to standstill the angle is a monotone map of itself, and slips in one direction end
+/// where there are none.
 bool DirectStartUp::creeps_to_rest() {
   const double travel = std::max(travel_[0], travel_[1]), back = std::min(travel_[0], travel_[1]);
   const bool creeps = stuck_ && drive_torque_ <= holding_torque_ && travel < last_travel_ && back <= 1e-6 * travel;
@@ -396,9 +396,10 @@ bool DirectStartUp::creeps_to_rest() {
   result_.time_to_steady = t_;
   result_.lock_angle = y_[0];
   result_.torque_margin = holding_torque_ - drive_torque_;
-  result_.detail = format("creeps to rest near stroke angle %.4f deg, the last period by %.2g deg: the supply gives a torque "
-                          "of %.4g N m at most, which does not exceed the constant friction %.4g N m",
-                          y_[0] * degrees_per_radian, travel * degrees_per_radian, drive_torque_, holding_torque_);
+  result_.detail = format(
+      "creeps to rest near stroke angle %.4f deg, the last period by %.2g deg: the supply gives a torque "
+      "of %.4g N m at most, which does not exceed the constant friction %.4g N m",
+      y_[0] * degrees_per_radian, travel * degrees_per_radian, drive_torque_, holding_torque_);
   return true;
 }
 
@@ -442,8 +443,10 @@ void DirectStartUp::period_done() {
       result_.crank_speed = y_[1];
       result_.current = current_of(t_, y_);
       result_.stroke_angle = y_[0];
-      result_.detail = format("flaps steadily at the supply's %.6g Hz from %.4g s on; after %d periods they repeat to "
-                              "%.1g", vehicle_.drive_frequency, result_.time_to_steady, result_.laps, change);
+      result_.detail = format(
+          "flaps steadily at the supply's %.6g Hz from %.4g s on; after %d periods they repeat to "
+          "%.1g",
+          vehicle_.drive_frequency, result_.time_to_steady, result_.laps, change);
       return;
     }
   }

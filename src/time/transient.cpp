@@ -8,8 +8,8 @@
 
 #include "time/direct_transient.hpp"
 #include "time/sundials_cvode.hpp"
-#include "wingbeat/cycle/static_balance.hpp"
 #include "time/transient_tools.hpp"
+#include "wingbeat/cycle/static_balance.hpp"
 
 namespace wingbeat {
 
@@ -38,14 +38,14 @@ enum { root_stored_moment = root_plain_count, root_dead_centre, root_measuring_c
 // taken as stiff whatever the estimate said.
 constexpr double stiff_decays_per_lap = 500.0;
 constexpr int stiff_steps_per_branch = 2000;
-constexpr double smallest_margin = 1e-6;       // of J: below it the mechanism counts as jammed
-constexpr double captured_amplitude = 1e-4;    // [rad] swings about a stable equilibrium that are smaller cannot leave
-constexpr double captured_creep = 1e-8;        // [rad] the same where friction holds: the angle itself is the answer
-constexpr double same_swing = 1e-4;            // [rad] swings with a varying supply that differ less repeat
+constexpr double smallest_margin = 1e-6;     // of J: below it the mechanism counts as jammed
+constexpr double captured_amplitude = 1e-4;  // [rad] swings about a stable equilibrium that are smaller cannot leave
+constexpr double captured_creep = 1e-8;      // [rad] the same where friction holds: the angle itself is the answer
+constexpr double same_swing = 1e-4;          // [rad] swings with a varying supply that differ less repeat
 constexpr int averaged_laps_pwm = 8;
 constexpr double settled_without_metrics = 1e-4;
 constexpr double lap_spread_settled = 1e-2;
-constexpr std::size_t most_turns = 8;          // after which a motion is looked at for repeating
+constexpr std::size_t most_turns = 8;  // after which a motion is looked at for repeating
 
 using detail::format, detail::maximum, detail::raise_extremes;
 using detail::quadrature_count, detail::quadratures;
@@ -337,8 +337,7 @@ void StartUp::find_jams() {
       // A narrow window of jam may hide between two samples.
       const double before = at(direction * (k - 1)), after = at(direction * (k + 1));
       if (at(direction * k) <= std::min(before, after) && at(direction * k) < 0.2) {
-        const auto [where, least] =
-            maximum([&](double x) { return -uniqueness(x); }, here - spacing, here + spacing);
+        const auto [where, least] = maximum([&](double x) { return -uniqueness(x); }, here - spacing, here + spacing);
         if (-least <= smallest_margin) return bisect(here - direction * spacing, where);
       }
     }
@@ -376,21 +375,21 @@ void StartUp::prepare() {
   runaway_speed_ = 1e3 * std::max({speed_scale_, std::abs(omega_), std::abs(i_) * R / K, released});
   const double lap = two_pi / speed_scale_;
   const double electrical = m.armature_inductance / R;
-  const double wings = vehicle_.wing_count * vehicle_.wing_inertia *
-                       square(vehicle_.crank.crank_radius / vehicle_.crank.hinge_offset);
+  const double wings =
+      vehicle_.wing_count * vehicle_.wing_inertia * square(vehicle_.crank.crank_radius / vehicle_.crank.hinge_offset);
   const double mechanical = (m.inertia + wings) * R / (K * K + R * m.viscous_damping);
   time_scale_ = lap;
   force_scale_ = (m.inertia + wings) * K * current_scale_ * vehicle_.crank.hinge_offset / vehicle_.crank.crank_radius;
 
-  const double fastest = inductive_ ? std::max(1.0 / electrical, damping / smallest_inertia_)
-                                    : (damping + K * K / R) / smallest_inertia_;
+  const double fastest =
+      inductive_ ? std::max(1.0 / electrical, damping / smallest_inertia_) : (damping + K * K / R) / smallest_inertia_;
   const double drive = supply_.type == SupplyType::constant ? 0.0 : 1.0 / supply_.frequency;
   stiff_ = fastest * (drive > 0.0 ? std::min(lap, drive) : lap) > stiff_decays_per_lap;
   result_.stiff = stiff_;
   relative_tolerance_ = std::max(tightest_, (stiff_ ? 3e-3 : 1e-2) * options_.tolerance);
   loosest_ = relative_tolerance_;
 
-  end_time_ = options_.max_time > 0.0 ? options_.max_time
+  end_time_ = options_.max_time > 0.0            ? options_.max_time
               : supply_.type == SupplyType::sine ? 50.0 * (lap + drive) + 100.0 * (mechanical + electrical)
                                                  : 1000.0 * (lap + mechanical + electrical + drive);
 
@@ -407,7 +406,8 @@ void StartUp::prepare() {
       case Integral::speed_square: return square(speed_scale_);
       case Integral::lift:
         return vehicle_.wings.air_density * vehicle_.wings.s2 *
-               square(speed_scale_ * vehicle_.crank.crank_radius / vehicle_.crank.hinge_offset) + 1e-6 * force;
+                   square(speed_scale_ * vehicle_.crank.crank_radius / vehicle_.crank.hinge_offset) +
+               1e-6 * force;
       case Integral::rod_force: return force;
       default: return power;
     }
@@ -427,8 +427,10 @@ bool StartUp::out_of_budget() {
   } else if (options_.cancel && result_.steps % 512 == 0 && options_.cancel()) {
     give_up("cancelled");
   } else if (std::abs(omega_) > runaway_speed_) {
-    give_up(format("the crank speeds up without bound (%.3g rad/s): this transmission formulation does not conserve "
-                   "power and feeds it", omega_));
+    give_up(
+        format("the crank speeds up without bound (%.3g rad/s): this transmission formulation does not conserve "
+               "power and feeds it",
+               omega_));
   } else if (t_ >= end_time_) {
     give_up(format("no verdict within %.6g s", end_time_));
   }
@@ -835,8 +837,8 @@ bool StartUp::captured() {
   if (std::abs(excess_torque(theta)) > 1e-9 * scale) return false;
   const bool friction = holding_torque(theta) > 1e-9 * scale;
   const double inertia = effective_inertia(vehicle_, kinematics(theta_), 0.0);
-  const double energy = inertia * square(omega_) - slope * square(theta - theta_) +
-                        m.armature_inductance * square(i_ - final_current);
+  const double energy =
+      inertia * square(omega_) - slope * square(theta - theta_) + m.armature_inductance * square(i_ - final_current);
   if (energy > -slope * square(friction ? captured_creep : captured_amplitude)) return false;
   rest(theta, friction);
   return true;
@@ -949,7 +951,8 @@ bool StartUp::repeats_after(std::size_t laps) const {
   for (std::size_t k = n - 2 * laps; k < n; ++k) {
     const Crossing &a = crossings_[k - laps], &b = crossings_[k], &next = crossings_[k - laps + 1];
     const double off = std::abs(a.omega - b.omega) / speed_scale_ + std::abs(a.current - b.current) / current_scale_;
-    const double within = std::abs(a.omega - next.omega) / speed_scale_ + std::abs(a.current - next.current) / current_scale_;
+    const double within =
+        std::abs(a.omega - next.omega) / speed_scale_ + std::abs(a.current - next.current) / current_scale_;
     if (!(off < 1e-2 * within) || within < 1e-5) return false;
   }
   return true;
@@ -987,7 +990,8 @@ bool StartUp::jump_by_blocks(std::size_t n, std::size_t block) {
   const double gain = newer / (1.0 - newer), per_lap = std::pow(newer, 1.0 / double(block));
   const auto [speed, current] = difference(0);
   const double to_come = std::max(std::abs(speed) * speed_scale_ / std::abs(omega_),
-                                  std::abs(current) * current_scale_ / (std::abs(i_) + 0.01 * current_scale_)) * gain;
+                                  std::abs(current) * current_scale_ / (std::abs(i_) + 0.01 * current_scale_)) *
+                         gain;
   const bool to_the_limit = to_come <= 1e-3;
   if (std::abs(newer - older) > (to_the_limit ? 0.05 : 0.2) * (1.0 - newer)) return false;
   double share = 1.0, skipped = 0.0;
@@ -1082,20 +1086,24 @@ void StartUp::take_metrics(int laps) {
 void StartUp::flap() {
   done_ = true;
   result_.status = FlappingStatus::flapping;
-  const double period = options_.metrics ? result_.integrals[std::size_t(Integral::time)] : lap_time(crossings_.size() - 1);
+  const double period =
+      options_.metrics ? result_.integrals[std::size_t(Integral::time)] : lap_time(crossings_.size() - 1);
   result_.time_to_steady = time_of_steadiness(period);
   if (supply_.type == SupplyType::constant) {
     result_.settled = true;
     result_.detail = format("flaps steadily at %.6g Hz from %.4g s on; after %d laps they repeat to %.1g%s",
                             1.0 / period, result_.time_to_steady, int(crossings_.size()), change_,
-                            jumped_ ? " (slow convergence, extrapolated)"
-                            : turns_ > 1 ? format(" every %d laps", int(turns_)).c_str() : "");
+                            jumped_      ? " (slow convergence, extrapolated)"
+                            : turns_ > 1 ? format(" every %d laps", int(turns_)).c_str()
+                                         : "");
     return;
   }
   result_.settled = result_.lap_scatter < lap_spread_settled;
-  result_.detail = format("flaps at %.6g Hz, averaged over %d laps whose durations differ by up to %.2g %% from their "
-                          "mean%s", 1.0 / period, result_.averaged_laps, 100.0 * result_.lap_scatter,
-                          result_.settled ? "" : "; laps and supply share no period");
+  result_.detail = format(
+      "flaps at %.6g Hz, averaged over %d laps whose durations differ by up to %.2g %% from their "
+      "mean%s",
+      1.0 / period, result_.averaged_laps, 100.0 * result_.lap_scatter,
+      result_.settled ? "" : "; laps and supply share no period");
 }
 
 void StartUp::rest(double theta, bool held_by_friction) {
@@ -1116,16 +1124,23 @@ void StartUp::rest(double theta, bool held_by_friction) {
   const double degrees = angle * degrees_per_radian;
   if (stall_torque <= constant_friction_) {
     result_.status = FlappingStatus::stalled;
-    result_.detail = format("the motor cannot turn: stall torque %.4g N m does not exceed the constant friction of "
-                            "%.4g N m (crank at %.4f deg)", stall_torque, constant_friction_, degrees);
+    result_.detail = format(
+        "the motor cannot turn: stall torque %.4g N m does not exceed the constant friction of "
+        "%.4g N m (crank at %.4f deg)",
+        stall_torque, constant_friction_, degrees);
     return;
   }
   result_.status = FlappingStatus::locked;
-  result_.detail = held_by_friction
-      ? format("rests at crank angle %.4f deg: friction holds %.4g N m there, %.4g N m more than motor and springs "
-               "apply", degrees, holding_torque(theta), *result_.torque_margin)
-      : format("rests at crank angle %.4f deg: the springs balance the stall torque of %.4g N m in a stable "
-               "equilibrium", degrees, stall_torque);
+  result_.detail =
+      held_by_friction
+          ? format(
+                "rests at crank angle %.4f deg: friction holds %.4g N m there, %.4g N m more than motor and springs "
+                "apply",
+                degrees, holding_torque(theta), *result_.torque_margin)
+          : format(
+                "rests at crank angle %.4f deg: the springs balance the stall torque of %.4g N m in a stable "
+                "equilibrium",
+                degrees, stall_torque);
 }
 
 void StartUp::jam(double theta) {
@@ -1143,8 +1158,10 @@ void StartUp::jam(double theta) {
     return;
   }
   const double inertia = std::min(effective_inertia(vehicle_, k, 1.0), effective_inertia(vehicle_, k, -1.0));
-  result_.detail = format("jams at crank angle %.4f deg: rotor inertia and rod-force friction leave no unique "
-                          "acceleration (J + A (h - mu r_e) = %.2g kg m2)", degrees, inertia);
+  result_.detail = format(
+      "jams at crank angle %.4f deg: rotor inertia and rod-force friction leave no unique "
+      "acceleration (J + A (h - mu r_e) = %.2g kg m2)",
+      degrees, inertia);
 }
 
 void StartUp::give_up(const std::string& why) {

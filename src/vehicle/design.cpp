@@ -13,8 +13,9 @@ void validate_direct(const Design<double>& d) {
     throw ParameterError("supply.type", "a direct drive swings as its supply does: expected sine");
   }
   if (d.friction.law == FrictionLaw::load_proportional) {
-    throw ParameterError("friction.type", "load-proportional friction follows the rod force, and a direct drive has no "
-                                          "rod; expected none, viscous, quadratic or constant");
+    throw ParameterError("friction.type",
+                         "load-proportional friction follows the rod force, and a direct drive has no "
+                         "rod; expected none, viscous, quadratic or constant");
   }
   const auto positive = [](const std::optional<double>& x, const char* key, const char* unit) {
     if (x) require(*x > 0.0, key, "must be > 0", unit, *x);
@@ -26,15 +27,17 @@ void validate_direct(const Design<double>& d) {
     throw ParameterError("transmission.rod_linear_density", "a direct drive has no rod");
   }
   if (d.supply_resonance_ratio && d.spring.resonance_ratio) {
-    throw ParameterError("supply.resonance_ratio", "ties the frequency to the springs, which spring.resonance_ratio "
-                                                   "ties to the frequency; give one of them");
+    throw ParameterError("supply.resonance_ratio",
+                         "ties the frequency to the springs, which spring.resonance_ratio "
+                         "ties to the frequency; give one of them");
   }
   if (d.wing.resonance && !d.spring.stiffness) {
     throw ParameterError("wing.resonance", "gives the inertia that resonates on a known spring; give spring.stiffness");
   }
   if (d.supply_resonance_ratio && !d.spring.stiffness && !d.spring.resonance) {
-    throw ParameterError("supply.resonance_ratio", "needs springs to resonate with; give spring.stiffness or "
-                                                   "spring.resonance");
+    throw ParameterError("supply.resonance_ratio",
+                         "needs springs to resonate with; give spring.stiffness or "
+                         "spring.resonance");
   }
 }
 

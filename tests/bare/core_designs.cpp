@@ -1,5 +1,5 @@
-// The bare core on 225 designs, voltages x springs x cranks, near locking too: prints status and metrics of each with all
-// digits, to be compared between processors. Start-up is not asked. With an argument, by the batched solver.
+// The bare core on 225 designs, voltages x springs x cranks, near locking too: prints status and metrics of each with
+// all digits, to be compared between processors. Start-up is not asked. With an argument, by the batched solver.
 #include <cstdio>
 
 #include "vehicle/reference_vehicle.hpp"

@@ -47,8 +47,9 @@ class CommandLine : public Program {
   }
 };
 
-const std::vector<std::string> commands = {"run",      "compare",  "sweep",     "identify-motor", "fit",    "tolerance",
-                                           "optimise", "endurance", "reproduce", "new",            "keys", "metrics"};
+const std::vector<std::string> commands = {"run",       "compare",   "sweep",    "identify-motor",
+                                           "fit",       "tolerance", "optimise", "endurance",
+                                           "reproduce", "new",       "keys",     "metrics"};
 
 TEST_F(CommandLine, EveryHelpExampleWorksAsTyped) {
   for (const std::string& command : commands) {
@@ -106,9 +107,8 @@ TEST_F(CommandLine, UnknownOptionsAndCommandsSuggestTheNearest) {
   EXPECT_THAT(said({"tolerance", "tolerance-hover", "--voltage", "3 V"}),
               HasSubstr("unknown option --voltage of wingbeat tolerance; wingbeat run has it"));
   EXPECT_THAT(said({"run", plain, "--quietly"}), StartsWith("wingbeat: unknown option --quietly of wingbeat run (see"));
-  EXPECT_EQ(said({"run", plain, springs}),
-            "wingbeat: one argument too many: \"" + springs.substr(0, 60) + (springs.size() > 60 ? "..." : "") +
-                "\" (see wingbeat run --help)\n");
+  EXPECT_EQ(said({"run", plain, springs}), "wingbeat: one argument too many: \"" + springs.substr(0, 60) +
+                                               (springs.size() > 60 ? "..." : "") + "\" (see wingbeat run --help)\n");
   EXPECT_EQ(said({"optimize", "x"}), "wingbeat: there is no command \"optimize\"; did you mean wingbeat optimise?\n");
   EXPECT_THAT(said({"identify", "x"}), HasSubstr("did you mean wingbeat identify-motor?"));
   EXPECT_THAT(said({"flapper.toml"}), HasSubstr("did you mean wingbeat run flapper.toml?"));
@@ -165,18 +165,18 @@ TEST_F(CommandLine, EveryErrorOfAVehicleFileIsSaidAtItsPlace) {
 }
 
 TEST_F(CommandLine, EveryErrorOfAStudyIsSaid) {
-  const std::string study = write("bad.toml",
-                                  "[study]\nvehicle = \"" + plain + "\"\ntolerance = 5\ntitel = \"x\"\n"
-                                  "[set]\nmotor.inertai = 1\nsupply.voltage = \"3 A\"\n"
-                                  "[[axis]]\nkey = \"transmission.crank_radios\"\nvalues = [1]\n"
-                                  "[[axis]]\nkey = \"supply.duty\"\nfrom = \"1 mm\"\nto = 1\ncount = 3\n");
+  const std::string study =
+      write("bad.toml", "[study]\nvehicle = \"" + plain +
+                            "\"\ntolerance = 5\ntitel = \"x\"\n"
+                            "[set]\nmotor.inertai = 1\nsupply.voltage = \"3 A\"\n"
+                            "[[axis]]\nkey = \"transmission.crank_radios\"\nvalues = [1]\n"
+                            "[[axis]]\nkey = \"supply.duty\"\nfrom = \"1 mm\"\nto = 1\ncount = 3\n");
   const Outcome o = run({"sweep", study, "-o", path("x.nc")});
   EXPECT_EQ(o.status, 2);
-  for (const char* wanted : {":4:1: study.titel: unknown key; did you mean study.title?", ":3:1: study.tolerance: ",
-                             ":6:7: set.motor.inertai: unknown key",
-                             ":7:8: set.supply.voltage: supply.voltage: expected a voltage",
-                             ":9:1: axis.key: transmission.crank_radios: unknown key",
-                             ":13:1: axis.from: expected a number"}) {
+  for (const char* wanted :
+       {":4:1: study.titel: unknown key; did you mean study.title?", ":3:1: study.tolerance: ",
+        ":6:7: set.motor.inertai: unknown key", ":7:8: set.supply.voltage: supply.voltage: expected a voltage",
+        ":9:1: axis.key: transmission.crank_radios: unknown key", ":13:1: axis.from: expected a number"}) {
     EXPECT_THAT(o.err, HasSubstr(study + wanted));
   }
   EXPECT_EQ(lines_of(o.err).size(), 6U) << o.err;
@@ -190,8 +190,9 @@ TEST_F(CommandLine, FilesThatComeWithTheProgramAreFoundByName) {
             run({"identify-motor", data + "/motors/pololu-1098.toml", "--json"}).out);
   const Outcome near = shell("wingbeat run friction2023");
   EXPECT_EQ(near.status, 2);
-  EXPECT_EQ(near.err, "wingbeat: friction2023: no such file, and no design of that name comes with the program; did you "
-                      "mean friction2022?\n");
+  EXPECT_EQ(near.err,
+            "wingbeat: friction2023: no such file, and no design of that name comes with the program; did you "
+            "mean friction2022?\n");
   EXPECT_THAT(shell("wingbeat run pigeon").err, HasSubstr("its designs are direct-drive, friction2022, "));
   EXPECT_THAT(shell("wingbeat sweep crank-radios -o x.nc").err, HasSubstr("did you mean crank-radius?"));
   EXPECT_THAT(shell("wingbeat run ./friction2022").err, HasSubstr("./friction2022: no such file"));
@@ -228,14 +229,16 @@ TEST_F(CommandLine, StandardInputIsAFileInTheCurrentFolder) {
   EXPECT_THAT(bad.err, StartsWith("wingbeat: standard input:1:"));
   const Outcome study = shell("sed s/v.toml/w.toml/ s.toml | wingbeat sweep - -o y.nc");
   EXPECT_EQ(study.err, "wingbeat: standard input:2:1: study.vehicle: there is no file w.toml\n");
-  write("t.toml", "[study]\nvehicle = \"v.toml\"\n[samples]\ncount = 8\n[[parameter]]\nkey = \"motor.inertia\"\n"
-                  "distribution = \"normal\"\nrelative_deviation = 0.01\n");
+  write("t.toml",
+        "[study]\nvehicle = \"v.toml\"\n[samples]\ncount = 8\n[[parameter]]\nkey = \"motor.inertia\"\n"
+        "distribution = \"normal\"\nrelative_deviation = 0.01\n");
   EXPECT_EQ(shell("wingbeat tolerance - -o t.nc --json < t.toml").status, 0);
 }
 
 TEST_F(CommandLine, SetReachesTheVehicleOfAStudy) {
-  write("s.toml", "[study]\nvehicle = \"friction2022\"\n[set]\nfriction.radius = \"2 mm\"\n"
-                  "[[axis]]\nkey = \"supply.voltage\"\nvalues = [\"3 V\"]\n");
+  write("s.toml",
+        "[study]\nvehicle = \"friction2022\"\n[set]\nfriction.radius = \"2 mm\"\n"
+        "[[axis]]\nkey = \"supply.voltage\"\nvalues = [\"3 V\"]\n");
   const Json one = shell("wingbeat sweep s.toml -o a.nc --json --set friction.radius=\"1 mm\"").json();
   const Json run_alone = run({"run", plain, "--json", "--set", "friction.radius=1 mm"}).json();
   EXPECT_NEAR(one["max_lift_mean"]["lift_mean_n"].get<double>() / run_alone["lift_mean_n"].get<double>(), 1.0, 1e-5);

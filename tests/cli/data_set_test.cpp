@@ -68,17 +68,25 @@ TEST_F(DataSets, CarryTheSameAttributes) {
   };
   expect_written({"run", plain, "--waveforms", path("w.nc")}, "w.nc");
   expect_written({"endurance", data + "/designs/friction2022-battery.toml", "-o", path("e.nc")}, "e.nc");
-  expect_written({"sweep", study("s.toml", "[[axis]]\nkey = \"supply.voltage\"\nfrom = \"2 V\"\nto = \"3 V\"\ncount = 3\n"),
-                  "-o", path("s.nc")}, "s.nc");
-  expect_written({"tolerance", study("t.toml", "[samples]\ncount = 64\n[[parameter]]\nkey = \"supply.voltage\"\n"
-                                               "distribution = \"normal\"\nrelative_deviation = 0.03\n"),
-                  "-o", path("t.nc")}, "t.nc");
+  expect_written(
+      {"sweep", study("s.toml", "[[axis]]\nkey = \"supply.voltage\"\nfrom = \"2 V\"\nto = \"3 V\"\ncount = 3\n"), "-o",
+       path("s.nc")},
+      "s.nc");
+  expect_written({"tolerance",
+                  study("t.toml",
+                        "[samples]\ncount = 64\n[[parameter]]\nkey = \"supply.voltage\"\n"
+                        "distribution = \"normal\"\nrelative_deviation = 0.03\n"),
+                  "-o", path("t.nc")},
+                 "t.nc");
   expect_written({"optimise", study("o.toml", "[objective]\nmaximise = \"lift_mean_n\"\nstarts = 2\n" + voltage), "-o",
-                  path("o.nc")}, "o.nc");
-  const std::string objectives = "[[objective]]\nmaximise = \"lift_mean_n\"\nreference = \"0 N\"\n"
-                                 "[[objective]]\nminimise = \"power_electrical_w\"\nreference = \"4 W\"\n";
+                  path("o.nc")},
+                 "o.nc");
+  const std::string objectives =
+      "[[objective]]\nmaximise = \"lift_mean_n\"\nreference = \"0 N\"\n"
+      "[[objective]]\nminimise = \"power_electrical_w\"\nreference = \"4 W\"\n";
   expect_written({"optimise", study("p.toml", "[search]\npopulation = 20\ngenerations = 2\n" + objectives + voltage),
-                  "-o", path("p.nc")}, "p.nc");
+                  "-o", path("p.nc")},
+                 "p.nc");
 }
 
 }  // namespace

@@ -39,11 +39,13 @@ TEST_F(Direct, RunsByBothMethods) {
   EXPECT_NEAR(json["frequency_hz"].get<double>(), 22.0, 1e-12);
   const Json at_20 = run({"run", direct, "--json", "--frequency", "20 Hz"}).json();
   EXPECT_NEAR(at_20["frequency_hz"].get<double>(), 20.0, 1e-12);
-  EXPECT_EQ(run({"run", direct, "--json", "--set", "friction.type=constant", "--set", "friction.torque=1 N m"}).status, 3);
+  EXPECT_EQ(run({"run", direct, "--json", "--set", "friction.type=constant", "--set", "friction.torque=1 N m"}).status,
+            3);
 }
 
 TEST_F(Direct, WaveformsLeaveTheRodForceOut) {
-  const Outcome o = run({"run", direct, "--waveforms", path("w.csv"), "--plot", path("w.svg"), "--plot-power", path("p.svg")});
+  const Outcome o =
+      run({"run", direct, "--waveforms", path("w.csv"), "--plot", path("w.svg"), "--plot-power", path("p.svg")});
   ASSERT_EQ(o.status, 0) << o.err;
   std::istringstream lines(read(path("w.csv")));
   std::string header, row;
@@ -55,8 +57,9 @@ TEST_F(Direct, WaveformsLeaveTheRodForceOut) {
 }
 
 TEST_F(Direct, SweepsTypeVoltageAndFrequency) {
-  const std::string s = file("s.toml", study + "[[axis]]\nkey = \"supply.amplitude\"\nvalues = [\"2 V\", \"3 V\"]\n"
-                                               "[[axis]]\nkey = \"frequency\"\nvalues = [\"20 Hz\", \"22 Hz\"]\n");
+  const std::string s = file("s.toml", study +
+                                           "[[axis]]\nkey = \"supply.amplitude\"\nvalues = [\"2 V\", \"3 V\"]\n"
+                                           "[[axis]]\nkey = \"frequency\"\nvalues = [\"20 Hz\", \"22 Hz\"]\n");
   const Outcome o = run({"sweep", s, "-o", path("s.nc")});
   ASSERT_EQ(o.status, 0) << o.err;
   const wingbeat::NetcdfReader sweep(path("s.nc"));
@@ -67,19 +70,21 @@ TEST_F(Direct, SweepsTypeVoltageAndFrequency) {
 }
 
 TEST_F(Direct, OptimisesAtAHeldFrequency) {
-  const std::string s =
-      file("o.toml", "[study]\nvehicle = \"vehicle.toml\"\nhold = { frequency = \"22 Hz\" }\n"
-                     "[objective]\nmaximise = \"lift_mean_n\"\nstarts = 3\n"
-                     "[[parameter]]\nkey = \"spring.resonance\"\nlower = \"15 Hz\"\nupper = \"30 Hz\"\n");
+  const std::string s = file("o.toml",
+                             "[study]\nvehicle = \"vehicle.toml\"\nhold = { frequency = \"22 Hz\" }\n"
+                             "[objective]\nmaximise = \"lift_mean_n\"\nstarts = 3\n"
+                             "[[parameter]]\nkey = \"spring.resonance\"\nlower = \"15 Hz\"\nupper = \"30 Hz\"\n");
   const Outcome o = run({"optimise", s, "--json"});
   ASSERT_EQ(o.status, 0) << o.err;
   EXPECT_THAT(o.out, HasSubstr("spring.resonance"));
 }
 
 TEST_F(Direct, ToleranceOfAHeldVoltage) {
-  const std::string s = file("t.toml", "[study]\nvehicle = \"vehicle.toml\"\nhold = { voltage = \"4 V\" }\n[samples]\ncount = 32\n"
-                                       "[[parameter]]\nkey = \"spring.resonance\"\ndistribution = \"normal\"\n"
-                                       "deviation = \"0.5 Hz\"\n");
+  const std::string s =
+      file("t.toml",
+           "[study]\nvehicle = \"vehicle.toml\"\nhold = { voltage = \"4 V\" }\n[samples]\ncount = 32\n"
+           "[[parameter]]\nkey = \"spring.resonance\"\ndistribution = \"normal\"\n"
+           "deviation = \"0.5 Hz\"\n");
   const Outcome o = run({"tolerance", s, "--json"});
   ASSERT_EQ(o.status, 0) << o.err;
   const Json json = o.json();
@@ -99,9 +104,10 @@ TEST_F(Direct, FitReturnsWhatTheLogWasMadeWith) {
   }
   file("log.csv", log);
   const std::string bench =
-      file("bench.toml", "[bench]\nvehicle = \"vehicle.toml\"\n[[parameter]]\nkey = \"motor.viscous_damping\"\n"
-                         "lower = 0\nupper = 2e-5\nstart = 8e-6\n[deviation]\ndefault = { relative = 0.01 }\n"
-                         "[[log]]\nfile = \"log.csv\"\ncondition = \"air\"\nsprings = true\ngiven = \"voltage\"\n");
+      file("bench.toml",
+           "[bench]\nvehicle = \"vehicle.toml\"\n[[parameter]]\nkey = \"motor.viscous_damping\"\n"
+           "lower = 0\nupper = 2e-5\nstart = 8e-6\n[deviation]\ndefault = { relative = 0.01 }\n"
+           "[[log]]\nfile = \"log.csv\"\ncondition = \"air\"\nsprings = true\ngiven = \"voltage\"\n");
   const Outcome o = run({"fit", bench, "--json", "--no-profiles"});
   ASSERT_EQ(o.status, 0) << o.err;
   EXPECT_NEAR(o.json()["parameters"][0]["value"].get<double>() / 3.6e-6, 1.0, 1e-3);

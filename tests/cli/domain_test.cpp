@@ -72,7 +72,7 @@ TEST_F(Domain, EfficienciesThatNoVehicleHas) {
     return run(all).json();
   };
   const Json above_one = with({"spring.stiffness=0.01744", "supply.voltage=4.023", "motor.armature_resistance=0.02012",
-                                 "transmission.mid_stroke_height=0.01609"});
+                               "transmission.mid_stroke_height=0.01609"});
   EXPECT_GT(above_one["efficiency_system"].get<double>(), 1.2);
   EXPECT_EQ(above_one["domain"], "angle_of_attack, formulation_residual, mechanism_efficiency");
   const Json gives_power = with({"spring.stiffness=0.03759", "supply.voltage=5.504", "motor.armature_resistance=0.6877",
@@ -133,8 +133,9 @@ TEST_F(Domain, SweepsFlagItAndTheBestIsInside) {
   std::string meanings(length, '\0');
   nc_get_att_text(id, variable, "flag_meanings", meanings.data());
   nc_close(id);
-  EXPECT_EQ(meanings, "angle_of_attack stroke formulation_residual mechanism_efficiency motor_efficiency input_power "
-                      "flow_speed");
+  EXPECT_EQ(meanings,
+            "angle_of_attack stroke formulation_residual mechanism_efficiency motor_efficiency input_power "
+            "flow_speed");
 
   // Most lift anywhere is far outside; it is best only where that is asked for, on the command or in the study.
   const Outcome free = run({"sweep", file, "-o", path("free.nc"), "--allow-extrapolation"});
@@ -146,18 +147,19 @@ TEST_F(Domain, SweepsFlagItAndTheBestIsInside) {
 }
 
 TEST_F(Domain, ContoursAreHatched) {
-  const std::string file =
-      study("[[axis]]\nkey = \"supply.voltage\"\nfrom = \"2 V\"\nto = \"60 V\"\ncount = 15\n"
-            "[[axis]]\nkey = \"spring.stiffness\"\nfrom = \"0 N m/rad\"\nto = \"5e-3 N m/rad\"\ncount = 6\n",
-            "metrics = [\"lift_mean_n\"]\n");
+  const std::string file = study(
+      "[[axis]]\nkey = \"supply.voltage\"\nfrom = \"2 V\"\nto = \"60 V\"\ncount = 15\n"
+      "[[axis]]\nkey = \"spring.stiffness\"\nfrom = \"0 N m/rad\"\nto = \"5e-3 N m/rad\"\ncount = 6\n",
+      "metrics = [\"lift_mean_n\"]\n");
   const Outcome outcome = run({"sweep", file, "-o", path("map.nc"), "--plot", path("map.svg")});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(read(path("map.svg")), HasSubstr("hatched: outside the model's domain, no best there"));
 }
 
 TEST_F(Domain, OptimaStayInsideAndSayWhatLimitsThem) {
-  const std::string text = "[objective]\nminimise = \"angle_of_attack_min_deg\"\nstarts = 2\nscreen = 32\n"
-                           "[[parameter]]\nkey = \"supply.voltage\"\nlower = \"1 V\"\nupper = \"100 V\"\n";
+  const std::string text =
+      "[objective]\nminimise = \"angle_of_attack_min_deg\"\nstarts = 2\nscreen = 32\n"
+      "[[parameter]]\nkey = \"supply.voltage\"\nlower = \"1 V\"\nupper = \"100 V\"\n";
   const Outcome kept = run({"optimise", study(text)});
   ASSERT_EQ(kept.status, 0) << kept.err;
   EXPECT_THAT(kept.out, HasSubstr("domain: angle_of_attack >= 0 deg"));
@@ -180,8 +182,9 @@ TEST_F(Domain, TheKeyOfStudiesIsTrueOrFalse) {
 }
 
 TEST_F(Domain, ToleranceGivesTheShareOutside) {
-  const std::string file = study("[samples]\ncount = 64\nindices = false\n[[parameter]]\nkey = \"supply.voltage\"\n"
-                                 "distribution = \"uniform\"\nlower = \"3 V\"\nupper = \"20 V\"\n");
+  const std::string file = study(
+      "[samples]\ncount = 64\nindices = false\n[[parameter]]\nkey = \"supply.voltage\"\n"
+      "distribution = \"uniform\"\nlower = \"3 V\"\nupper = \"20 V\"\n");
   const Json json = run({"tolerance", file, "--json"}).json();
   EXPECT_GT(json["probability"]["outside_domain"]["share"].get<double>(), 0.2);
   EXPECT_GT(json["outside_domain"]["angle_of_attack"].get<int>(), 10);

@@ -25,14 +25,15 @@ TEST_F(Endurance, ReportJsonFigureAndDataSet) {
     EXPECT_THAT(read(path("flight.svg")), HasSubstr(name));
   }
 
-  const Json json = run({"endurance", battery, "--set", "supply.cells=2", "--set", "vehicle.mass=5e-3", "--json"}).json();
+  const Json json =
+      run({"endurance", battery, "--set", "supply.cells=2", "--set", "vehicle.mass=5e-3", "--json"}).json();
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
-  EXPECT_THAT(keys, testing::ElementsAre("status", "status_detail", "end", "endurance_s", "hover", "domain",
-                                         "hover_lost", "charge_initial", "charge_final", "charge_drawn_c", "energy_chemical_j",
-                                         "energy_electrical_j", "energy_internal_j", "energy_aerodynamic_j",
-                                         "current_mean_a", "power_electrical_w", "power_aerodynamic_w", "lift_mean_n",
-                                         "efficiency_system", "initial", "final", "history"));
+  EXPECT_THAT(keys, testing::ElementsAre(
+                        "status", "status_detail", "end", "endurance_s", "hover", "domain", "hover_lost",
+                        "charge_initial", "charge_final", "charge_drawn_c", "energy_chemical_j", "energy_electrical_j",
+                        "energy_internal_j", "energy_aerodynamic_j", "current_mean_a", "power_electrical_w",
+                        "power_aerodynamic_w", "lift_mean_n", "efficiency_system", "initial", "final", "history"));
   EXPECT_EQ(json["hover"], "lost");
   EXPECT_NEAR(json["hover_lost"]["lift_to_weight"].get<double>(), 1.0, 1e-9);
   EXPECT_EQ(json["charge_drawn_c"], 108.0);
@@ -50,14 +51,15 @@ TEST_F(Endurance, ReportJsonFigureAndDataSet) {
   // The vehicle at that moment, computed by itself.
   const double charge = json["hover_lost"]["charge"].get<double>();
   const Json there = run({"run", battery, "--set", "supply.cells=2", "--set", "vehicle.mass=5e-3", "--set",
-                          "supply.charge=" + Json(charge).dump(), "--tolerance", "1e-10", "--json"}).json();
+                          "supply.charge=" + Json(charge).dump(), "--tolerance", "1e-10", "--json"})
+                         .json();
   EXPECT_NEAR(there["lift_to_weight"].get<double>(), 1.0, 1e-9);
   EXPECT_NEAR(there["voltage_v"].get<double>(), json["hover_lost"]["voltage_v"].get<double>(), 1e-9);
 }
 
 TEST_F(Endurance, LiftOverWeightIsThatOfAllMasses) {
-  const std::vector<std::string> heavy = {"endurance", battery, "--set", "supply.cells=2", "--set", "supply.mass=\"5 g\"",
-                                          "--set", "vehicle.mass=\"2 g\""};
+  const std::vector<std::string> heavy = {
+      "endurance", battery, "--set", "supply.cells=2", "--set", "supply.mass=\"5 g\"", "--set", "vehicle.mass=\"2 g\""};
   const auto with = [&](std::vector<std::string> more) {
     std::vector<std::string> all = heavy;
     all.insert(all.end(), more.begin(), more.end());
@@ -105,17 +107,22 @@ TEST_F(Endurance, RunOnABattery) {
   const Json json = run({"run", battery, "--json"}).json();
   const double sag = 4.2 - 0.5 * json["current_mean_a"].get<double>();
   EXPECT_NEAR(json["voltage_v"].get<double>(), sag, 1e-12);
-  EXPECT_THAT(run({"run", battery, "--voltage", "3 V"}).err,
-              HasSubstr("--voltage: the supply is a battery, whose charge gives its voltage; use --set supply.charge=0.5"));
-  EXPECT_THAT(run({"run", battery, "--frequency", "22 Hz"}).err,
-              HasSubstr("supply.type: the charge of a battery gives its voltage, so none can be chosen for the flapping "
-                        "frequency"));
+  EXPECT_THAT(
+      run({"run", battery, "--voltage", "3 V"}).err,
+      HasSubstr("--voltage: the supply is a battery, whose charge gives its voltage; use --set supply.charge=0.5"));
+  EXPECT_THAT(
+      run({"run", battery, "--frequency", "22 Hz"}).err,
+      HasSubstr("supply.type: the charge of a battery gives its voltage, so none can be chosen for the flapping "
+                "frequency"));
   EXPECT_THAT(run({"run", battery, "--lift", "20 mN"}).err, HasSubstr("so none can be chosen for the lift"));
 }
 
 TEST_F(Endurance, DutyForALift) {
-  const std::vector<std::string> pwm = {"run", plain, "--set", "supply.type=pwm", "--set", "supply.voltage=7", "--set",
-                                        "supply.frequency=20000", "--set", "supply.duty=0.5"};
+  const std::vector<std::string> pwm = {"run",   plain,
+                                        "--set", "supply.type=pwm",
+                                        "--set", "supply.voltage=7",
+                                        "--set", "supply.frequency=20000",
+                                        "--set", "supply.duty=0.5"};
   const auto with = [&](std::vector<std::string> more) {
     std::vector<std::string> all = pwm;
     all.insert(all.end(), more.begin(), more.end());

@@ -21,7 +21,8 @@ const std::string direct = data + "/designs/direct-drive.toml";
 const char* const header =
     "time_s,crank_angle_rad,crank_speed_rad_per_s,current_a,stroke_angle_rad,flapping_velocity_rad_per_s,"
     "angle_of_attack_deg,lift_n,aero_moment_nm,rod_force_n,motor_torque_nm,friction_torque_nm,"
-    "voltage_v,power_electrical_w,power_motor_w,power_friction_w,power_aerodynamic_w,spring_moment_nm,inertial_moment_nm";
+    "voltage_v,power_electrical_w,power_motor_w,power_friction_w,power_aerodynamic_w,"
+    "spring_moment_nm,inertial_moment_nm";
 
 using Columns = std::map<std::string, std::vector<double>>;
 
@@ -249,7 +250,7 @@ TEST_F(Files, LinksAndModesStay) {
   ASSERT_EQ(run({"run", plain, "--force", "--waveforms", path("link.csv")}).status, 0);
   EXPECT_TRUE(fs::is_symlink(path("link.csv")));
   EXPECT_THAT(read(path("real.csv")), testing::StartsWith("time_s,"));
-  struct stat found {};
+  struct stat found{};
   ::stat(path("real.csv").c_str(), &found);
   EXPECT_EQ(found.st_mode & 0777, 0640U);
 }

@@ -34,9 +34,8 @@ TEST_F(Fit, JsonHoldsTheTruthInItsIntervals) {
   const Outcome o = run({"fit", bench, "--json"});
   EXPECT_EQ(o.status, 0);
   const Json json = o.json();
-  const std::map<std::string, double> truth = {{"friction.radius", 2.5e-3},
-                                               {"aerodynamics.pitch_coefficient", 5e-3},
-                                               {"motor.viscous_damping", 3.6e-6}};
+  const std::map<std::string, double> truth = {
+      {"friction.radius", 2.5e-3}, {"aerodynamics.pitch_coefficient", 5e-3}, {"motor.viscous_damping", 3.6e-6}};
   ASSERT_EQ(json["parameters"].size(), 3U);
   for (const Json& p : json["parameters"]) {
     const double value = truth.at(p["key"].get<std::string>());
@@ -122,7 +121,8 @@ TEST_F(WrongUnit, IsAMisfitBeforeAnythingElse) {
   EXPECT_THAT(json["misfit"].get<std::string>(), HasSubstr("degrees of freedom"));
   EXPECT_LT(json["p_value"].get<double>(), 1e-6);
   for (const Json& p : json["parameters"]) {
-    for (const char* key : {"standard_error", "lower_95", "upper_95", "profile_lower_95"}) EXPECT_TRUE(p[key].is_null());
+    for (const char* key : {"standard_error", "lower_95", "upper_95", "profile_lower_95"})
+      EXPECT_TRUE(p[key].is_null());
   }
 }
 

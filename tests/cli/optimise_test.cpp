@@ -162,11 +162,11 @@ TEST_F(Optimise, SeveralObjectivesGiveAFront) {
   const std::string limit = "[[constraint]]\nmetric = \"current_peak_a\"\nat_most = \"0.4 A\"\n";
   for (const std::string method : {"nsga2", "moead"}) {
     const std::string file = study(two + short_search + "method = \"" + method + "\"\n" + voltage + limit);
-    const Outcome text = run({"optimise", file, "-o", path("front.nc"), "--plot", path("front.svg"), "--designs",
-                              path("designs")});
+    const Outcome text =
+        run({"optimise", file, "-o", path("front.nc"), "--plot", path("front.svg"), "--designs", path("designs")});
     ASSERT_EQ(text.status, 0) << text.err;
-    EXPECT_THAT(text.err, testing::StartsWith("wrote " + path("front.nc") + "\nwrote " + path("front.svg") + "\nwrote " +
-                                              path("designs") + "/"));
+    EXPECT_THAT(text.err, testing::StartsWith("wrote " + path("front.nc") + "\nwrote " + path("front.svg") +
+                                              "\nwrote " + path("designs") + "/"));
     EXPECT_EQ(count_of(text.err, "\n"), count_of(text.err, "wrote "));
     EXPECT_THAT(text.out, HasSubstr("hypervolume "));
     EXPECT_THAT(text.out, HasSubstr("knee"));
@@ -193,10 +193,9 @@ TEST_F(Optimise, ThreeObjectivesAndMotors) {
       << "model,gear_ratio,resistance_ohm,torque_constant_Nm_per_A,rotor_inertia_kgm2,inductance_H,"
          "viscous_friction_Nms\n"
          "bare,1,9,0.01,1.5e-7,0.029,3.6e-6\nbetter,1,7,0.01,1.5e-7,0.029,3.6e-6\nlame,1,,0.01,1.5e-7,0.029,3.6e-6\n";
-  const std::string file =
-      study("[motors]\ncatalogue = \"motors.csv\"\ngear_ratio = 1\n" + two +
-            "[[objective]]\nminimise = \"rod_force_peak_n\"\n" + short_search + voltage +
-            "[[parameter]]\nkey = \"motor.gear_ratio\"\nvalues = [0.8, 1, 1.3]\n");
+  const std::string file = study("[motors]\ncatalogue = \"motors.csv\"\ngear_ratio = 1\n" + two +
+                                 "[[objective]]\nminimise = \"rod_force_peak_n\"\n" + short_search + voltage +
+                                 "[[parameter]]\nkey = \"motor.gear_ratio\"\nvalues = [0.8, 1, 1.3]\n");
   const Outcome text = run({"optimise", file, "--plot", path("front.svg"), "-o", path("front.nc")});
   ASSERT_EQ(text.status, 0) << text.err;
   EXPECT_THAT(text.out, HasSubstr("motor of knee: "));
@@ -208,8 +207,9 @@ TEST_F(Optimise, ThreeObjectivesAndMotors) {
 }
 
 TEST_F(Optimise, AReferenceThatNothingBeatsIsSaid) {
-  const std::string strict = "[[objective]]\nmaximise = \"lift_mean_n\"\nreference = \"90 mN\"\n"
-                             "[[objective]]\nminimise = \"power_electrical_w\"\nreference = \"1 mW\"\n";
+  const std::string strict =
+      "[[objective]]\nmaximise = \"lift_mean_n\"\nreference = \"90 mN\"\n"
+      "[[objective]]\nminimise = \"power_electrical_w\"\nreference = \"1 mW\"\n";
   const Outcome o = run({"optimise", study(strict + short_search + voltage)});
   EXPECT_EQ(o.status, 0) << o.err;
   EXPECT_THAT(o.out, HasSubstr("no design is better than the reference in every objective"));
@@ -230,9 +230,10 @@ TEST_F(Optimise, BadFrontsAreRefusedWithTheirPlace) {
             "[[objective]]\n");
   EXPECT_EQ(complaint(two + "[[objective]]\nmaximise = \"lift_mean_n\"\n" + voltage),
             "wingbeat: study.toml:8:1: objective.maximise: is an objective already\n");
-  EXPECT_EQ(complaint(objective + "[search]\nseed = 2\n" + voltage),
-            "wingbeat: study.toml:7:2: search: belongs to several [[objective]] sections; starts, screen and seed of one "
-            "stand in [objective]\n");
+  EXPECT_EQ(
+      complaint(objective + "[search]\nseed = 2\n" + voltage),
+      "wingbeat: study.toml:7:2: search: belongs to several [[objective]] sections; starts, screen and seed of one "
+      "stand in [objective]\n");
   EXPECT_EQ(complaint(two + "[search]\npopulation = 30\n" + voltage),
             "wingbeat: study.toml:8:1: search.population: must be a multiple of 4\n");
   EXPECT_EQ(complaint(two + "[search]\npopulation = 64\nscreen = 32\n" + voltage),
@@ -258,7 +259,8 @@ TEST_F(Optimise, BadFrontsAreRefusedWithTheirPlace) {
 TEST_F(Optimise, BadStudiesAreRefusedWithTheirPlace) {
   EXPECT_EQ(complaint(voltage),
             "wingbeat: study.toml:1:1: objective: missing; expected a section [objective] with minimise or maximise\n");
-  EXPECT_EQ(complaint("[objective]\n" + voltage), "wingbeat: study.toml:3:2: objective: give one of minimise and maximise\n");
+  EXPECT_EQ(complaint("[objective]\n" + voltage),
+            "wingbeat: study.toml:3:2: objective: give one of minimise and maximise\n");
   EXPECT_EQ(complaint("[objective]\nminimise = \"power\"\n" + voltage).substr(0, 67),
             "wingbeat: study.toml:4:1: objective.minimise: \"power\" is no metric;");
   EXPECT_EQ(complaint("[objective]\nminimise = \"floquet_multiplier_max\"\n" + voltage),

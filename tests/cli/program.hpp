@@ -65,8 +65,8 @@ class Program : public testing::Test {
     std::string path_entry = "PATH=" + search_path;
     char* const bare[] = {path_entry.data(), nullptr};
     pid_t child = 0;
-    const int failure = ::posix_spawn(&child, WINGBEAT_PROGRAM, &actions, nullptr, argv.data(),
-                                      search_path.empty() ? environ : bare);
+    const int failure =
+        ::posix_spawn(&child, WINGBEAT_PROGRAM, &actions, nullptr, argv.data(), search_path.empty() ? environ : bare);
     posix_spawn_file_actions_destroy(&actions);
     Outcome outcome;
     if (failure != 0) return outcome;

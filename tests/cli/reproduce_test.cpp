@@ -25,14 +25,10 @@ std::vector<std::vector<std::string>> csv_rows(const std::string& text) {
   std::vector<std::vector<std::string>> rows(1, {""});
   bool quoted = false;
   for (const char c : text) {
-    if (c == '"')
-      quoted = !quoted;
-    else if (c == ',' && !quoted)
-      rows.back().emplace_back();
-    else if (c == '\n' && !quoted)
-      rows.push_back({""});
-    else
-      rows.back().back() += c;
+    if (c == '"') quoted = !quoted;
+    else if (c == ',' && !quoted) rows.back().emplace_back();
+    else if (c == '\n' && !quoted) rows.push_back({""});
+    else rows.back().back() += c;
   }
   rows.pop_back();
   return rows;
@@ -105,9 +101,9 @@ TEST_F(Reproduce, EveryFigureIsThereWithItsData) {
   for (const int n : {1, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22}) {
     names.push_back((n < 10 ? "figure-0" : "figure-") + std::to_string(n));
   }
-  for (const char* more : {"figure-22-hinge-held", "figure-22-virtual-work", "figure-22-virtual-work-hinge-held",
-                           "friction-laws", "energy-flow", "energy-flow-virtual-work",
-                           "power-cycle-springs-off", "power-cycle-springs-on"}) {
+  for (const char* more :
+       {"figure-22-hinge-held", "figure-22-virtual-work", "figure-22-virtual-work-hinge-held", "friction-laws",
+        "energy-flow", "energy-flow-virtual-work", "power-cycle-springs-off", "power-cycle-springs-on"}) {
     names.emplace_back(more);
   }
   for (const std::string& name : names) {
@@ -121,10 +117,8 @@ TEST_F(Reproduce, EveryFigureIsThereWithItsData) {
       ASSERT_EQ(values.size() + 1, rows.size()) << name;
       for (std::size_t n = 0; n < values.size(); ++n) {
         double x = NAN;
-        if (is_number(rows[n + 1][column], x))
-          EXPECT_NEAR(x, values[n], 1e-8 * std::abs(values[n]));
-        else
-          EXPECT_TRUE(std::isnan(values[n]));
+        if (is_number(rows[n + 1][column], x)) EXPECT_NEAR(x, values[n], 1e-8 * std::abs(values[n]));
+        else EXPECT_TRUE(std::isnan(values[n]));
       }
     }
   }
@@ -239,9 +233,9 @@ TEST_F(Reproduce, FoldersOfSomethingElseAreLeftAlone) {
   std::ofstream(path("mine/report.html")) << "mine";
   const Outcome foreign = run({"reproduce", "friction2022", "--coarse", "-o", path("mine")});
   EXPECT_EQ(foreign.status, 2);
-  EXPECT_EQ(foreign.err,
-            "wingbeat: -o " + path("mine") + ": holds files of something else; name a new or an empty folder, or --force "
-            "to write among them\n");
+  EXPECT_EQ(foreign.err, "wingbeat: -o " + path("mine") +
+                             ": holds files of something else; name a new or an empty folder, or --force "
+                             "to write among them\n");
   EXPECT_EQ(read(path("mine/report.html")), "mine");
 
   fs::create_directory(path("empty"));

@@ -87,9 +87,9 @@ TEST_F(Run, TableNamesStatusMetricsAndBooks) {
   const Outcome o = run({"run", plain});
   EXPECT_EQ(o.status, 0);
   EXPECT_THAT(o.err, IsEmpty());
-  for (const char* part : {"slider-crank flapper", "flapping: steady flapping at 21.", "Operating point", "copper loss",
-                           "imbalance of these books", "mean lift", "mN", "stroke amplitude", "deg", "Floquet",
-                           "laps, closed to"}) {
+  for (const char* part :
+       {"slider-crank flapper", "flapping: steady flapping at 21.", "Operating point", "copper loss",
+        "imbalance of these books", "mean lift", "mN", "stroke amplitude", "deg", "Floquet", "laps, closed to"}) {
     EXPECT_THAT(o.out, HasSubstr(part));
   }
   std::istringstream lines(o.out);
@@ -105,7 +105,8 @@ TEST_F(Run, LiftBelowTheWeightIsSaidNotToHover) {
   EXPECT_THAT(light.out, HasSubstr("   can hover"));
   // Every mass stated for itself is carried too, also where a lift over weight is asked for.
   const std::vector<std::string> heavy = {"--set", "vehicle.mass=0.5 g", "--set", "motor.mass=1 g"};
-  const Json json = run({"run", plain, "--json", "--lift-to-weight", "0.5", heavy[0], heavy[1], heavy[2], heavy[3]}).json();
+  const Json json =
+      run({"run", plain, "--json", "--lift-to-weight", "0.5", heavy[0], heavy[1], heavy[2], heavy[3]}).json();
   EXPECT_NEAR(json["lift_to_weight"].get<double>(), 0.5, 1e-6);
 }
 
@@ -179,8 +180,8 @@ TEST_F(Run, FrequencyAboveTheRangeIsRefusedWithTheHighestReached) {
 }
 
 TEST_F(Run, NotFlappingGivesJsonWithNullsAndStatus3) {
-  const Outcome o = run({"run", springs, "--json", "--voltage", "0.3 V", "--plot", path("p.svg"), "--waveforms",
-                         path("w.csv")});
+  const Outcome o =
+      run({"run", springs, "--json", "--voltage", "0.3 V", "--plot", path("p.svg"), "--waveforms", path("w.csv")});
   EXPECT_EQ(o.status, 3);
   const Json json = o.json();
   EXPECT_EQ(keys_of(json), contract_keys);
@@ -321,8 +322,9 @@ TEST_F(Run, HelpShowsAnExampleThatWorksAndVersionTheBuild) {
     // As typed, from the root of the source tree.
     std::string example = o.out.substr(at + 9, o.out.find("\n\n", at) - at - 9);
     ASSERT_THAT(example, testing::StartsWith("  wingbeat "));
-    example = "cd " + path("") + " && ln -sfn " + data + " data && PATH=" +
-              fs::path(WINGBEAT_PROGRAM).parent_path().string() + ":$PATH && " + example + " > /dev/null";
+    example = "cd " + path("") + " && ln -sfn " + data +
+              " data && PATH=" + fs::path(WINGBEAT_PROGRAM).parent_path().string() + ":$PATH && " + example +
+              " > /dev/null";
     EXPECT_EQ(std::system(example.c_str()), 0) << example;
   }
 }

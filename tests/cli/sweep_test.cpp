@@ -76,20 +76,22 @@ class Sweep : public Program {
     return path(name);
   }
   std::string small_study() const {
-    return study("[[axis]]\nkey = \"springs\"\nvalues = [false, true]\n"
-                 "[[axis]]\nkey = \"transmission.crank_radius\"\nfrom = \"3 mm\"\nto = \"14 mm\"\ncount = 23\n");
+    return study(
+        "[[axis]]\nkey = \"springs\"\nvalues = [false, true]\n"
+        "[[axis]]\nkey = \"transmission.crank_radius\"\nfrom = \"3 mm\"\nto = \"14 mm\"\ncount = 23\n");
   }
   /// Three chunks, wingless so that each design is quick.
   std::string long_study() const {
-    return study("metrics = [\"frequency_hz\", \"power_electrical_w\"]\n[[axis]]\nkey = \"condition\"\n"
-                 "values = [\"wingless\"]\n[samples]\nmethod = \"sobol\"\ncount = 20000\n[[samples.range]]\n"
-                 "key = \"supply.voltage\"\nfrom = 2\nto = 4\n[[samples.range]]\nkey = \"motor.inertia\"\n"
-                 "from = 1e-7\nto = 2e-7\n",
-                 "long.toml");
+    return study(
+        "metrics = [\"frequency_hz\", \"power_electrical_w\"]\n[[axis]]\nkey = \"condition\"\n"
+        "values = [\"wingless\"]\n[samples]\nmethod = \"sobol\"\ncount = 20000\n[[samples.range]]\n"
+        "key = \"supply.voltage\"\nfrom = 2\nto = 4\n[[samples.range]]\nkey = \"motor.inertia\"\n"
+        "from = 1e-7\nto = 2e-7\n",
+        "long.toml");
   }
   /// The journal's chunks: what lies beyond its header, 16 bytes each.
   static long chunks_in(const std::string& journal, long columns) {
-    struct stat found {};
+    struct stat found{};
     if (::stat(journal.c_str(), &found) != 0) return 0;
     return (long(found.st_size) - 48 - 8 * (columns + 2)) / 16;
   }
@@ -274,7 +276,8 @@ TEST_F(Sweep, WhereNothingFlapsThePlotShowsTheStatuses) {
   EXPECT_EQ(lines.status, 0);
   EXPECT_EQ(lines.err, "wrote " + path("o.nc") + "\nwrote " + path("o.svg") + "\n");
   EXPECT_THAT(read(path("o.svg")), HasSubstr("nothing flaps: 6 stalled"));
-  const std::string crank = "[[axis]]\nkey = \"transmission.crank_radius\"\nfrom = \"4 mm\"\nto = \"5 mm\"\ncount = 3\n";
+  const std::string crank =
+      "[[axis]]\nkey = \"transmission.crank_radius\"\nfrom = \"4 mm\"\nto = \"5 mm\"\ncount = 3\n";
   const Outcome contours = run({"sweep", study(stuck + volts + crank), "-o", path("p.nc"), "--plot", path("p.svg")});
   EXPECT_EQ(contours.status, 0);
   EXPECT_EQ(contours.err, "wrote " + path("p.nc") + "\nwrote " + path("p.svg") + "\n");
@@ -283,9 +286,10 @@ TEST_F(Sweep, WhereNothingFlapsThePlotShowsTheStatuses) {
 
 TEST_F(Sweep, ADataSetCanBeRunAgain) {
   std::ofstream(path("d.csv")) << "supply.voltage [V],motor.torque_constant [N m/A]\n3,0.01\n2.5,0.011\n";
-  const std::string s = study("title = \"again\"\n[set]\nfriction.radius = \"1 mm\"\n[[axis]]\n"
-                              "key = \"transmission.formulation\"\nvalues = [\"rod-force\", \"virtual-work\"]\n"
-                              "[samples]\nmethod = \"csv\"\nfile = \"d.csv\"\n");
+  const std::string s = study(
+      "title = \"again\"\n[set]\nfriction.radius = \"1 mm\"\n[[axis]]\n"
+      "key = \"transmission.formulation\"\nvalues = [\"rod-force\", \"virtual-work\"]\n"
+      "[samples]\nmethod = \"csv\"\nfile = \"d.csv\"\n");
   ASSERT_EQ(run({"sweep", s, "-o", path("o.nc")}).status, 0);
   fs::remove(s);
   fs::remove(path("d.csv"));
@@ -298,8 +302,9 @@ TEST_F(Sweep, ADataSetCanBeRunAgain) {
 }
 
 TEST_F(Sweep, HeldFrequenciesComeWithTheirVoltages) {
-  const std::string s = study("hold = { frequency = \"22 Hz\" }\n[[axis]]\nkey = \"friction.radius\"\n"
-                              "values = [\"1 mm\", \"2.5 mm\"]\n");
+  const std::string s = study(
+      "hold = { frequency = \"22 Hz\" }\n[[axis]]\nkey = \"friction.radius\"\n"
+      "values = [\"1 mm\", \"2.5 mm\"]\n");
   ASSERT_EQ(run({"sweep", s, "-o", path("o.nc")}).status, 0);
   const wingbeat::NetcdfReader file(path("o.nc"));
   for (const double f : file.read("frequency_hz")) EXPECT_NEAR(f, 22.0, 22e-6);
@@ -325,16 +330,17 @@ TEST_F(Sweep, XarrayFindsCoordinatesUnitsAndValues) {
 
 TEST_F(Sweep, OctaveFindsCoordinatesUnitsAndValues) {
   ASSERT_EQ(run({"sweep", small_study(), "-o", path("o.nc")}).status, 0);
-  std::ofstream(path("check.m")) << "pkg load netcdf\nf = '" + path("o.nc") +
-                                        "';\n"
-                                        "lift = ncread(f, 'lift_mean_n');\nr = ncread(f, 'transmission_crank_radius');\n"
-                                        "assert(size(lift), [23 2]);\nassert(r(1), 3e-3, 1e-12);\n"
-                                        "assert(ncreadatt(f, 'lift_mean_n', 'units'), 'N');\n"
-                                        "assert(ncreadatt(f, 'transmission_crank_radius', 'units'), 'm');\n"
-                                        "s = ncread(f, 'status');\nassert(double(s(5, 2)), 0);\n"
-                                        "names = ncread(f, 'springs')';\nassert(names(2, 1:2), 'on');\n"
-                                        "assert(strsplit(ncreadatt(f, 'status', 'flag_meanings'), ' '){1}, 'flapping');\n"
-                                        "assert(lift(5, 2) > 0.01 && lift(5, 2) < 0.013);\nprintf('good\\n');\n";
+  std::ofstream(path("check.m"))
+      << "pkg load netcdf\nf = '" + path("o.nc") +
+             "';\n"
+             "lift = ncread(f, 'lift_mean_n');\nr = ncread(f, 'transmission_crank_radius');\n"
+             "assert(size(lift), [23 2]);\nassert(r(1), 3e-3, 1e-12);\n"
+             "assert(ncreadatt(f, 'lift_mean_n', 'units'), 'N');\n"
+             "assert(ncreadatt(f, 'transmission_crank_radius', 'units'), 'm');\n"
+             "s = ncread(f, 'status');\nassert(double(s(5, 2)), 0);\n"
+             "names = ncread(f, 'springs')';\nassert(names(2, 1:2), 'on');\n"
+             "assert(strsplit(ncreadatt(f, 'status', 'flag_meanings'), ' '){1}, 'flapping');\n"
+             "assert(lift(5, 2) > 0.01 && lift(5, 2) < 0.013);\nprintf('good\\n');\n";
   const Outcome o = shell("octave-cli --no-init-file --quiet " + path("check.m"));
   EXPECT_THAT(o.out, HasSubstr("good\n")) << o.err;
 }
@@ -349,16 +355,17 @@ TEST_F(Sweep, PlotsAreDrawn) {
     EXPECT_THAT(svg, HasSubstr(text));
   }
   EXPECT_EQ(run({"sweep", s, "-o", path("o.nc"), "--plot", path("f.pdf"), "--plot-metric", "frequency_hz"}).err,
-              "wrote " + path("f.pdf") + "\n");
+            "wrote " + path("f.pdf") + "\n");
   EXPECT_THAT(read(path("f.pdf")), testing::StartsWith("%PDF-"));
 
-  const std::string two = study("[[axis]]\nkey = \"transmission.crank_radius\"\nfrom = \"3 mm\"\nto = \"13 mm\"\ncount = 6\n"
-                                "[[axis]]\nkey = \"supply.voltage\"\nfrom = 1\nto = 8\ncount = 5\n",
-                                "two.toml");
+  const std::string two = study(
+      "[[axis]]\nkey = \"transmission.crank_radius\"\nfrom = \"3 mm\"\nto = \"13 mm\"\ncount = 6\n"
+      "[[axis]]\nkey = \"supply.voltage\"\nfrom = 1\nto = 8\ncount = 5\n",
+      "two.toml");
   ASSERT_EQ(run({"sweep", two, "-o", path("t.nc"), "--plot", path("t.svg")}).status, 0);
   const std::string contours = read(path("t.svg"));
-  for (const char* text : {"crank radius (mm)", "supply voltage (V)", "circle: best", "grey: does not flap",
-                           "dashed: lift = weight"}) {
+  for (const char* text :
+       {"crank radius (mm)", "supply voltage (V)", "circle: best", "grey: does not flap", "dashed: lift = weight"}) {
     EXPECT_THAT(contours, HasSubstr(text));
   }
 }
@@ -370,10 +377,12 @@ TEST_F(Sweep, ReportAndPlotsAgreeAboutTheBestDesign) {
     return at == std::string::npos ? NAN : std::stod(text.substr(at + label.size()));
   };
   const std::string volts = "[[axis]]\nkey = \"supply.voltage\"\nfrom = 1\nto = 8\ncount = 15\n";
-  const std::string crank = "[[axis]]\nkey = \"transmission.crank_radius\"\nfrom = \"4 mm\"\nto = \"6 mm\"\ncount = 5\n";
+  const std::string crank =
+      "[[axis]]\nkey = \"transmission.crank_radius\"\nfrom = \"4 mm\"\nto = \"6 mm\"\ncount = 5\n";
   for (const std::string& axes : {volts, volts + crank}) {
     const std::string s = study(axes);
-    const Outcome o = run({"sweep", s, "-o", path("o.nc"), "--plot", path("o.svg"), "--plot-metrics", "efficiency_system"});
+    const Outcome o =
+        run({"sweep", s, "-o", path("o.nc"), "--plot", path("o.svg"), "--plot-metrics", "efficiency_system"});
     ASSERT_EQ(o.status, 0) << o.err;
     const wingbeat::NetcdfReader file(path("o.nc"));
     const auto efficiency = file.read("efficiency_system"), weight = file.read("lift_to_weight");
@@ -412,7 +421,8 @@ TEST_F(Sweep, PlotsThatCannotBeAreRefusedBeforeComputing) {
 TEST_F(Sweep, WrongOptionsAreRefused) {
   const std::string s = small_study();
   EXPECT_THAT(run({"sweep", s}).err, HasSubstr("--output is required"));
-  EXPECT_THAT(run({"sweep", s, "-o", path("o.nc"), "--isa", "mmx"}).err, HasSubstr("--isa mmx: must be sse2, avx2 or avx512"));
+  EXPECT_THAT(run({"sweep", s, "-o", path("o.nc"), "--isa", "mmx"}).err,
+              HasSubstr("--isa mmx: must be sse2, avx2 or avx512"));
   EXPECT_THAT(run({"sweep", s, "-o", path("o.nc"), "--tolerance", "1"}).err,
               HasSubstr("--tolerance 1: must be a number between 1e-12 and 1e-2"));
   EXPECT_EQ(run({"sweep", s, "-o", path("o.nc"), "--threads", "0"}).status, 2);

@@ -48,9 +48,10 @@ TEST_F(Targets, LiftAboveThePeakIsRefusedWithThePeak) {
   const Outcome o = flapper({"--lift", "100 mN"});
   EXPECT_EQ(o.status, 2);
   EXPECT_EQ(o.out, "");
-  EXPECT_THAT(o.err, MatchesRegex("wingbeat: --lift 100 mN: 0.1 N cannot be reached inside the domain of validity: it lifts "
-                                  "0.09[0-9]* N at most, at 10.[0-9]+ V; at [0-9.]+ V the angle of attack falls to "
-                                  "-[0-9.]+ deg .*; --allow-extrapolation searches beyond\n"));
+  EXPECT_THAT(o.err,
+              MatchesRegex("wingbeat: --lift 100 mN: 0.1 N cannot be reached inside the domain of validity: it lifts "
+                           "0.09[0-9]* N at most, at 10.[0-9]+ V; at [0-9.]+ V the angle of attack falls to "
+                           "-[0-9.]+ deg .*; --allow-extrapolation searches beyond\n"));
   const Outcome beyond = flapper({"--lift", "100 mN", "--allow-extrapolation", "--json"});
   ASSERT_EQ(beyond.status, 0) << beyond.err;
   EXPECT_LT(beyond.json()["angle_of_attack_min_deg"].get<double>(), 0.0);
@@ -62,7 +63,8 @@ TEST_F(Targets, PwmReachesItByItsDuty) {
   ASSERT_EQ(o.status, 0) << o.err;
   EXPECT_NEAR(o.json()["supply_duty"].get<double>(), 0.792, 1e-3);
   const std::string low = "supply={type=\"pwm\", voltage=\"7 V\", duty=0.2, frequency=\"20 kHz\"}";
-  EXPECT_THAT(flapper({"--lift-to-weight", "1", "--set", low}).err, HasSubstr("more than the 7 V that the supply gives"));
+  EXPECT_THAT(flapper({"--lift-to-weight", "1", "--set", low}).err,
+              HasSubstr("more than the 7 V that the supply gives"));
   EXPECT_THAT(flapper({"--lift-to-weight", "2", "--set", low}).err, HasSubstr("; a duty of 1 gives 7 V"));
 }
 
@@ -71,9 +73,10 @@ TEST_F(Targets, LiftBelowTheOnsetIsRefusedWithTheOnset) {
     const Outcome o = run({"run", springs, "--lift", lift, "--json"});
     EXPECT_EQ(o.status, 3);
     EXPECT_EQ(o.json()["status"], "locked");
-    EXPECT_THAT(o.json()["status_detail"].get<std::string>(),
-                HasSubstr("cannot be reached inside the domain of validity: from rest it flaps only above 1.275 V, and there "
-                          "lifts 0.001093 N already; below, it is locked"));
+    EXPECT_THAT(
+        o.json()["status_detail"].get<std::string>(),
+        HasSubstr("cannot be reached inside the domain of validity: from rest it flaps only above 1.275 V, and there "
+                  "lifts 0.001093 N already; below, it is locked"));
   }
   EXPECT_EQ(run({"run", plain, "--lift", "45 uN"}).status, 0);
 }
@@ -98,10 +101,11 @@ TEST_F(Targets, FrequenciesOutOfReachAreRefusedAtOnce) {
 TEST_F(Targets, FrequencyOutsideTheDomainIsRefusedWithTheFastestInside) {
   const Outcome o = run({"run", plain, "--frequency", "80 Hz"});
   EXPECT_EQ(o.status, 2);
-  EXPECT_THAT(o.err, MatchesRegex("wingbeat: --frequency 80 Hz: 80 Hz cannot be reached inside the domain of validity: at "
-                                  "[0-9.]+ V, where it flaps at [0-9.]+ Hz, the angle of attack falls to -[0-9.]+ deg .*; "
-                                  "inside it flaps at 6[0-9.]+ Hz at most, at 1[0-9.]+ V; --allow-extrapolation searches "
-                                  "beyond\n"));
+  EXPECT_THAT(o.err,
+              MatchesRegex("wingbeat: --frequency 80 Hz: 80 Hz cannot be reached inside the domain of validity: at "
+                           "[0-9.]+ V, where it flaps at [0-9.]+ Hz, the angle of attack falls to -[0-9.]+ deg .*; "
+                           "inside it flaps at 6[0-9.]+ Hz at most, at 1[0-9.]+ V; --allow-extrapolation searches "
+                           "beyond\n"));
   const Outcome beyond = run({"run", plain, "--frequency", "80 Hz", "--json", "--allow-extrapolation"});
   ASSERT_EQ(beyond.status, 0) << beyond.err;
   EXPECT_NEAR(beyond.json()["frequency_hz"].get<double>(), 80.0, 80e-6);
@@ -109,10 +113,11 @@ TEST_F(Targets, FrequencyOutsideTheDomainIsRefusedWithTheFastestInside) {
 
 // Holding a frequency that no design of an optimum reaches.
 TEST_F(Targets, AHeldFrequencyOutOfReachIsQuick) {
-  std::ofstream(path("o.toml")) << "[study]\nvehicle = \"" << plain << "\"\nhold = { frequency = \"1e6 Hz\" }\n"
-                                << "[objective]\nminimise = \"power_electrical_w\"\n"
-                                << "[[parameter]]\nkey = \"friction.radius\"\nlower = \"1 mm\"\nupper = \"3 mm\"\n"
-                                << "[[parameter]]\nkey = \"transmission.crank_radius\"\nlower = \"4 mm\"\nupper = \"6 mm\"\n";
+  std::ofstream(path("o.toml"))
+      << "[study]\nvehicle = \"" << plain << "\"\nhold = { frequency = \"1e6 Hz\" }\n"
+      << "[objective]\nminimise = \"power_electrical_w\"\n"
+      << "[[parameter]]\nkey = \"friction.radius\"\nlower = \"1 mm\"\nupper = \"3 mm\"\n"
+      << "[[parameter]]\nkey = \"transmission.crank_radius\"\nlower = \"4 mm\"\nupper = \"6 mm\"\n";
   const double before = children_time();
   const Outcome o = run({"optimise", path("o.toml")});
   EXPECT_LT(children_time() - before, 2.0);

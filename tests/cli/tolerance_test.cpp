@@ -75,9 +75,9 @@ TEST_F(Tolerance, CovarianceOfAFit) {
   ASSERT_EQ(json["outputs"]["power_electrical_w"]["factors"].size(), 1U);
   EXPECT_EQ(json["outputs"]["power_electrical_w"]["factors"][0]["name"], "f");
 
-  std::ofstream(path("bad.covariance.toml"))
-      << "[[parameter]]\nkey = \"friction.radius\"\nvalue = 2.5e-3\n[[parameter]]\nkey = \"wing.inertia\"\nvalue = 7e-8\n"
-         "[covariance]\nmatrix = [\n  [1e-8, 9],\n  [9, 4e-14],\n]\n";
+  std::ofstream(path("bad.covariance.toml")) << "[[parameter]]\nkey = \"friction.radius\"\nvalue = 2.5e-3\n"
+                                                "[[parameter]]\nkey = \"wing.inertia\"\nvalue = 7e-8\n"
+                                                "[covariance]\nmatrix = [\n  [1e-8, 9],\n  [9, 4e-14],\n]\n";
   EXPECT_EQ(complaint("[fit]\ncovariance = \"bad.covariance.toml\"\n"),
             "wingbeat: bad.covariance.toml:8:1: covariance.matrix: is not positive definite\n");
   EXPECT_EQ(complaint("[fit]\ncovariance = \"none.toml\"\n"),
@@ -85,10 +85,12 @@ TEST_F(Tolerance, CovarianceOfAFit) {
 }
 
 TEST_F(Tolerance, CorrelationsOfParameters) {
-  const std::string resistance = "[[parameter]]\nkey = \"motor.armature_resistance\"\ndistribution = \"lognormal\"\n"
-                                 "geometric_deviation = 1.1\n";
-  const std::string radius = "[[parameter]]\nkey = \"friction.radius\"\ndistribution = \"normal\"\n"
-                             "relative_deviation = 0.1\n";
+  const std::string resistance =
+      "[[parameter]]\nkey = \"motor.armature_resistance\"\ndistribution = \"lognormal\"\n"
+      "geometric_deviation = 1.1\n";
+  const std::string radius =
+      "[[parameter]]\nkey = \"friction.radius\"\ndistribution = \"normal\"\n"
+      "relative_deviation = 0.1\n";
   const auto with = [](const std::string& key, const std::string& value) {
     return "correlation = { with = \"" + key + "\", value = " + value + " }\n";
   };
@@ -98,19 +100,22 @@ TEST_F(Tolerance, CorrelationsOfParameters) {
   EXPECT_THAT(text.out, HasSubstr("correlation -0.7 of friction.radius with motor.armature_resistance"));
   EXPECT_THAT(text.out, HasSubstr("friction.radius + motor.armature_resistance"));
 
-  EXPECT_EQ(complaint(radius + with("motor.inertia", "0.5") + resistance),
-            "wingbeat: study.toml:7:17: parameter.correlation.with: \"motor.inertia\" is no uncertain parameter of this "
-            "study\n");
+  EXPECT_EQ(
+      complaint(radius + with("motor.inertia", "0.5") + resistance),
+      "wingbeat: study.toml:7:17: parameter.correlation.with: \"motor.inertia\" is no uncertain parameter of this "
+      "study\n");
   EXPECT_EQ(complaint(radius + with("friction.radius", "0.5")),
             "wingbeat: study.toml:7:17: parameter.correlation.with: names the parameter itself\n");
   EXPECT_THAT(complaint(radius + with("motor.armature_resistance", "1.5") + resistance),
               HasSubstr("parameter.correlation.value: must lie between -1 and 1\n"));
   EXPECT_THAT(complaint(radius + "lower = 0\n" + with("motor.armature_resistance", "0.5") + resistance),
               HasSubstr("friction.radius must be normal or lognormal without bounds to be correlated\n"));
-  EXPECT_THAT(complaint(radius + with("motor.armature_resistance", "0.5") + resistance + with("friction.radius", "0.5")),
-              HasSubstr("the correlation of motor.armature_resistance with friction.radius is given already\n"));
-  const std::string constant = "[[parameter]]\nkey = \"motor.torque_constant\"\ndistribution = \"normal\"\n"
-                               "relative_deviation = 0.02\n";
+  EXPECT_THAT(
+      complaint(radius + with("motor.armature_resistance", "0.5") + resistance + with("friction.radius", "0.5")),
+      HasSubstr("the correlation of motor.armature_resistance with friction.radius is given already\n"));
+  const std::string constant =
+      "[[parameter]]\nkey = \"motor.torque_constant\"\ndistribution = \"normal\"\n"
+      "relative_deviation = 0.02\n";
   EXPECT_THAT(complaint(radius + with("motor.armature_resistance", "0.9") + resistance +
                         with("motor.torque_constant", "0.9") + constant + with("friction.radius", "-0.9")),
               HasSubstr("no parameters can have all the correlations given: their matrix is not positive definite\n"));
@@ -125,8 +130,9 @@ TEST_F(Tolerance, BadStudiesAreRefusedWithTheirPlace) {
             "wingbeat: study.toml:4:1: parameter.key: friction.radios: unknown key; did you mean friction.radius?\n");
   EXPECT_EQ(complaint("[[parameter]]\nkey = \"wing.count\"\ndistribution = \"normal\"\ndeviation = 1\n"),
             "wingbeat: study.toml:4:1: parameter.key: wing.count is a whole number and has no derivative\n");
-  EXPECT_EQ(complaint("[[parameter]]\nkey = \"motor.gear_ratio\"\ndistribution = \"normal\"\ndeviation = 1\n"),
-            "wingbeat: study.toml:4:1: parameter.key: motor.gear_ratio is not in the vehicle; give it in [set] first\n");
+  EXPECT_EQ(
+      complaint("[[parameter]]\nkey = \"motor.gear_ratio\"\ndistribution = \"normal\"\ndeviation = 1\n"),
+      "wingbeat: study.toml:4:1: parameter.key: motor.gear_ratio is not in the vehicle; give it in [set] first\n");
   EXPECT_EQ(complaint("hold = { frequency = \"22 Hz\" }\n[[parameter]]\nkey = \"supply.voltage\"\n"),
             "wingbeat: study.toml:5:1: parameter.key: supply.voltage has no effect where the frequency is held\n");
   EXPECT_EQ(complaint("[[parameter]]\nkey = \"friction.radius\"\ndistribution = \"normal\"\nmean = \"2 mm\"\n"),
@@ -138,10 +144,11 @@ TEST_F(Tolerance, BadStudiesAreRefusedWithTheirPlace) {
   EXPECT_EQ(complaint("[[parameter]]\nkey = \"friction.radius\"\ndistribution = \"uniform\"\n"
                       "lower = \"3 mm\"\nupper = \"2 mm\"\n"),
             "wingbeat: study.toml:7:1: parameter.upper: must exceed parameter.lower\n");
-  EXPECT_EQ(complaint("[[parameter]]\nkey = \"transmission.crank_radius\"\ndistribution = \"uniform\"\n"
-                      "lower = \"30 mm\"\nupper = \"31 mm\"\n"),
-            "wingbeat: study.toml:4:1: transmission.rod_length: at the parameters' means: must be longer than the crank "
-            "radius [m], got 0.02\n");
+  EXPECT_EQ(
+      complaint("[[parameter]]\nkey = \"transmission.crank_radius\"\ndistribution = \"uniform\"\n"
+                "lower = \"30 mm\"\nupper = \"31 mm\"\n"),
+      "wingbeat: study.toml:4:1: transmission.rod_length: at the parameters' means: must be longer than the crank "
+      "radius [m], got 0.02\n");
 }
 
 TEST_F(Tolerance, AVehicleThatNeverFlapsSaysSo) {

@@ -1,5 +1,5 @@
-// Nothing of the user's is lost: what is read is never written, outputs never meet, and what the program did not write is
-// replaced only when it is told to.
+// Nothing of the user's is lost: what is read is never written, outputs never meet, and what the program did not write
+// is replaced only when it is told to.
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -26,15 +26,17 @@ class UsersFiles : public Program {
   /// A bench, a study of each kind, and all that they name, in the folder.
   void fill() const {
     fs::copy_file(springs, path("vehicle.toml"));
-    for (const char* name : {"air.csv", "vacuum.csv", "wingless.csv"}) fs::copy_file(data + "/bench/" + name, path(name));
+    for (const char* name : {"air.csv", "vacuum.csv", "wingless.csv"})
+      fs::copy_file(data + "/bench/" + name, path(name));
     std::string bench = read(data + "/bench/flapper.toml");
     const std::string named = "../designs/friction2022-springs.toml";
     bench.replace(bench.find(named), named.size(), "vehicle.toml");
     write("bench.toml", bench);
-    write("optimise.toml",
-          "[study]\nvehicle = \"vehicle.toml\"\n[objective]\nminimise = \"power_electrical_w\"\nstarts = 2\nscreen = 32\n"
-          "[[parameter]]\nkey = \"supply.voltage\"\nlower = \"3 V\"\nupper = \"8 V\"\n"
-          "[[constraint]]\nmetric = \"lift_to_weight\"\nat_least = 1\n");
+    write(
+        "optimise.toml",
+        "[study]\nvehicle = \"vehicle.toml\"\n[objective]\nminimise = \"power_electrical_w\"\nstarts = 2\nscreen = 32\n"
+        "[[parameter]]\nkey = \"supply.voltage\"\nlower = \"3 V\"\nupper = \"8 V\"\n"
+        "[[constraint]]\nmetric = \"lift_to_weight\"\nat_least = 1\n");
     write("tolerance.toml",
           "[study]\nvehicle = \"vehicle.toml\"\n[samples]\ncount = 64\n"
           "[[parameter]]\nkey = \"friction.radius\"\ndistribution = \"normal\"\nrelative_deviation = 0.03\n");
@@ -76,7 +78,8 @@ TEST_F(UsersFiles, NoInputIsWrittenByAnyCommand) {
   expect_refused({"run", in("vehicle.toml"), "--waveforms", in("vehicle.csv")}, "vehicle.toml", "--waveforms ", other);
   expect_refused({"run", in("vehicle.toml"), "--waveforms", in("vehicle.nc")}, "vehicle.toml", "--waveforms ", other);
   expect_refused({"run", in("vehicle.toml"), "--plot", in("vehicle.svg")}, "vehicle.toml", "--plot ", other);
-  expect_refused({"run", in("vehicle.toml"), "--plot-power", in("vehicle.svg")}, "vehicle.toml", "--plot-power ", other);
+  expect_refused({"run", in("vehicle.toml"), "--plot-power", in("vehicle.svg")}, "vehicle.toml", "--plot-power ",
+                 other);
   expect_refused({"run", in("vehicle.svg"), "--plot", in("vehicle.svg")}, "vehicle.toml", "--plot ", reads);
 
   expect_refused({"fit", in("bench.toml"), "-o", in("bench.toml")}, "bench.toml", "-o ", reads);
@@ -85,8 +88,8 @@ TEST_F(UsersFiles, NoInputIsWrittenByAnyCommand) {
   expect_refused({"fit", in("bench.toml"), "-o", in("air.csv")}, "air.csv", "-o ", "the name must end in .toml");
   expect_refused({"fit", in("bench.toml"), "--plot", in("air.svg")}, "air.csv", "--plot ", other);
   fs::copy_file(path("bench.toml"), path("x.covariance.toml"));
-  expect_refused({"fit", in("x.covariance.toml"), "-o", in("x.toml")}, "x.covariance.toml", "-o " + in("x.covariance.toml"),
-                 reads);
+  expect_refused({"fit", in("x.covariance.toml"), "-o", in("x.toml")}, "x.covariance.toml",
+                 "-o " + in("x.covariance.toml"), reads);
   EXPECT_FALSE(fs::exists(path("x.toml")));
 
   expect_refused({"optimise", in("optimise.toml"), "-o", in("optimise.toml")}, "optimise.toml", "-o ", reads);
@@ -96,7 +99,8 @@ TEST_F(UsersFiles, NoInputIsWrittenByAnyCommand) {
   expect_refused({"tolerance", in("tolerance.toml"), "-o", in("vehicle.nc")}, "vehicle.toml", "-o ", other);
   expect_refused({"tolerance", in("tolerance.toml"), "--plot", in("vehicle.svg")}, "vehicle.toml", "--plot ", other);
   expect_refused({"sweep", in("sweep.toml"), "-o", in("vehicle.nc")}, "vehicle.toml", "-o ", other);
-  expect_refused({"sweep", in("sweep.toml"), "-o", in("s.nc"), "--plot", in("vehicle.svg")}, "vehicle.toml", "--plot ", other);
+  expect_refused({"sweep", in("sweep.toml"), "-o", in("s.nc"), "--plot", in("vehicle.svg")}, "vehicle.toml", "--plot ",
+                 other);
   fs::copy_file(path("sweep.toml"), path("s.nc.journal"));
   expect_refused({"sweep", in("s.nc.journal"), "-o", in("s.nc")}, "s.nc.journal", "-o " + in("s.nc.journal"), reads);
 
@@ -106,10 +110,13 @@ TEST_F(UsersFiles, NoInputIsWrittenByAnyCommand) {
   fs::create_symlink("battery.toml", path("battery.nc"));
   expect_refused({"endurance", in("battery.toml"), "-o", in("battery.nc")}, "battery.toml", "-o ", other);
   fs::copy_file(data + "/published/friction2022.toml", path("published.svg"));
-  write("compare.svg", "title = \"t\"\nsource = \"s\"\n[designs]\na = \"vehicle.toml\"\n[[value]]\nvoltage = 3\n"
-                       "metric = \"frequency_hz\"\ndesign = \"a\"\ntolerance = 0.01\npublished = 30.0\n");
-  expect_refused({"compare", in("compare.svg"), "--plot-power", in("compare.svg")}, "compare.svg", "--plot-power ", reads);
-  expect_refused({"compare", in("compare.svg"), "--plot-power", in("vehicle.svg")}, "vehicle.toml", "--plot-power ", other);
+  write("compare.svg",
+        "title = \"t\"\nsource = \"s\"\n[designs]\na = \"vehicle.toml\"\n[[value]]\nvoltage = 3\n"
+        "metric = \"frequency_hz\"\ndesign = \"a\"\ntolerance = 0.01\npublished = 30.0\n");
+  expect_refused({"compare", in("compare.svg"), "--plot-power", in("compare.svg")}, "compare.svg", "--plot-power ",
+                 reads);
+  expect_refused({"compare", in("compare.svg"), "--plot-power", in("vehicle.svg")}, "vehicle.toml", "--plot-power ",
+                 other);
 }
 
 TEST_F(UsersFiles, WhatAnInputNamesIsAnInputToo) {
@@ -120,9 +127,11 @@ TEST_F(UsersFiles, WhatAnInputNamesIsAnInputToo) {
   write("vehicle.toml", vehicle);
   write("chords.csv", "distance_mm,chord_mm\n0,20\n30,22\n60,5\n");
   const std::string other = "reads and never overwrites; give another name";
-  expect_refused({"run", path("vehicle.toml"), "--waveforms", path("chords.csv")}, "chords.csv", "--waveforms ", "never over");
-  write("catalogue.toml", "model,gear_ratio,resistance_ohm,torque_constant_Nm_per_A,rotor_inertia_kgm2,inductance_H,"
-                          "no_load_current_A,voltage_nominal_V,mass_kg\nA,10,3,0.001,1e-9,0,0.01,3,0.001\n");
+  expect_refused({"run", path("vehicle.toml"), "--waveforms", path("chords.csv")}, "chords.csv", "--waveforms ",
+                 "never over");
+  write("catalogue.toml",
+        "model,gear_ratio,resistance_ohm,torque_constant_Nm_per_A,rotor_inertia_kgm2,inductance_H,"
+        "no_load_current_A,voltage_nominal_V,mass_kg\nA,10,3,0.001,1e-9,0,0.01,3,0.001\n");
   write("motors.toml", read(path("optimise.toml")) + "[motors]\nfile = \"catalogue.toml\"\n");
   const Outcome o = run({"optimise", path("motors.toml"), "-o", path("catalogue.toml")});
   EXPECT_EQ(o.status, 2) << o.err;
@@ -145,8 +154,9 @@ TEST_F(UsersFiles, TwoOutputsAreNeverTheSame) {
   const std::string same = "is also the file of ";
   expect_refused({"fit", path("bench.toml"), "-o", path("s.svg"), "--plot", path("s.svg")}, "s.svg", "-o ",
                  "the name must end in .toml");
-  expect_refused({"run", path("vehicle.toml"), "--plot", path("s.svg"), "--plot-power", path("") + "../" +
-                  fs::path(path("")).parent_path().filename().string() + "/s.svg"}, "s.svg", "--plot-power ", same + "--plot");
+  expect_refused({"run", path("vehicle.toml"), "--plot", path("s.svg"), "--plot-power",
+                  path("") + "../" + fs::path(path("")).parent_path().filename().string() + "/s.svg"},
+                 "s.svg", "--plot-power ", same + "--plot");
   fs::create_symlink("new.toml", path("link.svg"));
   expect_refused({"fit", path("bench.toml"), "-o", path("new.toml"), "--plot", path("link.svg")}, "new.toml", "--plot ",
                  same + "-o");
@@ -159,7 +169,8 @@ TEST_F(UsersFiles, NamesSayWhatAFileHolds) {
     arguments.push_back(path(name));
     const Outcome o = run(arguments);
     EXPECT_EQ(o.status, 2);
-    EXPECT_THAT(o.err, HasSubstr(arguments[arguments.size() - 2] + " " + path(name) + ": the name must end in " + endings));
+    EXPECT_THAT(o.err,
+                HasSubstr(arguments[arguments.size() - 2] + " " + path(name) + ": the name must end in " + endings));
     EXPECT_FALSE(fs::exists(path(name)));
   };
   refused({"optimise", path("optimise.toml"), "-o"}, "x.json", ".toml or .nc\n");
@@ -297,8 +308,8 @@ TEST_F(UsersFiles, ADamagedSweepUnderWayDoesNotBecomeADataSet) {
   ASSERT_EQ(run({"sweep", path("many.toml"), "-o", path("good.nc")}).status, 0);
   const pid_t child = ::fork();
   if (child == 0) {
-    ::execl(WINGBEAT_PROGRAM, "wingbeat", "sweep", path("many.toml").c_str(), "-o", path("o.nc").c_str(), "--threads", "1",
-            static_cast<char*>(nullptr));
+    ::execl(WINGBEAT_PROGRAM, "wingbeat", "sweep", path("many.toml").c_str(), "-o", path("o.nc").c_str(), "--threads",
+            "1", static_cast<char*>(nullptr));
     ::_exit(99);
   }
   const std::string journal = path("o.nc.journal");

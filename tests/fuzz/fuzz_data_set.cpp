@@ -11,14 +11,16 @@ namespace {
 std::filesystem::path made_of(const std::vector<std::string>& parts) {
   const std::filesystem::path path = fuzz::folder() / "sweep.nc";
   try {
-    const Study study = parse_study({.study_name = parts[3], .study = parts[0], .vehicle = parts[1],
-                                     .table_name = "designs.csv", .table = parts[2]});
+    const Study study = parse_study({.study_name = parts[3],
+                                     .study = parts[0],
+                                     .vehicle = parts[1],
+                                     .table_name = "designs.csv",
+                                     .table = parts[2]});
     if (study.sweep.size() < 10000) {
       (void)prepare_data_set(path, study, "0");
       return path;
     }
-  } catch (const InputError&) {
-  }
+  } catch (const InputError&) {}
   NetcdfFile file(path);
   file.set_attribute("study", parts[0]);
   file.set_attribute("vehicle", parts[1]);

@@ -1,7 +1,7 @@
 // Bytes as a motor data sheet; what it identifies must survive writing and reading.
 #include "files.hpp"
-#include "wingbeat/report/identification_report.hpp"
 #include "wingbeat/files/datasheet_file.hpp"
+#include "wingbeat/report/identification_report.hpp"
 
 using namespace wingbeat;
 
@@ -12,7 +12,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const MotorIdentification motor = identify_motor(sheet);
       (void)text_identification(motor, sheet);
       (void)json_identification(motor, sheet);
-    } catch (const ParameterError&) {
-    }
+    } catch (const ParameterError&) {}
   });
 }

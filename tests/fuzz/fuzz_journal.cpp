@@ -1,6 +1,6 @@
-// What an interrupted sweep left behind, damaged: the input is a list of edits, four bytes each (which file, where in two
-// bytes, the new byte; or a new length), of a journal and a data set that were sound. A chunk that the journal still
-// claims to hold must be the one that was stored.
+// What an interrupted sweep left behind, damaged: the input is a list of edits, four bytes each (which file, where in
+// two bytes, the new byte; or a new length), of a journal and a data set that were sound. A chunk that the journal
+// still claims to hold must be the one that was stored.
 #include <cstring>
 #include <stdexcept>
 
@@ -90,7 +90,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       for (std::size_t column = 0; column < layout.columns(); ++column) {
         const std::size_t width = layout.bytes_of_value(column), length = std::size_t(layout.size(chunk)) * width;
         const std::uint64_t at = place_of(column) + layout.first(chunk) * width;
-        if (at + length > now.size() || std::memcmp(now.data() + at, stored.data() + layout.begin(column), length) != 0) {
+        if (at + length > now.size() ||
+            std::memcmp(now.data() + at, stored.data() + layout.begin(column), length) != 0) {
           std::abort();
         }
       }
@@ -101,7 +102,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (journal.designs_held() != layout.designs) std::abort();
     journal.finish(fuzz::folder() / "sweep.nc");
   } catch (const InputError&) {
-  } catch (const std::runtime_error&) {
-  }
+  } catch (const std::runtime_error&) {}
   return 0;
 }

@@ -2,9 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <unistd.h>
 #include <fstream>
 #include <sstream>
-#include <unistd.h>
 
 #include "wingbeat/files/design_edit.hpp"
 #include "wingbeat/files/design_keys.hpp"
@@ -118,19 +118,20 @@ TEST(DesignEdit, AlternativesTakeTheirPlaceAndNewKeysTheirSection) {
   EXPECT_THAT(text, HasSubstr("\nhinge_offset = \"0.0065 m\"     # as drawn\n"));
   EXPECT_THAT(text, Not(HasSubstr("stroke_amplitude")));
 
-  design = parse_design(vehicle, "v.toml", std::vector<std::string>{"motor.friction_torque=0.2 mN m",
-                                                                    "spring.stiffness=1e-3 N m/rad",
-                                                                    "wing.planform.hub_offset=4 mm"});
+  design = parse_design(vehicle, "v.toml",
+                        std::vector<std::string>{"motor.friction_torque=0.2 mN m", "spring.stiffness=1e-3 N m/rad",
+                                                 "wing.planform.hub_offset=4 mm"});
   text = edited_design(vehicle, design);
-  EXPECT_THAT(text, HasSubstr("viscous_damping = \"3.6e-6 N m s/rad\"\nfriction_torque = \"0.0002 N m\"\n[transmission]\n"));
+  EXPECT_THAT(text,
+              HasSubstr("viscous_damping = \"3.6e-6 N m s/rad\"\nfriction_torque = \"0.0002 N m\"\n[transmission]\n"));
   EXPECT_THAT(text, HasSubstr("root_chord = \"2.5 cm\", hub_offset = \"0.004 m\" } # glued\n"));
   EXPECT_THAT(text, HasSubstr("# The end.\n\n[spring]\nstiffness = \"0.001 N m/rad\"\n"));
   EXPECT_EQ(write_design(parse_design(text, "t.toml")), write_design(design));
 }
 
 TEST(DesignEdit, WhatHasNoPlaceAnyMoreBecomesAComment) {
-  const Design<double> design =
-      parse_design(vehicle, "v.toml", std::vector<std::string>{"friction.type=viscous", "friction.damping=1e-6 N m s/rad"});
+  const Design<double> design = parse_design(
+      vehicle, "v.toml", std::vector<std::string>{"friction.type=viscous", "friction.damping=1e-6 N m s/rad"});
   const std::string text = edited_design(vehicle, design);
   EXPECT_THAT(text, HasSubstr("type = \"viscous\"\n# radius = \"2.5 mm\" # mu r_e\ndamping = \"1e-06 N m s/rad\"\n"));
   EXPECT_EQ(write_design(parse_design(text, "t.toml")), write_design(design));

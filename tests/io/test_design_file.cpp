@@ -166,8 +166,8 @@ TEST(DesignFile, MassesAreStatedBesideTheVehicles) {
 
 TEST(DesignFile, BothMotorFormsGiveTheSameVehicle) {
   // n = 10: K = n K_b, J = J_G + n^2 J_m, b = b_G + n^2 b_m.
-  const Overrides geared = {"motor.gear_ratio=10",        "motor.torque_constant=1e-3", "motor.inertia=1.4e-9",
-                            "motor.gear_inertia=1e-8",    "motor.viscous_damping=3e-8", "motor.gear_damping=0.6e-6",
+  const Overrides geared = {"motor.gear_ratio=10",       "motor.torque_constant=1e-3", "motor.inertia=1.4e-9",
+                            "motor.gear_inertia=1e-8",   "motor.viscous_damping=3e-8", "motor.gear_damping=0.6e-6",
                             "motor.friction_torque=1e-6"};
   const Motor<double> m = resolve(parse_design(vehicle_text, "v.toml", geared)).motor;
   const Overrides output_shaft = {"motor.friction_torque=1e-5"};
@@ -192,14 +192,14 @@ TEST(DesignFile, ChordTableGivesTheClosedForm) {
 
 TEST(DesignFile, CoefficientTableFollowsTheNamedSet) {
   const TableLoader load = [](const std::string& name) { return read_text_file(test_data / name); };
-  const Design<double> d = parse_design(
-      vehicle_text, "v.toml", Overrides{"aerodynamics.coefficients.table=translational.csv"}, load);
+  const Design<double> d =
+      parse_design(vehicle_text, "v.toml", Overrides{"aerodynamics.coefficients.table=translational.csv"}, load);
   EXPECT_EQ(d.aerodynamics.coefficients_name, "table");
   for (const double alpha : {0.3, 0.8, 1.3}) {
-    EXPECT_NEAR(lift_coefficient(d.aerodynamics.coefficients, alpha),
-                lift_coefficient(translational_2022(), alpha), 1e-3);
-    EXPECT_NEAR(drag_coefficient(d.aerodynamics.coefficients, alpha),
-                drag_coefficient(translational_2022(), alpha), 1e-3);
+    EXPECT_NEAR(lift_coefficient(d.aerodynamics.coefficients, alpha), lift_coefficient(translational_2022(), alpha),
+                1e-3);
+    EXPECT_NEAR(drag_coefficient(d.aerodynamics.coefficients, alpha), drag_coefficient(translational_2022(), alpha),
+                1e-3);
   }
 }
 
@@ -208,7 +208,8 @@ TEST(DesignFile, TableFilesAreSoughtBesideTheVehicle) {
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "v.toml") << with("{ shape = \"moments\", s2 = \"2.457e-6 m4\", s3 = \"1.048e-7 m5\" }",
                                            "{ shape = \"tabulated\", file = \"chords.csv\" }");
-  std::ofstream(folder / "chords.csv") << "\xEF\xBB\xBF" "distance_mm,chord_mm\r\n0,25\r\n\r\n63,20\r\n";
+  std::ofstream(folder / "chords.csv") << "\xEF\xBB\xBF"
+                                          "distance_mm,chord_mm\r\n0,25\r\n\r\n63,20\r\n";
   const auto& table = read_design(folder / "v.toml").wing.planform.chord_table;
   EXPECT_THAT(table, testing::ElementsAre(std::pair(0.0, 0.025), std::pair(0.063, 0.02)));
   std::filesystem::remove_all(folder);
@@ -453,8 +454,7 @@ TEST(DesignErrors, TableFiles) {
   EXPECT_EQ(refusal_of(""), where + "c.csv: is empty; expected a header such as distance_mm,chord_mm");
   EXPECT_EQ(refusal_of("distance,chord_mm\n"),
             where + "c.csv:1:1: column \"distance\" names no unit; expected a header such as distance_mm,chord_mm");
-  EXPECT_EQ(refusal_of("distance_mm,chord_kg\n"),
-            where + "c.csv:1:13: expected a length such as \"5 mm\", got \"kg\"");
+  EXPECT_EQ(refusal_of("distance_mm,chord_kg\n"), where + "c.csv:1:13: expected a length such as \"5 mm\", got \"kg\"");
   EXPECT_EQ(refusal_of("x_mm,chord_mm\n"),
             where + "c.csv:1:1: unknown column \"x_mm\"; expected a header such as distance_mm,chord_mm");
   EXPECT_EQ(refusal_of("distance_mm,chord_mm\n0,1\n1\n"), where + "c.csv:3:1: expected 2 numbers, got 1");
@@ -544,15 +544,17 @@ TEST(Overrides, ChangeTypesInAnyOrder) {
   }
   EXPECT_EQ(overridden({"friction.type=none"}).friction.law, FrictionLaw::none);
   EXPECT_EQ(overridden({"supply.type=sine", "supply.amplitude=2", "supply.frequency=30"}).supply.voltage, 2.0);
-  const auto planform = overridden({"wing.planform.shape=rectangle", "wing.planform.length=63 mm",
-                                    "wing.planform.root_chord=20 mm"}).wing.planform;
+  const auto planform =
+      overridden({"wing.planform.shape=rectangle", "wing.planform.length=63 mm", "wing.planform.root_chord=20 mm"})
+          .wing.planform;
   EXPECT_EQ(planform.shape, PlanformShape::rectangle);
   EXPECT_EQ(planform.s2, 0.0);
 }
 
 TEST(Overrides, SpellOutNamedCoefficients) {
-  const auto coefficients = overridden({"aerodynamics.coefficients=translational-2022",
-                                        "aerodynamics.coefficients.lift.offset=0.3"}).aerodynamics;
+  const auto coefficients =
+      overridden({"aerodynamics.coefficients=translational-2022", "aerodynamics.coefficients.lift.offset=0.3"})
+          .aerodynamics;
   EXPECT_EQ(coefficients.coefficients_name, "custom");
   EXPECT_EQ(coefficients.coefficients.lift.offset, 0.3);
   EXPECT_EQ(coefficients.coefficients.drag.phase, translational_2022().drag.phase);
@@ -575,8 +577,9 @@ TEST(Overrides, NameThemselvesInErrors) {
             "\"load-proportional\"");
   EXPECT_EQ(override_refusal("motor=3"), "--set motor=3: motor: expected a section [motor], got the number 3");
   EXPECT_EQ(override_refusal("nonsense"), "--set nonsense: expected KEY=VALUE, as in --set supply.voltage=\"3 V\"");
-  EXPECT_EQ(override_refusal("=1"), "--set =1: unknown key; the sections are [vehicle], [supply], [motor], "
-                                    "[transmission], [friction], [spring], [wing], [aerodynamics], [bench]");
+  EXPECT_EQ(override_refusal("=1"),
+            "--set =1: unknown key; the sections are [vehicle], [supply], [motor], "
+            "[transmission], [friction], [spring], [wing], [aerodynamics], [bench]");
   EXPECT_EQ(override_refusal("supply.voltage=1\nmotor.inertia=2"),
             "--set supply.voltage=1\\nmotor.inertia=2: neither a TOML value nor one line of plain UTF-8 text");
   EXPECT_THAT(override_refusal("vehicle.name=\xff"),

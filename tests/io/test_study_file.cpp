@@ -142,8 +142,9 @@ TEST_F(StudyFile, OptionsAndOverrides) {
 
 TEST_F(StudyFile, TheTextsOfAStudyMakeItAgain) {
   write("d.csv", "# designs\nsupply.voltage [V], friction.radius (mm)\n3, 2\n4.5,1e0\n\n");
-  const std::string text = "[set]\nmotor.inertia = 2e-7\n[[axis]]\nkey = \"springs\"\nvalues = [true, false]\n"
-                           "[samples]\nmethod = \"csv\"\nfile = \"d.csv\"\n";
+  const std::string text =
+      "[set]\nmotor.inertia = 2e-7\n[[axis]]\nkey = \"springs\"\nvalues = [true, false]\n"
+      "[samples]\nmethod = \"csv\"\nfile = \"d.csv\"\n";
   const Study study = read(text);
   fs::remove_all(folder_);
   const Study again = parse_study(study.input);
@@ -160,9 +161,10 @@ TEST_F(StudyFile, TheTextsOfAStudyMakeItAgain) {
 
 TEST_F(StudyFile, SamplesFillTheirRanges) {
   for (const char* method : {"sobol", "latin-hypercube"}) {
-    const Study study = read(std::string("[samples]\nmethod = \"") + method +
-                             "\"\ncount = 64\nseed = 9\n[[samples.range]]\nkey = \"supply.voltage\"\nfrom = 2\nto = 4\n"
-                             "[[samples.range]]\nkey = \"spring.stiffness\"\nfrom = 1e-4\nto = 1e-2\nscale = \"log\"\n");
+    const Study study =
+        read(std::string("[samples]\nmethod = \"") + method +
+             "\"\ncount = 64\nseed = 9\n[[samples.range]]\nkey = \"supply.voltage\"\nfrom = 2\nto = 4\n"
+             "[[samples.range]]\nkey = \"spring.stiffness\"\nfrom = 1e-4\nto = 1e-2\nscale = \"log\"\n");
     const SweepAxis& axis = study.sweep.axes.at(0);
     ASSERT_EQ(axis.count, 64U);
     std::vector<int> voltage(64, 0), stiffness(64, 0);
@@ -186,8 +188,9 @@ TEST_F(StudyFile, WrongStudiesAreRefused) {
        "s.toml:3:12: study.metrics: \"lift_mean\" is no metric; did you mean lift_mean_n?"},
       {"metrics = [\"lift_mean_n\", \"lift_mean_n\"]\n" + radius_axis,
        "s.toml:3:27: study.metrics: \"lift_mean_n\" is given twice"},
-      {"metrics = []\n" + radius_axis, "s.toml:3:1: study.metrics: expected an array of names such as [\"frequency_hz\", "
-                                       "\"lift_mean_n\"], got an array"},
+      {"metrics = []\n" + radius_axis,
+       "s.toml:3:1: study.metrics: expected an array of names such as [\"frequency_hz\", "
+       "\"lift_mean_n\"], got an array"},
       {"hold = { voltage = \"3 kg\" }\n" + radius_axis,
        "s.toml:3:10: study.hold.voltage: expected a voltage such as \"3 V\", got \"3 kg\""},
       {"hold = { voltage = 3, frequency = 22 }\n" + radius_axis,
@@ -198,13 +201,15 @@ TEST_F(StudyFile, WrongStudiesAreRefused) {
       {"[set]\nmotor.inertja = 1\n" + radius_axis,
        "s.toml:4:7: set.motor.inertja: unknown key; did you mean motor.inertia?"},
       {"[set]\nmotor.inertia = \"3 V\"\n" + radius_axis,
-       "s.toml:4:7: set.motor.inertia: motor.inertia: expected a moment of inertia such as \"1.5e-7 kg m2\", got \"3 V\""},
+       "s.toml:4:7: set.motor.inertia: motor.inertia: expected a moment of inertia such as \"1.5e-7 kg m2\", got "
+       "\"3 V\""},
       {"[set]\nmotor.inertia = -1\n" + radius_axis,
        "s.toml:4:7: set.motor.inertia: motor.inertia: must be > 0 [kg m2], got -1"},
       {"[[axis]]\nvalues = [1]\n", "s.toml:3:1: axis: give one of key and keys"},
       {"[[axis]]\nkey = \"motor.inertja\"\nvalues = [1]\n",
        "s.toml:4:1: axis.key: motor.inertja: unknown key; did you mean motor.inertia?"},
-      {"[[axis]]\nkey = \"spring\"\nvalues = [true]\n", "s.toml:4:1: axis.key: spring: unknown key; did you mean springs?"},
+      {"[[axis]]\nkey = \"spring\"\nvalues = [true]\n",
+       "s.toml:4:1: axis.key: spring: unknown key; did you mean springs?"},
       {"[[axis]]\nkey = \"wing.planform.chords\"\nvalues = [1]\n",
        "s.toml:4:1: axis.key: wing.planform.chords is a table, of which no axis can be made"},
       {radius_axis + radius_axis, "s.toml:7:1: axis.key: transmission.crank_radius is varied already"},
@@ -220,7 +225,8 @@ TEST_F(StudyFile, WrongStudiesAreRefused) {
        "s.toml:6:1: axis.count: give values, or from, to and count, not both"},
       {"[[axis]]\nkey = \"supply.voltage\"\nfrom = 1\ncount = 3\n",
        "s.toml:3:1: axis.to: missing; expected a voltage such as \"3 V\""},
-      {"[[axis]]\nkey = \"supply.voltage\"\nfrom = 1\nto = 1\ncount = 3\n", "s.toml:6:1: axis.to: is the value of from"},
+      {"[[axis]]\nkey = \"supply.voltage\"\nfrom = 1\nto = 1\ncount = 3\n",
+       "s.toml:6:1: axis.to: is the value of from"},
       {"[[axis]]\nkey = \"supply.voltage\"\nfrom = 0\nto = 1\ncount = 3\nscale = \"log\"\n",
        "s.toml:5:1: axis.from: must be > 0 on a logarithmic scale"},
       {"[[axis]]\nkey = \"supply.voltage\"\nfrom = 1\nto = 2\ncount = 3\nscale = \"cubic\"\n",
@@ -229,10 +235,12 @@ TEST_F(StudyFile, WrongStudiesAreRefused) {
        "s.toml:7:1: axis.count: expected a whole number from 2 to 1000000, got the number 1"},
       {"[[axis]]\nkey = \"supply.voltage\"\nfrom = 1\nto = 2\ncount = 2.5\n",
        "s.toml:7:1: axis.count: expected a whole number from 2 to 1000000, got the number 2.5"},
-      {"[[axis]]\nkey = \"springs\"\nvalues = [\"off\"]\n", "s.toml:5:11: axis.values: expected true or false, got \"off\""},
+      {"[[axis]]\nkey = \"springs\"\nvalues = [\"off\"]\n",
+       "s.toml:5:11: axis.values: expected true or false, got \"off\""},
       {"[[axis]]\nkey = \"condition\"\nvalues = [\"water\"]\n",
        "s.toml:5:11: axis.values: expected \"air\", \"vacuum\" or \"wingless\", got \"water\""},
-      {"[[axis]]\nkey = \"condition\"\nfrom = 1\n", "s.toml:3:1: axis.values: missing; expected the values of condition"},
+      {"[[axis]]\nkey = \"condition\"\nfrom = 1\n",
+       "s.toml:3:1: axis.values: missing; expected the values of condition"},
       {"[[axis]]\nkey = \"transmission.formulation\"\nvalues = [\"rod-force\", \"rod\"]\n",
        "s.toml:4:1: axis: transmission.formulation: expected rod-force or virtual-work, got \"rod\""},
       {"[[axis]]\nkey = \"friction.type\"\nvalues = [\"viscous\"]\n",
@@ -264,7 +272,8 @@ TEST_F(StudyFile, WrongStudiesAreRefused) {
        "s.toml:3:2: samples.method: missing; expected \"latin-hypercube\", \"sobol\" or \"csv\""},
       {"[samples]\nmethod = \"grid\"\n",
        "s.toml:4:1: samples.method: expected \"latin-hypercube\", \"sobol\" or \"csv\", got \"grid\""},
-      {"[samples]\nmethod = \"sobol\"\ncount = 3\n", "s.toml:3:2: samples.range: missing; expected [[samples.range]] sections"},
+      {"[samples]\nmethod = \"sobol\"\ncount = 3\n",
+       "s.toml:3:2: samples.range: missing; expected [[samples.range]] sections"},
       {"[samples]\nmethod = \"sobol\"\nfile = \"d.csv\"\n",
        "s.toml:5:1: samples.file: has no place with method = \"sobol\""},
       {"[samples]\nmethod = \"csv\"\nfile = \"none.csv\"\n", "s.toml:5:1: samples.file: there is no file none.csv"},
@@ -313,7 +322,8 @@ TEST_F(StudyFile, WrongTablesOfDesignsAreRefused) {
       {"", "d.csv: holds no designs"},
       {"supply.voltage [V]\n", "d.csv: holds no designs"},
       {"supply.voltag [V]\n3\n", "d.csv:1:1: supply.voltag: unknown key; did you mean supply.voltage?"},
-      {"supply.voltage\n3\n", "d.csv:1:1: supply.voltage names no unit; expected a heading such as \"supply.voltage [V]\""},
+      {"supply.voltage\n3\n",
+       "d.csv:1:1: supply.voltage names no unit; expected a heading such as \"supply.voltage [V]\""},
       {"supply.voltage [A]\n3\n", "d.csv:1:1: supply.voltage: expected a voltage"},
       {"supply.voltage [V\n3\n", "the unit stands in brackets"},
       {"condition\nair\n", "d.csv:1:1: condition is not a number"},

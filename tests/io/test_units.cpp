@@ -91,8 +91,7 @@ TEST(Units, RefusesWhatIsNotTheQuantity) {
 }
 
 TEST(Units, ANumberAfterTheUnitIsNeverAFactor) {
-  for (const char* text : {"1 mm·5", "1 mm²·5", "1 mm·5e0", "1 mm·-5", "1 m° 5", "1 m*5", "1 m.5", "5·2 mm",
-                           "1 m×5"}) {
+  for (const char* text : {"1 mm·5", "1 mm²·5", "1 mm·5e0", "1 mm·-5", "1 m° 5", "1 m*5", "1 m.5", "5·2 mm", "1 m×5"}) {
     EXPECT_THAT(refusal(text, "m"), testing::HasSubstr(", which holds a second number")) << text;
   }
   EXPECT_THAT(refusal("1 mm²5", "m2"), testing::HasSubstr(", which holds a second number"));
@@ -113,8 +112,8 @@ TEST(Units, WordsOfCatalogues) {
   EXPECT_EQ(parse_quantity("3.6e-6 Nms/rad", "N m s/rad"), 3.6e-6);
   EXPECT_EQ(parse_quantity("3 mVs/rad", "N m/A"), 0.003);
   EXPECT_DOUBLE_EQ(parse_quantity("1320 RPM", "Hz"), 22.0);
-  for (const char* text : {"0.12 gcm2", "0.12 gcm²", "0.12 gcm^2", "0.12 gcm**2", "0.12 g cm2", "0.12 g·cm²",
-                           "12 gmm2", "12e3 mgmm2", "1.2e-2 kgmm2", "1.2e-8 kgm2", "1.2e-4 kgcm2"}) {
+  for (const char* text : {"0.12 gcm2", "0.12 gcm²", "0.12 gcm^2", "0.12 gcm**2", "0.12 g cm2", "0.12 g·cm²", "12 gmm2",
+                           "12e3 mgmm2", "1.2e-2 kgmm2", "1.2e-8 kgm2", "1.2e-4 kgcm2"}) {
     EXPECT_DOUBLE_EQ(parse_quantity(text, "kg m2"), 1.2e-8) << text;
   }
   // Still no other dimension, and no longer word.
@@ -127,9 +126,7 @@ TEST(Units, WordsOfCatalogues) {
 }
 
 TEST(Units, SpeedConstantsAreTorqueConstantsWhereAskedFor) {
-  const auto torque_constant = [](const char* text) {
-    return parse_quantity(text, "N m/A", SpeedConstant::inverted);
-  };
+  const auto torque_constant = [](const char* text) { return parse_quantity(text, "N m/A", SpeedConstant::inverted); };
   EXPECT_DOUBLE_EQ(torque_constant("1000 rpm/V"), 60.0 / (two_pi * 1000.0));
   EXPECT_DOUBLE_EQ(torque_constant("1 krpm/V"), 60.0 / (two_pi * 1000.0));
   EXPECT_DOUBLE_EQ(torque_constant("100 rad/s/V"), 0.01);
@@ -141,9 +138,10 @@ TEST(Units, SpeedConstantsAreTorqueConstantsWhereAskedFor) {
   EXPECT_EQ(refusal("1000 rpm/V", "N m/A"),
             "expected a torque constant such as \"0.01 N m/A\", got \"1000 rpm/V\"; a speed constant is the reciprocal "
             "of a torque constant: write 0.0095493 N m/A");
-  EXPECT_EQ(refusal("1000 min-1/V", "N m/A"),
-            "expected a torque constant such as \"0.01 N m/A\", got \"1000 min-1/V\"; a speed constant names the angle, "
-            "as in rpm/V or rad/s/V");
+  EXPECT_EQ(
+      refusal("1000 min-1/V", "N m/A"),
+      "expected a torque constant such as \"0.01 N m/A\", got \"1000 min-1/V\"; a speed constant names the angle, "
+      "as in rpm/V or rad/s/V");
   EXPECT_THROW(unit_factor("rpm/V", "N m/A"), UnitError);
   EXPECT_THROW(parse_quantity("1000 rpm/V", "kg m2", SpeedConstant::inverted), UnitError);
 }

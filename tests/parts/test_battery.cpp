@@ -75,14 +75,12 @@ TEST(Battery, EveryParameterIsCheckedByName) {
   using B = Battery<double>;
   EXPECT_EQ(refusal(lithium(), [](B& b) { b.cells = 1.5; }), "supply.cells: must be a whole number >= 1 [1], got 1.5");
   EXPECT_EQ(refusal(lithium(), [](B& b) { b.cells = 0.0; }), "supply.cells: must be a whole number >= 1 [1], got 0");
-  EXPECT_EQ(refusal(lithium(), [](B& b) { b.discharge_curve.clear(); }),
-            "supply.cell_voltage: must be > 0 [V], got 0");
+  EXPECT_EQ(refusal(lithium(), [](B& b) { b.discharge_curve.clear(); }), "supply.cell_voltage: must be > 0 [V], got 0");
   EXPECT_EQ(refusal(lithium(), [](B& b) { b.internal_resistance = -1.0; }),
             "supply.internal_resistance: must be >= 0 [ohm], got -1");
   EXPECT_EQ(refusal(lithium(), [](B& b) { b.capacity = 0.0; }), "supply.capacity: must be > 0 [C], got 0");
   EXPECT_EQ(refusal(lithium(), [](B& b) { b.charge = 1.1; }), "supply.charge: must lie between 0 and 1 [1], got 1.1");
-  EXPECT_EQ(refusal(lithium(), [](B& b) { b.charge = -0.1; }),
-            "supply.charge: must lie between 0 and 1 [1], got -0.1");
+  EXPECT_EQ(refusal(lithium(), [](B& b) { b.charge = -0.1; }), "supply.charge: must lie between 0 and 1 [1], got -0.1");
   EXPECT_EQ(refusal(lithium(), [](B& b) { b.cutoff_voltage = -3.0; }),
             "supply.cutoff_voltage: must be >= 0 [V], got -3");
   EXPECT_EQ(refusal(lithium(), [](B& b) { b.discharge_curve.resize(1); }),
@@ -90,8 +88,9 @@ TEST(Battery, EveryParameterIsCheckedByName) {
   EXPECT_EQ(refusal(lithium(), [](B& b) { b.discharge_curve[1].first = 0.9; }),
             "supply.discharge_curve: row 3 of the discharge curve must have a larger state of charge than the row "
             "before it");
-  EXPECT_EQ(refusal(lithium(), [](B& b) { b.discharge_curve[4].second = 3.6; }),
-            "supply.discharge_curve: row 5 of the discharge curve must not have a lower voltage than the row before it");
+  EXPECT_EQ(
+      refusal(lithium(), [](B& b) { b.discharge_curve[4].second = 3.6; }),
+      "supply.discharge_curve: row 5 of the discharge curve must not have a lower voltage than the row before it");
   EXPECT_EQ(refusal(lithium(), [](B& b) { b.discharge_curve[0].second = 0.0; }),
             "supply.discharge_curve: row 1 of the discharge curve must hold a state of charge and a voltage > 0 V");
   EXPECT_EQ(refusal(lithium(), [](B& b) { b.discharge_curve[0].first = 0.05; }),

@@ -145,9 +145,9 @@ TEST(Motion, PowerBalancesAtEveryInstant) {
     const Vehicle<J> dual = v.cast<J>();
     const double stored = stored_energy(dual, crank_kinematics(dual.crank, sin(theta), cos(theta)), w, current).v[0];
     // Without an inductance the state need not satisfy v = R i + K omega: its reserve does no work on the field.
-    const double voltage = v.motor.armature_inductance > 0.0 ? at.voltage
-                                                             : v.motor.armature_resistance * i +
-                                                                   v.motor.torque_constant * omega;
+    const double voltage = v.motor.armature_inductance > 0.0
+                               ? at.voltage
+                               : v.motor.armature_resistance * i + v.motor.torque_constant * omega;
     const auto& k = m.kinematics;
     const double formulation = m.rod_force * (k.crank_lever * omega - k.wing_lever * m.stroke_velocity);
     expect_balance({voltage * i, -v.motor.armature_resistance * i * i, -v.motor.viscous_damping * omega * omega,
@@ -192,8 +192,7 @@ TEST(Motion, WinglessVehicleHasNoRodForceAndSettlesAtTheNoLoadSpeed) {
   const double omega = no_load_speed(v.motor, v.voltage);
   const double i = algebraic_current(v, v.voltage, omega);
   for (double theta = 0.0; theta < two_pi; theta += 0.37) {
-    const Motion<double> m =
-        motion_at(v, std::sin(theta), std::cos(theta), omega, i, v.voltage, {1.0, 1.0, 1.0, 1.0});
+    const Motion<double> m = motion_at(v, std::sin(theta), std::cos(theta), omega, i, v.voltage, {1.0, 1.0, 1.0, 1.0});
     EXPECT_EQ(m.rod_force, 0.0);
     EXPECT_EQ(m.aero_moment, 0.0);
     EXPECT_NEAR(m.crank_acceleration, 0.0, 1e-9);

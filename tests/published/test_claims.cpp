@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "wingbeat/reproduction/claims.hpp"
 #include "wingbeat/files/optimise_file.hpp"
+#include "wingbeat/reproduction/claims.hpp"
 #include "wingbeat/run/parallel.hpp"
 
 namespace wingbeat {
@@ -143,8 +143,8 @@ TEST(Claims, WhatIsOutsideTheDomainSaysSo) {
   EXPECT_TRUE(lift.outside[0]);  // a residual of 6.7 % of the input
   EXPECT_FALSE(lift.outside[1]);
   EXPECT_THAT(lift.ours_text[0], HasSubstr("outside the domain, residual 6.7 %"));
-  // Wings that pitch four times as much turn past the stroke plane with every crank, where the extrapolated coefficients
-  // give 11.6 mN at 14 mm and -127 deg: no maximum is taken of that.
+  // Wings that pitch four times as much turn past the stroke plane with every crank, where the extrapolated
+  // coefficients give 11.6 mN at 14 mm and -127 deg: no maximum is taken of that.
   PublishedFile file = paper();
   file.values.clear();
   std::erase_if(file.trends, [](const PublishedTrend& t) {
@@ -242,7 +242,8 @@ TEST(Claims, WithoutFrictionTheInputIsHalf) {
   Design<double> design = paper().designs.at("spring_off");
   const double with = run_design(design, {.frequency = 22.0}).metrics[Metric::power_electrical];
   design.friction = {FrictionLaw::none, 0.0};
-  const double without = run_design(design, {.frequency = 22.0, .allow_extrapolation = true}).metrics[Metric::power_electrical];
+  const double without =
+      run_design(design, {.frequency = 22.0, .allow_extrapolation = true}).metrics[Metric::power_electrical];
   EXPECT_NEAR(with, 0.544, 5e-4);
   EXPECT_NEAR(without, 0.274, 5e-4);
 }

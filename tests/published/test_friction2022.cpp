@@ -2,8 +2,8 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
-#include "wingbeat/reproduction/comparison.hpp"
 #include "wingbeat/files/published.hpp"
+#include "wingbeat/reproduction/comparison.hpp"
 
 namespace wingbeat {
 namespace {

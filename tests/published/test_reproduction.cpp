@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "wingbeat/reproduction/claims.hpp"
 #include "wingbeat/report/energy_flow.hpp"
+#include "wingbeat/reproduction/claims.hpp"
 #include "wingbeat/study/reproduction.hpp"
 
 namespace wingbeat {
@@ -42,10 +42,8 @@ TEST(Reproduction, EnergyFlowsClose) {
     // A constant friction of the motor aside, which this one lacks, it is the motor output of eq (16).
     EXPECT_NEAR(f.motor_output, c.run.metrics[Metric::power_motor], 1e-7 * f.supply);
     const double residual = f.transmission[1].power;
-    if (c.of.formulation == Formulation::virtual_work)
-      EXPECT_NEAR(residual, 0.0, 1e-9 * f.supply);
-    else
-      EXPECT_GT(residual, 0.02 * f.supply);
+    if (c.of.formulation == Formulation::virtual_work) EXPECT_NEAR(residual, 0.0, 1e-9 * f.supply);
+    else EXPECT_GT(residual, 0.02 * f.supply);
   }
 }
 
@@ -107,10 +105,8 @@ TEST(Reproduction, OnlyLoadProportionalFrictionAnswersToTheForce) {
     d.friction = {law, calibrate_friction(design, law, 21.7).coefficient};
     const LossCurve curve = loss_along_stiffness(d, 22.0, stiffness, 3);
     const double off = curve.metrics.front()[Metric::power_friction], on = curve.metrics.back()[Metric::power_friction];
-    if (law == FrictionLaw::load_proportional)
-      EXPECT_LT(on, 0.7 * off);
-    else
-      EXPECT_NEAR(on, off, 0.05 * off);  // the crank turns more evenly: the mean of omega^3 falls a little
+    if (law == FrictionLaw::load_proportional) EXPECT_LT(on, 0.7 * off);
+    else EXPECT_NEAR(on, off, 0.05 * off);  // the crank turns more evenly: the mean of omega^3 falls a little
   }
 }
 

@@ -57,8 +57,8 @@ inline constexpr std::size_t motor_work_at = 21 + std::size_t(Integral::motor_wo
 
 inline constexpr int step_size = 2 + integral_count;
 
-/// One explicit step of the crank, integrals included, on a given smooth branch. Without inductance the current is none of
-/// the states; `out` holds zero for it.
+/// One explicit step of the crank, integrals included, on a given smooth branch. Without inductance the current is none
+/// of the states; `out` holds zero for it.
 template <Scalar S>
 std::array<S, step_size> crank_step(const Vehicle<S>& v, const S& theta, const std::array<S, 2>& state, const S& h,
                                     const std::array<S, 4>& signs) {

@@ -24,8 +24,7 @@ void PrintTo(const InstructionSet& set, std::ostream* out) { *out << set.name; }
 
 /// Those that this processor can run.
 std::vector<InstructionSet> instruction_sets() {
-  std::vector<InstructionSet> sets = {
-      {"base", lanes::evaluate_base, lanes::check_select_base, lanes::functions_base}};
+  std::vector<InstructionSet> sets = {{"base", lanes::evaluate_base, lanes::check_select_base, lanes::functions_base}};
 #ifdef __x86_64__
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
     sets.push_back({"avx2", lanes::evaluate_avx2, lanes::check_select_avx2, lanes::functions_avx2});
@@ -46,8 +45,8 @@ class Batches : public testing::TestWithParam<InstructionSet> {
 std::array<double, outputs> scalar_outputs(const Case& c) {
   const auto at = instant<double>(
       c.vehicle, {std::sin(c.theta), std::cos(c.theta), c.omega, c.current, c.voltage, c.force, c.force});
-  const auto step = crank_step<double>(c.vehicle, c.theta, {120.0 + std::abs(c.omega), c.current}, 0.1,
-                                       {c.force, 1.0, 1.0, 1.0});
+  const auto step =
+      crank_step<double>(c.vehicle, c.theta, {120.0 + std::abs(c.omega), c.current}, 0.1, {c.force, 1.0, 1.0, 1.0});
   std::array<double, outputs> out;
   std::copy(at.begin(), at.end(), out.begin());
   std::copy(step.begin(), step.end(), out.begin() + instant_size);
@@ -89,8 +88,9 @@ Vehicle<double> mixed_vehicle(std::mt19937_64& random, Formulation formulation, 
     d.transmission.formulation = formulation;
     d.motor.constants.armature_inductance = inductance == Inductance::some ? 29e-3 : 0.0;
     const int condition = std::uniform_int_distribution<int>(0, 5)(random);
-    Vehicle<double> v = resolve(
-        d, condition == 0 ? Condition::wingless : condition == 1 ? Condition::vacuum : Condition::air);
+    Vehicle<double> v = resolve(d, condition == 0   ? Condition::wingless
+                                   : condition == 1 ? Condition::vacuum
+                                                    : Condition::air);
     v.source_resistance = 0.2 * v.motor.armature_resistance;
     // Near a jam rounding grows without bound.
     double least = 1.0;
@@ -108,8 +108,12 @@ std::vector<Case> mixed_cases(Formulation formulation, Inductance inductance, in
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   std::vector<Case> cases;
   for (int n = 0; n < count; ++n) {
-    Case c{mixed_vehicle(random, formulation, inductance), two_pi * unit(random), 300.0 * (unit(random) - 0.3),
-           unit(random) - 0.4, 5.0 * unit(random), unit(random) < 0.5 ? 1.0 : -1.0};
+    Case c{mixed_vehicle(random, formulation, inductance),
+           two_pi * unit(random),
+           300.0 * (unit(random) - 0.3),
+           unit(random) - 0.4,
+           5.0 * unit(random),
+           unit(random) < 0.5 ? 1.0 : -1.0};
     // Every kind of threshold, so that neighbouring lanes lie on different sides of it.
     switch (n % 8) {
       case 1: c.omega = 0.0; break;

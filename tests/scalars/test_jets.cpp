@@ -93,9 +93,8 @@ struct InstantOf {
   std::array<S, instant_size> operator()(const Inputs<S>& in) const {
     using std::cos;
     using std::sin;
-    return instant<S>(in.vehicle,
-                      {sin(in.theta), cos(in.theta), in.omega, in.current,
-                       terminal_voltage(in.vehicle, in.vehicle.voltage, in.current), S(force), S(1.0)});
+    return instant<S>(in.vehicle, {sin(in.theta), cos(in.theta), in.omega, in.current,
+                                   terminal_voltage(in.vehicle, in.vehicle.voltage, in.current), S(force), S(1.0)});
   }
 };
 
@@ -162,8 +161,7 @@ struct MetricsOf {
     CycleExtremes<S> extremes;
     for (std::size_t n = 0; n < integrals.size(); ++n) integrals[n] = S(0.05) * numbers[21 + n];
     for (std::size_t n = 0; n < extremes.size(); ++n) extremes[n] = numbers[21 + integrals.size() + n];
-    return cycle_metrics(in.vehicle, integrals, extremes, S(0.01),
-                         ReportingOf<S>{S(3.34e-3), S(7.664e-3)}).values;
+    return cycle_metrics(in.vehicle, integrals, extremes, S(0.01), ReportingOf<S>{S(3.34e-3), S(7.664e-3)}).values;
   }
 };
 
@@ -306,8 +304,14 @@ std::array<S, 8> resolved(const std::array<S, 8>& x) {
   d.wing.planform.hub_offset = x[7];
   d.aerodynamics.coefficients = translational_2022().cast<S>();
   const Vehicle<S> v = resolve(d);
-  return {v.voltage,           v.motor.torque_constant, v.motor.inertia, v.motor.viscous_damping,
-          v.crank.hinge_offset, v.spring.stiffness,      v.wings.s2,      v.wings.s3};
+  return {v.voltage,
+          v.motor.torque_constant,
+          v.motor.inertia,
+          v.motor.viscous_damping,
+          v.crank.hinge_offset,
+          v.spring.stiffness,
+          v.wings.s2,
+          v.wings.s3};
 }
 
 TEST(Jets, ResolvedDesignAgreesWithDifferences) {

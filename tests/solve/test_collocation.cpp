@@ -44,7 +44,8 @@ TEST_P(Collocation, PolynomialsOfItsDegreeAreIntegratedDifferentiatedAndTakenApa
         const double at = std::pow(rule.node[j], power);
         between += rule.between[m][j] * at;
         slope += rule.slope[m][j] * at;
-        for (int k = 0; k <= n; ++k) value += rule.legendre[k][j] * at * std::legendre(unsigned(k), 2.0 * rule.node[m] - 1.0);
+        for (int k = 0; k <= n; ++k)
+          value += rule.legendre[k][j] * at * std::legendre(unsigned(k), 2.0 * rule.node[m] - 1.0);
       }
       const auto integral = [&](double x) { return std::pow(x, power + 1) / (power + 1); };
       EXPECT_NEAR(between, m == 0 ? 0.0 : integral(rule.node[m]) - integral(rule.node[m - 1]), 1e-14);

@@ -56,9 +56,7 @@ BenchFit bench(double noise, std::uint64_t seed, bool six = false) {
   return fit;
 }
 
-double truth(const std::string& key) {
-  return *design_parameter(key).value(reference_design());
-}
+double truth(const std::string& key) { return *design_parameter(key).value(reference_design()); }
 
 TEST(BenchFit, ExactDataGiveTheVehicleBack) {
   const FitResult r = fit_bench(bench(0.0, 1, true));

@@ -111,9 +111,9 @@ TEST(DomainOfOptima, SlopesOfTheLimitsAreThoseOfDifferences) {
     parameters[k].set(down, x - h);
     const DesignPoint above = design_point(up, options, {}, start_up_in_time());
     const DesignPoint below = design_point(down, options, {}, start_up_in_time());
-    for (const DomainLimit limit : {DomainLimit::angle_of_attack, DomainLimit::formulation_residual,
-                                    DomainLimit::mechanism_efficiency, DomainLimit::motor_efficiency,
-                                    DomainLimit::flow_speed}) {
+    for (const DomainLimit limit :
+         {DomainLimit::angle_of_attack, DomainLimit::formulation_residual, DomainLimit::mechanism_efficiency,
+          DomainLimit::motor_efficiency, DomainLimit::flow_speed}) {
       const std::size_t l = std::size_t(limit);
       const double difference = (above.domain_excess[l] - below.domain_excess[l]) / (2.0 * h);
       EXPECT_NEAR(at.domain_slopes[k][l], difference, 1e-4 * std::abs(difference)) << k << " " << l;

@@ -214,7 +214,8 @@ TEST(Endurance, SaysWhyItDoesNotStart) {
   EXPECT_EQ(r.status, FlappingStatus::stalled);
   EXPECT_TRUE(r.rows.empty());
   EXPECT_EQ(r.endurance(), 0.0);
-  EXPECT_THAT(r.detail, testing::HasSubstr("the battery cannot start the vehicle at a charge of 1 (7.2 V without load)"));
+  EXPECT_THAT(r.detail,
+              testing::HasSubstr("the battery cannot start the vehicle at a charge of 1 (7.2 V without load)"));
 }
 
 TEST(Endurance, EmptyFromTheStart) {

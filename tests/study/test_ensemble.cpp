@@ -28,8 +28,8 @@ EnsembleMember member_of(const Design<double>& design, Condition condition = Con
 StartUp remembered_start_up() {
   auto known = std::make_shared<std::map<std::array<double, 6>, StartUpOutcome>>();
   return [known, judge = start_up_in_time()](const Vehicle<double>& v) {
-    const std::array<double, 6> key = {v.voltage,       v.motor.inertia,  v.motor.torque_constant,
-                                       v.crank.crank_radius, v.wing_inertia, v.spring.stiffness};
+    const std::array<double, 6> key = {v.voltage,      v.motor.inertia,   v.motor.torque_constant, v.crank.crank_radius,
+                                       v.wing_inertia, v.spring.stiffness};
     const auto [at, is_new] = known->try_emplace(key);
     if (is_new) at->second = judge(v);
     return at->second;
@@ -79,8 +79,8 @@ bool same_bits(const EnsembleOutcome& a, const EnsembleOutcome& b) {
          std::memcmp(&a.metrics, &b.metrics, sizeof a.metrics) == 0;
 }
 
-/// Members of every kind: conditions, springs, formulations, friction laws, no or little inductance, and some that do not
-/// flap.
+/// Members of every kind: conditions, springs, formulations, friction laws, no or little inductance, and some that do
+/// not flap.
 std::vector<EnsembleMember> mixed_members(int count, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::vector<EnsembleMember> members;
@@ -278,10 +278,9 @@ TEST(Ensemble, ReproducesKnownOrbits) {
     bool springs;
     double frequency, power_electrical, lift_mean, rod_force_mean, rod_force_peak;
   };
-  const Known orbits[] = {{false, 21.952226143327449, 0.54023365078787118, 0.0087391846723811966, 0.26513989876954032,
-                           0.45536141663819993},
-                          {true, 23.430706596318597, 0.50926842859058386, 0.011644327876553516, 0.1851194883045969,
-                           0.38663637234591627}};
+  const Known orbits[] = {
+      {false, 21.952226143327449, 0.54023365078787118, 0.0087391846723811966, 0.26513989876954032, 0.45536141663819993},
+      {true, 23.430706596318597, 0.50926842859058386, 0.011644327876553516, 0.1851194883045969, 0.38663637234591627}};
   for (const Known& known : orbits) {
     for (const InstructionSet isa : available()) {
       for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
@@ -338,8 +337,8 @@ TEST(Ensemble, ReportsTheMetricsAskedForAlone) {
   options.metrics.reset();
   for (const Metric m : {Metric::lift_mean, Metric::rod_force_peak}) options.metrics.set(std::size_t(m));
   Design<double> with_table = reference_design();
-  with_table.aerodynamics.coefficients.table =
-      std::make_shared<CoefficientTable>(std::vector{0.0, 0.8, 1.6}, std::vector{0.2, 1.8, 0.1}, std::vector{0.4, 1.5, 3.4});
+  with_table.aerodynamics.coefficients.table = std::make_shared<CoefficientTable>(
+      std::vector{0.0, 0.8, 1.6}, std::vector{0.2, 1.8, 0.1}, std::vector{0.4, 1.5, 3.4});
   const auto outcomes = solve({member_of(reference_design()), member_of(with_table)}, options);
   EXPECT_FALSE(outcomes[0].scalar);
   EXPECT_TRUE(outcomes[1].scalar) << "tables are read by the scalar solver";

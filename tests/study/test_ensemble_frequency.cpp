@@ -37,8 +37,7 @@ TEST(EnsembleFrequency, FindsTheVoltagesThatTheSearchOfOneFinds) {
   const Results results = solve(members, frequencies, options);
   int reached = 0;
   for (std::size_t n = 0; n < members.size(); ++n) {
-    const FrequencySearch one =
-        find_voltage_for_frequency(members[n].vehicle, frequencies[n], {}, start_up_in_time());
+    const FrequencySearch one = find_voltage_for_frequency(members[n].vehicle, frequencies[n], {}, start_up_in_time());
     ASSERT_EQ(results.reached[n], one.outcome) << n << ": " << one.detail;
     const EnsembleOutcome& out = results.outcomes[n];
     if (one.outcome != FrequencyOutcome::reached) {

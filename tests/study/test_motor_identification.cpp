@@ -81,8 +81,7 @@ TEST(MotorIdentification, RowsReturnTheirResistanceAndConstantWithinTheirOwnCont
     if (std::getenv("WINGBEAT_PRINT")) {
       std::printf("%s: R %+.2f %%, K %+.2f %%; contradictions R %.2f %%, K %.2f %%\n", s.name.c_str(),
                   100.0 * (*without.armature_resistance.value / R - 1.0),
-                  100.0 * (*without.torque_constant.value / K - 1.0), 100.0 * contradiction_R,
-                  100.0 * contradiction_K);
+                  100.0 * (*without.torque_constant.value / K - 1.0), 100.0 * contradiction_R, 100.0 * contradiction_K);
     }
     EXPECT_LT(std::abs(*without.armature_resistance.value / R - 1.0), slack) << s.name;
     EXPECT_LT(std::abs(*without.torque_constant.value / K - 1.0), slack) << s.name;
@@ -157,10 +156,12 @@ TEST(MotorIdentification, EverySufficientMixGivesTheSameMotor) {
   };
   const Motor<double> found[] = {
       with([&](auto& s) { s.resistance = 5.4, s.torque_constant = 2.1e-3, s.no_load_current = full.no_load_current; }),
-      with([&](auto& s) { s.resistance = 5.4, s.no_load_speed = full.no_load_speed,
-                          s.no_load_current = full.no_load_current; }),
-      with([&](auto& s) { s.stall_current = full.stall_current, s.speed_constant = 1.0 / 2.1e-3,
-                          s.viscous_damping = 3e-9; }),
+      with([&](auto& s) {
+        s.resistance = 5.4, s.no_load_speed = full.no_load_speed, s.no_load_current = full.no_load_current;
+      }),
+      with([&](auto& s) {
+        s.stall_current = full.stall_current, s.speed_constant = 1.0 / 2.1e-3, s.viscous_damping = 3e-9;
+      }),
       with([&](auto& s) {
         for (const double torque : {0.0, 3e-4, 6e-4}) {
           const double w = (2.1e-3 * 3.0 / 5.4 - torque) / (2.1e-3 * 2.1e-3 / 5.4 + 3e-9);
@@ -345,8 +346,7 @@ std::string error_of(const std::string& text) {
 TEST(Datasheet, RefusalsNamePlaceAndReason) {
   EXPECT_EQ(error_of("[datasheet]\nresistanc = \"5 ohm\"\n"),
             "sheet.toml:2:1: datasheet.resistanc: unknown key; did you mean resistance?");
-  EXPECT_THAT(error_of("[datasheet]\nresistance = \"5 V\"\n"),
-              HasSubstr("sheet.toml:2:"));
+  EXPECT_THAT(error_of("[datasheet]\nresistance = \"5 V\"\n"), HasSubstr("sheet.toml:2:"));
   EXPECT_THAT(error_of("[datasheet]\nresistance = \"-5 ohm\"\n"),
               HasSubstr("datasheet.resistance: must be > 0 [ohm], got -5"));
   EXPECT_THAT(error_of("[datasheet]\nno_load_current = \"16 mA\"\n"),

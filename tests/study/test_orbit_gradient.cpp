@@ -82,7 +82,7 @@ void compare_gradients(const Design<double>& design, Condition condition, Held h
       if (s.status != FlappingStatus::flapping) return std::nullopt;
       return s.metrics;
     };
-    const double h = 4e-4;  // small enough not to pass from one of two nearly equal peaks to the other
+    const double h = 4e-4;                // small enough not to pass from one of two nearly equal peaks to the other
     const bool one_sided = value == 0.0;  // a stiffness or torque cannot be negative
     std::optional<Metrics<double>> samples[5];
     // f' from five points, exact to order h^4: central, or forward where the parameter may not be negative.

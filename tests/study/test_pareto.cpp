@@ -35,8 +35,8 @@ TEST(Front, HypervolumeOfASphere) {
   for (int i = 0; i <= n; ++i) {
     for (int j = 0; j <= n; ++j) {
       const double theta = 0.5 * std::numbers::pi * i / n, phi = 0.5 * std::numbers::pi * j / n;
-      points.push_back({1.0 - std::sin(theta) * std::cos(phi), 1.0 - std::sin(theta) * std::sin(phi),
-                        1.0 - std::cos(theta)});
+      points.push_back(
+          {1.0 - std::sin(theta) * std::cos(phi), 1.0 - std::sin(theta) * std::sin(phi), 1.0 - std::cos(theta)});
     }
   }
   EXPECT_NEAR(hypervolume(points, {1, 1, 1}), std::numbers::pi / 6.0, 0.01);
@@ -63,7 +63,8 @@ TEST(Front, EndsKneeAndEvenSteps) {
   // A front that is one point.
   const FrontPicks one = pick_designs(std::vector<ObjectivePoint>{{1, 2}}, 5);
   EXPECT_THAT(one.even, testing::ElementsAre(0));
-  const FrontPicks three = pick_designs(std::vector<ObjectivePoint>{{0, 1, 1}, {1, 0, 1}, {1, 1, 0}, {0.5, 0.5, 0.5}}, 4);
+  const FrontPicks three =
+      pick_designs(std::vector<ObjectivePoint>{{0, 1, 1}, {1, 0, 1}, {1, 1, 0}, {0.5, 0.5, 0.5}}, 4);
   EXPECT_THAT(three.even, testing::ElementsAre(0, 1, 2, 3));
 }
 
@@ -102,7 +103,8 @@ Trace trace(EvolutionMethod method, EvolutionProblem problem,
 class Methods : public testing::TestWithParam<EvolutionMethod> {};
 
 TEST_P(Methods, FindTheFrontOfZdt1) {
-  // Zitzler, Deb and Thiele, Evol. Comput. 8(2), 2000: the front is f2 = 1 - sqrt(f1), of hypervolume 2/3 within (1, 1).
+  // Zitzler, Deb and Thiele, Evol. Comput. 8(2), 2000: the front is f2 = 1 - sqrt(f1), of hypervolume 2/3 within (1,
+  // 1).
   EvolutionProblem problem;
   problem.continuous = 10;
   const Trace t = trace(GetParam(), problem, [](std::span<const double> x) {
@@ -215,10 +217,10 @@ TEST(Pareto, TheStudyAloneDecides) {
   ParetoStudy study = lift_against_power();
   study.evolution.generations = 10;
   const ParetoResult a = pareto_front(study, wingbeat_evolution_module, start_up_in_time());
-  const ParetoResult b = pareto_front(study, wingbeat_evolution_module, start_up_in_time(),
-                                      [](std::size_t count, const auto& act) {
-                                        while (count > 0) act(--count);
-                                      });
+  const ParetoResult b =
+      pareto_front(study, wingbeat_evolution_module, start_up_in_time(), [](std::size_t count, const auto& act) {
+        while (count > 0) act(--count);
+      });
   ASSERT_EQ(a.front.size(), b.front.size());
   for (std::size_t n = 0; n < a.front.size(); ++n) EXPECT_EQ(a.front[n].parameters, b.front[n].parameters);
   EXPECT_EQ(a.hypervolume, b.hypervolume);

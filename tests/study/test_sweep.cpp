@@ -68,7 +68,9 @@ TEST(Sweep, EachDesignIsWhatARunOfItGives) {
       const double a = columns.metrics[std::size_t(m)][n], b = run.metrics.values[std::size_t(m)];
       if (std::isnan(b)) EXPECT_TRUE(std::isnan(a)) << metric_table()[std::size_t(m)].key;
       // Batches give multipliers to three digits (docs/numerics.md).
-      else EXPECT_NEAR(a, b, Metric(m) == Metric::floquet_multiplier_max ? 1e-3 * b + 1e-6 : 1e-5 * std::abs(b) + 1e-9) << metric_table()[std::size_t(m)].key;
+      else
+        EXPECT_NEAR(a, b, Metric(m) == Metric::floquet_multiplier_max ? 1e-3 * b + 1e-6 : 1e-5 * std::abs(b) + 1e-9)
+            << metric_table()[std::size_t(m)].key;
     }
   }
 }

@@ -51,8 +51,8 @@ TEST(Distribution, QuantilesStayWithinTheBoundsAndFollowTheDistributionFunction)
     const double x = d.quantile(u);
     EXPECT_GE(x, 6.0);
     EXPECT_LE(x, 8.0);
-    const double inside = (normal_probability(-6.0) - normal_probability(-x)) /
-                          (normal_probability(-6.0) - normal_probability(-8.0));
+    const double inside =
+        (normal_probability(-6.0) - normal_probability(-x)) / (normal_probability(-6.0) - normal_probability(-8.0));
     EXPECT_NEAR(inside, u, 1e-6);
   }
   EXPECT_NEAR(normal_quantile(0.975), 1.959963984540054, 1e-12);
@@ -201,8 +201,10 @@ ToleranceStudy study_of(double voltage, double spread) {
   study.design = flapper(voltage);
   study.count = 512;
   study.resamples = 100;
-  for (const auto& [key, relative] : {std::pair{"friction.radius", spread}, {"motor.armature_resistance", spread},
-                                      {"wing.inertia", spread}, {"vehicle.mass", 0.5 * spread}}) {
+  for (const auto& [key, relative] : {std::pair{"friction.radius", spread},
+                                      {"motor.armature_resistance", spread},
+                                      {"wing.inertia", spread},
+                                      {"vehicle.mass", 0.5 * spread}}) {
     UncertainParameter p;
     p.parameter = design_parameter(key);
     const double x = *p.parameter.value(study.design);

@@ -1,4 +1,5 @@
-// The voltages found for a lift or a frequency: the lowest one inside the domain of validity, or a refusal that says why.
+// The voltages found for a lift or a frequency: the lowest one inside the domain of validity, or a refusal that says
+// why.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -105,9 +106,10 @@ TEST(LiftSearch, TheOnsetIsARefusalThatSaysWhatItLifts) {
     EXPECT_EQ(small.status, FlappingStatus::locked);
     EXPECT_NEAR(small.search->closest_voltage, 1.2753, 2e-4);
     EXPECT_NEAR(small.search->closest_value, 1.093e-3, 1e-6);
-    EXPECT_NE(small.detail.find("from rest it flaps only above 1.275 V, and there lifts 0.001093 N already; below, it is "
-                                "locked"),
-              std::string::npos)
+    EXPECT_NE(
+        small.detail.find("from rest it flaps only above 1.275 V, and there lifts 0.001093 N already; below, it is "
+                          "locked"),
+        std::string::npos)
         << small.detail;
     // Outside the domain the lift falls through both again.
     const RunResult falling = with_lift(d, lift, true);
@@ -203,7 +205,8 @@ TEST(LiftSearch, AgreesWithTwoHundredVoltagesOnRandomVehicles) {
     }
     if (crossing < t.voltages.size()) {
       // Both ends hold orbits from rest, but the lift may jump between them.
-      EXPECT_EQ(found.outcome, FrequencyOutcome::jumps) << target << " at " << t.voltages[crossing] << ": " << found.detail;
+      EXPECT_EQ(found.outcome, FrequencyOutcome::jumps)
+          << target << " at " << t.voltages[crossing] << ": " << found.detail;
     }
     if (found.outcome == FrequencyOutcome::too_high) {
       ++over;

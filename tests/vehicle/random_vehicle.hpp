@@ -7,8 +7,8 @@
 
 namespace wingbeat {
 
-/// A design whose every parameter is drawn around the reference: some lock, stall or jam. `spread` is the largest factor
-/// up or down of most parameters.
+/// A design whose every parameter is drawn around the reference: some lock, stall or jam. `spread` is the largest
+/// factor up or down of most parameters.
 inline Design<double> random_design(std::mt19937_64& random, double spread = 2.0) {
   const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
   const auto around = [&](double value, double factor) {
@@ -64,8 +64,9 @@ inline Design<double> box_design(std::mt19937_64& random) {
   return d;
 }
 
-/// A design of the box with a coreless motor of 4.5 g (0816K006SR of data/motors/motors.csv) behind a gearbox of 2 to 60,
-/// from near stall to far above its voltage, whose electrical time constant is drawn from 1 us to 1 ms: it is 10 us.
+/// A design of the box with a coreless motor of 4.5 g (0816K006SR of data/motors/motors.csv) behind a gearbox of 2 to
+/// 60, from near stall to far above its voltage, whose electrical time constant is drawn from 1 us to 1 ms: it is 10
+/// us.
 inline Design<double> coreless_design(std::mt19937_64& random) {
   const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
   const auto logarithmic = [&](double a, double b) { return a * std::pow(b / a, uniform(0.0, 1.0)); };
@@ -82,8 +83,8 @@ inline Design<double> coreless_design(std::mt19937_64& random) {
   return d;
 }
 
-/// A direct drive whose every parameter is drawn: quality factors from about a half to 20, electrical time constants from
-/// nothing to a fifth of a period, drive frequencies up to 60 % off resonance, half with a pitch stop. With
+/// A direct drive whose every parameter is drawn: quality factors from about a half to 20, electrical time constants
+/// from nothing to a fifth of a period, drive frequencies up to 60 % off resonance, half with a pitch stop. With
 /// `constant_friction` the friction reaches up to what the drive can just overcome.
 inline Design<double> random_direct_design(std::mt19937_64& random, bool constant_friction) {
   const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };

@@ -13,18 +13,20 @@ Vehicle<double> next_vehicle(WideBox box, std::mt19937_64& random) {
   for (;;) {
     try {
       return resolve(wide_design(box, random));
-    } catch (const ParameterError&) {
-    }
+    } catch (const ParameterError&) {}
   }
 }
 
-// Steps as long as the decay of the current allows: beyond the pair's interval of stability they fed an oscillation of the
-// speed of 1e-4 that neither error estimate nor closure showed.
+// Steps as long as the decay of the current allows: beyond the pair's interval of stability they fed an oscillation of
+// the speed of 1e-4 that neither error estimate nor closure showed.
 TEST(Accuracy, AMotorAloneTurnsAtConstantSpeed) {
   Vehicle<double> motor = wingless_vehicle();
   motor.voltage = 2.27457;
-  motor.motor = {.armature_resistance = 8.86615, .armature_inductance = 1.11022e-3, .torque_constant = 8.81683e-3,
-                 .inertia = 3.11749e-8, .viscous_damping = 3.49479e-6};
+  motor.motor = {.armature_resistance = 8.86615,
+                 .armature_inductance = 1.11022e-3,
+                 .torque_constant = 8.81683e-3,
+                 .inertia = 3.11749e-8,
+                 .viscous_damping = 3.49479e-6};
   for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
     const Metrics<double> m = find_steady_flapping(motor, {.tolerance = tolerance}).metrics;
     EXPECT_NEAR(m[Metric::crank_speed_max] / m[Metric::crank_speed_min], 1.0, tolerance);
@@ -95,7 +97,8 @@ TEST(Accuracy, WinglessMultipliersAreTheirClosedForm) {
   ASSERT_EQ(found.status, FlappingStatus::flapping);
   EXPECT_NEAR(found.metrics[Metric::floquet_multiplier_max], 0.66, 0.05);
   EXPECT_NEAR(found.metrics[Metric::floquet_multiplier_max] /
-                  wingless_multiplier(motor, two_pi * found.metrics[Metric::frequency]), 1.0, 1e-5);
+                  wingless_multiplier(motor, two_pi * found.metrics[Metric::frequency]),
+              1.0, 1e-5);
   std::mt19937_64 random(3);
   for (int n = 0; n < 200; ++n) {
     const Vehicle<double> v = next_vehicle(WideBox::wingless, random);

@@ -89,7 +89,8 @@ TEST(BatteryVehicle, ActsAsArmatureResistanceOnTheMotion) {
     ASSERT_EQ(a.status, b.status);
     if (b.status != FlappingStatus::flapping) continue;
     ++compared;
-    const double lost = R_i * b.record.integrals()[std::size_t(Integral::current_square)] * b.metrics[Metric::frequency];
+    const double lost =
+        R_i * b.record.integrals()[std::size_t(Integral::current_square)] * b.metrics[Metric::frequency];
     for (const Metric m : {Metric::frequency, Metric::current_mean, Metric::current_peak, Metric::lift_mean,
                            Metric::power_aerodynamic, Metric::rod_force_peak, Metric::floquet_multiplier_max}) {
       EXPECT_NEAR(b.metrics[m], a.metrics[m], 1e-8 * std::abs(a.metrics[m])) << metric_table()[std::size_t(m)].key;
@@ -146,8 +147,9 @@ TEST(BatteryVehicle, NoVoltageCanBeChosen) {
     run_design(battery_design(), {.frequency = 20.0});
     FAIL() << "accepted";
   } catch (const ParameterError& e) {
-    EXPECT_STREQ(e.what(), "supply.type: the charge of a battery gives its voltage, so none can be chosen for the "
-                           "flapping frequency");
+    EXPECT_STREQ(e.what(),
+                 "supply.type: the charge of a battery gives its voltage, so none can be chosen for the "
+                 "flapping frequency");
   }
 }
 

@@ -1,5 +1,5 @@
-// The direct drive: closed forms, the orbit against the simulation in time, sticking, and how each tie of frequency, spring
-// and inertia resolves.
+// The direct drive: closed forms, the orbit against the simulation in time, sticking, and how each tie of frequency,
+// spring and inertia resolves.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -268,7 +268,8 @@ TEST(DirectDrive, WithoutWingsTheRotorSwingsAlone) {
 
 TEST(DirectDrive, HasNoRodAndNoCrankSpeed) {
   const SteadyFlapping found = find_steady_flapping(resolve(direct_design()));
-  for (const Metric m : {Metric::rod_force_peak, Metric::rod_force_mean, Metric::crank_speed_min, Metric::crank_speed_max}) {
+  for (const Metric m :
+       {Metric::rod_force_peak, Metric::rod_force_mean, Metric::crank_speed_min, Metric::crank_speed_max}) {
     EXPECT_TRUE(std::isnan(found.metrics[m]));
   }
   EXPECT_EQ(found.metrics[Metric::voltage], 3.0);

@@ -53,9 +53,9 @@ TEST(Domain, TableNarrowsTheRangeAndDoesNotWidenIt) {
   const double deg = pi / 180.0;
   const auto with_table = [&](double from, double to) {
     Vehicle<double> v = reference_vehicle();
-    v.wings.coefficients.table = std::make_shared<CoefficientTable>(
-        std::vector<double>{from * deg, 0.5 * (from + to) * deg, to * deg}, std::vector<double>{0.1, 1.0, 0.1},
-        std::vector<double>{0.4, 2.0, 3.4});
+    v.wings.coefficients.table =
+        std::make_shared<CoefficientTable>(std::vector<double>{from * deg, 0.5 * (from + to) * deg, to * deg},
+                                           std::vector<double>{0.1, 1.0, 0.1}, std::vector<double>{0.4, 2.0, 3.4});
     return v;
   };
   EXPECT_EQ(domain_with(Metric::angle_of_attack_min, 20.0, with_table(10.0, 90.0)), "inside");
@@ -142,8 +142,8 @@ TEST(Domain, RodForceWarnsAboveOnePerCent) {
 TEST(Domain, SlopesAgreeWithDifferences) {
   Metrics<double> m = ordinary_metrics(), slopes;
   slopes.values.fill(0.0);
-  const Metric moved[] = {Metric::power_electrical,  Metric::power_motor,      Metric::power_aerodynamic,
-                          Metric::power_residual,    Metric::angle_of_attack_min, Metric::flapping_velocity_peak};
+  const Metric moved[] = {Metric::power_electrical, Metric::power_motor,         Metric::power_aerodynamic,
+                          Metric::power_residual,   Metric::angle_of_attack_min, Metric::flapping_velocity_peak};
   double rate = 0.3;
   for (const Metric which : moved) slopes[which] = rate *= -1.3;
   const DomainExcess found = domain_excess_slopes(reference_vehicle(), m, slopes);

@@ -100,8 +100,9 @@ TEST(Pwm, LiftOutOfReach) {
     FAIL() << "accepted";
   } catch (const ParameterError& e) {
     EXPECT_EQ(e.key(), "supply.voltage");
-    EXPECT_EQ(e.reason(), "0.03 N of lift takes 5.492 V on the average, more than the 4 V that the supply gives at a "
-                          "duty of 1");
+    EXPECT_EQ(e.reason(),
+              "0.03 N of lift takes 5.492 V on the average, more than the 4 V that the supply gives at a "
+              "duty of 1");
   }
   const RunResult most = run_design(reference_design(), {.lift = 10.0});
   EXPECT_EQ(most.search->outcome, FrequencyOutcome::too_high);

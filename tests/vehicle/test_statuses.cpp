@@ -141,8 +141,10 @@ TEST(Statuses, HeavyRotorsSettleByExtrapolation) {
 TEST(Statuses, ADirectDriveThatCreepsToRestIsStalled) {
   Design<double> d = reference_design();
   d.supply = {.type = SupplyType::sine, .voltage = 1.9844533436247884, .frequency = 16.773896073575298};
-  d.motor.constants = {.armature_resistance = 1.646658283204204, .armature_inductance = 0.091134891193958179,
-                       .torque_constant = 0.015141843001611133, .inertia = 2.5490402520183034e-08,
+  d.motor.constants = {.armature_resistance = 1.646658283204204,
+                       .armature_inductance = 0.091134891193958179,
+                       .torque_constant = 0.015141843001611133,
+                       .inertia = 2.5490402520183034e-08,
                        .viscous_damping = 6.6429608616915956e-06};
   d.transmission = {};
   d.transmission.type = TransmissionType::direct;

@@ -41,11 +41,24 @@ struct KnownOrbit {
 };
 
 // data/published/orbits2022.json, good to 14 digits.
-const KnownOrbit known_orbits[] = {
-    {false, 178.90084085877027, 0.15316164053388573, 21.952226143327449, 0.54023365078787118, 0.0087391846723811966,
-     0.26513989876954032, 0.45536141663819993, {0.751467892605991, 3.63210320230321}},
-    {true, 170.18923875426399, 0.16199813776982407, 23.430706596318597, 0.50926842859058386, 0.011644327876553516,
-     0.1851194883045969, 0.38663637234591627, {two_pi - 1.34160883181093, 1.31688933007742}}};
+const KnownOrbit known_orbits[] = {{false,
+                                    178.90084085877027,
+                                    0.15316164053388573,
+                                    21.952226143327449,
+                                    0.54023365078787118,
+                                    0.0087391846723811966,
+                                    0.26513989876954032,
+                                    0.45536141663819993,
+                                    {0.751467892605991, 3.63210320230321}},
+                                   {true,
+                                    170.18923875426399,
+                                    0.16199813776982407,
+                                    23.430706596318597,
+                                    0.50926842859058386,
+                                    0.011644327876553516,
+                                    0.1851194883045969,
+                                    0.38663637234591627,
+                                    {two_pi - 1.34160883181093, 1.31688933007742}}};
 
 TEST(SteadyFlapping, ReproducesKnownOrbitsToTheToleranceAskedFor) {
   for (const KnownOrbit& known : known_orbits) {
@@ -192,8 +205,7 @@ TEST(SteadyFlapping, StiffVehiclesApproachTheAlgebraicCurrent) {
     vehicle.motor.armature_inductance = inductance;
     const SteadyFlapping found = find_steady_flapping(vehicle, {.tolerance = 1e-11});
     ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
-    const double apart =
-        std::abs(found.metrics[Metric::power_copper] / algebraic.metrics[Metric::power_copper] - 1.0);
+    const double apart = std::abs(found.metrics[Metric::power_copper] / algebraic.metrics[Metric::power_copper] - 1.0);
     EXPECT_LT(apart, 0.02 * before) << "first order in the inductance";
     before = apart;
   }
@@ -315,8 +327,8 @@ TEST(OrbitAgainstTransient, RandomVehiclesAgree) {
     const Design<double> design = random_design(random);
     const Vehicle<double> vehicle = resolve(design);
     const Reporting reporting = reporting_of(design);
-    const SteadyFlapping orbit = find_steady_flapping(vehicle, {.tolerance = 1e-8, .reporting = reporting},
-                                                      start_up_in_time());
+    const SteadyFlapping orbit =
+        find_steady_flapping(vehicle, {.tolerance = 1e-8, .reporting = reporting}, start_up_in_time());
     TransientOptions options;
     options.tolerance = 2e-7;
     options.reporting = reporting;

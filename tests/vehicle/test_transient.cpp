@@ -26,7 +26,9 @@ TransientOptions with_tolerance(double tolerance) {
 
 double audit_residual(const Metrics<double>& m) {
   return (m[Metric::power_copper] + m[Metric::power_viscous] + m[Metric::power_friction] +
-          m[Metric::power_aerodynamic] + m[Metric::power_residual]) / m[Metric::power_electrical] - 1.0;
+          m[Metric::power_aerodynamic] + m[Metric::power_residual]) /
+             m[Metric::power_electrical] -
+         1.0;
 }
 
 struct Orbit {
@@ -38,10 +40,24 @@ struct Orbit {
 // Steady flapping of the reference vehicle, computed in extended precision with located changes of the force's sign and
 // confirmed by an independent integrator to 4e-14.
 const Orbit orbits[] = {
-    {false, 178.90084085877027, 0.15316164053388573, 21.952226143327449, 0.54023365078787118, 0.0087391846723811966,
-     0.26513989876954032, 0.45536141663819993, {0.751467892605991, 3.63210320230321}},
-    {true, 170.18923875426399, 0.16199813776982407, 23.430706596318597, 0.50926842859058386, 0.011644327876553516,
-     0.1851194883045969, 0.38663637234591627, {two_pi - 1.34160883181093, 1.31688933007742}},
+    {false,
+     178.90084085877027,
+     0.15316164053388573,
+     21.952226143327449,
+     0.54023365078787118,
+     0.0087391846723811966,
+     0.26513989876954032,
+     0.45536141663819993,
+     {0.751467892605991, 3.63210320230321}},
+    {true,
+     170.18923875426399,
+     0.16199813776982407,
+     23.430706596318597,
+     0.50926842859058386,
+     0.011644327876553516,
+     0.1851194883045969,
+     0.38663637234591627,
+     {two_pi - 1.34160883181093, 1.31688933007742}},
 };
 
 class KnownOrbit : public testing::TestWithParam<Orbit> {};
@@ -232,11 +248,14 @@ TEST(Transient, WithoutVoltageNothingMoves) {
   Vehicle<double> v = reference_vehicle(true);
   v.voltage = 0.0;
   EXPECT_EQ(simulate_start_up(v).status, FlappingStatus::stalled);
-  EXPECT_EQ(simulate_start_up(wingless_vehicle(), [] {
-              TransientOptions o;
-              o.supply = Supply<double>{SupplyType::pwm, 3.0, 1000.0, 0.0};
-              return o;
-            }()).status, FlappingStatus::stalled);
+  EXPECT_EQ(simulate_start_up(wingless_vehicle(),
+                              [] {
+                                TransientOptions o;
+                                o.supply = Supply<double>{SupplyType::pwm, 3.0, 1000.0, 0.0};
+                                return o;
+                              }())
+                .status,
+            FlappingStatus::stalled);
 }
 
 double static_torque(const Vehicle<double>& v, double theta, double i) {

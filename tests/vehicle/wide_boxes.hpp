@@ -11,20 +11,20 @@
 namespace wingbeat {
 
 enum class WideBox {
-  crank_near_rod,   ///< rods 1.01 to 1.6 cranks long
-  near_jam,         ///< light rotors under strong friction, levers near zero
-  near_stall,       ///< drives about as strong as friction and springs
-  inertia,          ///< rotors of 1e-9 to 1e-3 kg m2
-  inductance,       ///< electrical time constants from nothing to far below a step
-  strong_springs,   ///< springs of up to 30 times the reference's
-  friction_laws,    ///< every law, weak and strong, no friction at all
-  tables_and_stops, ///< coefficient tables, pitch stops
-  supplies,         ///< battery, pwm, sine
+  crank_near_rod,    ///< rods 1.01 to 1.6 cranks long
+  near_jam,          ///< light rotors under strong friction, levers near zero
+  near_stall,        ///< drives about as strong as friction and springs
+  inertia,           ///< rotors of 1e-9 to 1e-3 kg m2
+  inductance,        ///< electrical time constants from nothing to far below a step
+  strong_springs,    ///< springs of up to 30 times the reference's
+  friction_laws,     ///< every law, weak and strong, no friction at all
+  tables_and_stops,  ///< coefficient tables, pitch stops
+  supplies,          ///< battery, pwm, sine
   direct
 };
 inline constexpr std::array<std::string_view, 10> wide_box_names = {
-    "crank_near_rod", "near_jam",         "near_stall", "inertia", "inductance", "strong_springs", "friction_laws",
-    "tables_and_stops", "supplies", "direct"};
+    "crank_near_rod", "near_jam",      "near_stall",       "inertia",  "inductance",
+    "strong_springs", "friction_laws", "tables_and_stops", "supplies", "direct"};
 
 struct WideVehicle {
   Design<double> design;
@@ -73,9 +73,7 @@ inline WideVehicle wide_vehicle(WideBox box, std::uint32_t n, std::uint32_t seed
   d.aerodynamics.pitch_coefficient = chance(0.1) ? 0.0 : logarithmic(5e-4, 2e-2);
 
   switch (box) {
-    case WideBox::crank_near_rod:
-      t.rod_length = t.crank_radius * (1.0 + logarithmic(0.01, 0.6));
-      break;
+    case WideBox::crank_near_rod: t.rod_length = t.crank_radius * (1.0 + logarithmic(0.01, 0.6)); break;
     case WideBox::near_jam:
       d.friction = {FrictionLaw::load_proportional, t.crank_radius * logarithmic(0.1, 1.2)};
       m.inertia = logarithmic(1e-9, 3e-7);
@@ -89,12 +87,8 @@ inline WideVehicle wide_vehicle(WideBox box, std::uint32_t n, std::uint32_t seed
       }
       if (chance(0.5)) d.spring.stiffness = logarithmic(1e-5, 1e-3);
       break;
-    case WideBox::inertia:
-      m.inertia = chance(0.5) ? logarithmic(1e-9, 1e-7) : logarithmic(1e-6, 1e-3);
-      break;
-    case WideBox::inductance:
-      m.armature_inductance = m.armature_resistance * logarithmic(1e-8, 1e-4);
-      break;
+    case WideBox::inertia: m.inertia = chance(0.5) ? logarithmic(1e-9, 1e-7) : logarithmic(1e-6, 1e-3); break;
+    case WideBox::inductance: m.armature_inductance = m.armature_resistance * logarithmic(1e-8, 1e-4); break;
     case WideBox::strong_springs:
       d.spring.stiffness = logarithmic(1e-3, 4e-2);
       if (chance(0.5)) d.supply.voltage = logarithmic(3.0, 30.0);

@@ -1,4 +1,5 @@
-// Random designs of boxes far wider than the reference box, one difficulty each, and how far two sets of metrics are apart.
+// Random designs of boxes far wider than the reference box, one difficulty each, and how far two sets of metrics are
+// apart.
 #pragma once
 
 #include <array>
@@ -68,17 +69,16 @@ inline Design<double> wide_design(WideBox box, std::mt19937_64& random) {
   return d;
 }
 
-/// How far `m` is from `exact`: the largest deviation of a metric from it, relative to the metric, or to what its errors
-/// are a part of where it may vanish: the angle of attack to 90 degrees, the residual power to the input, the mean lift
-/// to a thousandth of its peak, the mean current of a direct drive, which alternates, to its peak. Without the Floquet
-/// multiplier.
+/// How far `m` is from `exact`: the largest deviation of a metric from it, relative to the metric, or to what its
+/// errors are a part of where it may vanish: the angle of attack to 90 degrees, the residual power to the input, the
+/// mean lift to a thousandth of its peak, the mean current of a direct drive, which alternates, to its peak. Without
+/// the Floquet multiplier.
 inline double metrics_apart(const Metrics<double>& m, const Metrics<double>& exact, int* where = nullptr) {
   double largest = 0.0;
   const auto floor_of = [&](Metric k) {
     switch (k) {
       case Metric::angle_of_attack_min: return 90.0;
-      case Metric::current_mean:
-        return std::isnan(exact[Metric::rod_force_mean]) ? exact[Metric::current_peak] : 0.0;
+      case Metric::current_mean: return std::isnan(exact[Metric::rod_force_mean]) ? exact[Metric::current_peak] : 0.0;
       case Metric::power_residual: return std::abs(exact[Metric::power_electrical]);
       case Metric::lift_mean: return 1e-3 * exact[Metric::lift_peak];
       case Metric::lift_to_weight:

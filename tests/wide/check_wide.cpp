@@ -1,4 +1,5 @@
-// Batched solver, orbit search and simulation in time against each other on the ten wide boxes of vehicle/wide_boxes.hpp.
+// Batched solver, orbit search and simulation in time against each other on the ten wide boxes of
+// vehicle/wide_boxes.hpp.
 //   check_wide [COUNT]            vehicles of each box, 500 unless given
 //     --box NAME                  that box alone
 //     --vehicle N                 that vehicle of the box alone, with its file and every verdict
@@ -151,7 +152,8 @@ void print_design(const WideVehicle& vehicle) {
 }
 
 struct Counts {
-  int vehicles = 0, by_status[5] = {}, batched_other = 0, orbit_other = 0, batched_differs = 0, orbit_differs = 0, undecided = 0, averages = 0;
+  int vehicles = 0, by_status[5] = {}, batched_other = 0, orbit_other = 0, batched_differs = 0, orbit_differs = 0,
+      undecided = 0, averages = 0;
   int flapping = 0, batched_outside = 0, orbit_outside = 0, transient_outside = 0, by_lanes = 0;
   double orbit_seconds = 0.0, transient_seconds = 0.0, batched_seconds = 0.0;
 };
@@ -162,16 +164,17 @@ bool differs(const Answer& a, const Answer& b) {
 
 /// Both flap, at frequencies that differ by more than a thousandth: on different orbits.
 bool on_another_orbit(const Answer& a, const Answer& b) {
-  if (!a.asked || !b.asked || a.status != FlappingStatus::flapping || b.status != FlappingStatus::flapping) return false;
+  if (!a.asked || !b.asked || a.status != FlappingStatus::flapping || b.status != FlappingStatus::flapping)
+    return false;
   return !(std::abs(a.metrics[Metric::frequency] / b.metrics[Metric::frequency] - 1.0) < 1e-3);
 }
 
 void print_header() {
   std::printf("%-17s %5s | %-34s | %-15s | %-15s | %-21s | %s\n", "", "", "by simulation in time", "status differs",
               "another orbit", "metrics off by > 1e-6", "processor time, largest");
-  std::printf("%-17s %5s | %5s %6s %5s %4s %10s | %7s %7s | %7s %7s | %7s %6s %6s | %10s %8s %10s\n", "box", "count", "flap",
-              "stall", "lock", "jam", "undecided", "batched", "orbit", "batched", "orbit", "batched", "orbit", "time",
-              "batch, mean", "orbit", "simulation");
+  std::printf("%-17s %5s | %5s %6s %5s %4s %10s | %7s %7s | %7s %7s | %7s %6s %6s | %10s %8s %10s\n", "box", "count",
+              "flap", "stall", "lock", "jam", "undecided", "batched", "orbit", "batched", "orbit", "batched", "orbit",
+              "time", "batch, mean", "orbit", "simulation");
 }
 
 void print_row(const std::string& name, const Counts& c) {
@@ -208,7 +211,9 @@ Arguments read_arguments(int argc, char** argv) {
   for (int k = 1; k < argc; ++k) {
     const std::string_view word = argv[k];
     const char* value = k + 1 < argc ? argv[k + 1] : nullptr;
-    const auto number = [&] { return value ? std::atoi(argv[++k]) : (std::fprintf(stderr, "%s needs a number\n", argv[k]), std::exit(2), 0); };
+    const auto number = [&] {
+      return value ? std::atoi(argv[++k]) : (std::fprintf(stderr, "%s needs a number\n", argv[k]), std::exit(2), 0);
+    };
     if (word == "--box") {
       for (std::size_t b = 0; value && b < wide_box_names.size(); ++b) {
         if (wide_box_names[b] == value) a.only_box = int(b);
@@ -305,7 +310,8 @@ Counts check_box(WideBox box, const Arguments& arguments) {
     if (one) {
       print_design(vehicles[n]);
       if (v.any_flapping()) {
-        for (const auto& [name, answer] : {std::pair{"batched", &v.batched}, {"orbit", &v.orbit}, {"transient", &v.transient}}) {
+        for (const auto& [name, answer] :
+             {std::pair{"batched", &v.batched}, {"orbit", &v.orbit}, {"transient", &v.transient}}) {
           const char* where = "";
           const double error = largest_error(answer->metrics, v.reference.metrics, &where);
           std::printf("# %s: largest error %.2g, of %s\n", name, error, where);

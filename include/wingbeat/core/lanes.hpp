@@ -1,5 +1,5 @@
-// K xsimd batches side by side as one scalar: one design per lane, and K independent chains of operations that hide each
-// other's latency.
+// K xsimd batches side by side as one scalar: one design per lane, and K independent chains of operations that hide
+// each other's latency.
 //
 // Elementary functions are this file's own: their arguments are bounded in practice, so that short minimax polynomials
 // do (errors measured in tests/scalars). Nothing here is defined for plain doubles beyond inlined operators: code built
@@ -67,22 +67,22 @@ struct Lanes {
     for (int n = 0; n < K; ++n) part[n].store_aligned(aligned + n * part_lanes);
   }
 
-#define WINGBEAT_LANES_OPERATOR(op)                                            \
-  friend Lanes operator op(const Lanes& a, const Lanes& b) {                   \
-    Lanes r;                                                                   \
-    for (int n = 0; n < K; ++n) r.part[n] = a.part[n] op b.part[n];            \
-    return r;                                                                  \
+#define WINGBEAT_LANES_OPERATOR(op)                                 \
+  friend Lanes operator op(const Lanes& a, const Lanes& b) {        \
+    Lanes r;                                                        \
+    for (int n = 0; n < K; ++n) r.part[n] = a.part[n] op b.part[n]; \
+    return r;                                                       \
   }
   WINGBEAT_LANES_OPERATOR(+)
   WINGBEAT_LANES_OPERATOR(-)
   WINGBEAT_LANES_OPERATOR(*)
   WINGBEAT_LANES_OPERATOR(/)
 #undef WINGBEAT_LANES_OPERATOR
-#define WINGBEAT_LANES_COMPARISON(op)                                          \
-  friend LaneMask<Arch, K> operator op(const Lanes& a, const Lanes& b) {       \
-    LaneMask<Arch, K> r;                                                       \
-    for (int n = 0; n < K; ++n) r.part[n] = a.part[n] op b.part[n];            \
-    return r;                                                                  \
+#define WINGBEAT_LANES_COMPARISON(op)                                      \
+  friend LaneMask<Arch, K> operator op(const Lanes & a, const Lanes & b) { \
+    LaneMask<Arch, K> r;                                                   \
+    for (int n = 0; n < K; ++n) r.part[n] = a.part[n] op b.part[n];        \
+    return r;                                                              \
   }
   WINGBEAT_LANES_COMPARISON(<)
   WINGBEAT_LANES_COMPARISON(<=)
@@ -211,18 +211,22 @@ B polynomial(const B& z, double first, Rest... rest) {
 template <class B>
 B sine_of_reduced(const B& r) {
   const B z = r * r;
-  return xsimd::fma(r * z, polynomial(z, -0.16666666666666649, 0.0083333333333259329, -0.00019841269836469024,
-                                      2.7557318055685783e-6, -2.5051972921545551e-8, 1.6050972244135636e-10,
-                                      -7.4080548895426104e-13), r);
+  return xsimd::fma(
+      r * z,
+      polynomial(z, -0.16666666666666649, 0.0083333333333259329, -0.00019841269836469024, 2.7557318055685783e-6,
+                 -2.5051972921545551e-8, 1.6050972244135636e-10, -7.4080548895426104e-13),
+      r);
 }
 
 /// cos r, |r| <= pi/2, error 7e-17 before rounding.
 template <class B>
 B cosine_of_reduced(const B& r) {
   const B z = r * r;
-  return xsimd::fma(z * z, polynomial(z, 0.041666666666666657, -0.0013888888888884767, 2.4801587298913551e-5,
-                                      -2.7557318573366175e-7, 2.0876681558867395e-9, -1.1466252259718479e-11,
-                                      4.6464359591124806e-14), xsimd::fnma(B(0.5), z, B(1.0)));
+  return xsimd::fma(
+      z * z,
+      polynomial(z, 0.041666666666666657, -0.0013888888888884767, 2.4801587298913551e-5, -2.7557318573366175e-7,
+                 2.0876681558867395e-9, -1.1466252259718479e-11, 4.6464359591124806e-14),
+      xsimd::fnma(B(0.5), z, B(1.0)));
 }
 
 /// x - n pi in [-pi/2, pi/2], n counted by `magic`. pi is off by 1.2e-16, which is nothing where n is small.
@@ -317,15 +321,16 @@ Lanes<Arch, K> atan(const Lanes<Arch, K>& x) {
     const auto above_eighth = y > B(0.41421356237309503), above_three_eighths = y > B(2.4142135623730949);
     const B divided = xsimd::select(above_three_eighths, -one, xsimd::select(above_eighth, y - one, y));
     const B divisor = xsimd::select(above_three_eighths, y, xsimd::select(above_eighth, y + one, one));
-    const B offset = xsimd::select(above_three_eighths, B(0.5 * pi),
-                                   xsimd::select(above_eighth, B(0.25 * pi), B(0.0)));
+    const B offset = xsimd::select(above_three_eighths, B(0.5 * pi), xsimd::select(above_eighth, B(0.25 * pi), B(0.0)));
     const B t = divided * detail::inverse_of(divisor);
     const B z = t * t;
-    const B value = xsimd::fma(t * z, detail::polynomial(z, -0.33333333333333248, 0.19999999999898407,
-                                                         -0.14285714266096619, 0.11111109636534361,
-                                                         -0.09090852557176049, 0.076910551583931494,
-                                                         -0.066496136952916687, 0.057363321659076427,
-                                                         -0.044833346222728859, 0.022750526993361671), t) + offset;
+    const B value = xsimd::fma(t * z,
+                               detail::polynomial(z, -0.33333333333333248, 0.19999999999898407, -0.14285714266096619,
+                                                  0.11111109636534361, -0.09090852557176049, 0.076910551583931494,
+                                                  -0.066496136952916687, 0.057363321659076427, -0.044833346222728859,
+                                                  0.022750526993361671),
+                               t) +
+                    offset;
     result.part[n] = xsimd::copysign(value, x.part[n]);
   }
   return result;

@@ -30,8 +30,9 @@ struct CrankSystem {
   using Signs = std::array<S, 4>;
   static constexpr bool has_rod = true;
   /// What has an extreme that is a metric.
-  static constexpr std::array extremes = {Extreme::current,           Extreme::lift,            Extreme::rod_force,
-                                          Extreme::flapping_velocity, Extreme::crank_speed_min, Extreme::crank_speed_max};
+  static constexpr std::array extremes = {Extreme::current,         Extreme::lift,
+                                          Extreme::rod_force,       Extreme::flapping_velocity,
+                                          Extreme::crank_speed_min, Extreme::crank_speed_max};
 
   Vehicle<S> vehicle;
   S speed_floor = S(0.0);    ///< below this crank speed [rad/s] the crank counts as stopped
@@ -63,8 +64,8 @@ struct CrankSystem {
     return scale;
   }
 
-  /// How many times smaller than what limits their errors (`scale`) the integrals of a lap are: metrics are to be accurate
-  /// relative to themselves. A mean lift below a thousandth of its peak need not be.
+  /// How many times smaller than what limits their errors (`scale`) the integrals of a lap are: metrics are to be
+  /// accurate relative to themselves. A mean lift below a thousandth of its peak need not be.
   double cancellation(const Quadrature& totals, const Quadrature& scale) const
     requires std::same_as<S, double>
   {

@@ -20,8 +20,8 @@ struct DirectBalance {
   double drive_torque;      ///< K V / |R_a + j w L_a|: amplitude of the torque on a shaft that stands still [N m]
   double breakaway_torque;  ///< T_c, the constant friction that holds the shaft [N m]
   /// Responses in which drag and friction are replaced by the viscous damping that takes the same power from a harmonic
-  /// motion (harmonic balance), slowest first: first guesses for periodic orbits. More than one hints at several orbits.
-  /// None: constant friction is too strong for a nearly harmonic motion.
+  /// motion (harmonic balance), slowest first: first guesses for periodic orbits. More than one hints at several
+  /// orbits. None: constant friction is too strong for a nearly harmonic motion.
   std::vector<HarmonicResponse> responses;
 
   /// No motion outlasts the start: the drive's torque does not exceed the friction.

@@ -11,8 +11,8 @@
 
 namespace wingbeat {
 
-/// States stroke angle beta, its velocity and, with inductance (N = 3), current i; independent variable the phase of the
-/// supply, v = V sin phi, from 0 to 2 pi.
+/// States stroke angle beta, its velocity and, with inductance (N = 3), current i; independent variable the phase of
+/// the supply, v = V sin phi, from 0 to 2 pi.
 ///
 /// Constant friction (T_c) makes the right-hand side jump where the velocity changes sign, and holds the shaft at rest
 /// while |K i - N_w k beta| <= T_c. Whether it holds is one more sign: `slip` is -1 then.
@@ -30,8 +30,8 @@ struct DirectSystem {
   static constexpr bool has_rod = false;
   /// Integrals whose error limits the steps.
   static constexpr std::array<std::size_t, 6> controlled_integrals = {
-      std::size_t(Integral::current_square), std::size_t(Integral::speed_square), std::size_t(Integral::friction_work),
-      std::size_t(Integral::aero_work), std::size_t(Integral::reactive_work), std::size_t(Integral::lift)};
+      std::size_t(Integral::current_square), std::size_t(Integral::speed_square),  std::size_t(Integral::friction_work),
+      std::size_t(Integral::aero_work),      std::size_t(Integral::reactive_work), std::size_t(Integral::lift)};
   /// What has an extreme that is a metric.
   static constexpr std::array extremes = {Extreme::current, Extreme::lift, Extreme::flapping_velocity,
                                           Extreme::stroke_max, Extreme::stroke_min};

@@ -28,12 +28,13 @@ using DomainStatus = std::bitset<domain_limit_count>;
 inline constexpr double angle_of_attack_lowest_deg = 0.0;
 inline constexpr double angle_of_attack_highest_deg = 90.0;
 /// Largest stroke angle of the tan-law mechanism [deg]. The law reaches 90 deg only with a hinge offset of zero, so
-/// that every amplitude obeys it; at 85 deg the side load on the slider, whose friction is not modelled, is 11 rod forces.
+/// that every amplitude obeys it; at 85 deg the side load on the slider, whose friction is not modelled, is 11 rod
+/// forces.
 inline constexpr double tan_law_stroke_max_deg = 85.0;
 inline constexpr double direct_stroke_max_deg = 180.0;    ///< of the amplitude: beyond, a wing turns past its own start
 inline constexpr double formulation_residual_max = 0.05;  ///< of the input power
-inline constexpr double formulation_residual_warn = 0.01; ///< of the input power: said beside the result
-inline constexpr double efficiency_slack = 1e-4;          ///< efficiencies are as exact as the tolerance of the orbit
+inline constexpr double formulation_residual_warn = 0.01;  ///< of the input power: said beside the result
+inline constexpr double efficiency_slack = 1e-4;           ///< efficiencies are as exact as the tolerance of the orbit
 /// Largest speed of the wings at the radius S_3/S_2, two thirds of a semi-ellipse's length [m/s]: Mach 0.3 at 20 degC.
 inline constexpr double flow_speed_max = 103.0;
 

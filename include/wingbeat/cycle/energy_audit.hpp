@@ -17,8 +17,13 @@ struct EnergyAudit {
 };
 
 inline EnergyAudit energy_audit(const Metrics<double>& m) {
-  EnergyAudit a{m[Metric::power_electrical], m[Metric::power_copper],      m[Metric::power_viscous],
-                m[Metric::power_friction],   m[Metric::power_aerodynamic], m[Metric::power_residual], 0.0};
+  EnergyAudit a{m[Metric::power_electrical],
+                m[Metric::power_copper],
+                m[Metric::power_viscous],
+                m[Metric::power_friction],
+                m[Metric::power_aerodynamic],
+                m[Metric::power_residual],
+                0.0};
   a.imbalance = a.electrical - a.copper - a.viscous - a.friction - a.aerodynamic - a.residual;
   return a;
 }

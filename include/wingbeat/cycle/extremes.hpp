@@ -73,8 +73,8 @@ CycleExtremes<double> lap_extremes(const System& system, const solver::Lap<Syste
     const double x1 = step.x + step.h;
     // Where the rates may jump, those of the next step do not belong to this one's end.
     const State dy1 = solver::jumps(system, 0) ? system.template rates<false>(x1, y1, step.signs).dy
-                      : last                  ? lap.steps.front().first.dy
-                                              : lap.steps[n + 1].first.dy;
+                      : last                   ? lap.steps.front().first.dy
+                                               : lap.steps[n + 1].first.dy;
     const Candidates end = candidates(x1, y1, dy1, step.signs);
     for (const Extreme e : System::extremes) {
       const auto c = std::size_t(e);

@@ -73,18 +73,18 @@ struct Metrics {
 
 /// Quantities integrated over the TIME of a cycle.
 enum class Integral {
-  time,           ///< dt: the period [s]
-  current,        ///< i [A s]
-  current_square, ///< i^2
-  speed_square,   ///< omega^2
-  electrical_work, ///< v i [J] (eq 15)
-  motor_work,     ///< T_m omega [J] (eq 16)
-  friction_work,  ///< T_f omega [J] (eq 18)
-  aero_work,      ///< M_aero beta' [J] (eq 19)
-  reactive_work,  ///< |(N_w J_w beta'' + N_w k beta) beta'| [J] (eq 23)
-  residual_work,  ///< F (h omega - g beta') [J]: what the formulation fails to conserve
-  lift,           ///< lift [N s]
-  rod_force       ///< |F| [N s]
+  time,             ///< dt: the period [s]
+  current,          ///< i [A s]
+  current_square,   ///< i^2
+  speed_square,     ///< omega^2
+  electrical_work,  ///< v i [J] (eq 15)
+  motor_work,       ///< T_m omega [J] (eq 16)
+  friction_work,    ///< T_f omega [J] (eq 18)
+  aero_work,        ///< M_aero beta' [J] (eq 19)
+  reactive_work,    ///< |(N_w J_w beta'' + N_w k beta) beta'| [J] (eq 23)
+  residual_work,    ///< F (h omega - g beta') [J]: what the formulation fails to conserve
+  lift,             ///< lift [N s]
+  rod_force         ///< |F| [N s]
 };
 inline constexpr int integral_count = int(Integral::rod_force) + 1;
 
@@ -132,8 +132,14 @@ template <Scalar S>
 CycleExtremes<S> extreme_candidates(const Vehicle<S>& v, const Motion<S>& m, const S& omega, const Branch<S>& branch,
                                     const S& beta = S(0.0)) {
   const S stroke_speed = branch.stroke * m.stroke_velocity;
-  return {m.current, lift_force(v.wings, stroke_speed, branch.pitching), branch.force * m.rod_force, stroke_speed,
-          -omega,    omega, beta, -beta};
+  return {m.current,
+          lift_force(v.wings, stroke_speed, branch.pitching),
+          branch.force * m.rod_force,
+          stroke_speed,
+          -omega,
+          omega,
+          beta,
+          -beta};
 }
 
 /// What metrics need beside the motion itself.
@@ -148,10 +154,9 @@ inline Reporting reporting_of(const Design<double>& d) {
   return {total_mass(d).value_or(absent), d.bench_torque_constant.value_or(absent)};
 }
 
-/// The metrics of a cycle from its integrals and extremes. `extremes` holds the maxima of extreme_candidates(). A direct
-/// drive has no rod, no speed of rotation and no direct current: rod forces, crank speeds and the bench estimate (17) are
-/// absent; its voltage is the amplitude.
-/// Floquet multiplier: of the orbit, or `absent`.
+/// The metrics of a cycle from its integrals and extremes. `extremes` holds the maxima of extreme_candidates(). A
+/// direct drive has no rod, no speed of rotation and no direct current: rod forces, crank speeds and the bench estimate
+/// (17) are absent; its voltage is the amplitude. Floquet multiplier: of the orbit, or `absent`.
 template <Scalar S>
 Metrics<S> cycle_metrics(const Vehicle<S>& v, const CycleIntegrals<S>& integrals, const CycleExtremes<S>& extremes,
                          const S& floquet_multiplier_max, const ReportingOf<S>& reporting) {
@@ -194,8 +199,7 @@ Metrics<S> cycle_metrics(const Vehicle<S>& v, const CycleIntegrals<S>& integrals
     m[Metric::stroke_amplitude] = stroke_amplitude(v.crank);
   }
   m[Metric::flapping_velocity_peak] = peak(Extreme::flapping_velocity);
-  m[Metric::angle_of_attack_min] =
-      S(degrees_per_radian) * angle_of_attack(v.wings, peak(Extreme::flapping_velocity));
+  m[Metric::angle_of_attack_min] = S(degrees_per_radian) * angle_of_attack(v.wings, peak(Extreme::flapping_velocity));
   m[Metric::crank_speed_min] = -peak(Extreme::crank_speed_min);
   m[Metric::crank_speed_max] = peak(Extreme::crank_speed_max);
   if (v.transmission == TransmissionType::direct) m[Metric::crank_speed_min] = m[Metric::crank_speed_max] = S(absent);

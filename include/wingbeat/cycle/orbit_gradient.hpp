@@ -21,8 +21,8 @@
 
 namespace wingbeat {
 
-/// Parameters differentiated side by side. A dual number also carries the states: two and the voltage, or the three of a
-/// direct drive with inductance.
+/// Parameters differentiated side by side. A dual number also carries the states: two and the voltage, or the three of
+/// a direct drive with inductance.
 inline constexpr int gradient_parameters = 5;
 inline constexpr int gradient_voltage_slot = 2;
 inline constexpr int gradient_first_slot = 3;
@@ -34,7 +34,8 @@ inline GradientJet gradient_seed(double value, int k) { return GradientJet(value
 /// What stays as it is while a parameter changes.
 enum class Held {
   voltage,
-  frequency  ///< the supply's voltage follows, whatever it was given as; a direct drive has its frequency from the supply
+  frequency  ///< the supply's voltage follows, whatever it was given as; a direct drive has its frequency from the
+             ///< supply
 };
 
 /// What was differentiated: the orbit's vehicle, its numbers built from gradient_seed(), and what metrics need beside
@@ -88,7 +89,8 @@ struct DesignParameter {
 /// Derivatives of all metrics by any number of parameters.
 struct MetricGradients {
   std::vector<std::array<double, metric_count>> by_parameter;
-  std::array<double, metric_count> by_voltage{};  ///< by the motor's; 0 with the frequency held, absent for a direct drive
+  std::array<double, metric_count>
+      by_voltage{};     ///< by the motor's; 0 with the frequency held, absent for a direct drive
   bool regular = true;  ///< as in OrbitGradient
 };
 

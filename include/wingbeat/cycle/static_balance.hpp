@@ -17,15 +17,16 @@ struct LockInterval {
 };
 
 struct StaticBalance {
-  double stall_torque;       ///< K v / (R_a + R_i) [N m]
-  double breakaway_torque;   ///< T_c, the constant friction that holds the motor [N m]
-  double inertia_least;      ///< least J + A (h + s mu r_e) over crank angle and branch [kg m2]; <= 0 jams
-  double inertia_angle;      ///< crank angle of it [rad]
-  double lever_least;        ///< least wing lever g over crank angle [m]; <= 0 jams
-  double lever_angle;        ///< crank angle of it [rad]
-  double advance_least;      ///< least K v/(R_a + R_i) - F_s h - mu r_e |F_s| - T_c over crank angle [N m]; <= 0: locks exist
-  double advance_angle;      ///< crank angle of it [rad]
-  bool has_wings;            ///< false: rod force zero, nothing can jam or lock
+  double stall_torque;      ///< K v / (R_a + R_i) [N m]
+  double breakaway_torque;  ///< T_c, the constant friction that holds the motor [N m]
+  double inertia_least;     ///< least J + A (h + s mu r_e) over crank angle and branch [kg m2]; <= 0 jams
+  double inertia_angle;     ///< crank angle of it [rad]
+  double lever_least;       ///< least wing lever g over crank angle [m]; <= 0 jams
+  double lever_angle;       ///< crank angle of it [rad]
+  double
+      advance_least;  ///< least K v/(R_a + R_i) - F_s h - mu r_e |F_s| - T_c over crank angle [N m]; <= 0: locks exist
+  double advance_angle;  ///< crank angle of it [rad]
+  bool has_wings;        ///< false: rod force zero, nothing can jam or lock
 
   bool stalled() const { return stall_torque <= breakaway_torque; }
   bool can_jam() const { return has_wings && (inertia_least <= 0.0 || lever_least <= 0.0); }
@@ -105,8 +106,12 @@ struct LoadPlace {
 template <Scalar S>
 LoadPlace<S> load_place(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& N_k_beta) {
   using std::abs;
-  return {v.wing_count * v.wing_inertia * k.stroke_curve, abs(k.stroke_slope), sign_of(k.stroke_slope), N_k_beta,
-          k.crank_lever, inverse_of(k.wing_lever)};
+  return {v.wing_count * v.wing_inertia * k.stroke_curve,
+          abs(k.stroke_slope),
+          sign_of(k.stroke_slope),
+          N_k_beta,
+          k.crank_lever,
+          inverse_of(k.wing_lever)};
 }
 
 /// Motor torque less the mean load over evenly spaced places of a lap at the constant crank speed omega [N m].
@@ -154,8 +159,8 @@ BalancedSpeed<S> balanced_on_grid(const Vehicle<S>& v, std::span<const LoadPlace
     balanced.slowest = select<S>(crossed && balanced.count == S(0.0), root, balanced.slowest);
     balanced.count = select<S>(crossed, balanced.count + S(1.0), balanced.count);
     if (n > 1) {
-      const auto touches = surplus_before > S(0.0) && surplus_before < near && surplus_before < surplus_earlier &&
-                           surplus_before < at;
+      const auto touches =
+          surplus_before > S(0.0) && surplus_before < near && surplus_before < surplus_earlier && surplus_before < at;
       balanced.count = select<S>(touches, balanced.count + S(1.0), balanced.count);
     }
     surplus_earlier = surplus_before;
@@ -188,7 +193,8 @@ S free_return(const Vehicle<S>& v, const S& time) {
   using std::sqrt;
   const Motor<S>& m = v.motor;
   const S R = circuit_resistance(v), L = m.armature_inductance, K = m.torque_constant;
-  const S inertia = m.inertia + S(0.5) * v.wing_count * v.wing_inertia * square(v.crank.crank_radius / v.crank.hinge_offset);
+  const S inertia =
+      m.inertia + S(0.5) * v.wing_count * v.wing_inertia * square(v.crank.crank_radius / v.crank.hinge_offset);
   // The slower eigenvalue of speed and current, times L/R to allow for none: s^2 L/R + s trace + determinant = 0.
   const S damping = m.viscous_damping + v.friction.damping;
   const S trace = S(1.0) + damping * L / (R * inertia), determinant = (damping + K * K / R) / inertia;
@@ -198,8 +204,8 @@ S free_return(const Vehicle<S>& v, const S& time) {
   return x / (S(1.0) + x);
 }
 
-/// True where a multiplier is above 1, or so near that another orbit may be near: the load takes back almost all of what
-/// the motor does against a disturbance. Such an orbit shows only in time whether start-up leads there.
+/// True where a multiplier is above 1, or so near that another orbit may be near: the load takes back almost all of
+/// what the motor does against a disturbance. Such an orbit shows only in time whether start-up leads there.
 template <Scalar S>
 auto hardly_returns(const Vehicle<S>& v, const S& multiplier, const S& period) {
   return !(multiplier < S(0.8)) && !(S(1.0) - multiplier > S(0.1) * free_return(v, period));

@@ -16,19 +16,19 @@ namespace wingbeat {
 
 /// A settled cycle as it was simulated in time, where the crank angle cannot be the independent variable.
 struct SimulatedCycle {
-  Metrics<double> metrics;        ///< floquet_multiplier_max is absent
-  double error_estimate = absent; ///< of the metrics, relative
-  int cycles = 1;                 ///< after which the motion repeats; the metrics are averages over them
+  Metrics<double> metrics;         ///< floquet_multiplier_max is absent
+  double error_estimate = absent;  ///< of the metrics, relative
+  int cycles = 1;                  ///< after which the motion repeats; the metrics are averages over them
 };
 
 /// What a vehicle does when it is switched on at rest at stroke angle zero; the transient solver supplies it.
 struct StartUpOutcome {
   FlappingStatus status = FlappingStatus::flapping;
-  bool settled = false;      ///< false: undecided within the solver's limits
-  std::string detail;        ///< the evidence, one sentence
-  double crank_speed = 0.0;  ///< flapping: omega at crank angle 0 (direct drive: phase 0 of the supply) [rad/s]
-  double current = 0.0;      ///< flapping: i there [A]
-  double stroke_angle = 0.0; ///< flapping, direct drive: beta there [rad]
+  bool settled = false;       ///< false: undecided within the solver's limits
+  std::string detail;         ///< the evidence, one sentence
+  double crank_speed = 0.0;   ///< flapping: omega at crank angle 0 (direct drive: phase 0 of the supply) [rad/s]
+  double current = 0.0;       ///< flapping: i there [A]
+  double stroke_angle = 0.0;  ///< flapping, direct drive: beta there [rad]
   /// Flapping: goes on with the simulation for the metrics of the settled cycle, to a tolerance; empty if it does not
   /// settle. A judge that cannot tell them leaves this empty.
   std::function<std::optional<SimulatedCycle>(double tolerance, const Reporting& reporting)> cycle;
@@ -43,7 +43,7 @@ struct SteadyOptions {
 
 struct SteadyFlapping {
   FlappingStatus status = FlappingStatus::stalled;
-  std::string detail;              ///< one sentence: what was found, with the evidence
+  std::string detail;               ///< one sentence: what was found, with the evidence
   solver::PeriodicSummary summary;  ///< of the orbit search
   StaticBalance balance{};
   Metrics<double> metrics;  ///< all absent unless flapping

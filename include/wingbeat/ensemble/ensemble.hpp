@@ -8,14 +8,14 @@
 
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/cycle/domain.hpp"
-#include "wingbeat/ensemble/lane_blocks.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
+#include "wingbeat/ensemble/lane_blocks.hpp"
 
 namespace wingbeat {
 
-/// SIMD instruction sets the batched solver is compiled for, narrowest first: `base` is what every processor of the target
-/// has. Where that is none, the scalar solver does the work.
+/// SIMD instruction sets the batched solver is compiled for, narrowest first: `base` is what every processor of the
+/// target has. Where that is none, the scalar solver does the work.
 enum class InstructionSet { base, avx2, avx512 };
 inline constexpr std::pair<std::string_view, InstructionSet> instruction_sets[] = {
     {WINGBEAT_BASE_ISA, InstructionSet::base},
@@ -37,11 +37,11 @@ using MetricSet = std::bitset<metric_count>;
 inline MetricSet all_metrics() { return MetricSet().set(); }
 
 struct EnsembleOptions {
-  double tolerance = 1e-6;               ///< wanted relative accuracy of every metric, 1e-12 to 1e-2
-  MetricSet metrics = all_metrics();     ///< those wanted; the others are absent. Peaks and multipliers cost extra
+  double tolerance = 1e-6;            ///< wanted relative accuracy of every metric, 1e-12 to 1e-2
+  MetricSet metrics = all_metrics();  ///< those wanted; the others are absent. Peaks and multipliers cost extra
   InstructionSet isa = best_instruction_set();
-  bool scalar_only = false;              ///< every design by the scalar solver
-  bool domain = true;                    ///< find out the domain status, whichever metrics are wanted
+  bool scalar_only = false;  ///< every design by the scalar solver
+  bool domain = true;        ///< find out the domain status, whichever metrics are wanted
 };
 
 struct EnsembleOutcome {

@@ -13,9 +13,10 @@ namespace wingbeat {
 
 /// Integrals over the lap. The others follow: the supply's work from the current, the motor's from what it drives,
 /// the reactive work from the extremes of the stored energy.
-inline constexpr std::array lane_integrals = {Integral::time,          Integral::current,   Integral::current_square,
-                                              Integral::speed_square,  Integral::friction_work, Integral::aero_work,
-                                              Integral::residual_work, Integral::lift,      Integral::rod_force};
+inline constexpr std::array lane_integrals = {
+    Integral::time,          Integral::current,       Integral::current_square,
+    Integral::speed_square,  Integral::friction_work, Integral::aero_work,
+    Integral::residual_work, Integral::lift,          Integral::rod_force};
 
 /// Where an integral stands among lane_integrals.
 constexpr std::size_t lane_integral(Integral which) {

@@ -28,9 +28,8 @@ void solve_block(const EnsembleMember* const* members, int count, const LaneSett
     constexpr int N = decltype(states)::value;
     Vehicle<L> vehicle;
     vehicle.crank.formulation = members[0]->vehicle.crank.formulation;
-    for_each_number(vehicle, [&](L& to, const auto& of) {
-      to = gather([&](const EnsembleMember& m) { return of(m.vehicle); });
-    });
+    for_each_number(
+        vehicle, [&](L& to, const auto& of) { to = gather([&](const EnsembleMember& m) { return of(m.vehicle); }); });
     LaneOrbit<L, N> orbit(vehicle, settings);
     if (settings.approach == LaneApproach::resume) {
       orbit.visit_start([&](L& to, const auto& of) {
@@ -38,10 +37,9 @@ void solve_block(const EnsembleMember* const* members, int count, const LaneSett
         to = L::load(numbers);
       });
     }
-    const Metrics<L> found = orbit.solve(gather([](const EnsembleMember& m) { return m.reporting.mass; }),
-                                         gather([](const EnsembleMember& m) {
-                                           return m.reporting.bench_torque_constant;
-                                         }));
+    const Metrics<L> found =
+        orbit.solve(gather([](const EnsembleMember& m) { return m.reporting.mass; }),
+                    gather([](const EnsembleMember& m) { return m.reporting.bench_torque_constant; }));
     const auto scatter = [&](const L& from, const auto& to) {
       from.store(numbers);
       for (int lane = 0; lane < count; ++lane) to(*results[lane]) = numbers[lane];
@@ -56,9 +54,8 @@ void solve_block(const EnsembleMember* const* members, int count, const LaneSett
                                : numbers[lane] == 1.0 ? LaneVerdict::doubtful
                                                       : LaneVerdict::locked;
     }
-    orbit.visit_start([&](L& from, const auto& to) {
-      scatter(from, [&](LaneResult& r) -> double& { return to(r.start); });
-    });
+    orbit.visit_start(
+        [&](L& from, const auto& to) { scatter(from, [&](LaneResult& r) -> double& { return to(r.start); }); });
   };
   if (settings.current == LaneCurrent::state) {
     with_states(std::integral_constant<int, 2>{});

@@ -34,10 +34,10 @@ struct EnsembleMember {
 
 /// Where a lap begins: near the orbit, at the lower dead centre.
 struct LapStart {
-  std::array<double, 2> state;                                         ///< omega [rad/s], i [A]
-  std::array<std::array<double, most_force_switches>, 2> switch_at;    ///< of either half lap [rad]
+  std::array<double, 2> state;                                       ///< omega [rad/s], i [A]
+  std::array<std::array<double, most_force_switches>, 2> switch_at;  ///< of either half lap [rad]
   std::array<double, 2> switch_count, first_sign;
-  std::array<double, 4> monodromy;                                     ///< of a lap, to a few per cent
+  std::array<double, 4> monodromy;  ///< of a lap, to a few per cent
 };
 
 enum class LaneApproach {
@@ -55,16 +55,16 @@ enum class LaneCurrent {
 
 struct LaneSettings {
   LaneApproach approach = LaneApproach::guess;
-  int start_up_steps = 48; ///< from rest: of a turn at the speed without load
+  int start_up_steps = 48;  ///< from rest: of a turn at the speed without load
   LaneCurrent current = LaneCurrent::state;
   int coarse_laps = 2;
-  bool implicit = false;   ///< where explicit steps would be unstable, laps before the collocation take implicit ones
-  int segments = 6;        ///< of half a lap
-  int intervals = 6;       ///< between the nodes of a segment, even
-  int sweeps = 2;          ///< Newton's steps before the last
+  bool implicit = false;  ///< where explicit steps would be unstable, laps before the collocation take implicit ones
+  int segments = 6;       ///< of half a lap
+  int intervals = 6;      ///< between the nodes of a segment, even
+  int sweeps = 2;         ///< Newton's steps before the last
   double peak_tolerance = 5e-7;  ///< a peak is settled when the cubic at its top promises less, relative
   std::array<bool, quantity_count> wanted{};
-  bool velocity_aside = false;   ///< the peak velocity is wanted for the domain alone: no metric, no part in the error
+  bool velocity_aside = false;  ///< the peak velocity is wanted for the domain alone: no metric, no part in the error
   bool multipliers = false;
 };
 

@@ -1,5 +1,5 @@
-// The current behind a small inductance on SIMD lanes: the part of LaneOrbit in which it is no state, but lags behind the
-// speed. To first order i = (v - K omega - L_a di/dt) / R, di/dt being that of the course found before.
+// The current behind a small inductance on SIMD lanes: the part of LaneOrbit in which it is no state, but lags behind
+// the speed. To first order i = (v - K omega - L_a di/dt) / R, di/dt being that of the course found before.
 #pragma once
 
 #include "wingbeat/ensemble/lane_orbit.hpp"
@@ -39,8 +39,8 @@ void LaneOrbit<L, N>::let_current_lag() {
   }
 }
 
-/// Where the course bends, at a sign change of the rod force, the current goes on from what it was before and has relaxed
-/// within a time constant: what that adds to state and integrals, up to the square of the angle it takes.
+/// Where the course bends, at a sign change of the rod force, the current goes on from what it was before and has
+/// relaxed within a time constant: what that adds to state and integrals, up to the square of the angle it takes.
 template <class L, int N>
 auto LaneOrbit<L, N>::relaxation(System system, std::size_t base, const L& force) const -> solver::Rates<System> {
   solver::Rates<System> after, before;
@@ -53,8 +53,8 @@ auto LaneOrbit<L, N>::relaxation(System system, std::size_t base, const L& force
   return after;
 }
 
-/// What relaxation() leaves out, relative: what grows with the angle of a time constant, and with what the speed changes by
-/// meanwhile. The factor is measured, on the coreless motors of tests/study/test_ensemble.cpp.
+/// What relaxation() leaves out, relative: what grows with the angle of a time constant, and with what the speed
+/// changes by meanwhile. The factor is measured, on the coreless motors of tests/study/test_ensemble.cpp.
 template <class L, int N>
 L LaneOrbit<L, N>::lag_left_out() const {
   const L angle = vehicle_.motor.armature_inductance * no_load_ * inverse_of(circuit_resistance(vehicle_));
@@ -71,10 +71,10 @@ L LaneOrbit<L, N>::electrical_to_mechanical_time() const {
 
 /// Takes the rates below and above a node's speed again with what the inductance makes of the change of acceleration.
 template <class L, int N>
-void LaneOrbit<L, N>::lag_with(System system, std::size_t node, const L& by, const L& force, solver::Rates<System>& below,
-                               solver::Rates<System>& above) const {
-  const L per_acceleration = vehicle_.motor.armature_inductance * vehicle_.motor.torque_constant *
-                             inverse_of(circuit_resistance(vehicle_));
+void LaneOrbit<L, N>::lag_with(System system, std::size_t node, const L& by, const L& force,
+                               solver::Rates<System>& below, solver::Rates<System>& above) const {
+  const L per_acceleration =
+      vehicle_.motor.armature_inductance * vehicle_.motor.torque_constant * inverse_of(circuit_resistance(vehicle_));
   const State& y = course_[node];
   const L acceleration = rates_[node][0] * y[0];
   for (solver::Rates<System>* rates : {&below, &above}) {

@@ -33,7 +33,8 @@ L LaneOrbit<L, N>::floquet_multiplier() {
           evaluate<false>(system, place_of(base + m), moved, mesh.force[s], above);
           if (lags_) lag_with(system, base + m, by, mesh.force[s], below, above);
           const L per_both = L(0.5) * inverse_of(by);
-          for (std::size_t row = 0; row < N; ++row) jacobian[m][row][column] = (above.dy[row] - below.dy[row]) * per_both;
+          for (std::size_t row = 0; row < N; ++row)
+            jacobian[m][row][column] = (above.dy[row] - below.dy[row]) * per_both;
         }
         if (m == 0) {
           // What sweep() corrects by grows with the square of the distance, its derivative with the distance.

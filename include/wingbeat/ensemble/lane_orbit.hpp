@@ -1,13 +1,14 @@
 // The orbits of many vehicles at once, one per lane, by collocation on meshes of fixed size.
 //
 // A lap runs from the lower dead centre through two half laps, on each of which the stroke velocity keeps its sign. The
-// half laps' segments end where the rod force changes sign, which differs from lane to lane while the number of segments
-// does not. Coarse laps find where; a lap with one step per segment gives a first course and its derivatives; Newton's
-// method makes it satisfy the equations at the Lobatto points of every segment, and the lap its own end. Everything is
-// computed lane by lane without looking at the neighbours, so that a vehicle gets the same bits in any company.
+// half laps' segments end where the rod force changes sign, which differs from lane to lane while the number of
+// segments does not. Coarse laps find where; a lap with one step per segment gives a first course and its derivatives;
+// Newton's method makes it satisfy the equations at the Lobatto points of every segment, and the lap its own end.
+// Everything is computed lane by lane without looking at the neighbours, so that a vehicle gets the same bits in any
+// company.
 //
-// lane_start.hpp holds the way to the first course, lane_lag.hpp the current behind a small inductance, lane_peaks.hpp the
-// search for extremes, lane_multiplier.hpp the lap map's derivative.
+// lane_start.hpp holds the way to the first course, lane_lag.hpp the current behind a small inductance, lane_peaks.hpp
+// the search for extremes, lane_multiplier.hpp the lap map's derivative.
 #pragma once
 
 #include <array>
@@ -16,10 +17,10 @@
 
 #include "wingbeat/core/lanes.hpp"
 #include "wingbeat/core/math.hpp"
-#include "wingbeat/ensemble/half_lap.hpp"
-#include "wingbeat/ensemble/lane_blocks.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
+#include "wingbeat/ensemble/half_lap.hpp"
+#include "wingbeat/ensemble/lane_blocks.hpp"
 #include "wingbeat/solve/collocation.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
@@ -43,8 +44,8 @@ struct HalfMesh {
   std::array<L, most_half_segments> force;  ///< sign of the rod force on each segment
 };
 
-/// Value and derivative by crank angle: |beta'| [rad/s], i [A], -omega and omega [rad/s], |F| [N], energy stored in wings
-/// and springs [J].
+/// Value and derivative by crank angle: |beta'| [rad/s], i [A], -omega and omega [rad/s], |F| [N], energy stored in
+/// wings and springs [J].
 template <class L>
 struct Reading {
   L value, slope;
@@ -81,7 +82,9 @@ class LaneOrbit {
 
  public:
   LaneOrbit(const Vehicle<L>& vehicle, const LaneSettings& settings)
-      : vehicle_(vehicle), settings_(settings), rule_(solver::collocation_rule(settings.intervals)),
+      : vehicle_(vehicle),
+        settings_(settings),
+        rule_(solver::collocation_rule(settings.intervals)),
         segments_(settings.segments) {
     no_load_ = no_load_speed(vehicle);
     floor_ = L(1e-4) * no_load_;
@@ -139,7 +142,8 @@ class LaneOrbit {
   [[gnu::noinline, gnu::flatten]] void propose(std::size_t base, const L& h, State& end);
   [[gnu::noinline, gnu::flatten]] void correct(State end);
   [[gnu::noinline, gnu::flatten]] void let_current_lag();
-  [[gnu::noinline, gnu::flatten]] solver::Rates<System> relaxation(System system, std::size_t base, const L& force) const;
+  [[gnu::noinline, gnu::flatten]] solver::Rates<System> relaxation(System system, std::size_t base,
+                                                                   const L& force) const;
   L lag_left_out() const;
   L electrical_to_mechanical_time() const;
   [[gnu::noinline, gnu::flatten]] void visit_node(const System& system, std::size_t node, const L& force,
@@ -147,8 +151,8 @@ class LaneOrbit {
   [[gnu::noinline, gnu::flatten]] void add_tails(const std::array<std::array<L, nodes_per_segment>, 4>& controlled,
                                                  std::size_t base, const L& h);
   [[gnu::noinline, gnu::flatten]] void read(const System& system, const L& u, const State& y, const L& force,
-                                            const Motion<L>& m, const State& dy,
-                                            const L& drop_slope, const std::array<bool, quantity_count>& wanted,
+                                            const Motion<L>& m, const State& dy, const L& drop_slope,
+                                            const std::array<bool, quantity_count>& wanted,
                                             std::array<Reading<L>, quantity_count>& out) const;
   [[gnu::noinline, gnu::flatten]] void follow(const L& segment, SegmentCourse<L, N>& course) const;
   [[gnu::noinline, gnu::flatten]] Reading<L> reading_inside(Quantity quantity, const SegmentCourse<L, N>& course,
@@ -187,7 +191,8 @@ class LaneOrbit {
   }
   /// Segments that meet share the place of their common node.
   const Place<L>& place_of(std::size_t node) const {
-    return places_[node > 0 && node % std::size_t(rule_.intervals + 1) == 0 && node != first_node(1, 0) ? node - 1 : node];
+    return places_[node > 0 && node % std::size_t(rule_.intervals + 1) == 0 && node != first_node(1, 0) ? node - 1
+                                                                                                        : node];
   }
   std::size_t first_node(int half, std::size_t segment) const {
     return (std::size_t(half * segments_) + segment) * std::size_t(rule_.intervals + 1);
@@ -217,7 +222,8 @@ class LaneOrbit {
   std::array<Place<L>, most_nodes> places_;
   std::array<State, most_nodes> course_, rates_, correction_;
   std::array<L, most_nodes> force_;
-  std::array<L, 2 * most_half_segments> off_;  ///< of each segment's start from the sign change before it [rad], 0 without
+  std::array<L, 2 * most_half_segments>
+      off_;                              ///< of each segment's start from the sign change before it [rad], 0 without
   std::array<Matrix, most_nodes> step_;  ///< derivative of the state by that at the node before
   std::array<std::array<Reading<L>, most_nodes>, quantity_count> readings_;
 
@@ -233,7 +239,7 @@ class LaneOrbit {
 
   L slowest_, residual_, switch_offset_;
   L step_error_, speed_error_;  ///< of what the segments' polynomials leave out: at all, and of speed and time
-  L overlooked_;   ///< depth to which the rod force has the wrong sign inside a segment, of its largest magnitude
+  L overlooked_;  ///< depth to which the rod force has the wrong sign inside a segment, of its largest magnitude
   L peak_error_;
   L error_estimate_;
 };
@@ -323,8 +329,8 @@ void LaneOrbit<L, N>::close_lap(State& off) const {
   }
 }
 
-/// Sign changes of the rod force between the samples force[0..count] at u[0..count] of half a lap, by parabolas. Returns
-/// the largest distance from the switches known before [rad].
+/// Sign changes of the rod force between the samples force[0..count] at u[0..count] of half a lap, by parabolas.
+/// Returns the largest distance from the switches known before [rad].
 template <class L, int N>
 L LaneOrbit<L, N>::find_switches(int half, const L* u, const L* force, int count) {
   ForceSwitches<L> found;
@@ -438,8 +444,8 @@ void LaneOrbit<L, N>::place_nodes() {
         c2[n] = L(3.0) * rise - L(2.0) * d0 - d1;
         c3[n] = d0 + d1 - L(2.0) * rise;
       }
-      // The derivatives by the parabola through start, middle and end; across a switch they jump, and a straight line goes
-      // on from the middle.
+      // The derivatives by the parabola through start, middle and end; across a switch they jump, and a straight line
+      // goes on from the middle.
       const bool last = s + 1 == std::size_t(segments_);
       const Mask smooth = (last ? L(-1.0) : before.force[s] * before.force[s + 1]) > L(0.0);
       Matrix linear, bend;
@@ -447,8 +453,8 @@ void LaneOrbit<L, N>::place_nodes() {
         for (std::size_t column = 0; column < N; ++column) {
           const L rise = L(2.0) * (from.jacobian[1][row][column] - from.jacobian[0][row][column]);
           linear[row][column] = rise;
-          bend[row][column] = select<L>(
-              smooth, L(2.0) * (to.jacobian[0][row][column] - from.jacobian[0][row][column] - rise), L(0.0));
+          bend[row][column] =
+              select<L>(smooth, L(2.0) * (to.jacobian[0][row][column] - from.jacobian[0][row][column] - rise), L(0.0));
         }
       }
       for (std::size_t m = 0; m <= std::size_t(rule_.intervals); ++m) {
@@ -504,8 +510,8 @@ void LaneOrbit<L, N>::propose(std::size_t base, const L& h, State& end) {
   }
 }
 
-/// Newton's step from the proposed corrections, along the lap, which is to end where it started; `end` as propose() leaves
-/// it.
+/// Newton's step from the proposed corrections, along the lap, which is to end where it started; `end` as propose()
+/// leaves it.
 template <class L, int N>
 void LaneOrbit<L, N>::correct(State end) {
   const std::size_t per_segment = std::size_t(rule_.intervals + 1), nodes = first_node(2, 0);
@@ -574,7 +580,8 @@ void LaneOrbit<L, N>::sweep() {
           visit_node(system, base + m, sign, rates);
           const L weight = L(rule_.weight[m]) * h;
           for (std::size_t q = 0; q < integrals_.size(); ++q) integrals_[q] = integrals_[q] + weight * rates.dq[q];
-          for (std::size_t c = 0; c < controlled.size(); ++c) controlled[c][m] = rates.dq[System::controlled_integrals[c]];
+          for (std::size_t c = 0; c < controlled.size(); ++c)
+            controlled[c][m] = rates.dq[System::controlled_integrals[c]];
           highest = max(highest, abs(rates.switches[0]));
           if (m > 0 && m < intervals) overlooked = max(overlooked, -(rates.switches[0] * sign));
         } else {
@@ -592,7 +599,8 @@ void LaneOrbit<L, N>::sweep() {
         const Mask switches = mesh.force[s - 1] * sign < L(0.0);
         if (!any<L>(switches)) continue;
         L slope(0.0);
-        for (std::size_t j = 0; j <= intervals; ++j) slope = slope + L(rule_.slope[intervals][j]) * force_[base - 1 - intervals + j];
+        for (std::size_t j = 0; j <= intervals; ++j)
+          slope = slope + L(rule_.slope[intervals][j]) * force_[base - 1 - intervals + j];
         const L off = min(max(force_[base - 1] * h_before * inverse_of(slope), -h), h);
         const L half_off = select<L>(switches, L(0.5) * off, L(0.0));
         for (std::size_t n = 0; n < N; ++n) jump[n] = jump[n] - half_off * (rates_[base - 1][n] - rates_[base][n]);
@@ -624,7 +632,8 @@ void LaneOrbit<L, N>::sweep() {
           auto& readings = readings_[std::size_t(Quantity::force)];
           for (std::size_t m = 0; m <= intervals; ++m) {
             L slope(0.0);
-            for (std::size_t j = 0; j <= intervals; ++j) slope = slope + L(rule_.slope[m][j]) * readings[base + j].value;
+            for (std::size_t j = 0; j <= intervals; ++j)
+              slope = slope + L(rule_.slope[m][j]) * readings[base + j].value;
             readings[base + m].slope = slope * per_h;
           }
         }
@@ -650,7 +659,8 @@ void LaneOrbit<L, N>::sweep() {
     // The coefficients fall geometrically, and the sums over the nodes see none below the 2 n-th.
     step_error_ = speed_error_ = L(0.0);
     for (std::size_t c = 0; c < high_.size(); ++c) {
-      const L scale = c == 0 ? L(1.0) : inverse_of(max(abs(integrals_[System::controlled_integrals[c - 1]]), L(1e-300)));
+      const L scale =
+          c == 0 ? L(1.0) : inverse_of(max(abs(integrals_[System::controlled_integrals[c - 1]]), L(1e-300)));
       const L ratio = high_[c] * inverse_of(max(low_[c], L(1e-300)));
       L error = high_[c] * scale;
       for (std::size_t k = 0; k < intervals / 2; ++k) error = error * ratio;
@@ -749,7 +759,8 @@ Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
     if (settings_.approach == LaneApproach::guess) {
       doubtful_ = doubtful_ || !(balances == L(1.0));
     } else {
-      // A heavy rotor is far from any orbit after the few turns simulated: they do not show which of several it reaches.
+      // A heavy rotor is far from any orbit after the few turns simulated: they do not show which of several it
+      // reaches.
       start_from_rest();
       doubtful_ = doubtful_ || balances > L(1.0);
     }

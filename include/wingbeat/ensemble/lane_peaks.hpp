@@ -5,8 +5,8 @@
 
 namespace wingbeat {
 
-/// The course over a segment, which may differ from lane to lane: the integral of its rates' interpolant, and through the
-/// nodes that the last correction has moved since the rates were taken.
+/// The course over a segment, which may differ from lane to lane: the integral of its rates' interpolant, and through
+/// the nodes that the last correction has moved since the rates were taken.
 template <class L, int N>
 void LaneOrbit<L, N>::follow(const L& segment, SegmentCourse<L, N>& course) const {
   const std::size_t intervals = std::size_t(rule_.intervals);
@@ -114,12 +114,11 @@ void LaneOrbit<L, N>::for_each_stretch(int half, Quantity quantity, const L& flo
       const L x0 = L(rule_.node[m - 1]) * h, x1 = L(rule_.node[m]) * h, width = x1 - x0;
       const Mask may_rise = max(from.value, to.value) + L(0.3) * width * (abs(from.slope) + abs(to.slope)) > floor;
       if (!any<L>(may_rise)) continue;
-      const PeakBracket<L> b = {L(double(half * segments_) + double(s)), x0, from.value, from.slope, x1, to.value,
-                                to.slope, L(0.0), L(0.0)};
+      const PeakBracket<L> b = {
+          L(double(half * segments_) + double(s)), x0, from.value, from.slope, x1, to.value, to.slope, L(0.0), L(0.0)};
       const L slope = (b.v1 - b.v0) * inverse_of(max(width, L(1e-300)));
       // A slope that is nowhere far below the larger one of the ends' does not change its sign in between.
-      Mask twice = may_rise && b.d0 * b.d1 > L(0.0) &&
-                   slope * sign_of(b.d0) < L(0.5) * max(abs(b.d0), abs(b.d1));
+      Mask twice = may_rise && b.d0 * b.d1 > L(0.0) && slope * sign_of(b.d0) < L(0.5) * max(abs(b.d0), abs(b.d1));
       if (any<L>(twice)) {
         const L c2 = L(3.0) * slope - L(2.0) * b.d0 - b.d1, c3 = b.d0 + b.d1 - L(2.0) * slope;
         const L discriminant = square(c2) - L(3.0) * c3 * b.d0;
@@ -149,7 +148,8 @@ void LaneOrbit<L, N>::for_each_stretch(int half, Quantity quantity, const L& flo
 template <class L, int N>
 void LaneOrbit<L, N>::keep(const PeakBracket<L>& from, const Mask& where, PeakBracket<L>& to) {
   using P = PeakBracket<L>;
-  for (L P::*member : {&P::segment, &P::x0, &P::v0, &P::d0, &P::x1, &P::v1, &P::d1, &P::rises_and_falls, &P::estimate}) {
+  for (L P::* member :
+       {&P::segment, &P::x0, &P::v0, &P::d0, &P::x1, &P::v1, &P::d1, &P::rises_and_falls, &P::estimate}) {
     to.*member = select<L>(where, from.*member, to.*member);
   }
 }
@@ -170,8 +170,8 @@ L LaneOrbit<L, N>::estimate_peak(PeakBracket<L>& b) {
   return t;
 }
 
-/// The maximum within a bracket: the cubic's, read on the course, and again within the bracket that this leaves. What the
-/// course errs by is added to the error of peaks.
+/// The maximum within a bracket: the cubic's, read on the course, and again within the bracket that this leaves. What
+/// the course errs by is added to the error of peaks.
 template <class L, int N>
 L LaneOrbit<L, N>::refine(Quantity quantity, const L& sign, PeakBracket<L> b) {
   L highest = max(b.v0, b.v1);
@@ -230,7 +230,8 @@ L LaneOrbit<L, N>::peak(Quantity quantity) {
       keep(b, turns && !first && b.estimate > other.estimate, other);
     });
   }
-  const L highest = max(highest_node, select<L>(best.estimate > L(-1e300), refine(quantity, L(1.0), best), highest_node));
+  const L highest =
+      max(highest_node, select<L>(best.estimate > L(-1e300), refine(quantity, L(1.0), best), highest_node));
   // The cubics err by a small part of what they rise above their ends.
   const L rise = other.estimate - min(other.v0, other.v1) + best.estimate - min(best.v0, best.v1);
   const Mask close = other.estimate > L(-1e300) && other.estimate + L(0.2) * rise > best.estimate;
@@ -239,8 +240,8 @@ L LaneOrbit<L, N>::peak(Quantity quantity) {
   return select<L>(close, max(highest, refine(quantity, L(1.0), other)), highest);
 }
 
-/// The work that wings and springs exchange with the rest, |power| integrated over the lap [J]: the energy that they store
-/// rises and falls by it between its extremes.
+/// The work that wings and springs exchange with the rest, |power| integrated over the lap [J]: the energy that they
+/// store rises and falls by it between its extremes.
 template <class L, int N>
 L LaneOrbit<L, N>::exchanged_energy() {
   L total(0.0);

@@ -15,7 +15,8 @@ void LaneOrbit<L, N>::tabulate() {
   }
 }
 
-/// Marks the lanes that could jam or lock: within a margin, for the table is coarse; static_balance() has the last word.
+/// Marks the lanes that could jam or lock: within a margin, for the table is coarse; static_balance() has the last
+/// word.
 template <class L, int N>
 void LaneOrbit<L, N>::judge_statics() {
   const Vehicle<L>& v = vehicle_;
@@ -53,8 +54,8 @@ L LaneOrbit<L, N>::guess_speed() {
   return balanced.count;
 }
 
-/// From rest at crank angle zero, in time, by the classical fourth-order method: over the lower dead centre twice, where
-/// the lap may begin. Lanes that come near standing still are doubtful, but for those that come to rest and stay.
+/// From rest at crank angle zero, in time, by the classical fourth-order method: over the lower dead centre twice,
+/// where the lap may begin. Lanes that come near standing still are doubtful, but for those that come to rest and stay.
 template <class L, int N>
 void LaneOrbit<L, N>::start_from_rest() {
   using Moving = std::array<L, N + 1>;  // crank angle, state
@@ -142,8 +143,8 @@ auto LaneOrbit<L, N>::is_stiff(const Matrix& jacobian, const L& h) -> Mask {
   return h * fastest > L(1.5);
 }
 
-/// A step by the L-stable diagonally implicit method of second order with two stages (Alexander 1977), each by a few Newton
-/// steps; rates(part, y) are those at a part of the step.
+/// A step by the L-stable diagonally implicit method of second order with two stages (Alexander 1977), each by a few
+/// Newton steps; rates(part, y) are those at a part of the step.
 template <class L, int N>
 template <class Rates>
 auto LaneOrbit<L, N>::implicit_step(const State& y, const L& h, const Rates& rates) const -> State {
@@ -178,8 +179,8 @@ auto LaneOrbit<L, N>::implicit_step(const State& y, const L& h, const Rates& rat
   return at;
 }
 
-/// Where a step of coarse_lap() from y is stiff, takes an implicit one instead: its end, and the rod force's switch in its
-/// middle and at its end.
+/// Where a step of coarse_lap() from y is stiff, takes an implicit one instead: its end, and the rod force's switch in
+/// its middle and at its end.
 template <class L, int N>
 void LaneOrbit<L, N>::replace_stiff(const System& system, const L& u, const L& h, const State& y, State& end,
                                     L& force_in_middle, L& force_at_end) const {
@@ -215,7 +216,8 @@ void LaneOrbit<L, N>::coarse_lap() {
   constexpr double h = pi / coarse_half_steps;
   slowest_ = y_[0];
   std::array<L, coarse_samples> angles;
-  for (std::size_t k = 0; k < coarse_samples; ++k) angles[k] = L(quarter * (2.0 * double(k) / (coarse_samples - 1) - 1.0));
+  for (std::size_t k = 0; k < coarse_samples; ++k)
+    angles[k] = L(quarter * (2.0 * double(k) / (coarse_samples - 1) - 1.0));
   for (int half = 0; half < 2; ++half) {
     const System system = half_lap(half);
     const auto& table = table_[std::size_t(half)];

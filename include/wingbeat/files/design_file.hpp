@@ -57,7 +57,8 @@ std::string read_text_file(const std::filesystem::path& file);
 /// below its own. An override replaces the file's alternative to it (stroke_amplitude and hinge_offset, resonance and
 /// stiffness, ...), and one that changes a type or shape drops the file's keys that belong to the old one.
 ///
-/// Throws InputError, with all that is wrong and not only the first; nothing else for any content of file and overrides.
+/// Throws InputError, with all that is wrong and not only the first; nothing else for any content of file and
+/// overrides.
 Design<double> read_design(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 
 /// The same from text; `file_name` stands in messages. Without a loader, table files are refused; no file is touched.

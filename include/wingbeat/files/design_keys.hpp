@@ -39,9 +39,10 @@ struct Key : KeyText {
 };
 
 // Names of the choices in vehicle files.
-inline constexpr std::pair<std::string_view, SupplyType> supply_types[] = {
-    {"constant", SupplyType::constant}, {"sine", SupplyType::sine}, {"pwm", SupplyType::pwm},
-    {"battery", SupplyType::battery}};
+inline constexpr std::pair<std::string_view, SupplyType> supply_types[] = {{"constant", SupplyType::constant},
+                                                                           {"sine", SupplyType::sine},
+                                                                           {"pwm", SupplyType::pwm},
+                                                                           {"battery", SupplyType::battery}};
 inline constexpr std::pair<std::string_view, TransmissionType> transmission_types[] = {
     {"slider-crank", TransmissionType::slider_crank}, {"direct", TransmissionType::direct}};
 inline constexpr std::pair<std::string_view, Formulation> formulations[] = {
@@ -184,9 +185,7 @@ std::span<const Key<S>> vehicle_keys() {
   constexpr auto pwm = [](const auto& d) { return d.supply.type == SupplyType::pwm; };
   constexpr auto battery = [](const auto& d) { return d.supply.type == SupplyType::battery; };
   constexpr auto weighed = [](const auto& d) { return d.mass.has_value(); };
-  constexpr auto weighed_springs = [](const auto& d) {
-    return d.mass.has_value() && has_springs(d);
-  };
+  constexpr auto weighed_springs = [](const auto& d) { return d.mass.has_value() && has_springs(d); };
   constexpr auto geared = [](const auto& d) { return d.motor.gear_ratio.has_value(); };
   constexpr auto crank = [](const auto& d) { return d.transmission.type == TransmissionType::slider_crank; };
   constexpr auto direct = [](const auto& d) { return d.transmission.type == TransmissionType::direct; };
@@ -207,29 +206,35 @@ std::span<const Key<S>> vehicle_keys() {
   static constexpr Key<S> keys[] = {
       text<S>({"vehicle.name", "", "any text", "no name", "name of the vehicle, for reports"},
               [](const D& d) { return d.name; }),
-      number<S>({"vehicle.mass", "kg", "> 0", "unknown", "mass of the vehicle but for the masses stated for themselves (motor.mass, supply.mass, "
+      number<S>({"vehicle.mass", "kg", "> 0", "unknown",
+                 "mass of the vehicle but for the masses stated for themselves (motor.mass, supply.mass, "
                  "spring.mass, transmission.rod_linear_density); enables lift_to_weight"},
                 [](auto& d) -> auto& { return d.mass; }),
 
       text<S>({"supply.type", "", "constant, sine, pwm or battery", "required", "what feeds the motor terminals"},
               [](const D& d) { return choice_name(supply_types, d.supply.type); }),
-      number<S>({"supply.voltage", "V", ">= 0", "required", "v, terminal voltage; pwm: while switched on",
-                 "supply.type = constant|pwm"},
-                [](auto& d) -> auto& { return d.supply.voltage; }, with_voltage),
-      number<S>({"supply.amplitude", "V", ">= 0", "required", "amplitude of the sine", "supply.type = sine"},
-                [](auto& d) -> auto& { return d.supply.voltage; }, sine),
-      replaceable<S>({"supply.frequency", "Hz", "> 0", "required or resonance_ratio",
-                      "drive frequency (sine) or switching frequency (pwm)", "supply.type = sine|pwm"},
-                     periodic, [](auto& d) -> auto& { return d.supply.frequency; }, drive_ratio),
+      number<S>(
+          {"supply.voltage", "V", ">= 0", "required", "v, terminal voltage; pwm: while switched on",
+           "supply.type = constant|pwm"},
+          [](auto& d) -> auto& { return d.supply.voltage; }, with_voltage),
+      number<S>(
+          {"supply.amplitude", "V", ">= 0", "required", "amplitude of the sine", "supply.type = sine"},
+          [](auto& d) -> auto& { return d.supply.voltage; }, sine),
+      replaceable<S>(
+          {"supply.frequency", "Hz", "> 0", "required or resonance_ratio",
+           "drive frequency (sine) or switching frequency (pwm)", "supply.type = sine|pwm"},
+          periodic, [](auto& d) -> auto& { return d.supply.frequency; }, drive_ratio),
       alternative<S>({"supply.resonance_ratio", "1", "> 0", "required or frequency",
                       "drive frequency over the frequency at which rotor and wings resonate on the springs; 1 drives a "
                       "direct drive at resonance",
                       "transmission.type = direct"},
                      direct, drive_ratio),
-      number<S>({"supply.duty", "1", "0 to 1", "required", "fraction of a period switched on", "supply.type = pwm"},
-                [](auto& d) -> auto& { return d.supply.duty; }, pwm),
-      number<S>({"supply.cells", "1", "whole number >= 1", "1", "cells in series", "supply.type = battery"},
-                [](auto& d) -> auto& { return d.supply.battery.cells; }, battery),
+      number<S>(
+          {"supply.duty", "1", "0 to 1", "required", "fraction of a period switched on", "supply.type = pwm"},
+          [](auto& d) -> auto& { return d.supply.duty; }, pwm),
+      number<S>(
+          {"supply.cells", "1", "whole number >= 1", "1", "cells in series", "supply.type = battery"},
+          [](auto& d) -> auto& { return d.supply.battery.cells; }, battery),
       battery_voltage<S>({"supply.cell_voltage", "V", "> 0", "required or discharge_curve",
                           "E, open-circuit voltage of one cell at any charge", "supply.type = battery"}),
       text<S>({"supply.discharge_curve", "", "name of a CSV file, or rows from charge 0 to 1, voltages not falling",
@@ -237,31 +242,37 @@ std::span<const Key<S>> vehicle_keys() {
                "open-circuit voltage of one cell: rows [state of charge, voltage], monotone cubics, see below",
                "supply.type = battery"},
               [](const D&) { return std::string(); }),
-      number<S>({"supply.internal_resistance", "ohm", ">= 0", "required",
-                 "R_i of one cell: the terminals see E - R_i i, times cells", "supply.type = battery"},
-                [](auto& d) -> auto& { return d.supply.battery.internal_resistance; }, battery),
-      number<S>({"supply.capacity", "C", "> 0", "required", "charge that a full cell holds",
-                 "supply.type = battery"},
-                [](auto& d) -> auto& { return d.supply.battery.capacity; }, battery),
-      number<S>({"supply.charge", "1", "0 to 1", "1", "state of charge: where a run computes, where a flight starts",
-                 "supply.type = battery"},
-                [](auto& d) -> auto& { return d.supply.battery.charge; }, battery),
-      number<S>({"supply.cutoff_voltage", "V", ">= 0", "none",
-                 "mean terminal voltage of one cell at which a flight ends", "supply.type = battery"},
-                [](auto& d) -> auto& { return d.supply.battery.cutoff_voltage; }, battery),
-      number<S>({"supply.mass", "kg", ">= 0", "none: in vehicle.mass", "mass of the battery, in addition to vehicle.mass",
-                 "vehicle.mass"},
-                [](auto& d) -> auto& { return d.masses.supply; }, weighed),
+      number<S>(
+          {"supply.internal_resistance", "ohm", ">= 0", "required",
+           "R_i of one cell: the terminals see E - R_i i, times cells", "supply.type = battery"},
+          [](auto& d) -> auto& { return d.supply.battery.internal_resistance; }, battery),
+      number<S>(
+          {"supply.capacity", "C", "> 0", "required", "charge that a full cell holds", "supply.type = battery"},
+          [](auto& d) -> auto& { return d.supply.battery.capacity; }, battery),
+      number<S>(
+          {"supply.charge", "1", "0 to 1", "1", "state of charge: where a run computes, where a flight starts",
+           "supply.type = battery"},
+          [](auto& d) -> auto& { return d.supply.battery.charge; }, battery),
+      number<S>(
+          {"supply.cutoff_voltage", "V", ">= 0", "none", "mean terminal voltage of one cell at which a flight ends",
+           "supply.type = battery"},
+          [](auto& d) -> auto& { return d.supply.battery.cutoff_voltage; }, battery),
+      number<S>(
+          {"supply.mass", "kg", ">= 0", "none: in vehicle.mass", "mass of the battery, in addition to vehicle.mass",
+           "vehicle.mass"},
+          [](auto& d) -> auto& { return d.masses.supply; }, weighed),
 
       number<S>({"motor.gear_ratio", "1", "> 0", "none: constants at the output shaft",
                  "n, motor turns per output turn; given, the motor constants below are the motor shaft's"},
                 [](auto& d) -> auto& { return d.motor.gear_ratio; }),
-      number<S>({"motor.gear_inertia", "kg m2", ">= 0", "0 kg m2", "J_G, inertia of the gearbox at the output shaft",
-                 "motor.gear_ratio"},
-                [](auto& d) -> auto& { return d.motor.gear_inertia; }, geared),
-      number<S>({"motor.gear_damping", "N m s/rad", ">= 0", "0 N m s/rad",
-                 "b_G, viscous damping of the gearbox at the output shaft", "motor.gear_ratio"},
-                [](auto& d) -> auto& { return d.motor.gear_damping; }, geared),
+      number<S>(
+          {"motor.gear_inertia", "kg m2", ">= 0", "0 kg m2", "J_G, inertia of the gearbox at the output shaft",
+           "motor.gear_ratio"},
+          [](auto& d) -> auto& { return d.motor.gear_inertia; }, geared),
+      number<S>(
+          {"motor.gear_damping", "N m s/rad", ">= 0", "0 N m s/rad",
+           "b_G, viscous damping of the gearbox at the output shaft", "motor.gear_ratio"},
+          [](auto& d) -> auto& { return d.motor.gear_damping; }, geared),
       number<S>({"motor.armature_resistance", "ohm", "> 0", "required", "R_a, armature resistance"},
                 [](auto& d) -> auto& { return d.motor.constants.armature_resistance; }),
       number<S>({"motor.armature_inductance", "H", ">= 0", "required",
@@ -280,17 +291,20 @@ std::span<const Key<S>> vehicle_keys() {
                  "constant friction torque of the motor itself, at the motor shaft with gear_ratio; "
                  "adds to every friction law"},
                 [](auto& d) -> auto& { return d.motor.constants.friction_torque; }),
-      number<S>({"motor.mass", "kg", ">= 0", "none: in vehicle.mass",
-                 "mass of the motor with its gearbox, in addition to vehicle.mass", "vehicle.mass"},
-                [](auto& d) -> auto& { return d.masses.motor; }, weighed),
+      number<S>(
+          {"motor.mass", "kg", ">= 0", "none: in vehicle.mass",
+           "mass of the motor with its gearbox, in addition to vehicle.mass", "vehicle.mass"},
+          [](auto& d) -> auto& { return d.masses.motor; }, weighed),
 
       text<S>({"transmission.type", "", "slider-crank or direct", "required",
                "kind of mechanism between motor and wings; direct: the motor shaft is the wing hinge"},
               [](const D& d) { return choice_name(transmission_types, d.transmission.type); }),
-      number<S>({"transmission.crank_radius", "m", "> 0, < rod_length", "required", "r_c, crank radius", of_crank},
-                [](auto& d) -> auto& { return d.transmission.crank_radius; }, crank),
-      number<S>({"transmission.rod_length", "m", "> crank_radius", "required", "l, rod length", of_crank},
-                [](auto& d) -> auto& { return d.transmission.rod_length; }, crank),
+      number<S>(
+          {"transmission.crank_radius", "m", "> 0, < rod_length", "required", "r_c, crank radius", of_crank},
+          [](auto& d) -> auto& { return d.transmission.crank_radius; }, crank),
+      number<S>(
+          {"transmission.rod_length", "m", "> crank_radius", "required", "l, rod length", of_crank},
+          [](auto& d) -> auto& { return d.transmission.rod_length; }, crank),
       alternative<S>({"transmission.hinge_offset", "m", "> 0", "required or stroke_amplitude",
                       "H, horizontal distance from slider to wing hinge", of_crank},
                      crank, hinge_offset, stroke_amplitude),
@@ -299,13 +313,14 @@ std::span<const Key<S>> vehicle_keys() {
                       "not with mid_stroke_height",
                       of_crank},
                      crank, stroke_amplitude, hinge_offset),
-      number<S>({"transmission.mid_stroke_height", "m", "any", "rod_length",
-                 "y_0, slider height over the crank axis at stroke angle zero", of_crank},
-                [](auto& d) -> auto& { return d.transmission.mid_stroke_height; }, crank),
-      number<S>({"transmission.rod_linear_density", "kg/m", ">= 0", "none: in vehicle.mass",
-                 "mass of the rod over its length: rod_length times this, in addition to vehicle.mass",
-                 "vehicle.mass"},
-                [](auto& d) -> auto& { return d.masses.rod_linear_density; }, weighed),
+      number<S>(
+          {"transmission.mid_stroke_height", "m", "any", "rod_length",
+           "y_0, slider height over the crank axis at stroke angle zero", of_crank},
+          [](auto& d) -> auto& { return d.transmission.mid_stroke_height; }, crank),
+      number<S>(
+          {"transmission.rod_linear_density", "kg/m", ">= 0", "none: in vehicle.mass",
+           "mass of the rod over its length: rod_length times this, in addition to vehicle.mass", "vehicle.mass"},
+          [](auto& d) -> auto& { return d.masses.rod_linear_density; }, weighed),
       text<S>({"transmission.formulation", "", "rod-force or virtual-work", "required",
                "how the rod force turns the wings: the paper's eq (1), or conserving power exactly", of_crank},
               [](const D& d) {
@@ -317,71 +332,80 @@ std::span<const Key<S>> vehicle_keys() {
       text<S>({"friction.type", "", "none, load-proportional, viscous, quadratic or constant", "required",
                "law of the transmission's friction torque T_f on the crank or shaft; load-proportional needs a rod"},
               [](const D& d) { return choice_name(friction_laws, d.friction.law); }),
-      friction_number<S, FrictionLaw::load_proportional>(
-          {"friction.radius", "m", ">= 0", "required", "mu r_e, effective friction radius: T_f = mu r_e abs(F)",
-           "friction.type = load-proportional"}),
-      friction_number<S, FrictionLaw::viscous>({"friction.damping", "N m s/rad", ">= 0", "required",
-                                                "b_f: T_f = b_f omega", "friction.type = viscous"}),
+      friction_number<S, FrictionLaw::load_proportional>({"friction.radius", "m", ">= 0", "required",
+                                                          "mu r_e, effective friction radius: T_f = mu r_e abs(F)",
+                                                          "friction.type = load-proportional"}),
+      friction_number<S, FrictionLaw::viscous>(
+          {"friction.damping", "N m s/rad", ">= 0", "required", "b_f: T_f = b_f omega", "friction.type = viscous"}),
       friction_number<S, FrictionLaw::quadratic>({"friction.coefficient", "N m s2/rad2", ">= 0", "required",
                                                   "c_f: T_f = c_f omega abs(omega)", "friction.type = quadratic"}),
-      friction_number<S, FrictionLaw::constant>({"friction.torque", "N m", ">= 0", "required",
-                                                 "T_c: T_f = T_c sign(omega)", "friction.type = constant"}),
+      friction_number<S, FrictionLaw::constant>(
+          {"friction.torque", "N m", ">= 0", "required", "T_c: T_f = T_c sign(omega)", "friction.type = constant"}),
 
       alternative<S>({"spring.stiffness", "N m/rad", ">= 0", "required or resonance",
                       "k, stiffness of one hinge spring, at rest at stroke angle zero"},
                      always, stiffness, resonance, spring_ratio),
-      alternative<S>({"spring.resonance", "Hz", ">= 0", "required or stiffness",
-                      "f_s, resonance of one wing on its spring, k = J_w (2 pi f_s)^2; direct drive: of rotor and wings "
-                      "on all springs, N_w k = (J + N_w J_w) (2 pi f_s)^2"},
-                     always, resonance, stiffness, spring_ratio),
-      alternative<S>({"spring.resonance_ratio", "1", "> 0", "required or stiffness",
-                      "frequency at which rotor and wings resonate on the springs, over the drive frequency; 1 tunes the "
-                      "springs to the supply",
-                      "transmission.type = direct"},
-                     direct, spring_ratio, stiffness, resonance),
-      number<S>({"spring.mass", "kg", ">= 0", "none: in vehicle.mass",
-                 "mass of one hinge spring, in addition to vehicle.mass; one for each wing", "vehicle.mass"},
-                [](auto& d) -> auto& { return d.masses.spring; }, weighed_springs),
+      alternative<S>(
+          {"spring.resonance", "Hz", ">= 0", "required or stiffness",
+           "f_s, resonance of one wing on its spring, k = J_w (2 pi f_s)^2; direct drive: of rotor and wings "
+           "on all springs, N_w k = (J + N_w J_w) (2 pi f_s)^2"},
+          always, resonance, stiffness, spring_ratio),
+      alternative<S>(
+          {"spring.resonance_ratio", "1", "> 0", "required or stiffness",
+           "frequency at which rotor and wings resonate on the springs, over the drive frequency; 1 tunes the "
+           "springs to the supply",
+           "transmission.type = direct"},
+          direct, spring_ratio, stiffness, resonance),
+      number<S>(
+          {"spring.mass", "kg", ">= 0", "none: in vehicle.mass",
+           "mass of one hinge spring, in addition to vehicle.mass; one for each wing", "vehicle.mass"},
+          [](auto& d) -> auto& { return d.masses.spring; }, weighed_springs),
 
       number<S>({"wing.count", "1", "whole number >= 1", "2", "N_w, number of wings"},
                 [](auto& d) -> auto& { return d.wing.count; }),
-      replaceable<S>({"wing.inertia", "kg m2", "> 0", "required or resonance", "J_w, inertia of one wing about its hinge"},
-                     always, [](auto& d) -> auto& { return d.wing.inertia; }, wing_resonance),
-      alternative<S>({"wing.resonance", "Hz", "> 0", "required or inertia",
-                      "frequency at which rotor and wings resonate on springs of a given stiffness: the inertia follows, "
-                      "J + N_w J_w = N_w k / (2 pi f)^2",
-                      "transmission.type = direct"},
-                     direct, wing_resonance),
+      replaceable<S>(
+          {"wing.inertia", "kg m2", "> 0", "required or resonance", "J_w, inertia of one wing about its hinge"}, always,
+          [](auto& d) -> auto& { return d.wing.inertia; }, wing_resonance),
+      alternative<S>(
+          {"wing.resonance", "Hz", "> 0", "required or inertia",
+           "frequency at which rotor and wings resonate on springs of a given stiffness: the inertia follows, "
+           "J + N_w J_w = N_w k / (2 pi f)^2",
+           "transmission.type = direct"},
+          direct, wing_resonance),
       text<S>({"wing.planform.shape", "", "semi-ellipse, rectangle, tabulated or moments", "required",
                "how the wing's outline is given"},
               [](const D& d) { return choice_name(planform_shapes, d.wing.planform.shape); }),
-      number<S>({"wing.planform.length", "m", "> 0", "required", "R, wing root to tip",
-                 "wing.planform.shape = semi-ellipse|rectangle"},
-                [](auto& d) -> auto& { return d.wing.planform.length; }, outline),
-      replaceable<S>({"wing.planform.root_chord", "m", "> 0", "required or chord_ratio", "c_0, chord at the root",
-                      "wing.planform.shape = semi-ellipse|rectangle"},
-                     outline, [](auto& d) -> auto& { return d.wing.planform.root_chord; }, chord_ratio),
+      number<S>(
+          {"wing.planform.length", "m", "> 0", "required", "R, wing root to tip",
+           "wing.planform.shape = semi-ellipse|rectangle"},
+          [](auto& d) -> auto& { return d.wing.planform.length; }, outline),
+      replaceable<S>(
+          {"wing.planform.root_chord", "m", "> 0", "required or chord_ratio", "c_0, chord at the root",
+           "wing.planform.shape = semi-ellipse|rectangle"},
+          outline, [](auto& d) -> auto& { return d.wing.planform.root_chord; }, chord_ratio),
       alternative<S>({"wing.planform.chord_ratio", "1", "> 0", "required or root_chord",
                       "c_0 / R, chord at the root over the length: it follows when the length changes",
                       "wing.planform.shape = semi-ellipse|rectangle"},
                      outline, chord_ratio),
-      number<S>({"wing.planform.hub_offset", "m", ">= 0", "0 m", "distance from the hinge to the wing root",
-                 "wing.planform.shape = semi-ellipse|rectangle|tabulated"},
-                [](auto& d) -> auto& { return d.wing.planform.hub_offset; }, not_moments),
+      number<S>(
+          {"wing.planform.hub_offset", "m", ">= 0", "0 m", "distance from the hinge to the wing root",
+           "wing.planform.shape = semi-ellipse|rectangle|tabulated"},
+          [](auto& d) -> auto& { return d.wing.planform.hub_offset; }, not_moments),
       text<S>({"wing.planform.file", "", "name of a CSV file", "required or chords",
-               "chord table: columns distance (from the root) and chord, see below",
-               "wing.planform.shape = tabulated"},
+               "chord table: columns distance (from the root) and chord, see below", "wing.planform.shape = tabulated"},
               [](const D&) { return std::string(); }),
       text<S>({"wing.planform.chords", "", "two or more rows, distances growing, chords >= 0", "required or file",
                "chord table in place: rows [distance from the root, chord], linear between",
                "wing.planform.shape = tabulated"},
               [](const D&) { return std::string(); }),
-      number<S>({"wing.planform.s2", "m4", ">= 0", "required", "S_2 = N_w integral c r^2 dr of all wings",
-                 "wing.planform.shape = moments"},
-                [](auto& d) -> auto& { return d.wing.planform.s2; }, moments),
-      number<S>({"wing.planform.s3", "m5", ">= 0", "required", "S_3 = N_w integral c r^3 dr of all wings",
-                 "wing.planform.shape = moments"},
-                [](auto& d) -> auto& { return d.wing.planform.s3; }, moments),
+      number<S>(
+          {"wing.planform.s2", "m4", ">= 0", "required", "S_2 = N_w integral c r^2 dr of all wings",
+           "wing.planform.shape = moments"},
+          [](auto& d) -> auto& { return d.wing.planform.s2; }, moments),
+      number<S>(
+          {"wing.planform.s3", "m5", ">= 0", "required", "S_3 = N_w integral c r^3 dr of all wings",
+           "wing.planform.shape = moments"},
+          [](auto& d) -> auto& { return d.wing.planform.s3; }, moments),
 
       number<S>({"aerodynamics.air_density", "kg/m3", ">= 0", "required", "rho, air density"},
                 [](auto& d) -> auto& { return d.aerodynamics.air_density; }),

@@ -35,8 +35,8 @@ class NetcdfFile {
   explicit NetcdfFile(const std::filesystem::path& file);
   NetcdfFile(const NetcdfFile&) = delete;
   NetcdfFile& operator=(const NetcdfFile&) = delete;
-  /// Closes without a word; call close() to learn whether everything was written. After an error nothing is closed: HDF5
-  /// does not survive the second meeting with a full disk.
+  /// Closes without a word; call close() to learn whether everything was written. After an error nothing is closed:
+  /// HDF5 does not survive the second meeting with a full disk.
   ~NetcdfFile();
 
   Dimension define_dimension(const std::string& name, std::size_t length);
@@ -112,13 +112,13 @@ class NetcdfReader {
 /// empty, or a tolerance of 0, does not apply and is left out.
 struct Provenance {
   std::string title;
-  std::string command;        ///< of the program, as "sweep"
-  std::string version;        ///< of the program
-  std::string vehicle;        ///< the vehicle file, complete in itself
-  std::string study = {};     ///< the study file
-  std::string condition = {}; ///< air, vacuum, wingless
-  std::string method = {};    ///< orbit, transient; of a Pareto study its algorithm
-  std::string domain = {};    ///< "inside" or the limits of the model that are exceeded; empty: not said
+  std::string command;         ///< of the program, as "sweep"
+  std::string version;         ///< of the program
+  std::string vehicle;         ///< the vehicle file, complete in itself
+  std::string study = {};      ///< the study file
+  std::string condition = {};  ///< air, vacuum, wingless
+  std::string method = {};     ///< orbit, transient; of a Pareto study its algorithm
+  std::string domain = {};     ///< "inside" or the limits of the model that are exceeded; empty: not said
   double tolerance = 0.0;
 };
 

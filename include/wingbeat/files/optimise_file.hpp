@@ -14,7 +14,7 @@ namespace wingbeat {
 /// One motor of a catalogue, put into the study's vehicle.
 struct MotorCandidate {
   std::string model;
-  std::string refused;              ///< why it cannot be tried; empty if it can
+  std::string refused;               ///< why it cannot be tried; empty if it can
   std::vector<std::string> derived;  ///< what was derived from other columns, and how
   Design<double> design;
 };

@@ -10,13 +10,13 @@
 
 namespace wingbeat {
 
-/// Reserves a place for an output file at once, so that a path that cannot be written, or must not be, is refused before
-/// any computing, and gives it its name in commit(). Without commit() nothing is left behind and an existing file stays
-/// as it was.
+/// Reserves a place for an output file at once, so that a path that cannot be written, or must not be, is refused
+/// before any computing, and gives it its name in commit(). Without commit() nothing is left behind and an existing
+/// file stays as it was.
 class OutputFile {
  public:
-  /// `option` is what the path was given for ("--plot"). Throws InputError if no file can be written there, if the rules
-  /// of checked_output() forbid it, and if another output of this program has the same name.
+  /// `option` is what the path was given for ("--plot"). Throws InputError if no file can be written there, if the
+  /// rules of checked_output() forbid it, and if another output of this program has the same name.
   OutputFile(std::string option, const std::filesystem::path& path, const OutputRules& rules);
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;

@@ -30,35 +30,39 @@ struct PublishedValue {
   Metric metric;
   std::string design;
   std::optional<std::string> relative_to;  ///< the ratio's second design
-  double published;            ///< in the metric's SI unit, or a ratio
-  std::string published_text;  ///< with the digits of the file, which are those of the paper
-  double tolerance;            ///< accepted relative deviation [1]
-  std::string where;           ///< in the paper; may be empty
+  double published;                        ///< in the metric's SI unit, or a ratio
+  std::string published_text;              ///< with the digits of the file, which are those of the paper
+  double tolerance;                        ///< accepted relative deviation [1]
+  std::string where;                       ///< in the paper; may be empty
   Basis basis = Basis::predicted;
 };
 
 /// What metrics do along a quantity or at one operating point, or what follows from the tables alone.
 struct PublishedTrend {
   enum class Kind {
-    crossing,                  ///< frequency at which the metric is the same for both designs [Hz]
-    peak_at,                   ///< where the metric is highest, in the unit of what varies
-    trough_at,                 ///< where the metric has a minimum between higher values, in the unit of what varies
-    peak,                      ///< the highest value of the metric, in its unit
-    value,                     ///< the metric at an operating point
-    change,                    ///< the metric of the first design over that of the second, minus 1
-    difference,                ///< the metric of the first design minus that of the second
-    best_range,                ///< centre of the range of frequency, as wide as the published one, of highest metric [Hz]
-    power_balance,             ///< (motor output - friction) / aerodynamic power [1]
-    between,                   ///< is the frequency of maximum system efficiency between those of motor and mechanism?
-    steadier,                  ///< does the first design turn more evenly and flap with the higher peak velocity?
-    saturates,                 ///< do lift and efficiency gain less above `at` than below it?
-    initial_guesses,           ///< share of friction in the motor output; angle of attack at the largest lift
+    crossing,         ///< frequency at which the metric is the same for both designs [Hz]
+    peak_at,          ///< where the metric is highest, in the unit of what varies
+    trough_at,        ///< where the metric has a minimum between higher values, in the unit of what varies
+    peak,             ///< the highest value of the metric, in its unit
+    value,            ///< the metric at an operating point
+    change,           ///< the metric of the first design over that of the second, minus 1
+    difference,       ///< the metric of the first design minus that of the second
+    best_range,       ///< centre of the range of frequency, as wide as the published one, of highest metric [Hz]
+    power_balance,    ///< (motor output - friction) / aerodynamic power [1]
+    between,          ///< is the frequency of maximum system efficiency between those of motor and mechanism?
+    steadier,         ///< does the first design turn more evenly and flap with the higher peak velocity?
+    saturates,        ///< do lift and efficiency gain less above `at` than below it?
+    initial_guesses,  ///< share of friction in the motor output; angle of attack at the largest lift
     constant_load_efficiency,  ///< most efficient constant load of the motor at `voltage` [1]
     spring_resonance,          ///< frequency at which the wings resonate with their springs [Hz]
     weight,                    ///< [N]
     best_friction_law          ///< the law that predicts the published values of the other designs best
   };
-  enum class Bound { none, below, above };  ///< the published number is what the computed one is not to reach, or to exceed
+  enum class Bound {
+    none,
+    below,
+    above
+  };  ///< the published number is what the computed one is not to reach, or to exceed
   std::string statement, where;
   Kind kind;
   Basis basis = Basis::predicted;

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "wingbeat/files/study_file.hpp"
 #include "wingbeat/files/chunk_layout.hpp"
+#include "wingbeat/files/study_file.hpp"
 #include "wingbeat/study/sweep_best.hpp"
 
 namespace wingbeat {
@@ -19,8 +19,8 @@ struct SweepDigest {
   std::uint64_t recomputed = 0;                             ///< by the scalar solver
   std::uint64_t outside = 0;                                ///< flapping, but outside the model's domain
   std::array<std::uint64_t, domain_limit_count> beyond{};   ///< of those, by DomainLimit
-  SweepBest lift;        ///< by lift_mean [N], if kept
-  SweepBest efficiency;  ///< by efficiency_system [1], if kept
+  SweepBest lift;                                           ///< by lift_mean [N], if kept
+  SweepBest efficiency;                                     ///< by efficiency_system [1], if kept
 };
 
 /// Stands for everything that a data set depends on: study, vehicle, options, instruction set, version.

@@ -7,7 +7,8 @@ namespace wingbeat {
 
 struct TemporaryFile;
 
-/// Enters a file that exists under a name of its own until it is complete; `forget` when it has been renamed or removed.
+/// Enters a file that exists under a name of its own until it is complete; `forget` when it has been renamed or
+/// removed.
 TemporaryFile* remember_temporary(const std::filesystem::path& file);
 void forget_temporary(TemporaryFile* file);
 

@@ -16,7 +16,8 @@ class UnitError : public std::invalid_argument {
 };
 
 /// What becomes of a speed constant ("1000 rpm/V") where a torque constant is expected: it is refused, with the torque
-/// constant to write instead, or taken as that, K = 60 / (2 pi Kv). Only the value of a key may be inverted, no deviation.
+/// constant to write instead, or taken as that, K = 60 / (2 pi Kv). Only the value of a key may be inverted, no
+/// deviation.
 enum class SpeedConstant { refused, inverted };
 
 /// The SI value of a quantity such as "5 mm", "1.377e-3 N m/rad" or "22 Hz", where `expected_unit` is the SI unit of

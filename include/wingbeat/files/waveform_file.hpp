@@ -15,7 +15,7 @@ struct WaveformColumn {
   const char* name;       ///< as in files, e.g. "time_s"
   const char* unit;       ///< UDUNITS
   const char* long_name;  ///< plain words
-  double WaveformRow::*value;
+  double WaveformRow::* value;
 };
 inline constexpr int waveform_column_count = 19;
 

@@ -18,19 +18,24 @@ namespace wingbeat {
 /// of one cell; the capacity is that of a cell and, the cells being in series, of the whole battery.
 template <Scalar S>
 struct Battery {
-  S cells = S(1);                ///< n, cells in series [1], whole number >= 1
-  S cell_voltage = S(0);         ///< E of one cell at any charge [V], > 0, where there is no curve
+  S cells = S(1);         ///< n, cells in series [1], whole number >= 1
+  S cell_voltage = S(0);  ///< E of one cell at any charge [V], > 0, where there is no curve
   /// E of one cell: (state of charge [1], voltage [V]), from charge 0 to 1, both growing; empty: cell_voltage.
   std::vector<std::pair<double, double>> discharge_curve = {};
-  S internal_resistance = S(0);  ///< R_i of one cell [ohm], >= 0
-  S capacity = S(0);             ///< Q, charge that a full battery holds [C], > 0
-  S charge = S(1);               ///< state of charge [1], 0 (empty) to 1 (full)
+  S internal_resistance = S(0);     ///< R_i of one cell [ohm], >= 0
+  S capacity = S(0);                ///< Q, charge that a full battery holds [C], > 0
+  S charge = S(1);                  ///< state of charge [1], 0 (empty) to 1 (full)
   std::optional<S> cutoff_voltage;  ///< mean terminal voltage of one cell at which flight ends [V], >= 0
 
   template <Scalar T>
   Battery<T> cast() const {
-    return {T(cells),  T(cell_voltage), discharge_curve, T(internal_resistance),
-            T(capacity), T(charge),       cutoff_voltage ? std::optional<T>(T(*cutoff_voltage)) : std::nullopt};
+    return {T(cells),
+            T(cell_voltage),
+            discharge_curve,
+            T(internal_resistance),
+            T(capacity),
+            T(charge),
+            cutoff_voltage ? std::optional<T>(T(*cutoff_voltage)) : std::nullopt};
   }
 };
 

@@ -54,7 +54,8 @@ class CoefficientTable {
 /// Translational force coefficients: two waves, or a table where one is given and the scalar can read it.
 template <Scalar S>
 struct ForceCoefficients {
-  using Table = std::conditional_t<ScalarTraits<S>::reads_tables, std::shared_ptr<const CoefficientTable>, std::nullptr_t>;
+  using Table =
+      std::conditional_t<ScalarTraits<S>::reads_tables, std::shared_ptr<const CoefficientTable>, std::nullptr_t>;
 
   CoefficientWave<S> lift;
   CoefficientWave<S> drag;
@@ -87,8 +88,8 @@ struct BladeElement {
 
   template <Scalar T>
   BladeElement<T> cast() const {
-    return {T(air_density), T(pitch_coefficient),           T(s2),
-            T(s3),          coefficients.template cast<T>(), T(angle_of_attack_min)};
+    return {T(air_density),        T(pitch_coefficient), T(s2), T(s3), coefficients.template cast<T>(),
+            T(angle_of_attack_min)};
   }
 };
 
@@ -131,8 +132,8 @@ bool has_pitch_stop(const BladeElement<S>& w) {
   return std::isfinite(value_of(w.angle_of_attack_min));
 }
 
-/// How far the passive pitching is from its stop at stroke speed |beta'| [rad/s]: alpha - alpha_min [rad], 1 where there
-/// is no stop. Its sign says which branch of angle_of_attack() holds.
+/// How far the passive pitching is from its stop at stroke speed |beta'| [rad/s]: alpha - alpha_min [rad], 1 where
+/// there is no stop. Its sign says which branch of angle_of_attack() holds.
 template <Scalar S>
 S pitch_margin(const BladeElement<S>& w, const S& stroke_speed) {
   if constexpr (ScalarTraits<S>::reads_tables) {
@@ -158,7 +159,8 @@ S angle_of_attack(const BladeElement<S>& w, const S& stroke_speed) {
   return angle_of_attack(w, stroke_speed, pitch_margin(w, stroke_speed));
 }
 
-/// Lift [N] of all wings, normal to the stroke plane (eq 2), at stroke speed |beta'| [rad/s] on a branch of the pitching.
+/// Lift [N] of all wings, normal to the stroke plane (eq 2), at stroke speed |beta'| [rad/s] on a branch of the
+/// pitching.
 template <Scalar S>
 S lift_force(const BladeElement<S>& w, const S& stroke_speed, const S& pitching) {
   const S C_L = lift_coefficient(w.coefficients, angle_of_attack(w, stroke_speed, pitching));

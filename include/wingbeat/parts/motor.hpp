@@ -18,8 +18,8 @@ struct Motor {
 
   template <Scalar T>
   Motor<T> cast() const {
-    return {T(armature_resistance), T(armature_inductance), T(torque_constant),
-            T(inertia),             T(viscous_damping),     T(friction_torque)};
+    return {T(armature_resistance), T(armature_inductance), T(torque_constant), T(inertia),
+            T(viscous_damping),     T(friction_torque)};
   }
 };
 
@@ -76,8 +76,7 @@ MotorLoads<S> motor_loads(const Motor<S>& m, const S& v, const S& i, const S& om
 /// Steady speed without load and friction, K v / (K^2 + R_a b) [rad/s]: the closed form of the wingless condition.
 template <Scalar S>
 S no_load_speed(const Motor<S>& m, const S& v) {
-  return m.torque_constant * v /
-         (m.torque_constant * m.torque_constant + m.armature_resistance * m.viscous_damping);
+  return m.torque_constant * v / (m.torque_constant * m.torque_constant + m.armature_resistance * m.viscous_damping);
 }
 
 }  // namespace wingbeat

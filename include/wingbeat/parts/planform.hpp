@@ -23,8 +23,8 @@ struct Planform {
   S hub_offset = S(0);  ///< hinge to wing root [m], >= 0
   /// Tabulated chord: (distance from the root [m], chord [m]), at least two rows, distances growing; linear between.
   std::vector<std::pair<double, double>> chord_table = {};
-  S s2 = S(0);  ///< moments given outright: S_2 of all wings [m4], >= 0
-  S s3 = S(0);  ///< moments given outright: S_3 of all wings [m5], >= 0
+  S s2 = S(0);                        ///< moments given outright: S_2 of all wings [m4], >= 0
+  S s3 = S(0);                        ///< moments given outright: S_3 of all wings [m5], >= 0
   std::optional<S> chord_ratio = {};  ///< c_0 / R [1], > 0; given, root_chord follows from the length
 };
 

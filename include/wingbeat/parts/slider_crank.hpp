@@ -96,8 +96,8 @@ CrankKinematics<S> crank_kinematics(const CrankGeometry<S>& geometry, const S& s
   k.tan_stroke = tan_beta;
   k.stroke_slope = dy * per_H * cos2_beta;
   k.stroke_curve = ddy * per_H * cos2_beta - S(2.0) * tan_beta * square(k.stroke_slope);
-  k.wing_lever = c.formulation == Formulation::rod_force ? H * (sin_gamma * tan_beta + cos_gamma)
-                                                         : H * cos_gamma * sec2_beta;
+  k.wing_lever =
+      c.formulation == Formulation::rod_force ? H * (sin_gamma * tan_beta + cos_gamma) : H * cos_gamma * sec2_beta;
   k.crank_lever = cos_gamma * dy;
   return k;
 }

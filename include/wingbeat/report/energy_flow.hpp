@@ -14,8 +14,8 @@ struct EnergyBranch {
   double power;  ///< [W]
 };
 
-/// The supply feeds the motor, which loses in copper and viscous friction; the motor output feeds the transmission, which
-/// loses in friction and in what its formulation fails to conserve; the air gets the rest.
+/// The supply feeds the motor, which loses in copper and viscous friction; the motor output feeds the transmission,
+/// which loses in friction and in what its formulation fails to conserve; the air gets the rest.
 struct EnergyFlow {
   double supply;                                  ///< P_e [W]
   double motor_output;                            ///< what passes from motor to transmission [W]

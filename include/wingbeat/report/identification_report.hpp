@@ -7,8 +7,8 @@
 
 namespace wingbeat {
 
-/// The [motor] section of a vehicle file, constants at the output shaft, with what it rests on as comments. Numbers read
-/// back to the same double. The identification must be complete.
+/// The [motor] section of a vehicle file, constants at the output shaft, with what it rests on as comments. Numbers
+/// read back to the same double. The identification must be complete.
 std::string motor_section(const MotorIdentification& motor, const MotorDatasheet& sheet, const std::string& made_by);
 
 /// A table of at most 90 columns.

@@ -11,8 +11,8 @@
 
 namespace wingbeat {
 
-/// The picked designs by name, with their places in the front: "end-lift_mean_n" for the best by each objective, "knee",
-/// "even-1" and so on.
+/// The picked designs by name, with their places in the front: "end-lift_mean_n" for the best by each objective,
+/// "knee", "even-1" and so on.
 std::vector<std::pair<std::string, std::size_t>> named_picks(const ParetoStudy& study, const ParetoResult& result);
 
 /// Their names, where `even` designs are picked along the front.

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "wingbeat/report/plot.hpp"
 #include "wingbeat/files/study_file.hpp"
+#include "wingbeat/report/plot.hpp"
 
 namespace wingbeat {
 

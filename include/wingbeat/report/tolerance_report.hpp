@@ -21,7 +21,7 @@ const ToleranceOutput* main_output(const ToleranceResult& result);
 
 /// The distribution of a metric with the linear prediction, and what it comes from, factor by factor. Throws like
 /// plot_cycle.
-void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns,
-                    const ToleranceOutput& output, PlotFormat format, const std::filesystem::path& file);
+void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns, const ToleranceOutput& output,
+                    PlotFormat format, const std::filesystem::path& file);
 
 }  // namespace wingbeat

@@ -44,9 +44,9 @@ struct Claim {
   std::array<double, variant_count> ours{absent, absent, absent};
   std::array<double, variant_count> deviation{absent, absent, absent};  ///< ours / published - 1
   std::array<bool, variant_count> within{};
-  std::array<bool, variant_count> outside{};  ///< of the domain, by the residual of the formulation
-  std::string published_text;                                       ///< for reading, with the digits of the paper
-  std::array<std::string, variant_count> ours_text;                 ///< for reading, with what is to be said about it
+  std::array<bool, variant_count> outside{};         ///< of the domain, by the residual of the formulation
+  std::string published_text;                        ///< for reading, with the digits of the paper
+  std::array<std::string, variant_count> ours_text;  ///< for reading, with what is to be said about it
   StatementOutcome outcome = StatementOutcome::no_published_value;  ///< of the first two variants
   std::string reading;  ///< "hinge offset held" or "stroke held", where the crank radius varies; else empty
   std::string reason, note, erratum;  ///< as in the published file

@@ -1,5 +1,5 @@
-// The results of a sweep under way, which survive a kill at any instant: the data set itself, filled chunk by chunk, and
-// beside it a journal of the chunks that are there.
+// The results of a sweep under way, which survive a kill at any instant: the data set itself, filled chunk by chunk,
+// and beside it a journal of the chunks that are there.
 #pragma once
 
 #include <cstddef>

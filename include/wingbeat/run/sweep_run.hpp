@@ -6,9 +6,9 @@
 #include <functional>
 #include <string>
 
-#include "wingbeat/run/ranks.hpp"
 #include "wingbeat/files/study_file.hpp"
 #include "wingbeat/files/sweep_data_set.hpp"
+#include "wingbeat/run/ranks.hpp"
 
 namespace wingbeat {
 
@@ -21,12 +21,12 @@ struct SweepProgress {
 
 struct SweepRunOptions {
   std::filesystem::path output;
-  std::string version;                                ///< of the program, for the data set
-  int threads = 0;                                    ///< at most; 0: one for each core
+  std::string version;                                 ///< of the program, for the data set
+  int threads = 0;                                     ///< at most; 0: one for each core
   std::function<void(const SweepProgress&)> progress;  ///< called now and then, by one thread at a time
-  std::function<bool()> stop;                         ///< true: no chunk is begun any more
-  bool force = false;                                 ///< replaces files that are not of this sweep
-  Ranks* ranks = nullptr;                             ///< rank 0 of several, or null
+  std::function<bool()> stop;                          ///< true: no chunk is begun any more
+  bool force = false;                                  ///< replaces files that are not of this sweep
+  Ranks* ranks = nullptr;                              ///< rank 0 of several, or null
 };
 
 struct SweepResult {

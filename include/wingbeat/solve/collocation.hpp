@@ -1,8 +1,8 @@
 /// Collocation at the Lobatto points: the tables that turn a smooth stretch of a differential equation into algebra.
 ///
-/// n + 1 nodes on [0, 1], both ends among them. The solution at the end of a stretch, and integrals over it, are of order
-/// 2 n; between the ends the polynomial through the rates is of order n + 1. (Hairer, Wanner, "Solving Ordinary Differential
-/// Equations II", 2nd ed., Springer 1996, section IV.5: Lobatto IIIA.)
+/// n + 1 nodes on [0, 1], both ends among them. The solution at the end of a stretch, and integrals over it, are of
+/// order 2 n; between the ends the polynomial through the rates is of order n + 1. (Hairer, Wanner, "Solving Ordinary
+/// Differential Equations II", 2nd ed., Springer 1996, section IV.5: Lobatto IIIA.)
 #pragma once
 
 namespace wingbeat::solver {
@@ -11,10 +11,11 @@ inline constexpr int most_collocation_intervals = 16;
 
 struct CollocationRule {
   static constexpr int most = most_collocation_intervals + 1;
-  int intervals;          ///< n: nodes 0 .. n
-  double node[most];      ///< in [0, 1], growing
-  double weight[most];    ///< of the integral over [0, 1]
-  double between[most][most];   ///< [m][j]: integral from node m - 1 to m of the polynomial that is 1 at node j alone; m > 0
+  int intervals;        ///< n: nodes 0 .. n
+  double node[most];    ///< in [0, 1], growing
+  double weight[most];  ///< of the integral over [0, 1]
+  double between[most]
+                [most];  ///< [m][j]: integral from node m - 1 to m of the polynomial that is 1 at node j alone; m > 0
   double slope[most][most];     ///< [m][j]: derivative of that polynomial at node m
   double legendre[most][most];  ///< [k][j]: its coefficient of P_k(2 x - 1)
 };

@@ -64,16 +64,16 @@ struct Rates {
 /// The outcome of one step from x to x + h.
 template <class System>
 struct StepResult {
-  typename System::State y;        ///< state at x + h
-  typename System::Quadrature dq;  ///< integrals over the step; meaningful with quadratures only
-  typename System::State error3;   ///< error of the embedded third-order formula
-  typename System::State error5;   ///< error of the embedded fifth-order formula
+  typename System::State y;                     ///< state at x + h
+  typename System::Quadrature dq;               ///< integrals over the step; meaningful with quadratures only
+  typename System::State error3;                ///< error of the embedded third-order formula
+  typename System::State error5;                ///< error of the embedded fifth-order formula
   typename System::Quadrature integral_error3;  ///< the same of the integrals
   typename System::Quadrature integral_error5;
-  typename System::Switches lowest;  ///< least switch times its sign over the later stages: < 0 hints at a crossing
+  typename System::Switches lowest;   ///< least switch times its sign over the later stages: < 0 hints at a crossing
   typename System::State last_stage;  ///< with quadratures: where the explicit pair's last stage is, at x + h as y is,
   typename System::State last_slope;  ///< and the rates there
-  bool admissible = true;          ///< false: a stage left the region where the equations hold
+  bool admissible = true;             ///< false: a stage left the region where the equations hold
 };
 
 namespace detail {
@@ -127,7 +127,7 @@ StepResult<System> explicit_step(const System& system, const typename System::Re
       return;
     }
     const Rates<System> rates =
-        system.template rates<quadratures && dop853::b[stage] != 0.0>(x + dop853::c[stage] * h, at, branch);
+        system.template rates < quadratures && dop853::b[stage] != 0.0 > (x + dop853::c[stage] * h, at, branch);
     k[stage] = rates.dy;
     if constexpr (quadratures && stage == stages - 1) {
       result.last_stage = at;
@@ -137,8 +137,8 @@ StepResult<System> explicit_step(const System& system, const typename System::Re
     if constexpr (stage >= 5) {
       for (std::size_t w = 0; w < rates.switches.size(); ++w) {
         const Real signed_switch = rates.switches[w] * branch[w];
-        result.lowest[w] = stage == 5 ? signed_switch
-                                      : select(signed_switch < result.lowest[w], signed_switch, result.lowest[w]);
+        result.lowest[w] =
+            stage == 5 ? signed_switch : select(signed_switch < result.lowest[w], signed_switch, result.lowest[w]);
       }
     }
     if constexpr (quadratures && dop853::b[stage] != 0.0) {

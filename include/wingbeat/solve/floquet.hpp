@@ -1,10 +1,10 @@
-// The lap map's derivative along a recorded lap, and its Floquet multipliers: a product of one factor for each step that
-// neither overflows nor underflows.
+// The lap map's derivative along a recorded lap, and its Floquet multipliers: a product of one factor for each step
+// that neither overflows nor underflows.
 //
-// A factor is the derivative of the step itself where the step resolves the flow's own decay. Where it does not - a mode
-// that decays quickly and is not excited lets an error control take steps far beyond the method's stability - the
-// derivative of an explicit step grows where the flow's falls; there the variational equation is solved along the step by
-// Radau IIA.
+// A factor is the derivative of the step itself where the step resolves the flow's own decay. Where it does not - a
+// mode that decays quickly and is not excited lets an error control take steps far beyond the method's stability - the
+// derivative of an explicit step grows where the flow's falls; there the variational equation is solved along the step
+// by Radau IIA.
 #pragma once
 
 #include <algorithm>
@@ -67,7 +67,8 @@ struct MatrixProduct {
   double spectral_radius() const {
     if (std::isinf(log_scale)) return 0.0;
     if constexpr (n == 2) {
-      // A complex pair's modulus is the root of the determinant, which the sum of logarithms knows without cancellation.
+      // A complex pair's modulus is the root of the determinant, which the sum of logarithms knows without
+      // cancellation.
       const double half_difference = 0.5 * (scaled[0] - scaled[3]);
       if (half_difference * half_difference + scaled[1] * scaled[2] < 0.0) return std::exp(0.5 * log_determinant);
     }

@@ -1,7 +1,7 @@
 // One step of the implicit Radau IIA method with five stages, order 9: for stiff laps (small inductance, light rotor).
 //
-// E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", 2nd ed., Springer 1996, sections IV.5 and IV.8. The
-// tableau is computed from the conditions that define it (src/solve/radau.cpp); tests/solve measures its order.
+// E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", 2nd ed., Springer 1996, sections IV.5 and IV.8.
+// The tableau is computed from the conditions that define it (src/solve/radau.cpp); tests/solve measures its order.
 #pragma once
 
 #include <array>
@@ -131,8 +131,7 @@ StepResult<System> implicit_step(const System& system, const typename System::Re
     for (std::size_t j = 0; j < stages; ++j) error[row] += tableau.error[j] * value_of(slope[j][row]);
     error[row] *= step;
     for (std::size_t column = 0; column < states; ++column) {
-      matrix[row * states + column] =
-          (row == column ? 1.0 : 0.0) - step * tableau.start_weight * jacobian[row][column];
+      matrix[row * states + column] = (row == column ? 1.0 : 0.0) - step * tableau.start_weight * jacobian[row][column];
     }
   }
   if (!solve_linear(int(states), matrix, error)) return result;

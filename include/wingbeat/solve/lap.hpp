@@ -4,9 +4,9 @@
 // functions of the solution whose sign changes are found. The right-hand side is continuous there, so an error e in the
 // position of a switch costs O(e^2) in everything: positions are needed to the square root of the tolerance only.
 //
-// A system may have switches at which its right-hand side jumps, as with dry friction. It says so by jumps(k), and their
-// positions are found to the tolerance itself. Its cross() chooses the new branch, and its carry_over() takes a solution
-// next to the recorded one over a recorded jump, to first order (the saltation matrix).
+// A system may have switches at which its right-hand side jumps, as with dry friction. It says so by jumps(k), and
+// their positions are found to the tolerance itself. Its cross() chooses the new branch, and its carry_over() takes a
+// solution next to the recorded one over a recorded jump, to first order (the saltation matrix).
 #pragma once
 
 #include <algorithm>
@@ -39,8 +39,8 @@ struct Step {
   double h;
   typename System::State y;  ///< at x
   typename System::Signs signs;
-  Rates<System> first;            ///< rates at (x, y)
-  typename System::Quadrature dq; ///< integrals over the step
+  Rates<System> first;             ///< rates at (x, y)
+  typename System::Quadrature dq;  ///< integrals over the step
 };
 
 enum class Method {
@@ -61,9 +61,9 @@ struct Lap {
   typename System::State end;
   LapStatus status = LapStatus::complete;
   Method method = Method::explicit_pair;
-  double stop = 0.0;         ///< where the lap ended [same unit as the period]
-  double largest_step = 0.0; ///< first guess for the next lap's steps
-  double error_sum = 0.0;    ///< of the steps' estimated errors, relative
+  double stop = 0.0;                             ///< where the lap ended [same unit as the period]
+  double largest_step = 0.0;                     ///< first guess for the next lap's steps
+  double error_sum = 0.0;                        ///< of the steps' estimated errors, relative
   typename System::Switches switch_scale{};      ///< largest magnitudes of the switches
   typename System::Quadrature integral_scale{};  ///< what the integrals' errors were limited by a share of
 };
@@ -100,7 +100,8 @@ namespace detail {
 /// Cubic Hermite state inside a step from its end values and slopes, at the fraction t of the step h.
 template <class System>
 typename System::State hermite(const typename System::State& y0, const typename System::State& dy0,
-                               const typename System::State& y1, const typename System::State& dy1, double h, double t) {
+                               const typename System::State& y1, const typename System::State& dy1, double h,
+                               double t) {
   typename System::State y;
   const double s = 1.0 - t;
   for (std::size_t n = 0; n < y.size(); ++n) {
@@ -320,9 +321,9 @@ class LapDriver {
     const std::size_t k = plan_[expected_].sign;
     const double near_end = 0.95;
     const State before = hermite<System>(y_, first_.dy, result.y, last.dy, step, near_end);
-    double slope = (last.switches[k] -
-                    system_.template rates<false>(x_ + near_end * step, before, signs_).switches[k]) /
-                   ((1.0 - near_end) * step);
+    double slope =
+        (last.switches[k] - system_.template rates<false>(x_ + near_end * step, before, signs_).switches[k]) /
+        ((1.0 - near_end) * step);
     if (slope * signs_[k] >= 0.0) return false;
     double moved = step;
     const int corrections = jumps(system_, k) ? 8 : 3;
@@ -536,8 +537,9 @@ class LapDriver {
 
 }  // namespace detail
 
-/// Integrates one lap from `start` at x = 0. `lap.switches` may hold expected positions (those of the lap before), which
-/// saves finding them again. With `quadratures`, every step records its integrals. Never throws, never loops for ever.
+/// Integrates one lap from `start` at x = 0. `lap.switches` may hold expected positions (those of the lap before),
+/// which saves finding them again. With `quadratures`, every step records its integrals. Never throws, never loops for
+/// ever.
 template <bool quadratures, class System>
 void run_lap(const System& system, const typename System::State& start, const LapOptions& options, Lap<System>& lap) {
   detail::LapDriver<quadratures, System>(system, options, lap).run(start);
@@ -551,7 +553,8 @@ typename System::Signs signs_of(const Step<Recorded>& step) {
   return signs;
 }
 
-/// Takes a state that lies next to the recorded one onto the branch of step n; what the integrals gain by it is added to
+/// Takes a state that lies next to the recorded one onto the branch of step n; what the integrals gain by it is added
+/// to
 /// `*totals`.
 template <bool quadratures, class System, class Recorded>
 void carry_over(const System& system, const std::vector<Step<Recorded>>& steps, std::size_t n,
@@ -566,8 +569,8 @@ void carry_over(const System& system, const std::vector<Step<Recorded>>& steps, 
 /// Repeats the steps of a lap, mesh and branches frozen, from `start`; the scalar of `system` may differ from the lap's
 /// (derivatives). Returns the state at the end; the integrals are added to `*totals` where given.
 template <bool quadratures, class System, class Recorded>
-typename System::State repeat_lap(const System& system, const typename System::State& start,
-                                  const Lap<Recorded>& lap, typename System::Quadrature* totals = nullptr) {
+typename System::State repeat_lap(const System& system, const typename System::State& start, const Lap<Recorded>& lap,
+                                  typename System::Quadrature* totals = nullptr) {
   using Real = typename System::Real;
   typename System::State y = start;
   for (std::size_t n = 0; n < lap.steps.size(); ++n) {

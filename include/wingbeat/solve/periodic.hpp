@@ -21,31 +21,31 @@
 namespace wingbeat::solver {
 
 struct PeriodicOptions {
-  double tolerance = 1e-6;      ///< wanted relative accuracy of the orbit and its integrals
+  double tolerance = 1e-6;  ///< wanted relative accuracy of the orbit and its integrals
   int max_laps = 200;
   Method method = Method::explicit_pair;
-  int max_steps = 80;           ///< of a lap at the coarsest level, more is called stiff; ten times as many later
-  bool stability = true;        ///< compute the monodromy matrix and the Floquet multipliers
-  bool near = false;            ///< the guess is close to the orbit: no coarse laps, which may lose it
+  int max_steps = 80;     ///< of a lap at the coarsest level, more is called stiff; ten times as many later
+  bool stability = true;  ///< compute the monodromy matrix and the Floquet multipliers
+  bool near = false;      ///< the guess is close to the orbit: no coarse laps, which may lose it
 };
 
 enum class PeriodicStatus {
   converged,
-  barrier,        ///< laps run into the edge of the admissible region: no orbit was found
-  too_many_steps, ///< a lap needs more steps than allowed
-  not_converged   ///< laps neither settle nor fail within max_laps
+  barrier,         ///< laps run into the edge of the admissible region: no orbit was found
+  too_many_steps,  ///< a lap needs more steps than allowed
+  not_converged    ///< laps neither settle nor fail within max_laps
 };
 
 /// How a search for an orbit ended, in the manner of Ceres and SUNDIALS.
 struct PeriodicSummary {
   PeriodicStatus status = PeriodicStatus::not_converged;
   std::string message;
-  int laps = 0;           ///< laps integrated, those with derivatives included
+  int laps = 0;  ///< laps integrated, those with derivatives included
   int newton_steps = 0;
-  int steps = 0;          ///< integration steps of the final lap
-  double residual = 0.0;  ///< largest distance of the lap's start from the orbit's, over its error scale
+  int steps = 0;                ///< integration steps of the final lap
+  double residual = 0.0;        ///< largest distance of the lap's start from the orbit's, over its error scale
   double error_estimate = 0.0;  ///< of the orbit and its integrals, relative
-  double stop = 0.0;      ///< where the last lap ended, if it did not complete
+  double stop = 0.0;            ///< where the last lap ended, if it did not complete
   double floquet_multiplier_max = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -60,9 +60,9 @@ double scaled_distance(const System& system, const typename System::State& a, co
 }
 
 /// Runs the recorded steps again from the lap's own end, until the solution has merged with the recorded one.
-/// Returns the scaled residual of the closed orbit, at most `tolerance` if it merged before the end. `grazes` becomes true
-/// where a switch has the wrong sign on the way, deeper than by an error of `position_error` in where it changes: it has
-/// changed twice on a step that the lap recorded without.
+/// Returns the scaled residual of the closed orbit, at most `tolerance` if it merged before the end. `grazes` becomes
+/// true where a switch has the wrong sign on the way, deeper than by an error of `position_error` in where it changes:
+/// it has changed twice on a step that the lap recorded without.
 template <class System>
 double merge_lap(const System& system, Lap<System>& lap, double tolerance, double position_error, bool& grazes) {
   typename System::State y = lap.end;
@@ -183,8 +183,7 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   PeriodicSummary summary;
   const auto failed = [&](LapStatus status) {
     summary.stop = lap.stop;
-    summary.status =
-        status == LapStatus::barrier ? PeriodicStatus::barrier : PeriodicStatus::too_many_steps;
+    summary.status = status == LapStatus::barrier ? PeriodicStatus::barrier : PeriodicStatus::too_many_steps;
     summary.message = status == LapStatus::barrier ? "a lap ran into the edge of the admissible region"
                                                    : "a lap needs more steps than allowed";
     return summary;
@@ -195,8 +194,8 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   std::array<double, 3> tolerances = {std::max(fine, 1e-2), std::max(10.0 * fine, 1e-7), fine};
   State y = guess;
   double residual = 1.0, before_tolerance = tolerances[0];
-  // Errors of a lap are left in the orbit 1 / (1 - multiplier) times: unless laps have been seen to contract quickly, the
-  // lap map's derivative tells.
+  // Errors of a lap are left in the orbit 1 / (1 - multiplier) times: unless laps have been seen to contract quickly,
+  // the lap map's derivative tells.
   bool contracts = false, moved_by_newton = true, known = false;
   double amplification = 1.0, cancellation = 1.0, off = 1.0;
   int repeats = 0;
@@ -217,7 +216,8 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
     const double before = residual;
     residual = detail::scaled_distance(system, lap.end, y);
     if (!std::isfinite(residual)) break;
-    if (!moved_by_newton && before > 3.0 * before_tolerance) contracts = contracts || residual < slow_contraction * before;
+    if (!moved_by_newton && before > 3.0 * before_tolerance)
+      contracts = contracts || residual < slow_contraction * before;
     moved_by_newton = false;
     const State start = y;
     y = lap.end;
@@ -247,8 +247,7 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
           previous = off;
           lap.end = moved;
           ++summary.newton_steps;
-          residual = detail::merge_lap(system, lap, std::max(closed / amplification, rounding),
-                                       position_error, grazes);
+          residual = detail::merge_lap(system, lap, std::max(closed / amplification, rounding), position_error, grazes);
           ++summary.laps;
           std::tie(good, moved) = move_on();
         }

@@ -36,10 +36,10 @@ enum class Given { voltage, frequency };
 
 /// One row of a log; of a waveform log, one crank angle.
 struct BenchRow {
-  int line = 0;               ///< in its file
-  double given = 0.0;         ///< voltage [V] or frequency [Hz]
-  double crank_angle = 0.0;   ///< of a waveform log [rad]
-  std::vector<double> values; ///< SI, one per column
+  int line = 0;                ///< in its file
+  double given = 0.0;          ///< voltage [V] or frequency [Hz]
+  double crank_angle = 0.0;    ///< of a waveform log [rad]
+  std::vector<double> values;  ///< SI, one per column
 };
 
 struct BenchLog {
@@ -84,7 +84,7 @@ struct FittedParameter {
   std::optional<double> value;  ///< empty: the data do not determine it
   double kept = 0.0;            ///< what the fitted vehicle has
   double standard_error = absent;
-  double lower_95 = absent, upper_95 = absent;  ///< from the standard error
+  double lower_95 = absent, upper_95 = absent;                  ///< from the standard error
   double profile_lower_95 = absent, profile_upper_95 = absent;  ///< from the likelihood; absent where not computed
   bool at_bound = false;
   std::string reason;  ///< where it is not determined: why
@@ -116,10 +116,10 @@ struct UnreachedRow {
 
 /// What one condition contributes.
 struct ConditionShare {
-  std::string name;               ///< "air", "air with springs"
+  std::string name;  ///< "air", "air with springs"
   int points = 0;
-  double rms = 0.0;               ///< of its residuals, in standard deviations
-  std::vector<double> share;      ///< of the information on each parameter, the others known [1]
+  double rms = 0.0;                   ///< of its residuals, in standard deviations
+  std::vector<double> share;          ///< of the information on each parameter, the others known [1]
   std::vector<double> error_without;  ///< standard error of each parameter without this condition; infinity: lost
 };
 
@@ -127,10 +127,10 @@ struct ConditionShare {
 struct QuantityResiduals {
   MeasuredQuantity quantity;
   int values = 0;
-  bool estimated = false;     ///< the deviation is that of the residuals themselves
-  double rms = 0.0;           ///< of the residuals, in standard deviations
-  double unexplained = absent;  ///< sum of squares of the residuals over that about the values' mean [1]
-  double relative = absent;     ///< rms of the residuals over that of the values [1]
+  bool estimated = false;                ///< the deviation is that of the residuals themselves
+  double rms = 0.0;                      ///< of the residuals, in standard deviations
+  double unexplained = absent;           ///< sum of squares of the residuals over that about the values' mean [1]
+  double relative = absent;              ///< rms of the residuals over that of the values [1]
   double measured_over_fitted = absent;  ///< median
 };
 
@@ -147,21 +147,21 @@ struct FitResult {
   std::vector<QuantityResiduals> quantities;
   Design<double> design;  ///< fitted; parameters not determined keep their start
   std::vector<FittedParameter> parameters;
-  std::vector<std::vector<double>> covariance;   ///< SI; rows of parameters not determined are absent (NaN)
+  std::vector<std::vector<double>> covariance;  ///< SI; rows of parameters not determined are absent (NaN)
   std::vector<std::vector<double>> correlation;
-  std::vector<FitDirection> directions;          ///< best known first
-  std::vector<std::string> verdict;              ///< sentences
+  std::vector<FitDirection> directions;  ///< best known first
+  std::vector<std::string> verdict;      ///< sentences
   std::vector<ConditionShare> conditions;
   std::vector<FitPoint> points;
   std::vector<UnreachedRow> unreached;
   std::map<MeasuredQuantity, double> estimated_deviations;  ///< SI
-  double deviance = 0.0;       ///< -2 ln L up to a constant that only depends on the data
-  double chi_square = 0.0;     ///< of the points reached
+  double deviance = 0.0;                                    ///< -2 ln L up to a constant that only depends on the data
+  double chi_square = 0.0;                                  ///< of the points reached
   int degrees_of_freedom = 0;
-  double aicc = 0.0;           ///< corrected Akaike information criterion
-  int starts_converged = 0;    ///< starts that ended in the same least
-  int starts_elsewhere = 0;    ///< starts that ended in a higher one
-  int evaluations = 0;         ///< orbits computed
+  double aicc = 0.0;         ///< corrected Akaike information criterion
+  int starts_converged = 0;  ///< starts that ended in the same least
+  int starts_elsewhere = 0;  ///< starts that ended in a higher one
+  int evaluations = 0;       ///< orbits computed
 };
 
 /// Throws ParameterError for parameters without a place in the design, bounds out of order, quantities that the design

@@ -15,18 +15,19 @@ namespace wingbeat {
 struct DesignPointOptions {
   Condition condition = Condition::air;
   std::optional<double> frequency = {};  ///< held [Hz]; the voltage follows
-  double tolerance = 1e-6;          ///< of the orbit
-  bool peaks = true;                ///< differentiate metrics that are peaks
+  double tolerance = 1e-6;               ///< of the orbit
+  bool peaks = true;                     ///< differentiate metrics that are peaks
 };
 
 /// What a design does, and how its metrics change with parameters.
 struct DesignPoint {
   SweepStatus status = SweepStatus::invalid;
-  std::string detail;       ///< one sentence: why it does not flap
-  Metrics<double> metrics;  ///< all absent unless flapping
-  DomainStatus domain;      ///< limits of the model that are exceeded; none unless flapping
+  std::string detail;            ///< one sentence: why it does not flap
+  Metrics<double> metrics;       ///< all absent unless flapping
+  DomainStatus domain;           ///< limits of the model that are exceeded; none unless flapping
   DomainExcess domain_excess{};  ///< by how much; only where flapping
-  /// Derivatives of domain_excess by each parameter, the stroke of a crank excepted (see stroke_excess); as `gradients`.
+  /// Derivatives of domain_excess by each parameter, the stroke of a crank excepted (see stroke_excess); as
+  /// `gradients`.
   std::vector<DomainExcess> domain_slopes;
   /// By each parameter, SI; the supply's voltage and duty included. All absent unless flapping and regular.
   std::vector<std::array<double, metric_count>> gradients;

@@ -18,9 +18,10 @@ namespace wingbeat {
 
 struct EnduranceOptions {
   Condition condition = Condition::air;
-  double tolerance = 1e-9;  ///< wanted relative accuracy of times and energies, 1e-10 to 1e-2
+  double tolerance = 1e-9;           ///< wanted relative accuracy of times and energies, 1e-10 to 1e-2
   bool allow_extrapolation = false;  ///< a vehicle outside the model's domain may hover
-  /// Least number of rows between the first and the last charge; those of a discharge curve of at most as many are added.
+  /// Least number of rows between the first and the last charge; those of a discharge curve of at most as many are
+  /// added.
   int intervals = 64;
 };
 

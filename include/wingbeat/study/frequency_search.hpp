@@ -14,8 +14,8 @@ enum class SearchRange {
   extrapolation  ///< also outside, down to extrapolation_angle_deg and up to extrapolation_flow_speed
 };
 
-/// Smallest angle of attack [deg] of SearchRange::extrapolation: there the coefficients have gone round twice, and cycles
-/// beyond take up to seconds each.
+/// Smallest angle of attack [deg] of SearchRange::extrapolation: there the coefficients have gone round twice, and
+/// cycles beyond take up to seconds each.
 inline constexpr double extrapolation_angle_deg = -360.0;
 /// Largest speed of the wings at S_3/S_2 of SearchRange::extrapolation [m/s]: ten times the domain's.
 inline constexpr double extrapolation_flow_speed = 10.0 * flow_speed_max;
@@ -38,8 +38,8 @@ struct FrequencySearch {
   FlappingStatus status = FlappingStatus::stalled;
   std::string detail;  ///< one sentence: what was found, or which frequencies can be reached
   int evaluations = 0;
-  /// Not reached: where the vehicle comes closest in the range, such as the peak of the lift or its onset: voltage [V] and
-  /// what it reaches there [Hz or N]. Absent where no cycle of the range was computed.
+  /// Not reached: where the vehicle comes closest in the range, such as the peak of the lift or its onset: voltage [V]
+  /// and what it reaches there [Hz or N]. Absent where no cycle of the range was computed.
   double closest_voltage = absent;
   double closest_value = absent;
 };
@@ -48,32 +48,33 @@ struct FrequencySearch {
 /// search for a lift at least as many times the one at which the unloaded motor moves the wings fast enough for it.
 inline constexpr double frequency_search_span = 100.0;
 
-/// A flapping frequency above which the vehicle is certainly out of the range, whatever its voltage [Hz]: in each cycle the
-/// wings travel four stroke amplitudes, so that their peak velocity is at least that much times the frequency. Infinite
-/// without air, and for a direct drive.
+/// A flapping frequency above which the vehicle is certainly out of the range, whatever its voltage [Hz]: in each cycle
+/// the wings travel four stroke amplitudes, so that their peak velocity is at least that much times the frequency.
+/// Infinite without air, and for a direct drive.
 double highest_frequency(const Vehicle<double>& vehicle, SearchRange range);
 
 /// The refusal of a frequency above highest_frequency(); nothing is computed for it. Its status is flapping.
 FrequencySearch refuse_frequency(const Vehicle<double>& vehicle, double frequency, SearchRange range);
 
-/// Finds the constant voltage at which the vehicle flaps at `frequency` [Hz], to within options.tolerance, by the secant
-/// method in the logarithms, in a bracket; a voltage at which it does not flap counts as too low. vehicle.voltage is
-/// not used. From rest, a crank flaps the faster the higher the voltage, so that there is one answer at most.
-/// Throws ParameterError unless frequency > 0.
+/// Finds the constant voltage at which the vehicle flaps at `frequency` [Hz], to within options.tolerance, by the
+/// secant method in the logarithms, in a bracket; a voltage at which it does not flap counts as too low.
+/// vehicle.voltage is not used. From rest, a crank flaps the faster the higher the voltage, so that there is one answer
+/// at most. Throws ParameterError unless frequency > 0.
 FrequencySearch find_voltage_for_frequency(const Vehicle<double>& vehicle, double frequency,
                                            const SteadyOptions& options = {}, const StartUp& start_up = {},
                                            SearchRange range = SearchRange::extrapolation);
 
 struct LiftSearchOptions {
-  double nominal = 1.0;  ///< usual voltage [V], > 0: ten times as much is searched at least; a direct drive starts there
+  double nominal =
+      1.0;  ///< usual voltage [V], > 0: ten times as much is searched at least; a direct drive starts there
   SearchRange range = SearchRange::domain;
 };
 
-/// The lowest voltage (direct drive: amplitude) at which the vehicle has the mean lift `lift` [N] in the range, to within
-/// options.tolerance; vehicle.voltage is not used. The lift is followed upwards from where the vehicle starts to flap, or
-/// from next to none, by cubics through values and exact derivatives, checked half-way, so that neither a peak nor a pair of
-/// answers hides between two voltages. A refusal states the peak, or the onset if that lifts too much already.
-/// Throws ParameterError unless lift and nominal > 0.
+/// The lowest voltage (direct drive: amplitude) at which the vehicle has the mean lift `lift` [N] in the range, to
+/// within options.tolerance; vehicle.voltage is not used. The lift is followed upwards from where the vehicle starts to
+/// flap, or from next to none, by cubics through values and exact derivatives, checked half-way, so that neither a peak
+/// nor a pair of answers hides between two voltages. A refusal states the peak, or the onset if that lifts too much
+/// already. Throws ParameterError unless lift and nominal > 0.
 FrequencySearch find_voltage_for_lift(const Vehicle<double>& vehicle, double lift, const SteadyOptions& options = {},
                                       const StartUp& start_up = {}, const LiftSearchOptions& where = {});
 

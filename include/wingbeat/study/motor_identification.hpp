@@ -26,29 +26,29 @@ enum class Shaft { motor, output };
 struct MotorDatasheet {
   std::string name;
   Shaft shaft = Shaft::motor;
-  double gear_ratio = 1.0;                ///< n, motor turns per output turn
-  std::optional<double> gear_efficiency;  ///< output over input torque of the gearbox under load [1]
-  std::optional<double> voltage;          ///< at which the no-load, stall and point values hold [V]
-  std::optional<double> no_load_speed;    ///< [rad/s]
-  std::optional<double> no_load_current;  ///< [A]
-  std::optional<double> stall_torque;     ///< [N m]
-  std::optional<double> stall_current;    ///< [A]
-  std::optional<double> resistance;       ///< R_a [ohm]
-  std::optional<double> torque_constant;  ///< [N m/A]
-  std::optional<double> speed_constant;   ///< [rad/s/V], the torque constant's reciprocal
-  std::optional<double> friction_torque;  ///< constant friction torque [N m]
-  std::optional<double> viscous_damping;  ///< [N m s/rad]
-  std::optional<double> inductance;       ///< L_a [H]
-  std::optional<double> rotor_inertia;    ///< J_m at the motor shaft [kg m2]
-  std::optional<double> mechanical_time_constant;  ///< R_a J / K^2 of the motor alone [s]
+  double gear_ratio = 1.0;                             ///< n, motor turns per output turn
+  std::optional<double> gear_efficiency;               ///< output over input torque of the gearbox under load [1]
+  std::optional<double> voltage;                       ///< at which the no-load, stall and point values hold [V]
+  std::optional<double> no_load_speed;                 ///< [rad/s]
+  std::optional<double> no_load_current;               ///< [A]
+  std::optional<double> stall_torque;                  ///< [N m]
+  std::optional<double> stall_current;                 ///< [A]
+  std::optional<double> resistance;                    ///< R_a [ohm]
+  std::optional<double> torque_constant;               ///< [N m/A]
+  std::optional<double> speed_constant;                ///< [rad/s/V], the torque constant's reciprocal
+  std::optional<double> friction_torque;               ///< constant friction torque [N m]
+  std::optional<double> viscous_damping;               ///< [N m s/rad]
+  std::optional<double> inductance;                    ///< L_a [H]
+  std::optional<double> rotor_inertia;                 ///< J_m at the motor shaft [kg m2]
+  std::optional<double> mechanical_time_constant;      ///< R_a J / K^2 of the motor alone [s]
   std::optional<double> rotor_diameter, rotor_length;  ///< [m]
   std::vector<MotorPoint> points;
   /// Relative standard deviation of a value by its name ("stall_current"), and of all others.
   std::map<std::string, double> deviations;
   double deviation = 0.05;
   // What may be assumed where the sheet is silent; nothing is unless asked for here.
-  bool assume_steel_cylinder = false;  ///< rotor inertia of a solid steel cylinder of rotor_diameter and rotor_length
-  bool assume_typical_damping = false; ///< typical_motor_damping
+  bool assume_steel_cylinder = false;   ///< rotor inertia of a solid steel cylinder of rotor_diameter and rotor_length
+  bool assume_typical_damping = false;  ///< typical_motor_damping
 };
 
 /// Viscous loss coefficient of a small coreless motor at the motor shaft [N m s/rad], a fallback.
@@ -56,8 +56,8 @@ inline constexpr double typical_motor_damping = 29.6e-9;
 /// Density of steel [kg/m3], of the fallback for the rotor's inertia.
 inline constexpr double steel_density = 7850.0;
 
-/// Ways to one constant, or a published value and the identified motor, that lie further apart than by this factor are no
-/// matter of accuracy: the sheet is refused, unless the deviations given for them allow it.
+/// Ways to one constant, or a published value and the identified motor, that lie further apart than by this factor are
+/// no matter of accuracy: the sheet is refused, unless the deviations given for them allow it.
 inline constexpr double contradiction_factor = 3.0;
 
 /// A constant with its standard error from the sheet's deviations and its contradictions.
@@ -80,7 +80,7 @@ struct Contradiction {
   std::string constant;       ///< "armature resistance"
   std::string first, second;  ///< what each rests on
   double first_value, second_value;
-  double size;  ///< relative difference
+  double size;         ///< relative difference
   bool gross = false;  ///< beyond contradiction_factor
 };
 
@@ -90,11 +90,11 @@ struct MotorIdentification {
       friction_torque;
   std::vector<DatasheetCheck> checks;
   std::vector<Contradiction> contradictions;  ///< largest first
-  /// How much wider the sheet's values scatter about the identified motor than their deviations say, at least 1; standard
-  /// errors are multiplied by it (Birge 1932, Phys. Rev. 40, 207).
+  /// How much wider the sheet's values scatter about the identified motor than their deviations say, at least 1;
+  /// standard errors are multiplied by it (Birge 1932, Phys. Rev. 40, 207).
   double birge_ratio = 1.0;
-  std::vector<std::string> remarks;           ///< assumptions made, in words
-  std::vector<std::string> missing;           ///< constants that could not be determined, and what would do it
+  std::vector<std::string> remarks;  ///< assumptions made, in words
+  std::vector<std::string> missing;  ///< constants that could not be determined, and what would do it
   bool complete() const { return missing.empty(); }
   /// Throws std::logic_error unless complete().
   Motor<double> motor() const;

@@ -33,7 +33,7 @@ struct OptimiseStudy {
   std::vector<OptimisedParameter> parameters;
   std::vector<MetricConstraint> constraints;
   bool allow_extrapolation = false;  ///< else the limits of the model's domain are constraints as well
-  int starts = 20;           ///< the design as given where it lies within the bounds, the others from the screening
+  int starts = 20;  ///< the design as given where it lies within the bounds, the others from the screening
   std::uint64_t seed = 1;
   std::uint64_t screen = 1024;  ///< designs of a scrambled Sobol sequence solved first
 };
@@ -41,16 +41,16 @@ struct OptimiseStudy {
 /// What the screening found.
 struct ScreenCounts {
   std::array<std::uint64_t, sweep_status_count> status{};
-  std::uint64_t feasible = 0;                 ///< flapping, inside the domain and within every constraint
-  std::uint64_t outside = 0;                  ///< flapping outside the domain, where that does not count
+  std::uint64_t feasible = 0;                              ///< flapping, inside the domain and within every constraint
+  std::uint64_t outside = 0;                               ///< flapping outside the domain, where that does not count
   std::array<std::uint64_t, domain_limit_count> beyond{};  ///< of those, by DomainLimit
-  std::vector<std::uint64_t> violated;        ///< by constraint: flapping inside the domain, but beyond it
-  std::vector<double> closest;                ///< by constraint: the metric's best value met there [SI]; absent if none
+  std::vector<std::uint64_t> violated;                     ///< by constraint: flapping inside the domain, but beyond it
+  std::vector<double> closest;  ///< by constraint: the metric's best value met there [SI]; absent if none
 };
 
 /// A constraint or bound that holds the optimum.
 struct ActiveLimit {
-  std::string name;        ///< "lift_to_weight >= 1", "supply.voltage <= 5 V"
+  std::string name;          ///< "lift_to_weight >= 1", "supply.voltage <= 5 V"
   double sensitivity = 0.0;  ///< relative loss for a relative tightening of the limit; absent for a limit of 0
   bool domain = false;       ///< a limit of the model's domain
 };
@@ -83,19 +83,19 @@ struct SearchEnd {
 struct OptimiseResult {
   enum class Outcome {
     found,
-    infeasible,     ///< designs flap, but none within the constraints and the domain was found
-    nothing_flaps   ///< in the screening
+    infeasible,    ///< designs flap, but none within the constraints and the domain was found
+    nothing_flaps  ///< in the screening
   };
   Outcome outcome = Outcome::nothing_flaps;
-  std::string reason;                ///< a sentence where nothing was found
+  std::string reason;  ///< a sentence where nothing was found
   ScreenCounts screen;
-  std::vector<double> parameters;    ///< of the optimum [SI]
-  Design<double> design;             ///< with them; where the frequency is held, with the voltage found
+  std::vector<double> parameters;  ///< of the optimum [SI]
+  Design<double> design;           ///< with them; where the frequency is held, with the voltage found
   DesignPoint point;
   std::vector<ActiveLimit> active;
-  std::vector<FlatDirection> directions;  ///< flattest first; empty where active limits leave no freedom
+  std::vector<FlatDirection> directions;                ///< flattest first; empty where active limits leave no freedom
   int starts = 0, same = 0, elsewhere = 0, failed = 0;  ///< starts by where they ended
-  int evaluations = 0;               ///< orbits with gradients
+  int evaluations = 0;                                  ///< orbits with gradients
   std::vector<SearchEnd> searches;
 };
 

@@ -30,7 +30,7 @@ double hypervolume(std::span<const ObjectivePoint> points, const ObjectivePoint&
 /// Designs picked from a front, by their places in it.
 struct FrontPicks {
   std::vector<std::size_t> ends;  ///< the best by each objective
-  std::size_t knee = 0;           ///< farthest from the plane through the ends, each objective scaled by the front's range
+  std::size_t knee = 0;  ///< farthest from the plane through the ends, each objective scaled by the front's range
   std::vector<std::size_t> even;  ///< spread evenly over the front, from end to end
 };
 /// `front` must not be empty. With two objectives distances are taken along the front, else each pick is the point
@@ -60,8 +60,8 @@ struct ParetoVehicle {
 struct ParetoStudy {
   std::vector<ParetoVehicle> vehicles;
   Condition condition = Condition::air;
-  std::optional<double> frequency;  ///< held [Hz]
-  double tolerance = 1e-8;          ///< of the orbits of the front
+  std::optional<double> frequency;          ///< held [Hz]
+  double tolerance = 1e-8;                  ///< of the orbits of the front
   std::vector<ParetoObjective> objectives;  ///< two or three
   std::vector<OptimisedParameter> parameters;
   std::vector<DiscreteParameter> choices;
@@ -81,24 +81,25 @@ struct ParetoDesign {
 
 struct ParetoResult {
   enum class Outcome { found, infeasible, nothing_flaps } outcome = Outcome::nothing_flaps;
-  std::string reason;      ///< a sentence where nothing was found
+  std::string reason;  ///< a sentence where nothing was found
   ScreenCounts screen;
   std::vector<ParetoDesign> front;      ///< by the first objective, best first
   std::vector<ParetoDesign> evaluated;  ///< every design solved, in the order of solving
   std::vector<SweepStatus> status;      ///< of `evaluated`
   std::vector<bool> feasible;           ///< of `evaluated`: flapping, inside the domain and within every constraint
   FrontPicks picks;
-  std::vector<double> reference;     ///< by objective [SI]
-  double hypervolume = 0.0;          ///< product of the objectives' units
-  std::vector<double> history;       ///< hypervolume after the screening and after each generation
+  std::vector<double> reference;  ///< by objective [SI]
+  double hypervolume = 0.0;       ///< product of the objectives' units
+  std::vector<double> history;    ///< hypervolume after the screening and after each generation
 };
 
-/// The front of all designs that were solved. Search: scrambled Sobol sequence, then evolution, in which a design beyond
-/// a constraint loses against every feasible one, and of two such designs the one beyond by less wins (Deb 2000); a
-/// design that does not flap loses against all. The front is solved anew at the study's tolerance with every metric, and
-/// what is then beyond a constraint or dominated is left out. The result depends on the study alone.
+/// The front of all designs that were solved. Search: scrambled Sobol sequence, then evolution, in which a design
+/// beyond a constraint loses against every feasible one, and of two such designs the one beyond by less wins (Deb
+/// 2000); a design that does not flap loses against all. The front is solved anew at the study's tolerance with every
+/// metric, and what is then beyond a constraint or dominated is left out. The result depends on the study alone.
 /// `progress` gets designs solved and designs in all.
-ParetoResult pareto_front(const ParetoStudy& study, Evolve evolve, const StartUp& start_up, const ForEach& for_each = {},
+ParetoResult pareto_front(const ParetoStudy& study, Evolve evolve, const StartUp& start_up,
+                          const ForEach& for_each = {},
                           const std::function<void(std::uint64_t, std::uint64_t)>& progress = {});
 
 /// A design of the result as a vehicle; where the frequency is held, with the voltage that gives it.

@@ -23,13 +23,14 @@ inline const char* name_of(Method method) { return method == Method::orbit ? "or
 struct RunOptions {
   Condition condition = Condition::air;
   Method method = Method::orbit;
-  double tolerance = 1e-6;          ///< wanted relative accuracy of every metric, 1e-12 to 1e-2
-  /// [Hz]; given: the supply's voltage is replaced by the one that yields it, or a direct drive's supply has this frequency
+  double tolerance = 1e-6;  ///< wanted relative accuracy of every metric, 1e-12 to 1e-2
+  /// [Hz]; given: the supply's voltage is replaced by the one that yields it, or a direct drive's supply has this
+  /// frequency
   std::optional<double> frequency = {};
   /// [N]; given instead of the frequency: the same for the mean lift, which a pwm supply reaches by its duty.
   std::optional<double> lift = {};
-  bool allow_extrapolation = false; ///< a search for a frequency or a lift may leave the model's domain
-  int waveform_rows = 0;            ///< instants of one cycle to return, both ends included; 0: none
+  bool allow_extrapolation = false;  ///< a search for a frequency or a lift may leave the model's domain
+  int waveform_rows = 0;             ///< instants of one cycle to return, both ends included; 0: none
 };
 
 struct RunResult {
@@ -39,23 +40,23 @@ struct RunResult {
   /// over laps that still differ.
   bool settled = true;
   bool simulated_cycle = false;  ///< Method::orbit found flapping in time only: the metrics are the simulated cycle's
-  Metrics<double> metrics;  ///< all absent unless flapping
-  DomainStatus domain;         ///< limits of the model that the cycle exceeds; none unless flapping
-  std::string domain_detail;   ///< the same in words with numbers; empty inside
+  Metrics<double> metrics;       ///< all absent unless flapping
+  DomainStatus domain;           ///< limits of the model that the cycle exceeds; none unless flapping
+  std::string domain_detail;     ///< the same in words with numbers; empty inside
   std::vector<std::string> warnings;  ///< what a reader of the metrics should know beside the domain
   std::vector<WaveformRow> cycle;
   solver::PeriodicSummary orbit;            ///< of Method::orbit
-  std::optional<TransientResult> start_up; ///< of Method::transient
-  std::optional<FrequencySearch> search;   ///< where a frequency or a lift was asked for
-  Design<double> design;                   ///< as computed: with the voltage or duty that was found
+  std::optional<TransientResult> start_up;  ///< of Method::transient
+  std::optional<FrequencySearch> search;    ///< where a frequency or a lift was asked for
+  Design<double> design;                    ///< as computed: with the voltage or duty that was found
 };
 
 /// What a vehicle does from rest, by simulate_start_up: the judge that find_steady_flapping asks in doubt.
 StartUp start_up_in_time(double tolerance = 1e-6);
 
-/// Computes one validated design. Throws ParameterError for a crank on a sine supply where Method::orbit, a frequency or a
-/// lift is asked for (it has no periodic orbit in crank angle), for a battery where a frequency or a lift is, for a duty
-/// above 1 and for options out of range.
+/// Computes one validated design. Throws ParameterError for a crank on a sine supply where Method::orbit, a frequency
+/// or a lift is asked for (it has no periodic orbit in crank angle), for a battery where a frequency or a lift is, for
+/// a duty above 1 and for options out of range.
 RunResult run_design(const Design<double>& design, const RunOptions& options = {});
 
 }  // namespace wingbeat

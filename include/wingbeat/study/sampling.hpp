@@ -8,8 +8,8 @@
 
 namespace wingbeat {
 
-/// Latin hypercube: along each dimension every one of `count` equal intervals holds one sample, at a random place in it.
-/// The order of the intervals is a pseudo-random permutation of each dimension's own.
+/// Latin hypercube: along each dimension every one of `count` equal intervals holds one sample, at a random place in
+/// it. The order of the intervals is a pseudo-random permutation of each dimension's own.
 struct LatinHypercube {
   std::uint64_t count = 1;
   std::uint64_t seed = 0;

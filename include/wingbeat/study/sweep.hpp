@@ -59,7 +59,7 @@ struct Sweep {
   std::vector<std::uint64_t> variant_stride;  ///< of each axis in `variants`; 0 for an axis without choices
   std::optional<double> frequency;            ///< held frequency [Hz]; an axis may hold it instead
   EnsembleOptions options;
-  bool allow_extrapolation = false;           ///< designs outside the model's domain count as best, feasible, ... too
+  bool allow_extrapolation = false;  ///< designs outside the model's domain count as best, feasible, ... too
 
   std::uint64_t size() const;  ///< number of designs
 };
@@ -92,10 +92,10 @@ SweepDesign design_at(const Sweep& sweep, std::uint64_t index);
 /// Results of designs that follow each other, column by column.
 struct SweepColumns {
   std::uint64_t first = 0;
-  std::vector<std::int8_t> status;          ///< SweepStatus
-  std::vector<std::int8_t> recomputed;      ///< 1: by the scalar solver
-  std::vector<std::int8_t> domain;          ///< bits of DomainStatus, of what flaps; 0: inside
-  std::vector<double> error_estimate;       ///< relative; absent unless flapping
+  std::vector<std::int8_t> status;           ///< SweepStatus
+  std::vector<std::int8_t> recomputed;       ///< 1: by the scalar solver
+  std::vector<std::int8_t> domain;           ///< bits of DomainStatus, of what flaps; 0: inside
+  std::vector<double> error_estimate;        ///< relative; absent unless flapping
   std::vector<std::vector<double>> metrics;  ///< those of options.metrics, in the order of Metric
 
   void resize(std::size_t designs, std::size_t metrics_kept);

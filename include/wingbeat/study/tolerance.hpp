@@ -21,8 +21,8 @@ struct UncertainParameter {
   bool correlated = false;  ///< one of those that share ToleranceStudy::covariance; `distribution` is its marginal
 };
 
-/// Correlation of two parameters, by their places, neither of them one of a covariance: of a lognormal parameter that of
-/// its logarithm. Both without bounds.
+/// Correlation of two parameters, by their places, neither of them one of a covariance: of a lognormal parameter that
+/// of its logarithm. Both without bounds.
 struct Correlation {
   std::size_t first = 0, second = 1;
   double value = 0.0;  ///< -1 to 1, exclusive
@@ -46,8 +46,8 @@ struct ToleranceStudy {
   ToleranceMethod method = ToleranceMethod::sobol;
   std::uint64_t count = 1024;  ///< N: rows of one sample
   std::uint64_t seed = 1;
-  bool indices = true;         ///< Sobol indices: 2 N vehicles and N more for each factor, instead of N
-  int resamples = 500;         ///< of the bootstrap
+  bool indices = true;               ///< Sobol indices: 2 N vehicles and N more for each factor, instead of N
+  int resamples = 500;               ///< of the bootstrap
   bool allow_extrapolation = false;  ///< samples outside the model's domain count and may hover
 };
 
@@ -84,19 +84,19 @@ Probability probability_of(std::uint64_t count, std::uint64_t of);
 /// One output of the study. Moments and percentiles are of the vehicles that flap inside the model's domain, or of all
 /// that flap where extrapolation is allowed.
 struct ToleranceOutput {
-  std::string name;        ///< key of the metric; "flaps", "hovers" for 0 or 1
+  std::string name;  ///< key of the metric; "flaps", "hovers" for 0 or 1
   std::optional<Metric> metric;
   double mean = absent, deviation = absent;
   double least = absent, p025 = absent, median = absent, p975 = absent, most = absent;
   double linear_mean = absent, linear_deviation = absent;  ///< from the gradient at the parameters' means
-  std::vector<double> linear_share;  ///< of the linear variance, by factor; empty where there is none
+  std::vector<double> linear_share;     ///< of the linear variance, by factor; empty where there is none
   std::optional<SobolIndices> indices;  ///< where it varies by more than the tolerance of the orbits
 };
 
 struct ToleranceResult {
   std::uint64_t vehicles = 0;  ///< solved, those for indices included
   std::array<Probability, sweep_status_count> status;
-  Probability outside;               ///< flapping, but outside the model's domain
+  Probability outside;                                     ///< flapping, but outside the model's domain
   std::array<std::uint64_t, domain_limit_count> beyond{};  ///< samples, by DomainLimit
   std::optional<Probability> hover;  ///< lift_to_weight >= 1 by what counts, where the mass is known
   double linear_hover = absent;      ///< the same from the linear prediction; absent where it has none

@@ -18,8 +18,9 @@ struct TrendPeak {
 /// width of 1e-4 of the place (Brent). A peak narrower than the samples' distance can be missed.
 TrendPeak highest_along(const AlongTheWay& value, double from, double to, int samples = 25);
 
-/// The deepest minimum between two higher neighbours among `samples` places evenly apart, refined in the same way: where a
-/// curve dips, not where an end of the range happens to be low. NaN, and not inside, where the curve does not dip.
+/// The deepest minimum between two higher neighbours among `samples` places evenly apart, refined in the same way:
+/// where a curve dips, not where an end of the range happens to be low. NaN, and not inside, where the curve does not
+/// dip.
 TrendPeak dip_along(const AlongTheWay& value, double from, double to, int samples = 49);
 
 /// The first place from `to` downwards at which the value passes `level` [1e-6 of the range], NaN where it never does.

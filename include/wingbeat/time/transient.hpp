@@ -1,6 +1,6 @@
 // Start-up in the time domain by SUNDIALS CVODE: from rest (or any state) to steady flapping, standstill or jam;
-// model.md sections 2, 'Not flapping', and 6. Of a direct drive, read shaft for crank: its angle is the stroke angle, and
-// a lap is a period of the supply. Independent of the periodic-orbit solver, so that each can check the other.
+// model.md sections 2, 'Not flapping', and 6. Of a direct drive, read shaft for crank: its angle is the stroke angle,
+// and a lap is a period of the supply. Independent of the periodic-orbit solver, so that each can check the other.
 #pragma once
 
 #include <functional>
@@ -62,7 +62,7 @@ struct TransientResult {
   /// The verdict is final. False: time, laps or steps ran out first and the status is undecided; or it flaps, but laps
   /// share no period with the supply.
   bool settled = false;
-  std::string detail;    ///< one sentence with the evidence
+  std::string detail;  ///< one sentence with the evidence
 
   double end_time = 0.0;         ///< time simulated [s]
   double end_crank_angle = 0.0;  ///< theta then, not wrapped [rad]
@@ -77,15 +77,15 @@ struct TransientResult {
   std::optional<double> torque_margin;  ///< mu r_e |F_s| + T_c - |K v/(R_a + R_i) - F_s h| there [N m]
   std::optional<double> jam_angle;      ///< theta where the equations lose their unique solution, 0 to 2 pi [rad]
 
-  double crank_speed = 0.0;  ///< omega at theta = 0 (mod 2 pi) at the end of the last lap [rad/s]
-  double current = 0.0;      ///< i there [A]: with crank_speed the state of the periodic orbit
-  double stroke_angle = 0.0; ///< direct drive: beta there [rad]
+  double crank_speed = 0.0;                ///< omega at theta = 0 (mod 2 pi) at the end of the last lap [rad/s]
+  double current = 0.0;                    ///< i there [A]: with crank_speed the state of the periodic orbit
+  double stroke_angle = 0.0;               ///< direct drive: beta there [rad]
   std::optional<Metrics<double>> metrics;  ///< of the last lap; floquet_multiplier_max is `absent`
   CycleIntegrals<double> integrals{};      ///< behind the metrics, per lap
-  int averaged_laps = 0;     ///< laps behind the metrics: 1, or several where the supply has no period in common
-  /// Ripple of the current at the switching frequency of a pwm supply, peak to peak, averaged over the switching periods
-  /// behind the metrics [A]: how far the current at a switching off lies above the straight line between the currents at
-  /// the switchings on before and after it, which leaves the swing within a flapping cycle out.
+  int averaged_laps = 0;  ///< laps behind the metrics: 1, or several where the supply has no period in common
+  /// Ripple of the current at the switching frequency of a pwm supply, peak to peak, averaged over the switching
+  /// periods behind the metrics [A]: how far the current at a switching off lies above the straight line between the
+  /// currents at the switchings on before and after it, which leaves the swing within a flapping cycle out.
   std::optional<double> current_ripple = {};
   double closure = 0.0;      ///< estimate of how far the states behind the metrics are from where they settle, relative
   double lap_scatter = 0.0;  ///< largest relative deviation of a lap's duration from their mean, over those laps

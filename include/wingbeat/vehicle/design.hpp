@@ -46,15 +46,15 @@ enum class TransmissionType {
   direct  ///< the motor shaft is the wing hinge: its angle is the stroke angle
 };
 
-/// [transmission]. Of a slider-crank exactly one of hinge offset and stroke amplitude is given; of a direct drive nothing
-/// but the type.
+/// [transmission]. Of a slider-crank exactly one of hinge offset and stroke amplitude is given; of a direct drive
+/// nothing but the type.
 template <Scalar S>
 struct TransmissionDesign {
-  S crank_radius = S(0);                ///< r_c [m]
-  S rod_length = S(0);                  ///< l [m]
-  std::optional<S> hinge_offset;        ///< H [m]
-  std::optional<S> stroke_amplitude;    ///< half peak to peak [rad], 0 to pi/2; fixes H for the given crank
-  std::optional<S> mid_stroke_height;   ///< y_0 [m]; l unless given
+  S crank_radius = S(0);               ///< r_c [m]
+  S rod_length = S(0);                 ///< l [m]
+  std::optional<S> hinge_offset;       ///< H [m]
+  std::optional<S> stroke_amplitude;   ///< half peak to peak [rad], 0 to pi/2; fixes H for the given crank
+  std::optional<S> mid_stroke_height;  ///< y_0 [m]; l unless given
   Formulation formulation = Formulation::rod_force;
   TransmissionType type = TransmissionType::slider_crank;
 };
@@ -70,7 +70,8 @@ struct FrictionDesign {
 template <Scalar S>
 struct SpringDesign {
   std::optional<S> stiffness;  ///< k of one hinge spring [N m/rad]
-  /// f_s [Hz]: k = J_w (2 pi f_s)^2 (eq 22); of a direct drive, whose rotor swings along, k = (J/N_w + J_w) (2 pi f_s)^2
+  /// f_s [Hz]: k = J_w (2 pi f_s)^2 (eq 22); of a direct drive, whose rotor swings along, k = (J/N_w + J_w) (2 pi
+  /// f_s)^2
   std::optional<S> resonance;
   std::optional<S> resonance_ratio;  ///< direct: resonance over drive frequency [1]
 };
@@ -88,8 +89,8 @@ struct WingDesign {
 /// [aerodynamics]
 template <Scalar S>
 struct AerodynamicsDesign {
-  S air_density = S(0);        ///< rho [kg/m3]
-  S pitch_coefficient = S(0);  ///< C_alpha [s]
+  S air_density = S(0);                                  ///< rho [kg/m3]
+  S pitch_coefficient = S(0);                            ///< C_alpha [s]
   std::string coefficients_name = "translational-2022";  ///< the named set, or "custom" or "table"
   ForceCoefficients<S> coefficients;
   std::optional<S> angle_of_attack_min;  ///< stop of the passive pitching [rad]; none unless given
@@ -126,7 +127,8 @@ bool has_springs(const Design<S>& design) {
   return design.spring.stiffness || design.spring.resonance || design.spring.resonance_ratio;
 }
 
-/// Mass of the whole vehicle [kg]: vehicle.mass and every mass stated for itself; empty where vehicle.mass is not known.
+/// Mass of the whole vehicle [kg]: vehicle.mass and every mass stated for itself; empty where vehicle.mass is not
+/// known.
 template <Scalar S>
 std::optional<S> total_mass(const Design<S>& design) {
   if (!design.mass) return std::nullopt;

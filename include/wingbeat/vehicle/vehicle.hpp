@@ -62,8 +62,7 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
   if (!direct) {
     v.crank.crank_radius = t.crank_radius;
     v.crank.rod_length = t.rod_length;
-    v.crank.hinge_offset =
-        t.hinge_offset ? *t.hinge_offset : hinge_offset_for<S>(*t.stroke_amplitude, t.crank_radius);
+    v.crank.hinge_offset = t.hinge_offset ? *t.hinge_offset : hinge_offset_for<S>(*t.stroke_amplitude, t.crank_radius);
     v.crank.mid_stroke_height = t.mid_stroke_height ? *t.mid_stroke_height : t.rod_length;
     v.crank.formulation = t.formulation;
   }
@@ -152,10 +151,10 @@ void for_each_number(Vehicle<S>& v, const Visit& visit) {
 /// Which smooth branch of the kinked equations holds, each +-1.
 template <Scalar S>
 struct Branch {
-  S stroke;         ///< sign of beta'
-  S force;          ///< sign of the rod force F
-  S direction;      ///< sign of omega; +1 in steady flapping
-  S stored_power;   ///< sign of (N_w J_w beta'' + N_w k beta) beta', for the reactive power (eq 23) alone
+  S stroke;             ///< sign of beta'
+  S force;              ///< sign of the rod force F
+  S direction;          ///< sign of omega; +1 in steady flapping
+  S stored_power;       ///< sign of (N_w J_w beta'' + N_w k beta) beta', for the reactive power (eq 23) alone
   S pitching = S(1.0);  ///< -1 where the angle of attack is at its lower bound
 };
 
@@ -197,7 +196,7 @@ S spring_moment(const Vehicle<S>& v, const CrankKinematics<S>& k) {
 template <Scalar S>
 struct Instant {
   CrankKinematics<S> kinematics;
-  S omega;            ///< crank speed [rad/s]
+  S omega;  ///< crank speed [rad/s]
   MotorLoads<S> motor;
   S stroke_velocity;  ///< beta' [rad/s]
   S aero_moment;      ///< M_aero of all wings [N m], along beta'
@@ -210,8 +209,8 @@ struct Instant {
 };
 
 /// The instant at crank speed omega [rad/s] and current i [A] under the terminal voltage v_t [V], N_k_beta being the
-/// spring_moment() there; `stroke` and `direction` are the signs of beta' and omega (model.md section 2), `pitching` as in
-/// Branch.
+/// spring_moment() there; `stroke` and `direction` are the signs of beta' and omega (model.md section 2), `pitching` as
+/// in Branch.
 template <Scalar S>
 Instant<S> instant_at(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& N_k_beta, const S& omega, const S& i,
                       const S& v_t, const S& stroke, const S& direction, const S& pitching = S(1.0)) {
@@ -263,8 +262,8 @@ Motion<S> motion_on(const Vehicle<S>& v, const Instant<S>& at, const S& i, const
   return m;
 }
 
-/// The levers of a direct drive, whose shaft angle is the stroke angle itself: B1 = g = h = 1, B2 = 0. The "rod force" is
-/// then the torque passed on to the wings [N m]. It holds no position: that is the stroke angle of the state.
+/// The levers of a direct drive, whose shaft angle is the stroke angle itself: B1 = g = h = 1, B2 = 0. The "rod force"
+/// is then the torque passed on to the wings [N m]. It holds no position: that is the stroke angle of the state.
 template <Scalar S>
 CrankKinematics<S> direct_kinematics() {
   return {S(0.0), S(0.0), S(1.0), S(0.0), S(1.0), S(1.0)};

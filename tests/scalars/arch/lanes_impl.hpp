@@ -26,21 +26,23 @@ void evaluate(const Case* cases, int count, double* out) {
     Vehicle<B> vehicle = cases[start].vehicle.template cast<B>();
     const auto targets = parameters(vehicle);
     for (int p = 0; p < parameter_count; ++p) {
-      *targets[std::size_t(p)].second = gather([&](const Case& c) {
-        return *parameters(const_cast<Vehicle<double>&>(c.vehicle))[std::size_t(p)].second;
-      });
+      *targets[std::size_t(p)].second = gather(
+          [&](const Case& c) { return *parameters(const_cast<Vehicle<double>&>(c.vehicle))[std::size_t(p)].second; });
     }
     const B omega = gather([](const Case& c) { return c.omega; });
     const B current = gather([](const Case& c) { return c.current; });
     const B force = gather([](const Case& c) { return c.force; });
     const Point<B> point{gather([](const Case& c) { return std::sin(c.theta); }),
-                         gather([](const Case& c) { return std::cos(c.theta); }), omega, current,
-                         gather([](const Case& c) { return c.voltage; }), force, force};
+                         gather([](const Case& c) { return std::cos(c.theta); }),
+                         omega,
+                         current,
+                         gather([](const Case& c) { return c.voltage; }),
+                         force,
+                         force};
     const auto at = instant<B>(vehicle, point);
     // Steps start a little off rest, as a crank speed of zero ends a lap.
     const auto step = crank_step<B>(vehicle, gather([](const Case& c) { return c.theta; }),
-                                    {B(120.0) + abs(omega), current}, B(0.1),
-                                    {force, B(1.0), B(1.0), B(1.0)});
+                                    {B(120.0) + abs(omega), current}, B(0.1), {force, B(1.0), B(1.0), B(1.0)});
     for (int n = 0; n < outputs; ++n) {
       (n < instant_size ? at[std::size_t(n)] : step[std::size_t(n - instant_size)]).store(numbers);
       for (int lane = 0; lane < size && start + lane < count; ++lane) {
@@ -108,7 +110,7 @@ void functions(const double* x, int count, double* out) {
     const B at = B::load(numbers), positive = abs(at) + B(1e-3);
     const auto root = root_of(positive);
     const auto reduced = sine_cosine_of_reduced(at);
-    const B results[function_count] = {sin(at),    cos(at),           atan(at),     inverse_of(positive), root.value,
+    const B results[function_count] = {sin(at),      cos(at),           atan(at),     inverse_of(positive), root.value,
                                        root.inverse, nearest_whole(at), reduced.sine, reduced.cosine};
     for (int f = 0; f < function_count; ++f) {
       results[f].store(numbers);
