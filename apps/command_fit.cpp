@@ -62,7 +62,7 @@ int run(const Arguments& arguments) {
 
   const std::string made_by =
       fmt::format("Fitted by wingbeat {} to {}", version, std::filesystem::path(arguments.file).filename().string());
-  if (output && result.misfit.empty()) {
+  if (output && !result.misfit) {
     output->write(fitted_vehicle_head(fit, result, made_by) +
                   edited_design(vehicle_of_bench(arguments.file), vehicle, result.design));
     covariance->write(covariance_file(result, vehicle.filename().string(), made_by));
@@ -78,8 +78,8 @@ int run(const Arguments& arguments) {
   } else {
     print(text_fit(fit, result) + (candidates.empty() ? "" : text_friction(candidates)));
   }
-  if (!result.misfit.empty()) {
-    complain("the model does not describe the data: " + result.misfit +
+  if (result.misfit) {
+    complain("the model does not describe the data: " + describe(*result.misfit) +
              (output ? "; no vehicle file was written" : ""));
     return does_not_flap;
   }

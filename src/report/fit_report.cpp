@@ -44,7 +44,7 @@ std::string identifiability(const FitResult& r) {
     text += "\n";
   }
   text += "\nWhat the data can tell\n";
-  for (const std::string& sentence : r.verdict) text += "  " + wrapped(sentence, 88, 4) + "\n";
+  for (const std::string& sentence : describe(r.findings)) text += "  " + wrapped(sentence, 88, 4) + "\n";
 
   text += "\nShare of the information, the other parameters known\n";
   text += fmt::format("  {:<31}", "");
@@ -72,7 +72,97 @@ std::string residuals_by_quantity(const FitResult& r) {
   return text;
 }
 
+std::string list(const std::vector<std::string>& keys) {
+  std::string text;
+  for (const std::string& key : keys) text += (text.empty() ? "" : ", ") + key;
+  return text;
+}
+
+/// "a and b, of which the data know only the product", or the components of the direction.
+std::string direction(const FitFinding& f) {
+  const std::vector<double>& part = f.numbers;
+  if (part.size() == 2 && std::abs(std::abs(part[0] / part[1]) - 1.0) < 0.05) {
+    return fmt::format("{} and {}, of which the data know only the {}", f.parameters[0], f.parameters[1],
+                       part[0] * part[1] < 0.0 ? "product" : "ratio");
+  }
+  std::string text;
+  const double sign = part.empty() || part[0] > 0.0 ? 1.0 : -1.0;
+  for (std::size_t n = 0; n < part.size(); ++n) {
+    text += fmt::format("{}{} {:+.2f}", text.empty() ? "" : ", ", f.parameters[n], sign * part[n]);
+  }
+  return text;
+}
+
+/// ", its values 1000 times those of the model", where they are far apart.
+std::string proportion(const QuantityResiduals& q) {
+  if (!(q.measured_over_fitted > 3.0 || q.measured_over_fitted < 1.0 / 3.0)) return "";
+  return fmt::format(", its values {:.3g} times those of the model (is its unit right?)", q.measured_over_fitted);
+}
+
+std::string describe(const FitFinding& f) {
+  switch (f.kind) {
+    case FitFinding::Kind::without_influence:
+      return fmt::format(
+          "not identifiable, no measured quantity depends on it: {}; no number is returned, the vehicle keeps the "
+          "start value",
+          list(f.parameters));
+    case FitFinding::Kind::left_free:
+      return fmt::format(
+          "left free by the data: {}{}", direction(f),
+          std::isfinite(f.relative_error) ? fmt::format(" (uncertain by {:.0f} %)", 100.0 * f.relative_error) : "");
+    case FitFinding::Kind::known_roughly:
+      return fmt::format("known only roughly: {} ({:.0f} %)", direction(f), 100.0 * f.relative_error);
+    case FitFinding::Kind::determined: return "the data determine " + list(f.parameters);
+    case FitFinding::Kind::most_alike:
+      return fmt::format("most alike are {} and {} (correlation {:+.2f})", f.parameters[0], f.parameters[1],
+                         f.numbers[0]);
+    case FitFinding::Kind::determined_by: return fmt::format("only {} determines {}", f.condition, list(f.parameters));
+    case FitFinding::Kind::narrowed_by: {
+      std::string wider;
+      for (std::size_t n = 0; n < f.parameters.size(); ++n) {
+        wider += fmt::format("{}{} {:.1f} times", wider.empty() ? "" : ", ", f.parameters[n], f.numbers[n]);
+      }
+      return fmt::format("without {} the intervals would be wider: {}", f.condition, wider);
+    }
+    case FitFinding::Kind::product_of_friction:
+      return list(f.parameters) + " is the product mu r_e: no measurement of this kind separates mu from r_e";
+  }
+  return "";
+}
+
 }  // namespace
+
+std::vector<std::string> describe(std::span<const FitFinding> findings) {
+  std::vector<std::string> sentences;
+  for (const FitFinding& f : findings) {
+    if (f.kind == FitFinding::Kind::most_alike && !sentences.empty()) sentences.back() += "; " + describe(f);
+    else sentences.push_back(describe(f));
+  }
+  return sentences;
+}
+
+std::string describe(const Misfit& m) {
+  const QuantityResiduals& q = m.worst;
+  if (q.estimated) {
+    return fmt::format(
+        "the residuals of {} are on the average {:.3g} times the spread of its values and {:.3g} times their size{}",
+        name_of(q.quantity), std::sqrt(q.unexplained), q.relative, proportion(q));
+  }
+  return fmt::format(
+      "chi square is {:.4g} where {:.4g} degrees of freedom lead to expect {:.4g} +- {:.2g}: the values lie {:.3g} "
+      "times their stated deviations from the model on the average; worst is {}, {:.3g} times its deviation{}",
+      m.chi_square, m.freedom, m.freedom, std::sqrt(2.0 * m.freedom), m.rms_deviations, name_of(q.quantity), q.rms,
+      proportion(q));
+}
+
+std::string describe(Undetermined why) {
+  switch (why) {
+    case Undetermined::no: return "";
+    case Undetermined::without_influence: return "no measured quantity depends on it";
+    case Undetermined::free_with_others: return "the data leave it free together with others";
+  }
+  return "";
+}
 
 std::string text_fit(const BenchFit& fit, const FitResult& r) {
   std::string text;
@@ -81,18 +171,18 @@ std::string text_fit(const BenchFit& fit, const FitResult& r) {
   const auto counted = [](std::size_t n, const char* what) {
     return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
   };
-  if (!r.misfit.empty()) {
+  if (r.misfit) {
     text +=
         wrapped(fmt::format("MISFIT: the model does not describe the data: {}. The values below are the closest found "
                             "and no estimates; no intervals follow from them.",
-                            r.misfit),
+                            describe(*r.misfit)),
                 88, 2) +
         "\n";
   }
-  text += fmt::format(
-      "{}, {} with {} in {}; {}\n", counted(fit.parameters.size(), "parameter"), counted(std::size_t(rows), "row"),
-      counted(r.points.size(), "measured value"), counted(fit.logs.size(), "log"),
-      r.converged ? r.misfit.empty() ? "converged" : "the search converged" : "NOT converged: " + r.message);
+  text += fmt::format("{}, {} with {} in {}; {}\n", counted(fit.parameters.size(), "parameter"),
+                      counted(std::size_t(rows), "row"), counted(r.points.size(), "measured value"),
+                      counted(fit.logs.size(), "log"),
+                      r.converged ? !r.misfit ? "converged" : "the search converged" : "NOT converged: " + r.message);
   if (fit.starts > 1) {
     text += fmt::format("{} of {} starts end in this least, {} in a higher one\n", r.starts_converged, fit.starts,
                         r.starts_elsewhere);
@@ -104,7 +194,7 @@ std::string text_fit(const BenchFit& fit, const FitResult& r) {
   text += fmt::format("\n{:<32}{:>11}{:>9}  {:^22}  unit\n", "Parameter", "value", "+-", "95 % interval");
   for (const FittedParameter& p : r.parameters) {
     if (!p.value) {
-      text += fmt::format("{:<32}{:>11}  {}\n", p.key, "unknown", p.reason);
+      text += fmt::format("{:<32}{:>11}  {}\n", p.key, "unknown", describe(p.undetermined));
       continue;
     }
     if (!std::isfinite(p.standard_error)) {
@@ -123,7 +213,7 @@ std::string text_fit(const BenchFit& fit, const FitResult& r) {
   });
   if (starred) text += "* from the standard error; the others from the likelihood's profile\n";
 
-  text += r.misfit.empty() ? identifiability(r) : residuals_by_quantity(r);
+  text += !r.misfit ? identifiability(r) : residuals_by_quantity(r);
   if (!r.estimated_deviations.empty()) {
     text += "\nStandard deviations estimated from the residuals\n";
     for (const auto& [q, d] : r.estimated_deviations) {
@@ -199,7 +289,7 @@ std::string json_fit(const BenchFit& fit, const FitResult& r, std::span<const Fr
   Json json;
   json["converged"] = r.converged;
   json["message"] = r.message;
-  json["misfit"] = r.misfit.empty() ? Json(nullptr) : Json(r.misfit);
+  json["misfit"] = r.misfit ? Json(describe(*r.misfit)) : Json(nullptr);
   json["chi_square"] = r.chi_square;
   json["degrees_of_freedom"] = r.degrees_of_freedom;
   json["p_value"] = number_or_null(r.p_value);
@@ -218,7 +308,7 @@ std::string json_fit(const BenchFit& fit, const FitResult& r, std::span<const Fr
                                   {"profile_lower_95", number_or_null(p.profile_lower_95)},
                                   {"profile_upper_95", number_or_null(p.profile_upper_95)},
                                   {"at_bound", p.at_bound},
-                                  {"reason", p.reason},
+                                  {"reason", describe(p.undetermined)},
                                   {"profile", profile}});
   }
   const auto matrix = [](const std::vector<std::vector<double>>& m) {
@@ -236,7 +326,8 @@ std::string json_fit(const BenchFit& fit, const FitResult& r, std::span<const Fr
   for (const FitDirection& d : r.directions) {
     json["directions"].push_back({{"components", d.components}, {"relative_error", number_or_null(d.relative_error)}});
   }
-  json["verdict"] = r.verdict;
+  json["verdict"] = r.misfit ? std::vector<std::string>{"nothing can be said of it while the model misses the data"}
+                             : describe(r.findings);
   json["conditions"] = Json::array();
   for (const ConditionShare& c : r.conditions) {
     Json without = Json::array();
@@ -285,7 +376,8 @@ std::string fitted_vehicle_head(const BenchFit& fit, const FitResult& r, const s
     if (p.value) {
       text += fmt::format("# {} = {:.6g} +- {:.2g} {}\n", p.key, *p.value, p.standard_error, p.unit);
     } else {
-      text += fmt::format("# {}: not determined ({}); keeps {:.6g} {}\n", p.key, p.reason, p.kept, p.unit);
+      text +=
+          fmt::format("# {}: not determined ({}); keeps {:.6g} {}\n", p.key, describe(p.undetermined), p.kept, p.unit);
     }
   }
   for (const UnreachedRow& u : r.unreached) {

@@ -4,23 +4,13 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
-#include "wingbeat/core/text.hpp"
-
 namespace wingbeat {
 namespace {
-
-using detail::format;
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
-}
-
-/// ", its values 1000 times those of the model", where they are far apart.
-std::string proportion(const QuantityResiduals& q) {
-  if (!(q.measured_over_fitted > 3.0 || q.measured_over_fitted < 1.0 / 3.0)) return "";
-  return format(", its values %.3g times those of the model (is its unit right?)", q.measured_over_fitted);
 }
 
 }  // namespace
@@ -65,12 +55,7 @@ void assess_misfit(const BenchFit& fit, int fitted_count, FitResult& result) {
     if (q.estimated) {
       // At one operating point the spread is noise; its size then tells.
       const bool missed = q.unexplained > misfit_spread && q.relative > misfit_size;
-      if (missed && result.misfit.empty()) {
-        result.misfit = format(
-            "the residuals of %s are on the average %.3g times the spread of its values and %.3g times "
-            "their size%s",
-            name_of(quantity).c_str(), std::sqrt(q.unexplained), q.relative, proportion(q).c_str());
-      }
+      if (missed && !result.misfit) result.misfit = Misfit{.worst = q};
     } else {
       chi_square += squares;
       stated += points.size();
@@ -86,12 +71,10 @@ void assess_misfit(const BenchFit& fit, int fitted_count, FitResult& result) {
   result.p_value =
       boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedom), std::min(chi_square, 1e300)));
   if (result.p_value < misfit_probability && chi_square > misfit_variance * freedom) {
-    result.misfit = format(
-        "chi square is %.4g where %.4g degrees of freedom lead to expect %.4g +- %.2g: the values lie %.3g "
-        "times their stated deviations from the model on the average; worst is %s, %.3g times its "
-        "deviation%s",
-        chi_square, freedom, freedom, std::sqrt(2.0 * freedom), std::sqrt(chi_square / double(stated)),
-        name_of(worst->quantity).c_str(), worst->rms, proportion(*worst).c_str());
+    result.misfit = Misfit{.worst = *worst,
+                           .chi_square = chi_square,
+                           .freedom = freedom,
+                           .rms_deviations = std::sqrt(chi_square / double(stated))};
   }
 }
 
@@ -104,7 +87,7 @@ void withdraw_intervals(FitResult& result) {
     for (auto& row : *matrix) std::fill(row.begin(), row.end(), absent);
   }
   result.directions.clear();
-  result.verdict = {"nothing can be said of it while the model misses the data"};
+  result.findings.clear();
   for (ConditionShare& c : result.conditions) std::fill(c.error_without.begin(), c.error_without.end(), absent);
 }
 

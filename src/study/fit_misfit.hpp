@@ -13,7 +13,7 @@ inline constexpr double misfit_variance = 2.0;
 /// and of their size that residuals must exceed both.
 inline constexpr double misfit_spread = 0.5, misfit_size = 0.2;
 
-/// Sums up the residuals of result.points by measured quantity and states in words where the model misses the data;
+/// Sums up the residuals of result.points by measured quantity and finds where the model misses the data;
 /// `fitted_count` parameters were fitted. Sets result.quantities, result.p_value and result.misfit.
 void assess_misfit(const BenchFit& fit, int fitted_count, FitResult& result);
 

@@ -6,6 +6,7 @@
 
 #include "study/synthetic_bench.hpp"
 #include "vehicle/reference_vehicle.hpp"
+#include "wingbeat/report/fit_report.hpp"
 
 namespace wingbeat {
 namespace {
@@ -143,11 +144,12 @@ TEST(BenchFit, WingsAndAirAreNotGuessedFromVacuumAndWinglessData) {
     EXPECT_EQ(p.value.has_value(), !aerodynamic) << p.key;
     EXPECT_EQ(std::isnan(p.standard_error), aerodynamic) << p.key;
     if (aerodynamic) {
-      EXPECT_EQ(p.reason, "no measured quantity depends on it");
+      EXPECT_EQ(describe(p.undetermined), "no measured quantity depends on it");
     }
   }
-  EXPECT_THAT(r.verdict, Contains(HasSubstr("not identifiable, no measured quantity depends on it: "
-                                            "aerodynamics.pitch_coefficient, wing.planform.s2, wing.planform.s3")));
+  EXPECT_THAT(describe(r.findings),
+              Contains(HasSubstr("not identifiable, no measured quantity depends on it: "
+                                 "aerodynamics.pitch_coefficient, wing.planform.s2, wing.planform.s3")));
   // The vehicle that comes out keeps the starts.
   EXPECT_EQ(r.design.wing.planform.s2, 1.5e-6);
   EXPECT_NEAR(r.design.friction.coefficient / 2.5e-3, 1.0, 0.05);
@@ -171,14 +173,14 @@ TEST(BenchFit, ProductsAreNamedAsSuch) {
   EXPECT_FALSE(r.parameters[0].value || r.parameters[1].value);
   ASSERT_TRUE(r.parameters[2].value.has_value());
   EXPECT_LT(std::abs(*r.parameters[2].value - 2.5e-3), 4.0 * r.parameters[2].standard_error);
-  EXPECT_THAT(r.verdict, Contains(HasSubstr("of which the data know only the product")));
+  EXPECT_THAT(describe(r.findings), Contains(HasSubstr("of which the data know only the product")));
 }
 
 TEST(BenchFit, ConditionsNameWhatTheyContribute) {
   const FitResult r = fit_bench(bench(0.01, 5));
-  EXPECT_THAT(r.verdict, Contains("only air determines aerodynamics.pitch_coefficient"));
-  EXPECT_THAT(r.verdict, Contains(HasSubstr("without wingless the intervals would be wider")));
-  EXPECT_THAT(r.verdict, Contains(HasSubstr("friction.radius is the product mu r_e")));
+  EXPECT_THAT(describe(r.findings), Contains("only air determines aerodynamics.pitch_coefficient"));
+  EXPECT_THAT(describe(r.findings), Contains(HasSubstr("without wingless the intervals would be wider")));
+  EXPECT_THAT(describe(r.findings), Contains(HasSubstr("friction.radius is the product mu r_e")));
   for (std::size_t k = 0; k < 3; ++k) {
     double sum = 0.0;
     for (const ConditionShare& c : r.conditions) sum += c.share[k];

@@ -10,6 +10,13 @@
 
 namespace wingbeat {
 
+/// What the data tell, a sentence for each finding.
+std::vector<std::string> describe(std::span<const FitFinding> findings);
+/// Why the model does not describe the data, a clause with the numbers.
+std::string describe(const Misfit& misfit);
+/// A clause; empty where the data determine the parameter.
+std::string describe(Undetermined why);
+
 std::string text_fit(const BenchFit& fit, const FitResult& result);
 std::string text_friction(std::span<const FrictionCandidate> candidates);
 /// One JSON object; `candidates` may be empty.

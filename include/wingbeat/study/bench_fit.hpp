@@ -78,6 +78,13 @@ struct BenchFit {
   double tolerance = 1e-7;  ///< of the orbits
 };
 
+/// Why the data do not determine a parameter.
+enum class Undetermined {
+  no,                 ///< they do
+  without_influence,  ///< no measured quantity depends on it
+  free_with_others    ///< changes of it and others together leave all measured quantities as they are
+};
+
 /// A parameter as the data see it.
 struct FittedParameter {
   std::string key, unit;
@@ -87,11 +94,30 @@ struct FittedParameter {
   double lower_95 = absent, upper_95 = absent;                  ///< from the standard error
   double profile_lower_95 = absent, profile_upper_95 = absent;  ///< from the likelihood; absent where not computed
   bool at_bound = false;
-  std::string reason;  ///< where it is not determined: why
+  Undetermined undetermined = Undetermined::no;
   struct ProfilePoint {
     double value, excess;  ///< rise of -2 ln L over its least, the other parameters free
   };
   std::vector<ProfilePoint> profile;
+};
+
+/// One thing that the data tell of parameters, or cannot tell; in words: describe() of report/fit_report.hpp.
+struct FitFinding {
+  enum class Kind {
+    without_influence,   ///< no measured quantity depends on the parameters
+    left_free,           ///< a direction of which the data know nothing, or less than its own size
+    known_roughly,       ///< a direction that the data fix to no better than a fifth
+    determined,          ///< the parameters
+    most_alike,          ///< of those determined the two with the strongest correlation, the number
+    determined_by,       ///< the condition alone determines the parameters
+    narrowed_by,         ///< without the condition the intervals would be wider, by the numbers' factors
+    product_of_friction  ///< the parameter is a product that no such measurement takes apart
+  };
+  Kind kind;
+  std::vector<std::string> parameters = {};  ///< keys; of a direction by the size of their share in it
+  std::vector<double> numbers = {};          ///< one for each parameter: of a direction its components
+  double relative_error = absent;            ///< of a direction: standard error along it [1], may be infinite
+  std::string condition = {};                ///< "air", "air with springs"
 };
 
 /// A direction in parameter space (relative changes) and how well the data fix it.
@@ -134,15 +160,23 @@ struct QuantityResiduals {
   double measured_over_fitted = absent;  ///< median
 };
 
+/// How a fitted model misses the data.
+struct Misfit {
+  QuantityResiduals worst;         ///< the quantity whose residuals say so, or say it most
+  double chi_square = absent;      ///< of the values with stated deviations; absent where `worst.estimated`
+  double freedom = absent;         ///< degrees of freedom that it is to be compared with
+  double rms_deviations = absent;  ///< rms of those residuals in their stated deviations
+};
+
 /// [fit] starts at most.
 inline constexpr int most_fit_starts = 1000;
 
 struct FitResult {
   bool converged = false;
   std::string message;
-  /// Why the fitted model does not describe the data, a clause with the numbers; empty: it does. Standard errors,
-  /// intervals and covariances are absent then: they suppose a model that the data obey.
-  std::string misfit;
+  /// Where the fitted model does not describe the data. Standard errors, intervals, covariances and findings are absent
+  /// then: they suppose a model that the data obey.
+  std::optional<Misfit> misfit;
   double p_value = absent;  ///< chance of residuals as large under the stated deviations
   std::vector<QuantityResiduals> quantities;
   Design<double> design;  ///< fitted; parameters not determined keep their start
@@ -150,7 +184,7 @@ struct FitResult {
   std::vector<std::vector<double>> covariance;  ///< SI; rows of parameters not determined are absent (NaN)
   std::vector<std::vector<double>> correlation;
   std::vector<FitDirection> directions;  ///< best known first
-  std::vector<std::string> verdict;      ///< sentences
+  std::vector<FitFinding> findings;
   std::vector<ConditionShare> conditions;
   std::vector<FitPoint> points;
   std::vector<UnreachedRow> unreached;

@@ -1,0 +1,65 @@
+// Weighted, robust least squares on a bench with some of the parameters free, by Ceres.
+#pragma once
+
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "study/bench_model.hpp"
+
+namespace ceres {
+class LossFunction;
+}
+
+namespace wingbeat {
+
+class BenchFitter {
+ public:
+  /// Keeps a reference to the fit.
+  explicit BenchFitter(const BenchFit& fit);
+
+  BenchModel& bench() { return bench_; }
+  const BenchModel& bench() const { return bench_; }
+  /// Standard deviations by observation [SI].
+  const std::vector<double>& deviations() const { return deviations_; }
+  const std::map<MeasuredQuantity, double>& estimated() const { return estimated_; }
+
+  struct Outcome {
+    bool converged = false;
+    std::string message;
+    double cost = std::numeric_limits<double>::infinity();  ///< sum of rho(r^2)
+    std::vector<double> x;
+  };
+
+  /// Minimises over the parameters in `free` from x, at the present deviations.
+  Outcome solve(std::vector<double> x, const std::vector<std::size_t>& free, int iterations = 100);
+
+  /// Sum of rho(r^2) at the bench's present state.
+  double cost() const;
+  /// Weight of a residual under the robust loss, rho'.
+  double weight(std::size_t o) const;
+  /// In standard deviations.
+  double residual(std::size_t o) const {
+    return (bench_.fitted()[o] - bench_.observations()[o].measured) / deviations_[o];
+  }
+
+  bool has_estimates() const;
+  /// Deviations from the present predictions; largest relative change of one.
+  double renew_deviations(std::size_t free_count);
+
+ private:
+  struct Callback;
+  class Residual;
+
+  const Deviation& deviation_of(const MeasuredQuantity& q) const { return fit_.deviations.at(q); }
+  void first_deviations();
+  ceres::LossFunction* loss() const;
+
+  const BenchFit& fit_;
+  BenchModel bench_;
+  std::vector<double> deviations_;
+  std::map<MeasuredQuantity, double> estimated_;
+};
+
+}  // namespace wingbeat

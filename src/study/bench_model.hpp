@@ -1,0 +1,84 @@
+// The model at every operating point of a bench, with derivatives by the parameters that are fitted.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "wingbeat/study/bench_fit.hpp"
+#include "wingbeat/vehicle/design_cast.hpp"
+
+namespace wingbeat {
+
+/// One operating point of the bench with everything measured there.
+struct OperatingPoint {
+  Condition condition;
+  bool springs;
+  Given given;
+  double value;
+  std::size_t log, row;  ///< of its first measurement
+  std::vector<double> crank_angles;
+  std::vector<std::size_t> observations;  ///< indices
+  bool peaks = false;
+};
+
+struct Observation {
+  std::size_t log, row, column;
+  MeasuredQuantity quantity;
+  std::size_t point;
+  std::size_t instant = 0;  ///< index of its crank angle at the point
+  double measured;
+};
+
+struct Prediction {
+  bool reached = false;
+  FlappingStatus status = FlappingStatus::stalled;
+  std::string detail;
+};
+
+/// The model at all points of the bench, with derivatives; remembers the last parameters it was asked for.
+class BenchModel {
+ public:
+  /// Keeps a reference to the fit.
+  explicit BenchModel(const BenchFit& fit);
+
+  const std::vector<OperatingPoint>& points() const { return points_; }
+  const std::vector<Observation>& observations() const { return observations_; }
+  const std::vector<Prediction>& predictions() const { return predictions_; }
+  /// By observation [SI].
+  const std::vector<double>& fitted() const { return fitted_; }
+  /// d fitted / d parameter, SI; rows of points not reached are zero.
+  const Eigen::MatrixXd& jacobian() const { return jacobian_; }
+  /// Orbits computed so far.
+  int evaluations() const { return evaluations_; }
+
+  /// The fit's design with the free parameters at x [SI].
+  Design<double> design_at(const std::vector<double>& x) const;
+  void evaluate(const std::vector<double>& x, bool derivatives);
+
+ private:
+  SteadyFlapping orbit(Vehicle<double>& vehicle, double voltage, const Reporting& reporting);
+  SteadyFlapping orbit_at_frequency(std::size_t n, Vehicle<double>& vehicle, const Reporting& reporting);
+  void evaluate_point(std::size_t n, Design<double> design);
+  void differentiate_point(std::size_t n, const Design<GradientJet>& seeded, std::size_t first, std::size_t count);
+
+  const BenchFit& fit_;
+  std::vector<OperatingPoint> points_;
+  std::vector<Observation> observations_;
+  std::vector<Prediction> predictions_;
+  std::vector<SteadyFlapping> orbits_;
+  // Of points whose frequency is set: the voltage last found, df/dv there, and the voltage's gradient with the voltage
+  // and the parameters it belongs to.
+  struct VoltageSlopes {
+    double voltage = absent;
+    std::vector<double> x, by_parameter;
+  };
+  std::vector<double> voltages_, frequency_slopes_;
+  std::vector<VoltageSlopes> voltage_slopes_;
+  std::vector<double> fitted_, x_;
+  Eigen::MatrixXd jacobian_;
+  bool derivatives_known_ = false;
+  int evaluations_ = 0;
+};
+
+}  // namespace wingbeat
