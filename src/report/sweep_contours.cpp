@@ -1,0 +1,206 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "report/contour_lines.hpp"
+#include "report/figure.hpp"
+#include "report/sweep_scales.hpp"
+#include "report/sweep_status_plot.hpp"
+
+namespace wingbeat {
+namespace {
+
+/// Round numbers, about nine steps apart, that enclose both.
+std::vector<double> levels_between(double least, double most) {
+  if (!(most > least)) most = least + std::max(std::abs(least), 1.0) * 1e-3;
+  const double rough = (most - least) / 9.0;
+  const double decade = std::pow(10.0, std::floor(std::log10(rough)));
+  double step = 10.0 * decade;
+  for (const double nice : {5.0, 2.5, 2.0, 1.0}) {
+    if (nice * decade >= 0.999 * rough) step = nice * decade;
+  }
+  std::vector<double> levels;
+  for (double k = std::floor(least / step); k * step < most + 0.999 * step; ++k) levels.push_back(k * step);
+  return levels;
+}
+
+/// From dark to light with evenly growing lightness (viridis, five points of it).
+std::string colour(double share) {
+  constexpr std::array<std::array<double, 3>, 5> points = {
+      {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}}};
+  const double at = std::clamp(share, 0.0, 1.0) * 4.0;
+  const std::size_t k = std::min<std::size_t>(3, std::size_t(at));
+  const double t = at - double(k);
+  int rgb[3];
+  for (std::size_t c = 0; c < 3; ++c) rgb[c] = int(std::lround((1.0 - t) * points[k][c] + t * points[k + 1][c]));
+  return fmt::format("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
+}
+
+/// The data set's values, with both coordinates growing.
+struct Arrangement {
+  std::vector<std::size_t> x, y;  ///< places along the axes in growing order
+  std::size_t index(std::size_t i, std::size_t j, std::size_t count_y) const { return x[i] * count_y + y[j]; }
+};
+
+std::vector<std::size_t> growing(const std::vector<double>& values) {
+  std::vector<std::size_t> order(values.size());
+  for (std::size_t n = 0; n < order.size(); ++n) order[n] = n;
+  std::sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) { return values[p] < values[q]; });
+  return order;
+}
+
+}  // namespace
+
+void plot_contours(const Study& study, const NetcdfReader& file, std::span<const Metric> metrics, PlotFormat format,
+                   const std::filesystem::path& output) {
+  std::vector<const SweepAxis*> axes;
+  for (const SweepAxis& axis : study.sweep.axes) {
+    if (is_number(axis)) axes.push_back(&axis);
+  }
+  const Scale x(*axes[0]), y(*axes[1]);
+  const std::size_t ny = y.at.size();
+  const Arrangement order{growing(x.at), growing(y.at)};
+  Grid base;
+  for (const std::size_t i : order.x) base.x.push_back(x.at[i]);
+  for (const std::size_t j : order.y) base.y.push_back(y.at[j]);
+  base.log_x = x.logarithmic;
+  base.log_y = y.logarithmic;
+  const auto gridded = [&](const auto& value_at) {
+    Grid grid = base;
+    for (std::size_t i = 0; i < order.x.size(); ++i) {
+      for (std::size_t j = 0; j < order.y.size(); ++j) grid.z.push_back(value_at(order.index(i, j, ny)));
+    }
+    return grid;
+  };
+
+  const std::vector<double> status = file.read("status"), domain = file.read("domain");
+  const bool extrapolates = study.sweep.allow_extrapolation;
+  const auto outside = [&](std::size_t n) { return domain[n] != 0.0; };
+  const bool leaves = std::any_of(domain.begin(), domain.end(), [](double d) { return d != 0.0; });
+  const auto flaps = [&](std::size_t n) { return status[n] == 0.0; };
+  const std::vector<double> weight = lift_over_weight(study.sweep, file);
+  const bool weighed = std::any_of(weight.begin(), weight.end(), [](double w) { return std::isfinite(w); });
+  bool carried = false;
+  for (std::size_t n = 0; n < weight.size(); ++n) {
+    carried = carried || (weight[n] >= 1.0 && (extrapolates || !outside(n)));
+  }
+  const bool all_flap = std::all_of(status.begin(), status.end(), [](double s) { return s == 0.0; });
+
+  const double head = 0.52, panel = 2.05, gap = 0.84, foot = 0.62;
+  const double inches = head + double(metrics.size()) * panel + double(metrics.size() - 1) * gap + foot;
+  Figure figure(format, 3.5, inches);
+  constexpr double left = 0.135, right = 0.83;
+  Grid idle = gridded([&](std::size_t n) { return flaps(n) ? 0.0 : 1.0; });
+  smooth(idle);
+  add_filled(figure, "idle", boundaries(idle, 0.5));
+  add_outline(figure, "idle_outline", base, boundaries(idle, 0.5));
+  if (leaves) {
+    Grid beyond = gridded([&](std::size_t n) { return outside(n) ? 1.0 : 0.0; });
+    smooth(beyond);
+    add_filled(figure, "outside", boundaries(beyond, 0.5));
+    add_outline(figure, "outside_outline", base, boundaries(beyond, 0.5));
+  }
+  if (carried) {
+    const Grid lifted = gridded([&](std::size_t n) { return flaps(n) ? weight[n] : 0.0; });
+    add_outline(figure, "feasible", base, boundaries(lifted, 1.0));
+  }
+
+  figure.add("set multiplot\n{}{}", x.range("x"), y.range("y"));
+  figure.add("set lmargin at screen {}\nset rmargin at screen {}\nset border 15\nset grid noxtics noytics front\n",
+             left, right);
+  for (std::size_t p = 0; p < metrics.size(); ++p) {
+    if (p > 0) figure.next_panel();
+    figure.add("unset object\n");
+    const Field field(file, metrics[p]);
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (const double value : field.values) {
+      if (!std::isfinite(value)) continue;
+      least = std::min(least, value);
+      most = std::max(most, value);
+    }
+    const SweepBest found = best_of(field, weight, domain, extrapolates);
+    const std::size_t best = found.design() ? std::size_t(found.design()->index) : status.size();
+    const double top = 1.0 - (head + double(p) * (panel + gap)) / inches;
+    const double bottom = top - panel / inches;
+    figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", top, bottom);
+    if (p == 0) {
+      figure.text(title_of(study), 8.0, fmt::format("screen 0.5,{} center", 1.0 - 0.11 / inches));
+    }
+    figure.text(field.label(), 7.5, fmt::format("screen {},{} left", left, top + 0.22 / inches));
+    figure.text(x.label(), 7.5, fmt::format("screen {},{} center", 0.5 * (left + right), bottom - 0.39 / inches));
+    figure.text(y.label(), 7.5, fmt::format("screen 0.022,{} center rotate by 90", 0.5 * (top + bottom)));
+
+    std::string drawn;
+    if (std::isfinite(least)) {
+      const std::vector<double> levels = levels_between(least, most);
+      Grid grid = gridded([&](std::size_t n) { return field.values[n]; });
+      extend(grid);
+      const std::size_t bands = levels.size() - 1;
+      const auto shade = [&](std::size_t band) { return colour(bands > 1 ? double(band) / double(bands - 1) : 0.5); };
+      for (std::size_t band = 0; band < bands; ++band) {
+        const std::string name = fmt::format("band_{}_{}", p, band);
+        add_filled(figure, name, boundaries(grid, band == 0 ? -1e300 : levels[band]));
+        drawn += fmt::format("${} using 1:2 with filledcurves closed fs solid 1.0 noborder lc rgb '{}', ", name,
+                             shade(band));
+        const double from = bottom + (top - bottom) * double(band) / double(bands);
+        const double to = bottom + (top - bottom) * double(band + 1) / double(bands);
+        figure.box(
+            fmt::format("from screen {},screen {} to screen {},screen {}", right + 0.025, from, right + 0.06, to),
+            shade(band).c_str());
+      }
+      const std::size_t every = bands > 8 ? 2 : 1;
+      for (std::size_t k = 0; k < levels.size(); k += every) {
+        const double at = bottom + (top - bottom) * double(k) / double(bands);
+        figure.text(fmt::format("{:.6g}", std::abs(levels[k]) < 1e-9 * (most - least) ? 0.0 : levels[k]), 6.5,
+                    fmt::format("screen {},{} left", right + 0.068, at));
+      }
+    }
+    drawn +=
+        "$idle using 1:2 with filledcurves closed fs solid 1.0 noborder lc rgb '#e4e4e4', "
+        "$idle_outline using 1:2 with lines dt 1 lw 0.8 lc rgb '#606060'";
+    if (leaves) {
+      drawn +=
+          ", $outside using 1:2 with filledcurves closed fs transparent pattern 4 noborder lc rgb '#ffffff', "
+          "$outside_outline using 1:2 with lines dt 1 lw 1.4 lc rgb '#ffffff', "
+          "$outside_outline using 1:2 with lines dt 1 lw 0.7 lc rgb '#b00000'";
+    }
+    if (carried) {
+      drawn +=
+          ", $feasible using 1:2 with lines dt 1 lw 3.2 lc rgb '#ffffff', "
+          "$feasible using 1:2 with lines dt (9,4) lw 1.5 lc rgb '#000000'";
+    }
+    if (!std::isfinite(least)) {
+      std::vector<std::uint64_t> designs(sweep_status_count, 0);
+      for (const double s : status) ++designs[std::size_t(s)];
+      if (designs[0] == 0) {
+        figure.text(nothing_flaps(designs), 7.0,
+                    fmt::format("screen {},{} center", 0.5 * (left + right), 0.5 * (top + bottom)));
+      }
+    }
+    if (best < status.size()) {
+      figure.circle(x.at[best / ny], y.at[best % ny], 0.012, "fillcolor rgb '#ffffff' fillstyle solid", "#000000");
+      figure.circle(x.at[best / ny], y.at[best % ny], 0.003, "fillcolor rgb '#000000' fillstyle solid", "#000000");
+      figure.text(fmt::format("circle: {} {} at {}, {}", field.superlative(), field.shown(field.values[best]),
+                              x.value(best / ny), y.value(best % ny)),
+                  6.5, fmt::format("screen {},{} right", right, top + 0.09 / inches));
+    }
+    if (p + 1 == metrics.size()) {
+      std::string note = all_flap ? "" : "grey: does not flap";
+      if (carried) note += fmt::format("{}dashed: lift = weight, best sought above", note.empty() ? "" : "; ");
+      if (leaves) {
+        note += fmt::format("{}hatched: outside the model's domain{}", note.empty() ? "" : "; ",
+                            extrapolates ? "" : ", no best there");
+      }
+      if (weighed && !carried) note += fmt::format("{}lift < weight everywhere", note.empty() ? "" : "; ");
+      if (!note.empty()) figure.text(note, 6.5, fmt::format("screen {},{} right", right, 0.075 / inches));
+    }
+    figure.add("set grid noxtics noytics\nplot {}\n", drawn);
+  }
+  figure.add("unset multiplot\nunset output\n");
+  run_gnuplot(figure.script(), output);
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,122 @@
+#include "report/sweep_scales.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "wingbeat/files/design_keys.hpp"
+
+namespace wingbeat {
+namespace {
+
+std::string spaced(std::string text) {
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return text;
+}
+
+Display display_for(std::string_view unit, double largest, bool efficiency = false) {
+  if (efficiency) return {"%", 100.0};
+  if (unit == "1") return {"", 1.0};
+  if (unit == "rad") return {"deg", degrees_per_radian};
+  if (unit == "degree") return {"deg", 1.0};
+  const bool simple = unit.find_first_of(" /0123456789") == std::string_view::npos;
+  if (!simple || unit == "Hz" || unit == "V" || !(largest > 0.0)) return {std::string(unit), 1.0};
+  if (unit == "kg") return {"g", 1e3};
+  constexpr std::pair<double, const char*> prefixes[] = {{1e-9, "n"}, {1e-6, "u"}, {1e-3, "m"}, {1.0, ""}, {1e3, "k"}};
+  const auto* best = &prefixes[0];
+  for (const auto& prefix : prefixes) {
+    if (largest >= 0.9999 * prefix.first) best = &prefix;
+  }
+  return {fmt::format("{}{}", best->second, unit), 1.0 / best->first};
+}
+
+bool is_efficiency(Metric m) { return std::string_view(metric_info(m).key).starts_with("efficiency"); }
+
+}  // namespace
+
+bool is_number(const SweepAxis& axis) {
+  return std::none_of(axis.quantities.begin(), axis.quantities.end(),
+                      [](const SweptQuantity& q) { return q.kind == SweptQuantity::Kind::choice; });
+}
+
+std::string words(const std::string& key) {
+  const auto dot = key.rfind('.');
+  if (dot == std::string::npos) return spaced(key);
+  const std::string leaf = key.substr(dot + 1);
+  int same = 0;
+  for (const auto& known : vehicle_keys<double>()) same += known.path.substr(known.path.rfind('.') + 1) == leaf;
+  if (same == 1 && leaf.find('_') != std::string::npos) return spaced(leaf);
+  const std::string above = key.substr(0, dot);
+  return spaced(above.substr(above.rfind('.') + 1) + " " + leaf);
+}
+
+std::string Display::in_brackets() const { return unit.empty() ? "" : fmt::format(" ({})", unit); }
+
+Scale::Scale(const SweepAxis& axis) {
+  const SweptQuantity& q = axis.quantities.front();
+  name = axis.name == q.name || axis.quantities.size() == 1 ? words(q.key) : spaced(axis.name);
+  double largest = 0.0;
+  for (const double x : q.values) largest = std::max(largest, std::abs(x));
+  display = display_for(q.unit, largest);
+  logarithmic = q.logarithmic;
+  for (const double x : q.values) at.push_back(display.factor * x);
+}
+
+std::string Scale::range(const char* which) const {
+  const auto [least, most] = std::minmax_element(at.begin(), at.end());
+  std::string text =
+      fmt::format("set {0}range [{1}:{2}]\n{3} logscale {0}\n", which, *least, *most, logarithmic ? "set" : "unset");
+  if (!logarithmic || *most > 1000.0 * *least) return text;
+  // Over few decades powers of ten alone are too few marks; over more, three a decade would overlap.
+  const std::vector<double> steps = *most > 30.0 * *least ? std::vector{1.0, 3.0} : std::vector{1.0, 2.0, 5.0};
+  std::string marks;
+  for (double decade = std::pow(10.0, std::floor(std::log10(*least))); decade <= *most; decade *= 10.0) {
+    for (const double step : steps) marks += fmt::format("{}{}", marks.empty() ? "" : ",", step * decade);
+  }
+  return text + fmt::format("set {}tics ({})\n", which, marks);
+}
+
+std::string Scale::value(std::size_t n) const {
+  return fmt::format("{:.4g}{}{}", at[n], display.unit.empty() ? "" : " ", display.unit);
+}
+
+std::string title_of(const Study& study) {
+  return study.title.empty() ? std::filesystem::path(study.input.study_name).stem().string() : study.title;
+}
+
+Field::Field(const NetcdfReader& file, Metric m) : metric(m), values(file.read(metric_info(m).key)) {
+  double largest = 0.0;
+  for (const double x : values) largest = std::isfinite(x) ? std::max(largest, std::abs(x)) : largest;
+  display = display_for(metric_info(m).unit, largest, is_efficiency(m));
+  for (double& x : values) x *= display.factor;
+}
+
+std::string Field::label() const { return metric_info(metric).long_name + display.in_brackets(); }
+
+std::string Field::shown(double value) const {
+  return fmt::format("{:.4g}{}{}", value, display.unit.empty() ? "" : " ", display.unit);
+}
+
+const char* Field::superlative() const {
+  const std::string_view key = metric_info(metric).key;
+  return is_efficiency(metric) || key.starts_with("lift") ? "best" : "highest";
+}
+
+std::vector<double> lift_over_weight(const Sweep& sweep, const NetcdfReader& file) {
+  if (!sweep.options.metrics[std::size_t(Metric::lift_to_weight)]) return {};
+  return file.read(metric_info(Metric::lift_to_weight).key);
+}
+
+SweepBest best_of(const Field& field, const std::vector<double>& weight, const std::vector<double>& domain,
+                  bool extrapolates) {
+  SweepBest best;
+  for (std::size_t n = 0; n < field.values.size(); ++n) {
+    if (!extrapolates && domain[n] != 0.0) continue;
+    best.offer(n, field.values[n], weight.empty() ? absent : weight[n]);
+  }
+  return best;
+}
+
+}  // namespace wingbeat
