@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <stdexcept>
 #include <utility>
 
@@ -276,13 +275,7 @@ Assessment assess(const PublishedFile& file, const ForEach& for_each, const std:
       tasks.push_back([&, n] { a.laws[n] = predict(files[n / laws], compared_friction_laws[n % laws], n / laws); });
     }
   }
-  std::mutex mutex;
-  std::size_t finished = 0;
-  for_each(tasks.size(), [&](std::size_t n) {
-    tasks[n]();
-    const std::lock_guard<std::mutex> lock(mutex);
-    if (done) done(double(++finished) / double(tasks.size()));
-  });
+  run_tasks(tasks, for_each, done);
 
   for (std::size_t n = 0; n < file.values.size(); ++n) a.claims.push_back(claim_of(file.values[n], a, n));
   for (std::size_t n = 0; n < trends; ++n) a.claims.push_back(claim_of(file.trends[n], a, answers[n]));

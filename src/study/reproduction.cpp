@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <utility>
 
 #include "wingbeat/study/ensemble_frequency.hpp"
@@ -180,13 +179,7 @@ Reproduction reproduce(const SpringPair& pair, const ReproductionOptions& option
     });
   }
 
-  std::mutex mutex;
-  std::size_t finished = 0;
-  for_each(tasks.size(), [&](std::size_t n) {
-    tasks[n]();
-    const std::lock_guard<std::mutex> lock(mutex);
-    if (done) done(double(++finished) / double(tasks.size()));
-  });
+  run_tasks(tasks, for_each, done);
   return r;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "wingbeat/study/design_point.hpp"
+#include "wingbeat/study/for_each.hpp"
 
 namespace wingbeat {
 
@@ -98,9 +99,6 @@ struct OptimiseResult {
   int evaluations = 0;                                  ///< orbits with gradients
   std::vector<SearchEnd> searches;
 };
-
-/// Calls `act` for 0 to count - 1, in any order, perhaps side by side.
-using ForEach = std::function<void(std::size_t count, const std::function<void(std::size_t)>& act)>;
 
 /// Local searches by SLSQP (Kraft 1994; NLopt) with exact gradients. The result depends on the study alone. Throws
 /// ParameterError for a parameter without a place in the design.

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "wingbeat/cycle/domain.hpp"
-#include "wingbeat/study/optimise.hpp"
+#include "wingbeat/study/for_each.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {
