@@ -49,10 +49,6 @@ void text_neighbourhood(Out& out, const OptimiseStudy& study, const OptimiseResu
   }
 }
 
-std::string explanation(const OptimiseStudy& study, const OptimiseResult& r) {
-  return explanation(r.reason, r.outcome == Outcome::nothing_flaps, study.constraints, r.screen);
-}
-
 Json result_json(const OptimiseFile& file, const OptimiseResult& r) {
   const OptimiseStudy& study = file.study;
   Json json;
@@ -67,7 +63,7 @@ Json result_json(const OptimiseFile& file, const OptimiseResult& r) {
   json["screened"]["outside_domain"] = r.screen.outside;
   json["allow_extrapolation"] = study.allow_extrapolation;
   if (r.outcome != Outcome::found) {
-    json["reason"] = explanation(study, r);
+    json["reason"] = describe(nothing_found(study, r));
     for (const char* key : {"domain", "limited_by_domain", "value", "parameters", "metrics", "active", "directions",
                             "starts", "evaluations"}) {
       json[key] = nullptr;
@@ -104,17 +100,34 @@ Json result_json(const OptimiseFile& file, const OptimiseResult& r) {
 
 }  // namespace
 
-std::string explanation(const std::string& reason, bool nothing_flaps, std::span<const MetricConstraint> constraints,
-                        const ScreenCounts& screen) {
-  std::string text = reason;
-  if (nothing_flaps) {
+NothingFound nothing_found(const OptimiseStudy& study, const OptimiseResult& r) {
+  return {r.outcome != Outcome::nothing_flaps, study.parameters.empty() ? 0 : study.screen, study.allow_extrapolation,
+          study.constraints, r.screen};
+}
+
+NothingFound nothing_found(const ParetoStudy& study, const ParetoResult& r) {
+  return {r.outcome != ParetoResult::Outcome::nothing_flaps, study.screen, study.allow_extrapolation, study.constraints,
+          r.screen};
+}
+
+std::string describe(const NothingFound& n) {
+  const ScreenCounts& screen = n.screen;
+  if (!n.flaps) {
     std::string counts;
     for (int s = 1; s < sweep_status_count; ++s) {
-      const std::uint64_t n = screen.status[std::size_t(s)];
-      if (n > 0) counts += fmt::format("{}{} {}", counts.empty() ? ": " : ", ", n, name_of(SweepStatus(s)));
+      const std::uint64_t designs = screen.status[std::size_t(s)];
+      if (designs > 0) counts += fmt::format("{}{} {}", counts.empty() ? ": " : ", ", designs, name_of(SweepStatus(s)));
     }
-    return text + counts;
+    return (n.screened > 0 ? fmt::format("none of {} designs within the bounds flaps", n.screened)
+                           : std::string("the design does not flap")) +
+           counts;
   }
+  std::string text = n.screened == 0
+                         ? std::string("the design flaps, but not ") +
+                               (screen.outside > 0 ? "inside the model's domain" : "within every constraint")
+                     : n.allow_extrapolation
+                         ? "designs flap, but none within every constraint was found"
+                         : "designs flap, but none inside the model's domain and within every constraint was found";
   if (screen.outside > 0) {
     std::string limits;
     for (std::size_t k = 0; k < screen.beyond.size(); ++k) {
@@ -124,12 +137,12 @@ std::string explanation(const std::string& reason, bool nothing_flaps, std::span
     text += fmt::format("; {} of {} that flap are outside the model's domain ({})", screen.outside, screen.status[0],
                         limits);
   }
-  for (std::size_t c = 0; c < constraints.size(); ++c) {
+  for (std::size_t c = 0; c < n.constraints.size(); ++c) {
     if (screen.violated[c] == 0) continue;
     text +=
-        fmt::format("; {}: {} of {} {} break it, the best of them reaches {}", name_of(constraints[c]),
+        fmt::format("; {}: {} of {} {} break it, the best of them reaches {}", name_of(n.constraints[c]),
                     screen.violated[c], screen.status[0] - screen.outside, screen.outside > 0 ? "inside" : "that flap",
-                    with_unit(screen.closest[c], metric_info(constraints[c].metric).unit));
+                    with_unit(screen.closest[c], metric_info(n.constraints[c].metric).unit));
   }
   return text;
 }
@@ -154,7 +167,7 @@ std::string text_optimum(const OptimiseFile& file, const OptimiseResult& r) {
   if (study.allow_extrapolation)
     fmt::format_to(out, "designs outside the model's domain count: extrapolation is allowed\n");
   if (r.outcome != Outcome::found) {
-    fmt::format_to(out, "{}\n", wrapped("No design found: " + explanation(study, r), width, 2));
+    fmt::format_to(out, "{}\n", wrapped("No design found: " + describe(nothing_found(study, r)), width, 2));
     return text;
   }
   fmt::format_to(out, "{} starts: {} ended in the best optimum, {} in a worse one, {} found nothing\n\n", r.starts,
@@ -205,7 +218,7 @@ std::string text_motors(const OptimiseFile& file, std::span<const MotorTrial> tr
     if (t->refused()) {
       what = t->motor->refused;
     } else if (t->result.outcome != Outcome::found) {
-      what = explanation(study, t->result);
+      what = describe(nothing_found(study, t->result));
     } else {
       what = with_unit(t->result.point.metrics[study.objective], metric_info(study.objective).unit);
       for (std::size_t k = 0; k < study.parameters.size(); ++k) {

@@ -147,10 +147,7 @@ std::string text_front(const OptimiseFile& file, const ParetoStudy& study, const
     }
   };
   if (r.outcome != Outcome::found) {
-    const bool nothing = r.outcome == Outcome::nothing_flaps;
-    fmt::format_to(
-        out, "{}\n",
-        wrapped("No design found: " + explanation(r.reason, nothing, study.constraints, r.screen), width, 2));
+    fmt::format_to(out, "{}\n", wrapped("No design found: " + describe(nothing_found(study, r)), width, 2));
     motors();
     return text;
   }
@@ -230,7 +227,7 @@ std::string json_front(const OptimiseFile& file, const ParetoStudy& study, const
     }
   }
   if (r.outcome != Outcome::found) {
-    json["reason"] = explanation(r.reason, r.outcome == Outcome::nothing_flaps, study.constraints, r.screen);
+    json["reason"] = describe(nothing_found(study, r));
     return json.dump(2) + "\n";
   }
   json["evaluations"] = r.evaluated.size();

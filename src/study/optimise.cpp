@@ -541,7 +541,6 @@ void judge(const Problem& problem, OptimiseResult& result) {
   result.screen.closest.assign(study.constraints.size(), absent);
   result.screen.violated.assign(study.constraints.size(), 0);
   if (!only.flaps) {
-    result.reason = "the design does not flap";
     result.failed = 1;
     return;
   }
@@ -555,8 +554,6 @@ void judge(const Problem& problem, OptimiseResult& result) {
   }
   if (only.violation() > feasible_to) {
     result.outcome = OptimiseResult::Outcome::infeasible;
-    result.reason = std::string("the design flaps, but not ") +
-                    (result.screen.outside ? "inside the model's domain" : "within every constraint");
     result.failed = 1;
     return;
   }
@@ -609,10 +606,7 @@ OptimiseResult optimise(const OptimiseStudy& study, const StartUp& start_up, con
   const bool inside = given.allFinite() && given.minCoeff() >= 0.0 && given.maxCoeff() <= 1.0;
   if (inside && problem.evaluate(given).flaps) starts.push_back(given);
   for (const Vector& u : spread(ranked, std::size_t(study.starts) - starts.size())) starts.push_back(u);
-  if (starts.empty()) {
-    result.reason = "none of " + std::to_string(study.screen) + " designs within the bounds flaps";
-    return result;
-  }
+  if (starts.empty()) return result;
 
   std::vector<Search> searches(starts.size());
   const auto run = [&](std::size_t first, std::size_t last) {
@@ -650,9 +644,6 @@ OptimiseResult optimise(const OptimiseStudy& study, const StartUp& start_up, con
   if (!best) {
     result.outcome = OptimiseResult::Outcome::infeasible;
     result.failed = result.starts;
-    result.reason = study.allow_extrapolation
-                        ? "designs flap, but none within every constraint was found"
-                        : "designs flap, but none inside the model's domain and within every constraint was found";
     return result;
   }
   for (const Search& s : searches) {

@@ -253,10 +253,7 @@ ParetoResult pareto_front(const ParetoStudy& study, Evolve evolve, const StartUp
     report();
   }
   count_screening(study, result);
-  if (result.screen.status[0] == 0) {
-    result.reason = "none of " + std::to_string(study.screen) + " designs within the bounds flaps";
-    return result;
-  }
+  if (result.screen.status[0] == 0) return result;
   archive.scale();
   std::vector<double> values(study.screen * space.objectives);
   archive.fitness(0, values);
@@ -287,9 +284,6 @@ ParetoResult pareto_front(const ParetoStudy& study, Evolve evolve, const StartUp
   }
   if (result.front.empty()) {
     result.outcome = ParetoResult::Outcome::infeasible;
-    result.reason = study.allow_extrapolation
-                        ? "designs flap, but none within every constraint was found"
-                        : "designs flap, but none inside the model's domain and within every constraint was found";
     return result;
   }
   result.outcome = ParetoResult::Outcome::found;

@@ -5,6 +5,7 @@
 
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/design_parameter.hpp"
+#include "wingbeat/report/optimise_report.hpp"
 #include "wingbeat/run/sweep_run.hpp"
 #include "wingbeat/study/endurance.hpp"
 #include "wingbeat/study/optimise.hpp"
@@ -129,12 +130,15 @@ TEST(DomainOfOptima, NothingInsideIsSaidSo) {
   study.screen = 32;
   const OptimiseResult r = optimise(study, start_up_in_time());
   EXPECT_EQ(r.outcome, OptimiseResult::Outcome::infeasible);
-  EXPECT_EQ(r.reason, "designs flap, but none inside the model's domain and within every constraint was found");
+  EXPECT_THAT(describe(nothing_found(study, r)),
+              testing::StartsWith("designs flap, but none inside the model's domain and within every constraint was "
+                                  "found; 32 of 32 that flap are outside the model's domain"));
   EXPECT_EQ(r.screen.outside, 32u);
   EXPECT_EQ(r.screen.beyond[std::size_t(DomainLimit::angle_of_attack)], 32u);
   study.parameters.clear();
   study.design.supply.voltage = 60.0;
-  EXPECT_EQ(optimise(study, start_up_in_time()).reason, "the design flaps, but not inside the model's domain");
+  EXPECT_THAT(describe(nothing_found(study, optimise(study, start_up_in_time()))),
+              testing::StartsWith("the design flaps, but not inside the model's domain"));
 }
 
 TEST(DomainOfFronts, NoDesignOfAFrontIsOutside) {

@@ -6,6 +6,7 @@
 
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/design_parameter.hpp"
+#include "wingbeat/report/optimise_report.hpp"
 #include "wingbeat/run/sweep_run.hpp"
 #include "wingbeat/study/run.hpp"
 
@@ -131,9 +132,10 @@ TEST(Optimise, AFlatDirectionUnderAConstraint) {
 }
 
 TEST(Optimise, SaysThatNothingFlaps) {
-  const OptimiseResult r = optimise(study_of({between("supply.voltage", 0.1, 0.6)}), start_up_in_time());
+  const OptimiseStudy study = study_of({between("supply.voltage", 0.1, 0.6)});
+  const OptimiseResult r = optimise(study, start_up_in_time());
   EXPECT_EQ(r.outcome, Outcome::nothing_flaps);
-  EXPECT_EQ(r.reason, "none of 256 designs within the bounds flaps");
+  EXPECT_EQ(describe(nothing_found(study, r)), "none of 256 designs within the bounds flaps: 256 locked");
   EXPECT_EQ(r.screen.status[std::size_t(SweepStatus::locked)], 256U);
 }
 

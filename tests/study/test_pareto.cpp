@@ -8,6 +8,7 @@
 
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/design_parameter.hpp"
+#include "wingbeat/report/optimise_report.hpp"
 #include "wingbeat/run/sweep_run.hpp"
 #include "wingbeat/study/run.hpp"
 
@@ -271,7 +272,8 @@ TEST(Pareto, SaysThatNothingFlapsOrFits) {
   study.parameters = {between("supply.voltage", 0.1, 0.6)};
   const ParetoResult none = pareto_front(study, wingbeat_evolution_module, start_up_in_time());
   EXPECT_EQ(none.outcome, Outcome::nothing_flaps);
-  EXPECT_EQ(none.reason, "none of 256 designs within the bounds flaps");
+  EXPECT_THAT(describe(nothing_found(study, none)),
+              testing::StartsWith("none of 256 designs within the bounds flaps: "));
   study = lift_against_power();
   study.constraints = {{Metric::lift_to_weight, true, 9.0}};
   study.evolution.generations = 3;

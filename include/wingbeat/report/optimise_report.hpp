@@ -10,9 +10,19 @@
 
 namespace wingbeat {
 
-/// "lift_to_weight >= 1: 9 of 10 that flap break it, the best of them reaches 0.9", for a report without a design.
-std::string explanation(const std::string& reason, bool nothing_flaps, std::span<const MetricConstraint> constraints,
-                        const ScreenCounts& screen);
+/// What a search without a result has seen.
+struct NothingFound {
+  bool flaps = false;          ///< some designs do
+  std::uint64_t screened = 0;  ///< designs within the bounds; 0 where nothing varies
+  bool allow_extrapolation = false;
+  std::span<const MetricConstraint> constraints;  ///< of the study, which must outlive this
+  const ScreenCounts& screen;                     ///< of the result, which must outlive this
+};
+NothingFound nothing_found(const OptimiseStudy& study, const OptimiseResult& result);
+NothingFound nothing_found(const ParetoStudy& study, const ParetoResult& result);
+/// "designs flap, but none within every constraint was found; lift_to_weight >= 1: 9 of 10 that flap break it, the best
+/// of them reaches 0.9"
+std::string describe(const NothingFound& nothing);
 
 /// Readable report of one result; of a catalogue, the table of motors and the best one's result.
 std::string text_optimum(const OptimiseFile& file, const OptimiseResult& result);

@@ -88,7 +88,6 @@ struct OptimiseResult {
     nothing_flaps  ///< in the screening
   };
   Outcome outcome = Outcome::nothing_flaps;
-  std::string reason;  ///< a sentence where nothing was found
   ScreenCounts screen;
   std::vector<double> parameters;  ///< of the optimum [SI]
   Design<double> design;           ///< with them; where the frequency is held, with the voltage found

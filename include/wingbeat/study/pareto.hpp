@@ -81,7 +81,6 @@ struct ParetoDesign {
 
 struct ParetoResult {
   enum class Outcome { found, infeasible, nothing_flaps } outcome = Outcome::nothing_flaps;
-  std::string reason;  ///< a sentence where nothing was found
   ScreenCounts screen;
   std::vector<ParetoDesign> front;      ///< by the first objective, best first
   std::vector<ParetoDesign> evaluated;  ///< every design solved, in the order of solving
