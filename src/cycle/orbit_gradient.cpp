@@ -101,12 +101,10 @@ class Repetition {
     const JetState y = state_at(n, theta);
     const auto signs = solver::signs_of<Jets>(lap_.steps[n]);
     const Motion<J> m = jets_.motion(J(theta), y, signs);
-    const Branch<J> branch = Jets::branch(signs);
-    const J stroke_speed = branch.stroke * m.stroke_velocity;
     return {total(jets_.shaft_speed(y)),
             total(m.current),
             total(m.stroke_velocity),
-            total(lift_force(jets_.vehicle.wings, stroke_speed, branch.pitching)),
+            total(m.aero.lift),
             System::has_rod ? total(m.rod_force) : J(absent),
             total(m.motor_torque)};
   }

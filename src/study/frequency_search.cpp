@@ -182,8 +182,7 @@ double highest_frequency(const Vehicle<double>& v, SearchRange range) {
   const bool domain = range == SearchRange::domain;
   double velocity = infinity;  // peak of |beta'| that the range allows
   const double angle = (domain ? angle_of_attack_lowest_deg : extrapolation_angle_deg) / degrees_per_radian;
-  if (w.pitch_coefficient > 0.0 && !(w.angle_of_attack_min >= angle))
-    velocity = (0.5 * pi - angle) / w.pitch_coefficient;
+  if (w.pitch_coefficient > 0.0 && !(w.angle_of_attack_min >= angle)) velocity = stroke_speed_at(w, angle);
   if (w.s2 > 0.0 && w.s3 > 0.0) {
     velocity = std::min(velocity, (domain ? flow_speed_max : extrapolation_flow_speed) * w.s2 / w.s3);
   }

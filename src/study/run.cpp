@@ -18,7 +18,7 @@ Motion<double> motion_of(const Vehicle<double>& vehicle, double crank_angle, dou
   const double s = std::sin(crank_angle), c = std::cos(crank_angle);
   Branch<double> branch{c * omega >= 0.0 ? 1.0 : -1.0, 1.0, omega >= 0.0 ? 1.0 : -1.0, 1.0};
   Motion<double> m = motion_at(vehicle, s, c, omega, i, v_t, branch);
-  branch.pitching = sign_of(pitch_margin(vehicle.wings, std::abs(m.stroke_velocity)));
+  branch.pitching = sign_of(m.aero.pitch_margin);
   if (branch.pitching < 0.0) m = motion_at(vehicle, s, c, omega, i, v_t, branch);
   if (m.force_switch >= 0.0) return m;
   branch.force = -1.0;

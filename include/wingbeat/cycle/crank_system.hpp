@@ -96,7 +96,7 @@ struct CrankSystem {
   /// d theta / dt [rad/s].
   static const S& pace(const State& y) { return y[0]; }
 
-  Motion<S> motion(const S& theta, const State& y, const Signs& signs) const {
+  [[gnu::always_inline]] Motion<S> motion(const S& theta, const State& y, const Signs& signs) const {
     using std::cos;
     using std::sin;
     const S i = current(theta, y);
@@ -105,7 +105,7 @@ struct CrankSystem {
   }
 
   CycleExtremes<S> candidates(const Motion<S>& m, const State& y, const Signs& signs) const {
-    return extreme_candidates(vehicle, m, y[0], branch(signs));
+    return extreme_candidates(m, y[0], branch(signs));
   }
   static S stroke_angle(const Motion<S>& m, const State&) { return wingbeat::stroke_angle(m.kinematics); }
   static S shaft_angle(const S& theta, const State&) { return theta; }
@@ -117,9 +117,9 @@ struct CrankSystem {
     solver::Rates<CrankSystem> r;
     r.dy[0] = m.crank_acceleration * per_omega;
     if constexpr (N == 2) r.dy[1] = m.voltage_reserve / vehicle.motor.armature_inductance * per_omega;
-    r.switches = {m.force_switch, pitch_margin(vehicle.wings, S(signs[stroke] * m.stroke_velocity)), m.stored_moment};
+    r.switches = {m.force_switch, m.aero.pitch_margin, m.stored_moment};
     if constexpr (quadratures) {
-      const CycleIntegrals<S> in_time = integrands(vehicle, m, y[0], branch(signs));
+      const CycleIntegrals<S> in_time = integrands(m, y[0], branch(signs));
       for (std::size_t q = 0; q < in_time.size(); ++q) r.dq[q] = in_time[q] * per_omega;
     }
     return r;

@@ -120,7 +120,7 @@ S torque_surplus(const Vehicle<S>& v, std::span<const LoadPlace<S>> places, cons
   using std::abs;
   S load(0.0);
   for (const LoadPlace<S>& p : places) {
-    const S moment = p.inertia * square(omega) + p.stroke * drag_moment(v.wings, S(p.slope * omega)) + p.spring;
+    const S moment = p.inertia * square(omega) + p.stroke * aero_loads(v.wings, S(p.slope * omega)).moment + p.spring;
     const S F = moment * p.per_wing_lever;
     load = load + F * p.crank_lever + v.friction.radius * abs(F);
   }

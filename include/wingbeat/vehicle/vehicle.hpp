@@ -170,7 +170,7 @@ struct Motion {
   S force_switch;         ///< has the sign of F on either branch while the equations have one solution [N kg m3]
   S stroke_velocity;      ///< beta' [rad/s]
   S stroke_acceleration;  ///< beta'' [rad/s2]
-  S aero_moment;          ///< M_aero of all wings [N m], along beta'
+  AeroLoads<S> aero;      ///< of all wings
   S friction_torque;      ///< T_f on the crank, the motor's own friction included [N m]
   S motor_torque;         ///< T_m = F h + T_f [N m] (eq 5)
   S stored_moment;        ///< N_w J_w beta'' + N_w k beta [N m]
@@ -199,7 +199,7 @@ struct Instant {
   S omega;  ///< crank speed [rad/s]
   MotorLoads<S> motor;
   S stroke_velocity;  ///< beta' [rad/s]
-  S aero_moment;      ///< M_aero of all wings [N m], along beta'
+  AeroLoads<S> aero;  ///< of all wings
   S spring_moment;    ///< N_w k beta [N m]
   S load_free;        ///< friction on the crank that does not depend on F [N m]
   S drive;            ///< K i - b omega - load_free [N m]
@@ -212,15 +212,15 @@ struct Instant {
 /// spring_moment() there; `stroke` and `direction` are the signs of beta' and omega (model.md section 2), `pitching` as
 /// in Branch.
 template <Scalar S>
-Instant<S> instant_at(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& N_k_beta, const S& omega, const S& i,
-                      const S& v_t, const S& stroke, const S& direction, const S& pitching = S(1.0)) {
+[[gnu::always_inline]] inline Instant<S> instant_at(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& N_k_beta,
+                                                    const S& omega, const S& i, const S& v_t, const S& stroke,
+                                                    const S& direction, const S& pitching = S(1.0)) {
   Instant<S> at;
   at.kinematics = k;
   at.omega = omega;
   at.motor = motor_loads(v.motor, v_t, i, omega);
   at.stroke_velocity = k.stroke_slope * omega;
-  const S stroke_speed = stroke * at.stroke_velocity;
-  at.aero_moment = stroke * drag_moment(v.wings, stroke_speed, pitching);
+  at.aero = aero_loads(v.wings, at.stroke_velocity, stroke, pitching);
   at.spring_moment = N_k_beta;
   at.load_free = load_free_friction(v.friction, omega, direction) + direction * v.motor.friction_torque;
   at.drive = at.motor.torque - at.motor.drag_torque - at.load_free;
@@ -228,14 +228,15 @@ Instant<S> instant_at(const Vehicle<S>& v, const CrankKinematics<S>& k, const S&
   // F = A omega' + C of model.md, both sides times g, which saves dividing by it twice.
   const S N_J = v.wing_count * v.wing_inertia;
   at.A_g = N_J * k.stroke_slope;
-  at.C_g = N_J * k.stroke_curve * square(omega) + at.aero_moment + at.spring_moment;
+  at.C_g = N_J * k.stroke_curve * square(omega) + at.aero.moment + at.spring_moment;
   at.force_switch = v.motor.inertia * at.C_g + at.A_g * at.drive;
   return at;
 }
 
 /// Rod force and accelerations of an instant, on a given branch (model.md section 2, eqs 1, 5-11, 21).
 template <Scalar S>
-Motion<S> motion_on(const Vehicle<S>& v, const Instant<S>& at, const S& i, const S& v_t, const Branch<S>& branch) {
+[[gnu::always_inline]] inline Motion<S> motion_on(const Vehicle<S>& v, const Instant<S>& at, const S& i, const S& v_t,
+                                                  const Branch<S>& branch) {
   Motion<S> m;
   m.kinematics = at.kinematics;
   const CrankKinematics<S>& k = m.kinematics;
@@ -250,7 +251,7 @@ Motion<S> motion_on(const Vehicle<S>& v, const Instant<S>& at, const S& i, const
   m.current = i;
   m.voltage = v_t;
   m.stroke_velocity = at.stroke_velocity;
-  m.aero_moment = at.aero_moment;
+  m.aero = at.aero;
   m.force_switch = at.force_switch;
   m.rod_force = at.force_switch * divisor;
   m.crank_acceleration = (at.drive * g - at.C_g * lever) * divisor;
@@ -272,8 +273,8 @@ CrankKinematics<S> direct_kinematics() {
 /// Rod force and accelerations at crank angle theta (given by sine and cosine), crank speed omega [rad/s] and current
 /// i [A] under the terminal voltage v_t [V], on a given branch.
 template <Scalar S>
-Motion<S> motion_at(const Vehicle<S>& v, const S& sin_theta, const S& cos_theta, const S& omega, const S& i,
-                    const S& v_t, const Branch<S>& branch) {
+[[gnu::always_inline]] inline Motion<S> motion_at(const Vehicle<S>& v, const S& sin_theta, const S& cos_theta,
+                                                  const S& omega, const S& i, const S& v_t, const Branch<S>& branch) {
   const CrankKinematics<S> k = crank_kinematics(v.crank, sin_theta, cos_theta);
   const S N_k_beta = spring_moment(v, k);
   const Instant<S> at = instant_at(v, k, N_k_beta, omega, i, v_t, branch.stroke, branch.direction, branch.pitching);
