@@ -51,15 +51,7 @@ bool CycleRecord::empty() const {
 }
 
 CycleIntegrals<double> CycleRecord::integrals() const {
-  return std::visit(
-      [](const auto& recorded) {
-        CycleIntegrals<double> sum{};
-        for (const auto& step : recorded.lap.steps) {
-          for (std::size_t q = 0; q < sum.size(); ++q) sum[q] += step.dq[q];
-        }
-        return sum;
-      },
-      laps_);
+  return std::visit([](const auto& recorded) { return lap_integrals(recorded.lap); }, laps_);
 }
 
 double CycleRecord::period() const { return integrals()[std::size_t(Integral::time)]; }

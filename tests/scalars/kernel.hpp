@@ -23,7 +23,7 @@ std::array<S, instant_size> instant(const Vehicle<S>& v, const Point<S>& p) {
   const CrankKinematics<S> k = crank_kinematics(v.crank, p.sin_theta, p.cos_theta);
   const Branch<S> branch{sign_of<S>(k.stroke_slope * p.omega), p.force, sign_of(p.omega), p.stored};
   const Motion<S> m = motion_at(v, p.sin_theta, p.cos_theta, p.omega, p.current, p.voltage, branch);
-  std::array<S, instant_size> out = {k.slider_height,
+  std::array<S, instant_size> out = {slider_height(v.crank, p.sin_theta, p.cos_theta),
                                      stroke_angle(k),
                                      k.stroke_slope,
                                      k.stroke_curve,

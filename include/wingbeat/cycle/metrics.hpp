@@ -149,8 +149,8 @@ inline Reporting reporting_of(const Design<double>& d) {
 /// The metrics of a cycle from its integrals and extremes. `extremes` holds the maxima of extreme_candidates(). A
 /// direct drive has no rod, no speed of rotation and no direct current: rod forces, crank speeds and the bench estimate
 /// (17) are absent; its voltage is the amplitude. Floquet multiplier: of the orbit, or `absent`.
-template <Scalar S>
-Metrics<S> cycle_metrics(const Vehicle<S>& v, const CycleIntegrals<S>& integrals, const CycleExtremes<S>& extremes,
+template <template <Scalar> class V, Scalar S>
+Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, const CycleExtremes<S>& extremes,
                          const S& floquet_multiplier_max, const ReportingOf<S>& reporting) {
   const auto total = [&](Integral which) -> const S& { return integrals[std::size_t(which)]; };
   const auto peak = [&](Extreme which) -> const S& { return extremes[std::size_t(which)]; };

@@ -14,7 +14,8 @@ namespace wingbeat {
 
 inline constexpr double standard_gravity = 9.80665;  ///< [m/s2], CGPM 1901
 
-/// The constants of one vehicle in one condition, all referred to the output shaft.
+/// The constants of one vehicle in one condition, all referred to the output shaft. The equations of motion below and
+/// CrankSystem take any template V of the same members whose `crank` is a Transmission.
 template <Scalar S>
 struct Vehicle {
   S voltage;  ///< v that steady flapping sees [V], at the motor terminals where there is no source resistance
@@ -178,15 +179,15 @@ struct Motion {
 
 /// J + A (h + s mu r_e) [kg m2], the divisor of omega' on the branch s (model.md section 2). The equations have one
 /// solution while it is positive for s = +1 and s = -1 and the lever g is positive.
-template <Scalar S>
-S effective_inertia(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& s) {
+template <template <Scalar> class V, Scalar S>
+S effective_inertia(const V<S>& v, const CrankKinematics<S>& k, const S& s) {
   const S A = v.wing_count * v.wing_inertia * k.stroke_slope / k.wing_lever;
   return v.motor.inertia + A * (k.crank_lever + s * v.friction.radius);
 }
 
 /// Moment of all hinge springs, N_w k beta [N m].
-template <Scalar S>
-S spring_moment(const Vehicle<S>& v, const CrankKinematics<S>& k) {
+template <template <Scalar> class V, Scalar S>
+S spring_moment(const V<S>& v, const CrankKinematics<S>& k) {
   // Without springs the arc tangent is a tenth of all the work; its derivative by the stiffness is still wanted.
   if (!ScalarTraits<S>::differentiates && !any<S>(v.spring.stiffness > S(0.0))) return S(0.0);
   return v.wing_count * spring_loads(v.spring, stroke_angle(k)).moment;
@@ -211,8 +212,8 @@ struct Instant {
 /// The instant at crank speed omega [rad/s] and current i [A] under the terminal voltage v_t [V], N_k_beta being the
 /// spring_moment() there; `stroke` and `direction` are the signs of beta' and omega (model.md section 2), `pitching` as
 /// in Branch.
-template <Scalar S>
-[[gnu::always_inline]] inline Instant<S> instant_at(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& N_k_beta,
+template <template <Scalar> class V, Scalar S>
+[[gnu::always_inline]] inline Instant<S> instant_at(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta,
                                                     const S& omega, const S& i, const S& v_t, const S& stroke,
                                                     const S& direction, const S& pitching = S(1.0)) {
   Instant<S> at;
@@ -234,8 +235,8 @@ template <Scalar S>
 }
 
 /// Rod force and accelerations of an instant, on a given branch (model.md section 2, eqs 1, 5-11, 21).
-template <Scalar S>
-[[gnu::always_inline]] inline Motion<S> motion_on(const Vehicle<S>& v, const Instant<S>& at, const S& i, const S& v_t,
+template <template <Scalar> class V, Scalar S>
+[[gnu::always_inline]] inline Motion<S> motion_on(const V<S>& v, const Instant<S>& at, const S& i, const S& v_t,
                                                   const Branch<S>& branch) {
   Motion<S> m;
   m.kinematics = at.kinematics;
@@ -272,9 +273,9 @@ CrankKinematics<S> direct_kinematics() {
 
 /// Rod force and accelerations at crank angle theta (given by sine and cosine), crank speed omega [rad/s] and current
 /// i [A] under the terminal voltage v_t [V], on a given branch.
-template <Scalar S>
-[[gnu::always_inline]] inline Motion<S> motion_at(const Vehicle<S>& v, const S& sin_theta, const S& cos_theta,
-                                                  const S& omega, const S& i, const S& v_t, const Branch<S>& branch) {
+template <template <Scalar> class V, Scalar S>
+[[gnu::always_inline]] inline Motion<S> motion_at(const V<S>& v, const S& sin_theta, const S& cos_theta, const S& omega,
+                                                  const S& i, const S& v_t, const Branch<S>& branch) {
   const CrankKinematics<S> k = crank_kinematics(v.crank, sin_theta, cos_theta);
   const S N_k_beta = spring_moment(v, k);
   const Instant<S> at = instant_at(v, k, N_k_beta, omega, i, v_t, branch.stroke, branch.direction, branch.pitching);
@@ -282,42 +283,42 @@ template <Scalar S>
 }
 
 /// Voltage at the motor terminals [V] under the current i [A], where the supply drives `voltage` [V].
-template <Scalar S>
-S terminal_voltage(const Vehicle<S>& v, const S& voltage, const S& i) {
+template <template <Scalar> class V, Scalar S>
+S terminal_voltage(const V<S>& v, const S& voltage, const S& i) {
   return voltage - v.source_resistance * i;
 }
 
 /// All resistance that the current passes, R_a + R_i [ohm].
-template <Scalar S>
-S circuit_resistance(const Vehicle<S>& v) {
+template <template <Scalar> class V, Scalar S>
+S circuit_resistance(const V<S>& v) {
   return v.motor.armature_resistance + v.source_resistance;
 }
 
 /// The current [A] where L_a = 0 and the supply drives `voltage` [V]: i = (v - K omega) / (R_a + R_i).
-template <Scalar S>
-S algebraic_current(const Vehicle<S>& v, const S& voltage, const S& omega) {
+template <template <Scalar> class V, Scalar S>
+S algebraic_current(const V<S>& v, const S& voltage, const S& omega) {
   return (voltage - v.motor.torque_constant * omega) / circuit_resistance(v);
 }
 
 /// Steady speed without load and friction [rad/s], K v / (K^2 + (R_a + R_i) b): the closed form of the wingless
 /// condition.
-template <Scalar S>
-S no_load_speed(const Vehicle<S>& v) {
+template <template <Scalar> class V, Scalar S>
+S no_load_speed(const V<S>& v) {
   const S& K = v.motor.torque_constant;
   return K * v.voltage / (K * K + circuit_resistance(v) * v.motor.viscous_damping);
 }
 
 /// Kinetic energy of all wings and elastic energy of all hinge springs [J].
-template <Scalar S>
-S wing_energy(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& stroke_velocity) {
+template <template <Scalar> class V, Scalar S>
+S wing_energy(const V<S>& v, const CrankKinematics<S>& k, const S& stroke_velocity) {
   const S kinetic = S(0.5) * v.wing_count * v.wing_inertia * square(stroke_velocity);
   if (!ScalarTraits<S>::differentiates && !any<S>(v.spring.stiffness > S(0.0))) return kinetic;
   return kinetic + v.wing_count * spring_loads(v.spring, stroke_angle(k)).energy;
 }
 
 /// Kinetic and elastic energy of rotor, wings, springs and inductance [J].
-template <Scalar S>
-S stored_energy(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& omega, const S& i) {
+template <template <Scalar> class V, Scalar S>
+S stored_energy(const V<S>& v, const CrankKinematics<S>& k, const S& omega, const S& i) {
   return S(0.5) * v.motor.inertia * square(omega) + wing_energy(v, k, S(k.stroke_slope * omega)) +
          S(0.5) * v.motor.armature_inductance * square(i);
 }
