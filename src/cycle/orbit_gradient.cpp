@@ -28,7 +28,7 @@ OrbitGradient differentiate(const SteadyFlapping& orbit, const RecordedLap<Syste
   vehicle.voltage.a = recorded.system.vehicle.voltage;
   vehicle.drive_frequency.a = recorded.system.vehicle.drive_frequency;
   // A direct drive's frequency is its supply's: no voltage follows it, and its slot is a third state's.
-  const bool voltage_varies = vehicle.transmission == TransmissionType::slider_crank;
+  const bool voltage_varies = drive_of(vehicle).voltage_sets_frequency;
   if (voltage_varies) vehicle.voltage.v[gradient_voltage_slot] = 1.0;
   LapGradient<System> lap(recorded, vehicle);
   OrbitGradient g;
@@ -109,8 +109,7 @@ MetricGradients metric_gradients(const Design<double>& design, Condition conditi
     result.regular = result.regular && g.regular;
     for (std::size_t m = 0; m < metric_count; ++m) {
       const auto& derivative = g.metrics.values[m].v;
-      const bool direct = design.transmission.type == TransmissionType::direct;
-      result.by_voltage[m] = direct ? absent : derivative[gradient_voltage_slot];
+      result.by_voltage[m] = drive_of(design).voltage_sets_frequency ? derivative[gradient_voltage_slot] : absent;
       for (std::size_t k = 0; k < count; ++k) {
         result.by_parameter[first + k][m] = derivative[gradient_first_slot + Eigen::Index(k)];
       }

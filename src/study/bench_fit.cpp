@@ -209,7 +209,7 @@ class Bench {
 
   SteadyFlapping orbit_at_frequency(std::size_t n, Vehicle<double>& vehicle, const Reporting& reporting) {
     const double wanted = points_[n].value;
-    if (vehicle.transmission == TransmissionType::direct) {
+    if (!drive_of(vehicle).voltage_sets_frequency) {
       vehicle.drive_frequency = wanted;
       return orbit(vehicle, vehicle.voltage, reporting);
     }
@@ -547,7 +547,7 @@ void check(const BenchFit& fit) {
       throw ParameterError(p.parameter.key, "another free parameter takes its place in the vehicle");
     }
   }
-  if (fit.design.supply.type != SupplyType::constant && fit.design.transmission.type != TransmissionType::direct) {
+  if (fit.design.supply.type != SupplyType::constant && !drive_of(fit.design).alternating) {
     throw ParameterError("supply.type", "bench data are fitted with a constant supply");
   }
   for (const BenchLog& log : fit.logs) {

@@ -177,8 +177,7 @@ class Search {
 double highest_frequency(const Vehicle<double>& v, SearchRange range) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const BladeElement<double>& w = v.wings;
-  if (v.transmission == TransmissionType::direct || !(w.air_density > 0.0) || !(w.s2 > 0.0 || w.s3 > 0.0))
-    return infinity;
+  if (!drive_of(v).stroke_is_fixed || !(w.air_density > 0.0) || !(w.s2 > 0.0 || w.s3 > 0.0)) return infinity;
   const bool domain = range == SearchRange::domain;
   double velocity = infinity;  // peak of |beta'| that the range allows
   const double angle = (domain ? angle_of_attack_lowest_deg : extrapolation_angle_deg) / degrees_per_radian;

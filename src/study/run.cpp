@@ -141,7 +141,7 @@ void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunRes
     TransientOptions transient;
     transient.tolerance = std::max(options.tolerance, transient_tightest);
     transient.cycle_rows = options.waveform_rows;
-    if (vehicle.transmission == TransmissionType::direct) {
+    if (!drive_of(vehicle).rotates) {
       result.cycle = simulate_start_up(vehicle, transient).cycle;
     } else {
       last_lap(vehicle, {SupplyType::constant, vehicle.voltage, 0.0, 1.0, {}}, transient, options.waveform_rows,
@@ -154,9 +154,9 @@ void run_transient(const Vehicle<double>& vehicle, const RunOptions& options, Ru
   TransientOptions transient;
   transient.tolerance = std::max(options.tolerance, transient_tightest);
   transient.reporting = reporting_of(result.design);
-  const bool direct = vehicle.transmission == TransmissionType::direct;
-  if (!direct) transient.supply = result.design.supply;
-  transient.cycle_rows = direct && options.waveform_rows > 1 ? options.waveform_rows : 0;
+  const Drive drive = drive_of(vehicle);
+  if (!drive.alternating) transient.supply = result.design.supply;
+  transient.cycle_rows = !drive.rotates && options.waveform_rows > 1 ? options.waveform_rows : 0;
   result.start_up = simulate_start_up(vehicle, transient);
   const TransientResult& found = *result.start_up;
   result.status = found.status;
@@ -164,7 +164,7 @@ void run_transient(const Vehicle<double>& vehicle, const RunOptions& options, Ru
   result.settled = found.settled;
   if (found.metrics && found.status == FlappingStatus::flapping) {
     result.metrics = *found.metrics;
-    if (direct) {
+    if (!drive.rotates) {
       result.cycle = found.cycle;
     } else if (options.waveform_rows > 1) {
       last_lap(vehicle, result.design.supply, transient, options.waveform_rows, result);
@@ -210,16 +210,16 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
   require(options.tolerance >= 1e-12 && options.tolerance <= 1e-2, "tolerance", "must lie between 1e-12 and 1e-2", "1",
           options.tolerance);
   const Supply<double>& supply = design.supply;
-  const bool direct = design.transmission.type == TransmissionType::direct;
+  const Drive drive = drive_of(design);
   require(!(options.frequency && options.lift), "lift", "cannot be asked for beside a frequency", "N",
           options.lift.value_or(0.0));
   if (options.frequency) {
     require(*options.frequency > 0.0 && std::isfinite(*options.frequency), "frequency", "must be > 0 and finite", "Hz",
             *options.frequency);
   }
-  if (options.frequency && !direct) require_choice_of_voltage(supply, "flapping frequency", false);
-  if (options.lift && !direct) require_choice_of_voltage(supply, "lift", true);
-  if (supply.type == SupplyType::sine && !direct && options.method == Method::orbit) {
+  if (options.frequency && drive.voltage_sets_frequency) require_choice_of_voltage(supply, "flapping frequency", false);
+  if (options.lift && !drive.alternating) require_choice_of_voltage(supply, "lift", true);
+  if (supply.type == SupplyType::sine && !drive.alternating && options.method == Method::orbit) {
     throw ParameterError("supply.type",
                          "with a sine supply the crank has no periodic orbit in crank angle; simulate "
                          "it in time with --method transient");

@@ -183,19 +183,19 @@ Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, cons
   m[Metric::lift_peak] = peak(Extreme::lift);
   m[Metric::rod_force_peak] = peak(Extreme::rod_force);
   m[Metric::rod_force_mean] = f * total(Integral::rod_force);
-  if (v.transmission == TransmissionType::direct) {
-    m[Metric::rod_force_peak] = m[Metric::rod_force_mean] = S(absent);
-    m[Metric::power_motor_reference] = S(absent);  // an estimate from the mean of a current that alternates
-    m[Metric::stroke_amplitude] = S(0.5) * (peak(Extreme::stroke_max) + peak(Extreme::stroke_min));
-  } else {
-    m[Metric::stroke_amplitude] = stroke_amplitude(v.crank);
-  }
+  const Drive drive = drive_of(v);
+  if (!drive.has_rod) m[Metric::rod_force_peak] = m[Metric::rod_force_mean] = S(absent);
+  // An estimate from the mean current, which says nothing where it alternates.
+  if (drive.alternating) m[Metric::power_motor_reference] = S(absent);
+  m[Metric::stroke_amplitude] = drive.stroke_is_fixed
+                                    ? stroke_amplitude(v.crank)
+                                    : S(S(0.5) * (peak(Extreme::stroke_max) + peak(Extreme::stroke_min)));
   m[Metric::flapping_velocity_peak] = peak(Extreme::flapping_velocity);
   const S alpha = aero_loads(v.wings, peak(Extreme::flapping_velocity)).angle_of_attack;  // falls with |beta'|
   m[Metric::angle_of_attack_min] = S(degrees_per_radian) * alpha;
   m[Metric::crank_speed_min] = -peak(Extreme::crank_speed_min);
   m[Metric::crank_speed_max] = peak(Extreme::crank_speed_max);
-  if (v.transmission == TransmissionType::direct) m[Metric::crank_speed_min] = m[Metric::crank_speed_max] = S(absent);
+  if (!drive.rotates) m[Metric::crank_speed_min] = m[Metric::crank_speed_max] = S(absent);
   m[Metric::efficiency_system] = ratio(m[Metric::power_aerodynamic], m[Metric::power_electrical]);
   m[Metric::efficiency_motor] = ratio(m[Metric::power_motor], m[Metric::power_electrical]);
   m[Metric::efficiency_mechanism] = ratio(m[Metric::power_aerodynamic], m[Metric::power_motor]);

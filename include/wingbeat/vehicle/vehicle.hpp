@@ -9,6 +9,7 @@
 #include "wingbeat/parts/slider_crank.hpp"
 #include "wingbeat/parts/spring.hpp"
 #include "wingbeat/vehicle/design.hpp"
+#include "wingbeat/vehicle/drive.hpp"
 
 namespace wingbeat {
 
