@@ -92,7 +92,7 @@ struct Peer {
     du[1] = m.voltage_reserve / vehicle.motor.armature_inductance * dt / scale[1];
     if constexpr (N == all_states) {
       du[2] = dt / scale[2];
-      du[3] = lift_force(vehicle.wings, stroke * m.stroke_velocity) * dt / scale[3];
+      du[3] = m.aero.lift * dt / scale[3];
       du[4] = i * dt / scale[4];
     }
   }

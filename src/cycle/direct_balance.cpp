@@ -14,7 +14,8 @@ double resistance(const Vehicle<double>& v, double speed) {
   for (int n = 0; n < samples; ++n) {
     const double sine = std::sin(0.5 * pi * (n + 0.5) / samples);
     const double now = speed * sine;
-    sum += sine * (drag_moment(v.wings, now) + load_free_friction(v.friction, now, 1.0) + v.motor.friction_torque);
+    sum +=
+        sine * (aero_loads(v.wings, now).moment + load_free_friction(v.friction, now, 1.0) + v.motor.friction_torque);
   }
   return 2.0 * sum / samples + v.motor.viscous_damping * speed;
 }

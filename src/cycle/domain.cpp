@@ -54,7 +54,6 @@ std::array<S, domain_limit_count> excess_of(const Vehicle<double>& v, const Metr
     return value_of(a) > value_of(b) || std::isnan(value_of(a)) ? a : b;
   };
   const bool air = in_air(v);
-  const bool direct = v.transmission == TransmissionType::direct;
 
   if (air) {
     const Range range = angle_range(v);
@@ -66,10 +65,10 @@ std::array<S, domain_limit_count> excess_of(const Vehicle<double>& v, const Metr
     }
     at(DomainLimit::flow_speed) = m[Metric::flapping_velocity_peak] * S(reference_radius(v) / flow_speed_max) - S(1.0);
   }
-  if (direct) {
-    at(DomainLimit::stroke) = m[Metric::stroke_amplitude] * S(degrees_per_radian / direct_stroke_max_deg) - S(1.0);
-  } else {
+  if (drive_of(v).stroke_is_fixed) {
     at(DomainLimit::stroke) = S(stroke_excess(v));
+  } else {
+    at(DomainLimit::stroke) = m[Metric::stroke_amplitude] * S(degrees_per_radian / direct_stroke_max_deg) - S(1.0);
   }
 
   const S& P_e = m[Metric::power_electrical];
@@ -109,6 +108,10 @@ const std::array<DomainLimitInfo, domain_limit_count>& domain_limit_table() {
       {"flow_speed", "speed of the wings at S_3/S_2 up to 103 m/s (Mach 0.3)"},
   }};
   return table;
+}
+
+double stroke_max_deg(TransmissionType transmission) {
+  return drive_of(transmission).stroke_is_fixed ? tan_law_stroke_max_deg : direct_stroke_max_deg;
 }
 
 double stroke_excess(const Vehicle<double>& vehicle) {
@@ -179,7 +182,7 @@ std::string describe_domain(const Vehicle<double>& v, const Metrics<double>& m) 
         format("the angle of attack falls to %.4g deg (the coefficients hold from %.4g to %.4g deg)",
                m[Metric::angle_of_attack_min], range.low, range.high));
   }
-  if (v.transmission == TransmissionType::direct) {
+  if (!drive_of(v).stroke_is_fixed) {
     say(DomainLimit::stroke, format("the stroke amplitude is %.4g deg (at most %.4g deg)",
                                     degrees_per_radian * m[Metric::stroke_amplitude], direct_stroke_max_deg));
   } else {
@@ -200,7 +203,7 @@ std::string describe_domain(const Vehicle<double>& v, const Metrics<double>& m) 
 }
 
 std::string residual_warning(const Vehicle<double>& v, const Metrics<double>& m) {
-  if (v.transmission == TransmissionType::direct || v.crank.formulation != Formulation::rod_force) return {};
+  if (!drive_of(v).has_rod || v.crank.formulation != Formulation::rod_force) return {};
   const double share = std::abs(m[Metric::power_residual] / m[Metric::power_electrical]);
   if (!(share > formulation_residual_warn) || !(m[Metric::power_electrical] > 0.0)) return {};
   return format("the formulation rod-force fails to conserve %.3g %% of the input power; virtual-work conserves it",

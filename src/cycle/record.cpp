@@ -22,7 +22,6 @@ WaveformRow row_inside(const Recorded& recorded, const solver::Step<decltype(Rec
 
 WaveformRow waveform_row(const Vehicle<double>& v, const Motion<double>& m, double time, double shaft_angle,
                          double shaft_speed, double stroke_angle) {
-  const double speed = std::abs(m.stroke_velocity);
   const double spring_moment = v.wing_count * spring_loads(v.spring, stroke_angle).moment;
   WaveformRow row;
   row.time = time;
@@ -31,17 +30,17 @@ WaveformRow waveform_row(const Vehicle<double>& v, const Motion<double>& m, doub
   row.current = m.current;
   row.stroke_angle = stroke_angle;
   row.flapping_velocity = m.stroke_velocity;
-  row.angle_of_attack_deg = degrees_per_radian * angle_of_attack(v.wings, speed);
-  row.lift = lift_force(v.wings, speed);
-  row.aero_moment = m.aero_moment;
-  row.rod_force = v.transmission == TransmissionType::direct ? absent : m.rod_force;
+  row.angle_of_attack_deg = degrees_per_radian * m.aero.angle_of_attack;
+  row.lift = m.aero.lift;
+  row.aero_moment = m.aero.moment;
+  row.rod_force = drive_of(v).has_rod ? m.rod_force : absent;
   row.motor_torque = m.motor_torque;
   row.friction_torque = m.friction_torque;
   row.voltage = m.voltage;
   row.power_electrical = m.voltage * m.current;
   row.power_motor = m.motor_torque * shaft_speed;
   row.power_friction = m.friction_torque * shaft_speed;
-  row.power_aerodynamic = m.aero_moment * m.stroke_velocity;
+  row.power_aerodynamic = m.aero.power;
   row.spring_moment = spring_moment;
   row.inertial_moment = v.wing_count * v.wing_inertia * m.stroke_acceleration;
   return row;
@@ -52,15 +51,7 @@ bool CycleRecord::empty() const {
 }
 
 CycleIntegrals<double> CycleRecord::integrals() const {
-  return std::visit(
-      [](const auto& recorded) {
-        CycleIntegrals<double> sum{};
-        for (const auto& step : recorded.lap.steps) {
-          for (std::size_t q = 0; q < sum.size(); ++q) sum[q] += step.dq[q];
-        }
-        return sum;
-      },
-      laps_);
+  return std::visit([](const auto& recorded) { return lap_integrals(recorded.lap); }, laps_);
 }
 
 double CycleRecord::period() const { return integrals()[std::size_t(Integral::time)]; }

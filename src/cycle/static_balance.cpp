@@ -86,7 +86,7 @@ StaticBalance static_balance(const Vehicle<double>& v) {
   s.breakaway_torque = breakaway_torque(v);
   s.has_wings = v.wing_inertia > 0.0;
   s.inertia_least = v.motor.inertia;
-  s.lever_least = v.crank.hinge_offset;
+  s.lever_least = typical_lever(v.crank);
   s.advance_least = s.stall_torque - s.breakaway_torque;
   if (!s.has_wings) return s;
 
@@ -102,7 +102,7 @@ StaticBalance static_balance(const Vehicle<double>& v) {
   std::tie(s.inertia_angle, s.inertia_least) = least_on_circle(
       [&](double angle) { return least_inertia(v, kinematics_at(v, angle)); }, inertia, 0.3 * v.motor.inertia);
   std::tie(s.lever_angle, s.lever_least) = least_on_circle(
-      [&](double angle) { return kinematics_at(v, angle).wing_lever; }, lever, 0.1 * v.crank.hinge_offset);
+      [&](double angle) { return kinematics_at(v, angle).wing_lever; }, lever, 0.1 * typical_lever(v.crank));
   if (springs) {
     std::tie(s.advance_angle, s.advance_least) =
         least_on_circle([&](double angle) { return advance_torque(v, angle); }, advance, 0.2 * s.stall_torque);
@@ -157,12 +157,12 @@ BalancedSpeed<double> balanced_speed(const Vehicle<double>& v) {
   const UnitCircle& circle = unit_circle();
   constexpr std::size_t stride = 4, count = angle_count / stride;
   std::array<LoadPlace<double>, count> places;
-  if (!(v.wing_inertia > 0.0)) return balanced_speed<double>(v, {});
+  if (!(v.wing_inertia > 0.0)) return balanced_speed(v, {});
   for (std::size_t n = 0; n < count; ++n) {
     const CrankKinematics<double> k = crank_kinematics(v.crank, circle.sine[stride * n], circle.cosine[stride * n]);
     places[n] = load_place(v, k, spring_moment(v, k));
   }
-  return balanced_speed<double>(v, places);
+  return balanced_speed(v, places);
 }
 
 }  // namespace wingbeat

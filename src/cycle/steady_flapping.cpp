@@ -176,7 +176,7 @@ void detail::fill_simulated(const StartUpOutcome& outcome, const SteadyOptions& 
 
 SteadyFlapping find_steady_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                     const StartUp& start_up) {
-  if (vehicle.transmission == TransmissionType::direct) return detail::find_direct_flapping(vehicle, options, start_up);
+  if (!drive_of(vehicle).rotates) return detail::find_direct_flapping(vehicle, options, start_up);
   return vehicle.motor.armature_inductance > 0.0 ? search<2>(vehicle, options, start_up)
                                                  : search<1>(vehicle, options, start_up);
 }

@@ -11,7 +11,7 @@ RunResult solve(const Design<double>& design, const RunOptions& options) {
 TransientResult simulate(const Design<double>& design, TransientOptions options, Condition condition) {
   validate(design);
   options.reporting = reporting_of(design);
-  if (design.transmission.type != TransmissionType::direct && !options.supply) options.supply = design.supply;
+  if (!drive_of(design).alternating && !options.supply) options.supply = design.supply;
   return simulate_start_up(resolve(design, condition), options);
 }
 

@@ -29,7 +29,7 @@ Pose pose_of(const SliderCrank<double>& c, double theta) {
   const double beta = stroke_angle(k), mm = 1e3;
   Pose p;
   p.pin = {mm * c.crank_radius * std::cos(theta), mm * c.crank_radius * std::sin(theta)};
-  p.slider = {0.0, mm * k.slider_height};
+  p.slider = {0.0, mm * slider_height(c, std::sin(theta), std::cos(theta))};
   for (std::size_t side = 0; side < 2; ++side) {
     const double sign = side == 0 ? 1.0 : -1.0, H = mm * c.hinge_offset;
     p.hinge[side] = {sign * H, mm * c.mid_stroke_height};
@@ -264,7 +264,7 @@ std::vector<Sheet> mechanism_sheets(const Material& m) {
       const double theta = two_pi * n / 72;
       const auto k = crank_kinematics(crank, std::sin(theta), std::cos(theta));
       angle.push_back(theta);
-      height.push_back(k.slider_height);
+      height.push_back(slider_height(crank, std::sin(theta), std::cos(theta)));
       stroke.push_back(stroke_angle(k));
       wing_lever.push_back(k.wing_lever);
       crank_lever.push_back(k.crank_lever);

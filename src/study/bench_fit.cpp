@@ -58,7 +58,7 @@ void check_fit(const BenchFit& fit) {
       throw ParameterError(p.parameter.key, "another free parameter takes its place in the vehicle");
     }
   }
-  if (fit.design.supply.type != SupplyType::constant && fit.design.transmission.type != TransmissionType::direct) {
+  if (fit.design.supply.type != SupplyType::constant && !drive_of(fit.design).alternating) {
     throw ParameterError("supply.type", "bench data are fitted with a constant supply");
   }
   for (const BenchLog& log : fit.logs) {

@@ -143,7 +143,7 @@ void BenchModel::evaluate_point(std::size_t n, Design<double> design) {
 
 SteadyFlapping BenchModel::orbit_at_frequency(std::size_t n, Vehicle<double>& vehicle, const Reporting& reporting) {
   const double wanted = points_[n].value;
-  if (vehicle.transmission == TransmissionType::direct) {
+  if (!drive_of(vehicle).voltage_sets_frequency) {
     vehicle.drive_frequency = wanted;
     return orbit(vehicle, vehicle.voltage, reporting);
   }

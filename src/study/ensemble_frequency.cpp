@@ -93,7 +93,7 @@ void solve_ensemble_at_frequency(std::span<EnsembleMember> members, std::span<co
   std::vector<std::size_t> settled, left;
   for (std::size_t n = 0; n < members.size(); ++n) {
     Vehicle<double>& vehicle = members[n].vehicle;
-    if (vehicle.transmission == TransmissionType::direct) {
+    if (!drive_of(vehicle).voltage_sets_frequency) {
       vehicle.drive_frequency = frequencies[n];
       settled.push_back(n);
     } else if (frequencies[n] > highest_frequency(vehicle, SearchRange::extrapolation)) {

@@ -177,13 +177,11 @@ class Search {
 double highest_frequency(const Vehicle<double>& v, SearchRange range) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const BladeElement<double>& w = v.wings;
-  if (v.transmission == TransmissionType::direct || !(w.air_density > 0.0) || !(w.s2 > 0.0 || w.s3 > 0.0))
-    return infinity;
+  if (!drive_of(v).stroke_is_fixed || !(w.air_density > 0.0) || !(w.s2 > 0.0 || w.s3 > 0.0)) return infinity;
   const bool domain = range == SearchRange::domain;
   double velocity = infinity;  // peak of |beta'| that the range allows
   const double angle = (domain ? angle_of_attack_lowest_deg : extrapolation_angle_deg) / degrees_per_radian;
-  if (w.pitch_coefficient > 0.0 && !(w.angle_of_attack_min >= angle))
-    velocity = (0.5 * pi - angle) / w.pitch_coefficient;
+  if (w.pitch_coefficient > 0.0 && !(w.angle_of_attack_min >= angle)) velocity = stroke_speed_at(w, angle);
   if (w.s2 > 0.0 && w.s3 > 0.0) {
     velocity = std::min(velocity, (domain ? flow_speed_max : extrapolation_flow_speed) * w.s2 / w.s3);
   }

@@ -60,7 +60,7 @@ class LiftTrace {
   /// About the lowest voltage that could do: it turns the unloaded motor fast enough for wings at the best angle.
   double first_voltage() const {
     const Vehicle<double>& v = trials_.vehicle();
-    if (v.transmission == TransmissionType::direct) return 0.2 * where_.nominal;
+    if (!drive_of(v).rotates) return 0.2 * where_.nominal;
     double most = 0.0;
     if (const auto& table = v.wings.coefficients.table) {
       for (const double c : table->lift()) most = std::max(most, std::abs(c));

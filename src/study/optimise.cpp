@@ -112,8 +112,7 @@ class Problem {
       const std::size_t limit = std::size_t(c - own);
       e.constraints[c] = e.point.domain_excess[limit] + domain_margin;
       if (!gradients) continue;
-      const bool by_geometry =
-          limit == std::size_t(DomainLimit::stroke) && study_.design.transmission.type != TransmissionType::direct;
+      const bool by_geometry = limit == std::size_t(DomainLimit::stroke) && drive_of(study_.design).stroke_is_fixed;
       for (Eigen::Index k = 0; k < size(); ++k) {
         e.jacobian(c, k) =
             by_geometry ? stroke_slope(u, k) : e.point.domain_slopes[std::size_t(k)][limit] * slope(k, u[k]);
@@ -574,10 +573,7 @@ std::string name_of(const MetricConstraint& c) {
 std::string bound_of(DomainLimit limit, TransmissionType transmission) {
   switch (limit) {
     case DomainLimit::angle_of_attack: return "angle_of_attack >= 0 deg";
-    case DomainLimit::stroke:
-      return "stroke <= " +
-             short_number(transmission == TransmissionType::direct ? direct_stroke_max_deg : tan_law_stroke_max_deg) +
-             " deg";
+    case DomainLimit::stroke: return "stroke <= " + short_number(stroke_max_deg(transmission)) + " deg";
     case DomainLimit::formulation_residual:
       return "formulation_residual <= " + short_number(100.0 * formulation_residual_max) + " %";
     case DomainLimit::mechanism_efficiency: return "mechanism_efficiency <= 1";

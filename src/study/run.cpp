@@ -16,9 +16,10 @@ using detail::format;
 Motion<double> motion_of(const Vehicle<double>& vehicle, double crank_angle, double omega, double i, double v) {
   const double v_t = terminal_voltage(vehicle, v, i);
   const double s = std::sin(crank_angle), c = std::cos(crank_angle);
-  Branch<double> branch{c * omega >= 0.0 ? 1.0 : -1.0, 1.0, omega >= 0.0 ? 1.0 : -1.0, 1.0};
+  const double stroke_velocity = crank_kinematics(vehicle.crank, s, c).stroke_slope * omega;
+  Branch<double> branch{sign_of(stroke_velocity), 1.0, sign_of(omega), 1.0};
   Motion<double> m = motion_at(vehicle, s, c, omega, i, v_t, branch);
-  branch.pitching = sign_of(pitch_margin(vehicle.wings, std::abs(m.stroke_velocity)));
+  branch.pitching = sign_of(m.aero.pitch_margin);
   if (branch.pitching < 0.0) m = motion_at(vehicle, s, c, omega, i, v_t, branch);
   if (m.force_switch >= 0.0) return m;
   branch.force = -1.0;
@@ -140,7 +141,7 @@ void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunRes
     TransientOptions transient;
     transient.tolerance = std::max(options.tolerance, transient_tightest);
     transient.cycle_rows = options.waveform_rows;
-    if (vehicle.transmission == TransmissionType::direct) {
+    if (!drive_of(vehicle).rotates) {
       result.cycle = simulate_start_up(vehicle, transient).cycle;
     } else {
       last_lap(vehicle, {SupplyType::constant, vehicle.voltage, 0.0, 1.0, {}}, transient, options.waveform_rows,
@@ -153,9 +154,9 @@ void run_transient(const Vehicle<double>& vehicle, const RunOptions& options, Ru
   TransientOptions transient;
   transient.tolerance = std::max(options.tolerance, transient_tightest);
   transient.reporting = reporting_of(result.design);
-  const bool direct = vehicle.transmission == TransmissionType::direct;
-  if (!direct) transient.supply = result.design.supply;
-  transient.cycle_rows = direct && options.waveform_rows > 1 ? options.waveform_rows : 0;
+  const Drive drive = drive_of(vehicle);
+  if (!drive.alternating) transient.supply = result.design.supply;
+  transient.cycle_rows = !drive.rotates && options.waveform_rows > 1 ? options.waveform_rows : 0;
   result.start_up = simulate_start_up(vehicle, transient);
   const TransientResult& found = *result.start_up;
   result.status = found.status;
@@ -163,7 +164,7 @@ void run_transient(const Vehicle<double>& vehicle, const RunOptions& options, Ru
   result.settled = found.settled;
   if (found.metrics && found.status == FlappingStatus::flapping) {
     result.metrics = *found.metrics;
-    if (direct) {
+    if (!drive.rotates) {
       result.cycle = found.cycle;
     } else if (options.waveform_rows > 1) {
       last_lap(vehicle, result.design.supply, transient, options.waveform_rows, result);
@@ -209,16 +210,16 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
   require(options.tolerance >= 1e-12 && options.tolerance <= 1e-2, "tolerance", "must lie between 1e-12 and 1e-2", "1",
           options.tolerance);
   const Supply<double>& supply = design.supply;
-  const bool direct = design.transmission.type == TransmissionType::direct;
+  const Drive drive = drive_of(design);
   require(!(options.frequency && options.lift), "lift", "cannot be asked for beside a frequency", "N",
           options.lift.value_or(0.0));
   if (options.frequency) {
     require(*options.frequency > 0.0 && std::isfinite(*options.frequency), "frequency", "must be > 0 and finite", "Hz",
             *options.frequency);
   }
-  if (options.frequency && !direct) require_choice_of_voltage(supply, "flapping frequency", false);
-  if (options.lift && !direct) require_choice_of_voltage(supply, "lift", true);
-  if (supply.type == SupplyType::sine && !direct && options.method == Method::orbit) {
+  if (options.frequency && drive.voltage_sets_frequency) require_choice_of_voltage(supply, "flapping frequency", false);
+  if (options.lift && !drive.alternating) require_choice_of_voltage(supply, "lift", true);
+  if (supply.type == SupplyType::sine && !drive.alternating && options.method == Method::orbit) {
     throw ParameterError("supply.type",
                          "with a sine supply the crank has no periodic orbit in crank angle; simulate "
                          "it in time with --method transient");

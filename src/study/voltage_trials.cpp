@@ -38,10 +38,10 @@ VoltageTrial VoltageTrials::at(double voltage) {
   // A cycle that was simulated in time has no record to be differentiated.
   if (slopes_ && !found.record.empty()) {
     GradientVehicle seeded{vehicle_.cast<GradientJet>()};
-    const bool direct = vehicle_.transmission == TransmissionType::direct;
-    if (direct) seeded.vehicle.voltage = gradient_seed(voltage, 0);
+    const bool has_slot = drive_of(vehicle_).voltage_sets_frequency;  // of its own, for the voltage
+    if (!has_slot) seeded.vehicle.voltage = gradient_seed(voltage, 0);
     const OrbitGradient g = orbit_gradient(found, seeded, {.peaks = false});
-    const int slot = direct ? gradient_first_slot : gradient_voltage_slot;
+    const int slot = has_slot ? gradient_voltage_slot : gradient_first_slot;
     const double f_slope = g.metrics[Metric::frequency].v[slot], lift_slope = g.metrics[Metric::lift_mean].v[slot];
     trial.exact = g.regular && std::isfinite(f_slope) && std::isfinite(lift_slope);
     if (trial.exact) {

@@ -180,7 +180,7 @@ bool DirectStartUp::rates(double t, const double* y, double* dy, bool measuring)
   dy[1] = m.crank_acceleration;
   if (inductive_) dy[2] = m.voltage_reserve / vehicle_.motor.armature_inductance;
   if (measuring) {
-    const CycleIntegrals<double> all = integrands(vehicle_, m, m.stroke_velocity, branch_at(y));
+    const CycleIntegrals<double> all = integrands(m, m.stroke_velocity, branch_at(y));
     for (int k = 0; k < quadrature_count; ++k) dy[coupled_ + k] = all[std::size_t(quadratures[k])];
   }
   return std::isfinite(dy[1]) && std::isfinite(y[coupled_ - 1]);
@@ -306,7 +306,7 @@ void DirectStartUp::step_taken(Cvode& cvode, double from) {
         [&](double t) {
           const double* y = cvode.dense(t);
           const Motion<double> m = motion(t, y);
-          return extreme_candidates(vehicle_, m, m.stroke_velocity, branch_at(y), y[0]);
+          return extreme_candidates(m, m.stroke_velocity, branch_at(y), y[0]);
         },
         from, t_, extremes_);
     const int last = options_.cycle_rows - 1;

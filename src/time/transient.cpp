@@ -221,7 +221,7 @@ bool StartUp::rates(double t, const double* y, double* dy, bool quadrature) cons
   dy[1] = m.crank_acceleration;
   if (inductive_) dy[2] = m.voltage_reserve / vehicle_.motor.armature_inductance;
   if (quadrature) {
-    const CycleIntegrals<double> all = integrands(vehicle_, m, y[1], branch);
+    const CycleIntegrals<double> all = integrands(m, y[1], branch);
     for (int k = 0; k < quadrature_count; ++k) dy[coupled_ + k] = all[std::size_t(quadratures[k])];
   }
   return std::isfinite(dy[1]) && std::isfinite(y[coupled_ - 1]);
@@ -798,7 +798,7 @@ void StartUp::track_extremes(detail::Cvode& cvode, double from) {
         const double* y = cvode.dense(t);
         Branch<double> branch;
         const Motion<double> m = motion(t, y, &branch);
-        return extreme_candidates(vehicle_, m, y[1], branch);
+        return extreme_candidates(m, y[1], branch);
       },
       from, t_, extremes_);
 }

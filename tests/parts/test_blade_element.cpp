@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "parts/expect_error.hpp"
+#include "wingbeat/core/jet.hpp"
 #include "wingbeat/parts/blade_element.hpp"
 
 namespace wingbeat {
@@ -30,8 +31,8 @@ TEST(BladeElement, CoefficientsHaveThePublishedNumbers) {
 
 TEST(BladeElement, AngleOfAttackFallsWithTheStrokeSpeed) {
   const auto w = reference();
-  EXPECT_DOUBLE_EQ(degrees_per_radian * angle_of_attack(w, 0.0), 90.0);
-  EXPECT_NEAR(degrees_per_radian * angle_of_attack(w, 100.0), 90.0 - 0.5 * 180.0 / pi, 1e-13);
+  EXPECT_DOUBLE_EQ(degrees_per_radian * aero_loads(w, 0.0).angle_of_attack, 90.0);
+  EXPECT_NEAR(degrees_per_radian * aero_loads(w, 100.0).angle_of_attack, 90.0 - 0.5 * 180.0 / pi, 1e-13);
 }
 
 TEST(BladeElement, ForcesFollowTheirDefinition) {
@@ -39,28 +40,118 @@ TEST(BladeElement, ForcesFollowTheirDefinition) {
   const double speed = 120.0, alpha = radians(90.0 - 0.6 * 180.0 / pi);
   const double C_L = 0.225 + 1.58 * std::sin(2.13 * alpha - radians(7.2));
   const double C_D = 1.92 - 1.55 * std::cos(2.04 * alpha - radians(9.82));
-  EXPECT_NEAR(lift_force(w, speed), 0.5 * 1.225 * C_L * speed * speed * 2.457e-6, 1e-16);
-  EXPECT_NEAR(drag_moment(w, speed), 0.5 * 1.225 * C_D * speed * speed * 1.048e-7, 1e-18);
+  EXPECT_NEAR(aero_loads(w, speed).lift, 0.5 * 1.225 * C_L * speed * speed * 2.457e-6, 1e-16);
+  EXPECT_NEAR(aero_loads(w, speed).moment, 0.5 * 1.225 * C_D * speed * speed * 1.048e-7, 1e-18);
 }
 
 TEST(BladeElement, DragMomentNeverDrives) {
   const auto w = reference();
-  for (double speed = 0.0; speed < 500.0; speed += 5.0) EXPECT_GE(drag_moment(w, speed), 0.0);
+  for (double speed = 0.0; speed < 500.0; speed += 5.0) EXPECT_GE(aero_loads(w, speed).moment, 0.0);
 }
 
 TEST(BladeElement, NoForceWithoutMotionOrAir) {
   auto w = reference();
-  EXPECT_EQ(lift_force(w, 0.0), 0.0);
-  EXPECT_EQ(drag_moment(w, 0.0), 0.0);
+  EXPECT_EQ(aero_loads(w, 0.0).lift, 0.0);
+  EXPECT_EQ(aero_loads(w, 0.0).moment, 0.0);
   w.air_density = 0.0;
-  EXPECT_EQ(lift_force(w, 120.0), 0.0);
-  EXPECT_EQ(drag_moment(w, 120.0), 0.0);
+  EXPECT_EQ(aero_loads(w, 120.0).lift, 0.0);
+  EXPECT_EQ(aero_loads(w, 120.0).moment, 0.0);
 }
 
 TEST(BladeElement, SlowStrokeMeetsTheBroadsideWing) {
   const auto w = reference();
   const double speed = 1e-6;
-  EXPECT_NEAR(drag_moment(w, speed) / (0.5 * 1.225 * speed * speed * 1.048e-7), 3.46087546700445, 1e-7);
+  EXPECT_NEAR(aero_loads(w, speed).moment / (0.5 * 1.225 * speed * speed * 1.048e-7), 3.46087546700445, 1e-7);
+}
+
+BladeElement<double> with_pitch_stop() {
+  auto w = reference();
+  w.angle_of_attack_min = radians(40.0);
+  return w;
+}
+
+TEST(AeroLoads, PowerIsMomentTimesVelocityAndNeverDrives) {
+  for (const auto& w : {reference(), with_pitch_stop()}) {
+    for (double velocity = -400.0; velocity <= 400.0; velocity += 12.5) {
+      const double stroke = sign_of(velocity);
+      const auto loads = aero_loads(w, velocity, stroke, sign_of(pitch_margin(w, std::abs(velocity))));
+      EXPECT_EQ(loads.power, loads.moment * velocity);
+      EXPECT_GE(loads.power, 0.0);
+    }
+  }
+}
+
+TEST(AeroLoads, BothStrokesAreEachOthersMirrorImage) {
+  const auto w = reference();
+  for (double speed = 0.0; speed < 400.0; speed += 12.5) {
+    const auto forth = aero_loads(w, speed, 1.0, 1.0), back = aero_loads(w, -speed, -1.0, 1.0);
+    EXPECT_EQ(forth.angle_of_attack, back.angle_of_attack);
+    EXPECT_EQ(forth.lift, back.lift);
+    EXPECT_EQ(forth.moment, -back.moment);
+    EXPECT_EQ(forth.power, back.power);
+  }
+}
+
+TEST(AeroLoads, BranchesOfThePitchingMeetAtTheStop) {
+  const auto w = with_pitch_stop();
+  const double at_stop = stroke_speed_at(w, w.angle_of_attack_min);
+  EXPECT_NEAR(at_stop, radians(50.0) / 5e-3, 1e-12);
+  const auto free = aero_loads(w, at_stop, 1.0, 1.0), stopped = aero_loads(w, at_stop, 1.0, -1.0);
+  EXPECT_NEAR(free.pitch_margin, 0.0, 1e-15);
+  EXPECT_EQ(stopped.angle_of_attack, w.angle_of_attack_min);
+  EXPECT_NEAR(free.angle_of_attack, stopped.angle_of_attack, 1e-15);
+  EXPECT_NEAR(free.lift, stopped.lift, 1e-14 * free.lift);
+  EXPECT_NEAR(free.moment, stopped.moment, 1e-14 * free.moment);
+  // Whichever branch is asked for, the margin says which one holds.
+  for (const double speed : {0.5 * at_stop, 1.5 * at_stop}) {
+    const auto loads = aero_loads(w, speed);
+    EXPECT_EQ(loads.pitch_margin > 0.0, speed < at_stop);
+    EXPECT_EQ(loads.pitch_margin, aero_loads(w, speed, 1.0, -1.0).pitch_margin);
+    EXPECT_EQ(loads.angle_of_attack, std::max(pi / 2.0 - 5e-3 * speed, w.angle_of_attack_min));
+  }
+  EXPECT_EQ(aero_loads(reference(), 300.0).pitch_margin, 1.0);
+}
+
+TEST(AeroLoads, DualNumbersAgreeWithDifferences) {
+  using J = Jet<1>;
+  for (const auto& w : {reference(), with_pitch_stop()}) {
+    for (const double pitching : {1.0, -1.0}) {
+      for (const double velocity : {-310.0, -90.0, -1.0, 1.0, 90.0, 310.0}) {
+        const double stroke = sign_of(velocity), h = 1e-3 * std::abs(velocity);
+        const auto at = [&](double x) { return aero_loads(w, x, stroke, pitching); };
+        const auto dual = aero_loads(w.cast<J>(), J(velocity, 0), J(stroke), J(pitching));
+        const auto p1 = at(velocity + h), m1 = at(velocity - h), p2 = at(velocity + 2.0 * h);
+        const auto m2 = at(velocity - 2.0 * h), here = at(velocity);
+        for (double AeroLoads<double>::* load :
+             {&AeroLoads<double>::angle_of_attack, &AeroLoads<double>::lift, &AeroLoads<double>::moment,
+              &AeroLoads<double>::power, &AeroLoads<double>::pitch_margin}) {
+          if (!(pitching > 0.0) && !has_pitch_stop(w)) continue;  // no such branch
+          J AeroLoads<J>::* of_jets = load == &AeroLoads<double>::angle_of_attack ? &AeroLoads<J>::angle_of_attack
+                                      : load == &AeroLoads<double>::lift          ? &AeroLoads<J>::lift
+                                      : load == &AeroLoads<double>::moment        ? &AeroLoads<J>::moment
+                                      : load == &AeroLoads<double>::power         ? &AeroLoads<J>::power
+                                                                                  : &AeroLoads<J>::pitch_margin;
+          EXPECT_EQ((dual.*of_jets).a, here.*load);
+          const double difference = (8.0 * (p1.*load - m1.*load) - (p2.*load - m2.*load)) / (12.0 * h);
+          EXPECT_NEAR((dual.*of_jets).v[0], difference,
+                      1e-8 * (std::abs((dual.*of_jets).v[0]) + std::abs(here.*load / velocity)));
+        }
+      }
+    }
+  }
+}
+
+TEST(AeroLoads, HaveDerivativesAtTheReversal) {
+  using J = Jet<1>;
+  const auto w = reference().cast<J>();
+  for (const double stroke : {1.0, -1.0}) {
+    const auto loads = aero_loads(w, J(0.0, 0), J(stroke), J(1.0));
+    // Forces grow with the square of the speed; the angle falls at the rate C_alpha on either side.
+    EXPECT_EQ(loads.lift.v[0], 0.0);
+    EXPECT_EQ(loads.moment.v[0], 0.0);
+    EXPECT_EQ(loads.power.v[0], 0.0);
+    EXPECT_EQ(loads.angle_of_attack.v[0], -stroke * 5e-3);
+  }
 }
 
 ForceCoefficients<double> tabulated(std::vector<double> alpha, std::vector<double> lift, std::vector<double> drag) {
@@ -138,8 +229,8 @@ TEST(CoefficientTable, SplineConvergesAtOrderFour) {
 TEST(CoefficientTable, ReplacesTheWavesInTheForces) {
   auto w = reference();
   w.coefficients = tabulated({0.0, 1.0, 2.0}, {1.5, 1.5, 1.5}, {2.5, 2.5, 2.5});
-  EXPECT_NEAR(lift_force(w, 50.0), 0.5 * 1.225 * 1.5 * 2500.0 * 2.457e-6, 1e-16);
-  EXPECT_NEAR(drag_moment(w, 50.0), 0.5 * 1.225 * 2.5 * 2500.0 * 1.048e-7, 1e-17);
+  EXPECT_NEAR(aero_loads(w, 50.0).lift, 0.5 * 1.225 * 1.5 * 2500.0 * 2.457e-6, 1e-16);
+  EXPECT_NEAR(aero_loads(w, 50.0).moment, 0.5 * 1.225 * 2.5 * 2500.0 * 1.048e-7, 1e-17);
 }
 
 TEST(CoefficientTable, RefusesTablesThatAreNoFunction) {

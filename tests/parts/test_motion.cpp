@@ -70,9 +70,9 @@ TEST(Motion, SatisfiesTheEquationsOnBothBranches) {
       const double alpha = pi / 2.0 - v.wings.pitch_coefficient * std::abs(beta1);
       const double C_D = 1.92 - 1.55 * std::cos(2.04 * alpha - 9.82 * pi / 180.0);
       const double aero = 0.5 * v.wings.air_density * C_D * beta1 * std::abs(beta1) * v.wings.s3;
-      EXPECT_NEAR(m.aero_moment, aero, 1e-13 * std::abs(aero));
+      EXPECT_NEAR(m.aero.moment, aero, 1e-13 * std::abs(aero));
       // (1, 21)
-      expect_balance({v.wing_count * v.wing_inertia * m.stroke_acceleration, m.aero_moment,
+      expect_balance({v.wing_count * v.wing_inertia * m.stroke_acceleration, m.aero.moment,
                       v.wing_count * v.spring.stiffness * stroke_angle(k), -m.rod_force * k.wing_lever});
       // (6) and the other laws, |F| being force_sign F on this branch
       const double T_f = direction * v.friction.radius * force_sign * m.rod_force + v.friction.damping * omega +
@@ -151,9 +151,9 @@ TEST(Motion, PowerBalancesAtEveryInstant) {
     const auto& k = m.kinematics;
     const double formulation = m.rod_force * (k.crank_lever * omega - k.wing_lever * m.stroke_velocity);
     expect_balance({voltage * i, -v.motor.armature_resistance * i * i, -v.motor.viscous_damping * omega * omega,
-                    -m.friction_torque * omega, -m.aero_moment * m.stroke_velocity, -stored, -formulation});
+                    -m.friction_torque * omega, -m.aero.moment * m.stroke_velocity, -stored, -formulation});
     EXPECT_GE(m.friction_torque * omega, 0.0);
-    EXPECT_GE(m.aero_moment * m.stroke_velocity, 0.0);
+    EXPECT_GE(m.aero.moment * m.stroke_velocity, 0.0);
     if (v.crank.formulation == Formulation::virtual_work) {
       EXPECT_LE(std::abs(formulation), 1e-14 * std::abs(m.rod_force * k.crank_lever * omega));
     }
@@ -169,7 +169,7 @@ TEST(Motion, IntegrandsAreTheirDefinitions) {
     const Motion<double> m = at.on(sign_of(at.on(1.0).force_switch));
     Branch<double> branch = at.branch(sign_of(m.force_switch));
     branch.stored_power = sign_of(m.stored_moment * m.stroke_velocity);
-    const auto q = integrands(v, m, at.omega, branch);
+    const auto q = integrands(m, at.omega, branch);
     const auto value = [&](Integral which) { return q[std::size_t(which)]; };
     EXPECT_EQ(value(Integral::time), 1.0);
     EXPECT_DOUBLE_EQ(value(Integral::current), at.current);
@@ -178,9 +178,9 @@ TEST(Motion, IntegrandsAreTheirDefinitions) {
     EXPECT_DOUBLE_EQ(value(Integral::electrical_work), at.voltage * at.current);
     EXPECT_DOUBLE_EQ(value(Integral::motor_work), m.motor_torque * at.omega);
     EXPECT_DOUBLE_EQ(value(Integral::friction_work), m.friction_torque * at.omega);
-    EXPECT_DOUBLE_EQ(value(Integral::aero_work), m.aero_moment * m.stroke_velocity);
+    EXPECT_DOUBLE_EQ(value(Integral::aero_work), m.aero.moment * m.stroke_velocity);
     EXPECT_DOUBLE_EQ(value(Integral::reactive_work), std::abs(m.stored_moment * m.stroke_velocity));
-    EXPECT_DOUBLE_EQ(value(Integral::lift), lift_force(v.wings, std::abs(m.stroke_velocity)));
+    EXPECT_DOUBLE_EQ(value(Integral::lift), aero_loads(v.wings, std::abs(m.stroke_velocity)).lift);
     EXPECT_DOUBLE_EQ(value(Integral::rod_force), std::abs(m.rod_force));
   });
 }
@@ -194,7 +194,7 @@ TEST(Motion, WinglessVehicleHasNoRodForceAndSettlesAtTheNoLoadSpeed) {
   for (double theta = 0.0; theta < two_pi; theta += 0.37) {
     const Motion<double> m = motion_at(v, std::sin(theta), std::cos(theta), omega, i, v.voltage, {1.0, 1.0, 1.0, 1.0});
     EXPECT_EQ(m.rod_force, 0.0);
-    EXPECT_EQ(m.aero_moment, 0.0);
+    EXPECT_EQ(m.aero.moment, 0.0);
     EXPECT_NEAR(m.crank_acceleration, 0.0, 1e-9);
     EXPECT_NEAR(m.voltage_reserve, 0.0, 3e-14);
   }
@@ -207,7 +207,7 @@ TEST(Motion, VacuumKeepsWingsAndSprings) {
   EXPECT_EQ(vacuum.wing_inertia, air.wing_inertia);
   EXPECT_EQ(vacuum.spring.stiffness, air.spring.stiffness);
   const Motion<double> m = motion_at(vacuum, 0.6, 0.8, 150.0, 0.1, 3.0, {1.0, 1.0, 1.0, 1.0});
-  EXPECT_EQ(m.aero_moment, 0.0);
+  EXPECT_EQ(m.aero.moment, 0.0);
   EXPECT_NE(m.rod_force, 0.0);
 }
 

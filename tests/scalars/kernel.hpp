@@ -14,7 +14,8 @@ struct Point {
   S sin_theta, cos_theta, omega, current, voltage, force, stored;
 };
 
-inline constexpr int instant_size = 21 + integral_count + extreme_count;
+inline constexpr int motion_size = 23;
+inline constexpr int instant_size = motion_size + integral_count + extreme_count;
 
 /// Motion, energies, integrands and extremes at one instant.
 template <Scalar S>
@@ -22,7 +23,7 @@ std::array<S, instant_size> instant(const Vehicle<S>& v, const Point<S>& p) {
   const CrankKinematics<S> k = crank_kinematics(v.crank, p.sin_theta, p.cos_theta);
   const Branch<S> branch{sign_of<S>(k.stroke_slope * p.omega), p.force, sign_of(p.omega), p.stored};
   const Motion<S> m = motion_at(v, p.sin_theta, p.cos_theta, p.omega, p.current, p.voltage, branch);
-  std::array<S, instant_size> out = {k.slider_height,
+  std::array<S, instant_size> out = {slider_height(v.crank, p.sin_theta, p.cos_theta),
                                      stroke_angle(k),
                                      k.stroke_slope,
                                      k.stroke_curve,
@@ -34,7 +35,7 @@ std::array<S, instant_size> instant(const Vehicle<S>& v, const Point<S>& p) {
                                      m.force_switch,
                                      m.stroke_velocity,
                                      m.stroke_acceleration,
-                                     m.aero_moment,
+                                     m.aero.moment,
                                      m.friction_torque,
                                      m.motor_torque,
                                      m.stored_moment,
@@ -42,18 +43,20 @@ std::array<S, instant_size> instant(const Vehicle<S>& v, const Point<S>& p) {
                                      effective_inertia(v, k, p.force),
                                      stroke_amplitude(v.crank),
                                      no_load_speed(v),
-                                     algebraic_current(v, p.voltage, p.omega)};
-  const CycleIntegrals<S> q = integrands(v, m, p.omega, branch);
-  const CycleExtremes<S> e = extreme_candidates(v, m, p.omega, branch);
-  for (std::size_t n = 0; n < q.size(); ++n) out[21 + n] = q[n];
-  for (std::size_t n = 0; n < e.size(); ++n) out[21 + q.size() + n] = e[n];
+                                     algebraic_current(v, p.voltage, p.omega),
+                                     m.aero.angle_of_attack,
+                                     m.aero.power};
+  const CycleIntegrals<S> q = integrands(m, p.omega, branch);
+  const CycleExtremes<S> e = extreme_candidates(m, p.omega, branch);
+  for (std::size_t n = 0; n < q.size(); ++n) out[motion_size + n] = q[n];
+  for (std::size_t n = 0; n < e.size(); ++n) out[motion_size + q.size() + n] = e[n];
   return out;
 }
 
 /// Where the residual work stands among the outputs of instant(): a difference that is rounding alone for virtual work,
 /// to be judged beside the motor work.
-inline constexpr std::size_t residual_at = 21 + std::size_t(Integral::residual_work);
-inline constexpr std::size_t motor_work_at = 21 + std::size_t(Integral::motor_work);
+inline constexpr std::size_t residual_at = motion_size + std::size_t(Integral::residual_work);
+inline constexpr std::size_t motor_work_at = motion_size + std::size_t(Integral::motor_work);
 
 inline constexpr int step_size = 2 + integral_count;
 

@@ -159,8 +159,8 @@ struct MetricsOf {
     const auto numbers = InstantOf{1.0}(in);
     CycleIntegrals<S> integrals;
     CycleExtremes<S> extremes;
-    for (std::size_t n = 0; n < integrals.size(); ++n) integrals[n] = S(0.05) * numbers[21 + n];
-    for (std::size_t n = 0; n < extremes.size(); ++n) extremes[n] = numbers[21 + integrals.size() + n];
+    for (std::size_t n = 0; n < integrals.size(); ++n) integrals[n] = S(0.05) * numbers[motion_size + n];
+    for (std::size_t n = 0; n < extremes.size(); ++n) extremes[n] = numbers[motion_size + integrals.size() + n];
     return cycle_metrics(in.vehicle, integrals, extremes, S(0.01), ReportingOf<S>{S(3.34e-3), S(7.664e-3)}).values;
   }
 };
@@ -204,7 +204,7 @@ TEST(Jets, DerivativesAreFiniteAndContinuousAtTheDeadCentres) {
         for (const double aside : {-1e-9, 1e-9}) {
           const auto near = InstantOf{force}(dual_inputs({v, std::asin(sine) + aside, 140.0, 0.13}));
           // Integrals with an absolute value have a kink here: all but those and the extremes must agree.
-          for (std::size_t out = 0; out < 21; ++out) {
+          for (std::size_t out = 0; out < motion_size; ++out) {
             for (int n = 0; n < variable_count; ++n) {
               const double size = std::abs(at[out].v[n]) + std::abs(at[out].a / dual.variable(n).a) +
                                   std::abs(at[out].v[parameter_count]);

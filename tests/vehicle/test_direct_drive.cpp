@@ -160,7 +160,7 @@ TEST(DirectDrive, PeakSpeedAtResonanceSolvesTheHarmonicBalance) {
     d.wing.inertia = heavier * 7.205e-8;
     const Vehicle<double> v = resolve(d);
     const double K = v.motor.torque_constant, R_a = v.motor.armature_resistance;
-    const double gamma = drag_moment(v.wings, 1.0);
+    const double gamma = aero_loads(v.wings, 1.0).moment;
     EXPECT_NEAR(gamma, 0.5 * 1.225 * drag_coefficient(v.wings.coefficients, pi / 2.0) * 1.048e-7, 1e-18);
     const double a = 8.0 / (3.0 * pi) * gamma, b = K * K / R_a + v.motor.viscous_damping, c = K * v.voltage / R_a;
     const double closed = (-b + std::sqrt(b * b + 4.0 * a * c)) / (2.0 * a);
@@ -367,12 +367,13 @@ TEST(PitchStop, HoldsTheAngleOfAttackFromBelow) {
   Vehicle<double> v = reference_vehicle();
   v.wings.angle_of_attack_min = pi / 4.0;
   const double at_stop = (pi / 2.0 - pi / 4.0) / v.wings.pitch_coefficient;
-  EXPECT_EQ(angle_of_attack(v.wings, 1.5 * at_stop), pi / 4.0);
-  EXPECT_NEAR(angle_of_attack(v.wings, at_stop), pi / 4.0, 1e-15);
-  EXPECT_EQ(angle_of_attack(v.wings, 0.5 * at_stop), angle_of_attack(reference_vehicle().wings, 0.5 * at_stop));
+  EXPECT_EQ(aero_loads(v.wings, 1.5 * at_stop).angle_of_attack, pi / 4.0);
+  EXPECT_NEAR(aero_loads(v.wings, at_stop).angle_of_attack, pi / 4.0, 1e-15);
+  EXPECT_EQ(aero_loads(v.wings, 0.5 * at_stop).angle_of_attack,
+            aero_loads(reference_vehicle().wings, 0.5 * at_stop).angle_of_attack);
   // Above the stop lift and drag are quadratic in speed.
-  EXPECT_NEAR(lift_force(v.wings, 3.0 * at_stop) / lift_force(v.wings, 1.5 * at_stop), 4.0, 1e-14);
-  EXPECT_NEAR(drag_moment(v.wings, 3.0 * at_stop) / drag_moment(v.wings, 1.5 * at_stop), 4.0, 1e-14);
+  EXPECT_NEAR(aero_loads(v.wings, 3.0 * at_stop).lift / aero_loads(v.wings, 1.5 * at_stop).lift, 4.0, 1e-14);
+  EXPECT_NEAR(aero_loads(v.wings, 3.0 * at_stop).moment / aero_loads(v.wings, 1.5 * at_stop).moment, 4.0, 1e-14);
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
-// The slider-crank vehicle as a periodic system in crank angle: what solve/ integrates (model.md section 2).
+// The crank-driven vehicle as a periodic system in crank angle: what solve/ integrates (model.md section 2).
 #pragma once
 
 #include <array>
 #include <cmath>
 #include <concepts>
+#include <span>
 
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/cycle/metrics.hpp"
@@ -13,9 +14,10 @@
 namespace wingbeat {
 
 /// States crank speed omega and, with inductance (N = 2), current i; independent variable crank angle from 0 to 2 pi.
-/// Valid while omega > 0.
-template <Scalar S, int N>
+/// Valid while omega > 0. V: a Vehicle, or what has the same members with another Transmission for its `crank`.
+template <Scalar S, int N, class V = Vehicle<S>>
 struct CrankSystem {
+  static_assert(Transmission<decltype(V::crank), S>);
   using Real = S;
   using State = std::array<S, N>;
   using Quadrature = CycleIntegrals<S>;
@@ -34,23 +36,26 @@ struct CrankSystem {
                                           Extreme::rod_force,       Extreme::flapping_velocity,
                                           Extreme::crank_speed_min, Extreme::crank_speed_max};
 
-  Vehicle<S> vehicle;
+  V vehicle;
   S speed_floor = S(0.0);    ///< below this crank speed [rad/s] the crank counts as stopped
   S current_scale = S(0.0);  ///< v / (R_a + R_i) [A], scale of errors in the current
 
+  CrankSystem() = default;
+  CrankSystem(const V& v, const S& floor, const S& scale) : vehicle(v), speed_floor(floor), current_scale(scale) {
+    if constexpr (std::same_as<S, double>) turn_at(reversals(v.crank));
+  }
+
   template <Scalar T>
-  CrankSystem<T, N> cast() const {
-    return {vehicle.template cast<T>(), T(speed_floor), T(current_scale)};
+  auto cast() const {
+    return CrankSystem<T, N, decltype(vehicle.template cast<T>())>{vehicle.template cast<T>(), T(speed_floor),
+                                                                   T(current_scale)};
   }
 
   static double period() { return two_pi; }
 
-  /// beta' changes sign where dy/dtheta = 0: at the dead centres.
-  static const std::array<solver::FixedNode, 2>& fixed_nodes() {
-    static constexpr std::array<solver::FixedNode, 2> nodes = {{{0.5 * pi, stroke}, {1.5 * pi, stroke}}};
-    return nodes;
-  }
-  static Signs start_signs() { return {S(1.0), S(1.0), S(1.0), S(1.0)}; }
+  /// The reversals, where beta' changes sign. Of a system on plain numbers, which laps are run on.
+  std::span<const solver::FixedNode> fixed_nodes() const { return {nodes_.data(), node_count_}; }
+  Signs start_signs() const { return {S(1.0), S(1.0), S(1.0), S(first_stroke_)}; }
 
   bool admissible(const State& y) const { return all<S>(y[0] > speed_floor); }
 
@@ -96,7 +101,7 @@ struct CrankSystem {
   /// d theta / dt [rad/s].
   static const S& pace(const State& y) { return y[0]; }
 
-  Motion<S> motion(const S& theta, const State& y, const Signs& signs) const {
+  [[gnu::always_inline]] Motion<S> motion(const S& theta, const State& y, const Signs& signs) const {
     using std::cos;
     using std::sin;
     const S i = current(theta, y);
@@ -105,7 +110,7 @@ struct CrankSystem {
   }
 
   CycleExtremes<S> candidates(const Motion<S>& m, const State& y, const Signs& signs) const {
-    return extreme_candidates(vehicle, m, y[0], branch(signs));
+    return extreme_candidates(m, y[0], branch(signs));
   }
   static S stroke_angle(const Motion<S>& m, const State&) { return wingbeat::stroke_angle(m.kinematics); }
   static S shaft_angle(const S& theta, const State&) { return theta; }
@@ -117,13 +122,24 @@ struct CrankSystem {
     solver::Rates<CrankSystem> r;
     r.dy[0] = m.crank_acceleration * per_omega;
     if constexpr (N == 2) r.dy[1] = m.voltage_reserve / vehicle.motor.armature_inductance * per_omega;
-    r.switches = {m.force_switch, pitch_margin(vehicle.wings, S(signs[stroke] * m.stroke_velocity)), m.stored_moment};
+    r.switches = {m.force_switch, m.aero.pitch_margin, m.stored_moment};
     if constexpr (quadratures) {
-      const CycleIntegrals<S> in_time = integrands(vehicle, m, y[0], branch(signs));
+      const CycleIntegrals<S> in_time = integrands(m, y[0], branch(signs));
       for (std::size_t q = 0; q < in_time.size(); ++q) r.dq[q] = in_time[q] * per_omega;
     }
     return r;
   }
+
+ private:
+  void turn_at(const Reversals& reversals) {
+    node_count_ = reversals.count;
+    first_stroke_ = reversals.first_sign;
+    for (std::size_t n = 0; n < node_count_; ++n) nodes_[n] = {reversals.angle[n], stroke};
+  }
+
+  std::array<solver::FixedNode, Reversals::most> nodes_{};
+  std::size_t node_count_ = 0;
+  double first_stroke_ = 1.0;
 };
 
 }  // namespace wingbeat

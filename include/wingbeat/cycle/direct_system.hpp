@@ -132,7 +132,7 @@ struct DirectSystem {
     return {signs[velocity], S(1.0), signs[velocity], signs[stored] * signs[velocity], signs[pitching]};
   }
 
-  Motion<S> motion(const S& phi, const State& y, const Signs& signs) const {
+  [[gnu::always_inline]] Motion<S> motion(const S& phi, const State& y, const Signs& signs) const {
     const S N_k_beta = spring_moment_at(y);
     const S v = voltage(phi), i = current(phi, y);
     const bool stuck = value_of(signs[slip]) < 0.0;
@@ -151,7 +151,7 @@ struct DirectSystem {
   }
 
   CycleExtremes<S> candidates(const Motion<S>& m, const State& y, const Signs& signs) const {
-    return extreme_candidates(vehicle, m, m.stroke_velocity, branch(signs), y[0]);
+    return extreme_candidates(m, m.stroke_velocity, branch(signs), y[0]);
   }
 
   template <bool quadratures>
@@ -166,10 +166,10 @@ struct DirectSystem {
     if constexpr (N == 3) r.dy[2] = m.voltage_reserve / vehicle.motor.armature_inductance * per_pace;
     r.switches[velocity] = stuck ? signs[velocity] : y[1];
     r.switches[release] = stuck ? S(holding_torque() - abs(pull(phi, y))) : S(1.0);
-    r.switches[pitching] = pitch_margin(vehicle.wings, S(signs[velocity] * m.stroke_velocity));
+    r.switches[pitching] = m.aero.pitch_margin;
     r.switches[stored] = m.stored_moment;
     if constexpr (quadratures) {
-      const CycleIntegrals<S> in_time = integrands(vehicle, m, m.stroke_velocity, branch(signs));
+      const CycleIntegrals<S> in_time = integrands(m, m.stroke_velocity, branch(signs));
       for (std::size_t q = 0; q < in_time.size(); ++q) r.dq[q] = in_time[q] * per_pace;
     }
     return r;

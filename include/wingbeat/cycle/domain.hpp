@@ -58,6 +58,9 @@ DomainExcess domain_excess(const Vehicle<double>& vehicle, const Metrics<double>
 DomainExcess domain_excess_slopes(const Vehicle<double>& vehicle, const Metrics<double>& metrics,
                                   const Metrics<double>& slopes);
 
+/// The limit `stroke`: of the stroke angle to either side, of a direct drive of the amplitude [deg].
+double stroke_max_deg(TransmissionType transmission);
+
 /// domain_excess() of the limit `stroke` of a slider-crank, which its geometry alone decides; -1 without wings.
 double stroke_excess(const Vehicle<double>& vehicle);
 

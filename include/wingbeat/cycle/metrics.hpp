@@ -93,8 +93,7 @@ using CycleIntegrals = std::array<S, integral_count>;
 
 /// The time integrands at one instant, indexed by Integral.
 template <Scalar S>
-CycleIntegrals<S> integrands(const Vehicle<S>& v, const Motion<S>& m, const S& omega, const Branch<S>& branch) {
-  const S stroke_speed = branch.stroke * m.stroke_velocity;
+CycleIntegrals<S> integrands(const Motion<S>& m, const S& omega, const Branch<S>& branch) {
   const S i = m.current;
   return {S(1.0),
           i,
@@ -103,10 +102,10 @@ CycleIntegrals<S> integrands(const Vehicle<S>& v, const Motion<S>& m, const S& o
           m.voltage * i,
           m.motor_torque * omega,
           m.friction_torque * omega,
-          m.aero_moment * m.stroke_velocity,
+          m.aero.power,
           branch.stored_power * m.stored_moment * m.stroke_velocity,
           m.rod_force * (m.kinematics.crank_lever * omega - m.kinematics.wing_lever * m.stroke_velocity),
-          lift_force(v.wings, stroke_speed, branch.pitching),
+          m.aero.lift,
           branch.force * m.rod_force};
 }
 
@@ -129,17 +128,10 @@ using CycleExtremes = std::array<S, extreme_count>;
 /// The value whose maximum over the cycle is sought for each Extreme (minima with their sign turned): i [A], lift [N],
 /// |F| [N], |beta'| [rad/s], -omega and omega [rad/s], beta and -beta [rad].
 template <Scalar S>
-CycleExtremes<S> extreme_candidates(const Vehicle<S>& v, const Motion<S>& m, const S& omega, const Branch<S>& branch,
+CycleExtremes<S> extreme_candidates(const Motion<S>& m, const S& omega, const Branch<S>& branch,
                                     const S& beta = S(0.0)) {
-  const S stroke_speed = branch.stroke * m.stroke_velocity;
-  return {m.current,
-          lift_force(v.wings, stroke_speed, branch.pitching),
-          branch.force * m.rod_force,
-          stroke_speed,
-          -omega,
-          omega,
-          beta,
-          -beta};
+  return {m.current, m.aero.lift, branch.force * m.rod_force, branch.stroke * m.stroke_velocity, -omega, omega,
+          beta,      -beta};
 }
 
 /// What metrics need beside the motion itself.
@@ -157,8 +149,8 @@ inline Reporting reporting_of(const Design<double>& d) {
 /// The metrics of a cycle from its integrals and extremes. `extremes` holds the maxima of extreme_candidates(). A
 /// direct drive has no rod, no speed of rotation and no direct current: rod forces, crank speeds and the bench estimate
 /// (17) are absent; its voltage is the amplitude. Floquet multiplier: of the orbit, or `absent`.
-template <Scalar S>
-Metrics<S> cycle_metrics(const Vehicle<S>& v, const CycleIntegrals<S>& integrals, const CycleExtremes<S>& extremes,
+template <template <Scalar> class V, Scalar S>
+Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, const CycleExtremes<S>& extremes,
                          const S& floquet_multiplier_max, const ReportingOf<S>& reporting) {
   const auto total = [&](Integral which) -> const S& { return integrals[std::size_t(which)]; };
   const auto peak = [&](Extreme which) -> const S& { return extremes[std::size_t(which)]; };
@@ -191,18 +183,19 @@ Metrics<S> cycle_metrics(const Vehicle<S>& v, const CycleIntegrals<S>& integrals
   m[Metric::lift_peak] = peak(Extreme::lift);
   m[Metric::rod_force_peak] = peak(Extreme::rod_force);
   m[Metric::rod_force_mean] = f * total(Integral::rod_force);
-  if (v.transmission == TransmissionType::direct) {
-    m[Metric::rod_force_peak] = m[Metric::rod_force_mean] = S(absent);
-    m[Metric::power_motor_reference] = S(absent);  // an estimate from the mean of a current that alternates
-    m[Metric::stroke_amplitude] = S(0.5) * (peak(Extreme::stroke_max) + peak(Extreme::stroke_min));
-  } else {
-    m[Metric::stroke_amplitude] = stroke_amplitude(v.crank);
-  }
+  const Drive drive = drive_of(v);
+  if (!drive.has_rod) m[Metric::rod_force_peak] = m[Metric::rod_force_mean] = S(absent);
+  // An estimate from the mean current, which says nothing where it alternates.
+  if (drive.alternating) m[Metric::power_motor_reference] = S(absent);
+  m[Metric::stroke_amplitude] = drive.stroke_is_fixed
+                                    ? stroke_amplitude(v.crank)
+                                    : S(S(0.5) * (peak(Extreme::stroke_max) + peak(Extreme::stroke_min)));
   m[Metric::flapping_velocity_peak] = peak(Extreme::flapping_velocity);
-  m[Metric::angle_of_attack_min] = S(degrees_per_radian) * angle_of_attack(v.wings, peak(Extreme::flapping_velocity));
+  const S alpha = aero_loads(v.wings, peak(Extreme::flapping_velocity)).angle_of_attack;  // falls with |beta'|
+  m[Metric::angle_of_attack_min] = S(degrees_per_radian) * alpha;
   m[Metric::crank_speed_min] = -peak(Extreme::crank_speed_min);
   m[Metric::crank_speed_max] = peak(Extreme::crank_speed_max);
-  if (v.transmission == TransmissionType::direct) m[Metric::crank_speed_min] = m[Metric::crank_speed_max] = S(absent);
+  if (!drive.rotates) m[Metric::crank_speed_min] = m[Metric::crank_speed_max] = S(absent);
   m[Metric::efficiency_system] = ratio(m[Metric::power_aerodynamic], m[Metric::power_electrical]);
   m[Metric::efficiency_motor] = ratio(m[Metric::power_motor], m[Metric::power_electrical]);
   m[Metric::efficiency_mechanism] = ratio(m[Metric::power_aerodynamic], m[Metric::power_motor]);

@@ -26,7 +26,8 @@ namespace wingbeat {
 inline constexpr int gradient_parameters = 5;
 inline constexpr int gradient_voltage_slot = 2;
 inline constexpr int gradient_first_slot = 3;
-using GradientJet = Jet<gradient_first_slot + gradient_parameters>;
+inline constexpr int gradient_slots = gradient_first_slot + gradient_parameters;
+using GradientJet = Jet<gradient_slots>;
 
 /// A number that is parameter k of those differentiated, 0 <= k < gradient_parameters.
 inline GradientJet gradient_seed(double value, int k) { return GradientJet(value, gradient_first_slot + k); }

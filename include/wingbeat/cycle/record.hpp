@@ -36,6 +36,16 @@ struct WaveformRow {
 WaveformRow waveform_row(const Vehicle<double>& vehicle, const Motion<double>& motion, double time, double shaft_angle,
                          double shaft_speed, double stroke_angle);
 
+/// Integrals over a recorded lap.
+template <class System>
+CycleIntegrals<double> lap_integrals(const solver::Lap<System>& lap) {
+  CycleIntegrals<double> sum{};
+  for (const auto& step : lap.steps) {
+    for (std::size_t q = 0; q < sum.size(); ++q) sum[q] += step.dq[q];
+  }
+  return sum;
+}
+
 /// A system and its lap.
 template <class System>
 struct RecordedLap {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "wingbeat/vehicle/vehicle.hpp"
@@ -34,14 +35,14 @@ struct StaticBalance {
 };
 
 /// K v / (R_a + R_i) [N m].
-template <Scalar S>
-S stall_torque(const Vehicle<S>& v) {
+template <template <Scalar> class V, Scalar S>
+S stall_torque(const V<S>& v) {
   return v.motor.torque_constant * v.voltage / circuit_resistance(v);
 }
 
 /// T_c, the constant friction that holds the motor at rest, its own included [N m].
-template <Scalar S>
-S breakaway_torque(const Vehicle<S>& v) {
+template <template <Scalar> class V, Scalar S>
+S breakaway_torque(const V<S>& v) {
   return v.friction.torque + v.motor.friction_torque;
 }
 
@@ -52,31 +53,31 @@ S static_rod_force(const CrankKinematics<S>& k, const S& N_k_beta) {
 }
 
 /// mu r_e |F_s| + T_c [N m]: what friction can hold at rest.
-template <Scalar S>
-S holding_torque(const Vehicle<S>& v, const S& F_s) {
+template <template <Scalar> class V, Scalar S>
+S holding_torque(const V<S>& v, const S& F_s) {
   using std::abs;
   return v.friction.radius * abs(F_s) + breakaway_torque(v);
 }
 
 /// Torque that would start the crank forward from rest, `torque` being the motor's: torque - F_s h - mu r_e |F_s| - T_c
 /// [N m].
-template <Scalar S>
-S advance_torque(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& N_k_beta, const S& torque) {
+template <template <Scalar> class V, Scalar S>
+S advance_torque(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta, const S& torque) {
   const S F_s = static_rod_force(k, N_k_beta);
   return torque - F_s * k.crank_lever - holding_torque(v, F_s);
 }
 
 /// mu r_e |F_s| + T_c - |torque - F_s h| [N m]: >= 0 where friction holds a crank at rest.
-template <Scalar S>
-S lock_margin(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& N_k_beta, const S& torque) {
+template <template <Scalar> class V, Scalar S>
+S lock_margin(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta, const S& torque) {
   using std::abs;
   const S F_s = static_rod_force(k, N_k_beta);
   return holding_torque(v, F_s) - abs(S(torque - F_s * k.crank_lever));
 }
 
 /// The least of J + A (h + s mu r_e) over both branches [kg m2]; <= 0 jams.
-template <Scalar S>
-S least_inertia(const Vehicle<S>& v, const CrankKinematics<S>& k) {
+template <template <Scalar> class V, Scalar S>
+S least_inertia(const V<S>& v, const CrankKinematics<S>& k) {
   using std::min;
   return min(effective_inertia(v, k, S(1.0)), effective_inertia(v, k, S(-1.0)));
 }
@@ -103,8 +104,8 @@ struct LoadPlace {
   S per_wing_lever;  ///< 1 / g [1/m]
 };
 
-template <Scalar S>
-LoadPlace<S> load_place(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& N_k_beta) {
+template <template <Scalar> class V, Scalar S>
+LoadPlace<S> load_place(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta) {
   using std::abs;
   return {v.wing_count * v.wing_inertia * k.stroke_curve,
           abs(k.stroke_slope),
@@ -115,12 +116,12 @@ LoadPlace<S> load_place(const Vehicle<S>& v, const CrankKinematics<S>& k, const 
 }
 
 /// Motor torque less the mean load over evenly spaced places of a lap at the constant crank speed omega [N m].
-template <Scalar S>
-S torque_surplus(const Vehicle<S>& v, std::span<const LoadPlace<S>> places, const S& omega) {
+template <template <Scalar> class V, Scalar S>
+S torque_surplus(const V<S>& v, std::span<const LoadPlace<S>> places, const S& omega) {
   using std::abs;
   S load(0.0);
   for (const LoadPlace<S>& p : places) {
-    const S moment = p.inertia * square(omega) + p.stroke * drag_moment(v.wings, S(p.slope * omega)) + p.spring;
+    const S moment = p.inertia * square(omega) + p.stroke * aero_loads(v.wings, S(p.slope * omega)).moment + p.spring;
     const S F = moment * p.per_wing_lever;
     load = load + F * p.crank_lever + v.friction.radius * abs(F);
   }
@@ -137,8 +138,8 @@ struct BalancedSpeed {
 };
 
 /// What passive pitching can bend the drag's torque by: C_alpha |B1| omega at the largest stroke slope [rad].
-template <Scalar S>
-S largest_pitch(const Vehicle<S>& v, std::span<const LoadPlace<S>> places, const S& omega) {
+template <template <Scalar> class V, Scalar S>
+S largest_pitch(const V<S>& v, std::span<const LoadPlace<S>> places, const S& omega) {
   using std::max;
   S steepest(0.0);
   for (const LoadPlace<S>& p : places) steepest = max(steepest, p.slope);
@@ -147,8 +148,8 @@ S largest_pitch(const Vehicle<S>& v, std::span<const LoadPlace<S>> places, const
 
 /// Balances between 2 % of the speed without load and that speed, on a grid. A surplus that is almost used up counts as
 /// a balance, too.
-template <int speeds, Scalar S>
-BalancedSpeed<S> balanced_on_grid(const Vehicle<S>& v, std::span<const LoadPlace<S>> places) {
+template <int speeds, template <Scalar> class V, Scalar S>
+BalancedSpeed<S> balanced_on_grid(const V<S>& v, std::span<const LoadPlace<S>> places) {
   const S no_load = no_load_speed(v), near = S(0.1) * stall_torque(v);
   BalancedSpeed<S> balanced{no_load, S(0.0)};
   S before = S(0.02) * no_load, surplus_before = torque_surplus(v, places, before), surplus_earlier = surplus_before;
@@ -170,8 +171,8 @@ BalancedSpeed<S> balanced_on_grid(const Vehicle<S>& v, std::span<const LoadPlace
   return balanced;
 }
 
-template <Scalar S>
-BalancedSpeed<S> balanced_speed(const Vehicle<S>& v, std::span<const LoadPlace<S>> places) {
+template <template <Scalar> class V, Scalar S>
+BalancedSpeed<S> balanced_speed(const V<S>& v, std::span<const LoadPlace<std::type_identity_t<S>>> places) {
   // The drag coefficient is a wave in the angle of attack: over a long way of pitching the drag's torque has several
   // humps, and beyond a longer one no grid is fine enough.
   const S pitch = largest_pitch(v, places, no_load_speed(v));
@@ -187,14 +188,13 @@ BalancedSpeed<S> balanced_speed(const Vehicle<S>& v, std::span<const LoadPlace<S
 }
 
 /// Share of a disturbance of the speed that the motor alone would take away in a time [s], wings swinging along.
-template <Scalar S>
-S free_return(const Vehicle<S>& v, const S& time) {
+template <template <Scalar> class V, Scalar S>
+S free_return(const V<S>& v, const S& time) {
   using std::max;
   using std::sqrt;
   const Motor<S>& m = v.motor;
   const S R = circuit_resistance(v), L = m.armature_inductance, K = m.torque_constant;
-  const S inertia =
-      m.inertia + S(0.5) * v.wing_count * v.wing_inertia * square(v.crank.crank_radius / v.crank.hinge_offset);
+  const S inertia = m.inertia + S(0.5) * v.wing_count * v.wing_inertia * square(typical_stroke_slope(v.crank));
   // The slower eigenvalue of speed and current, times L/R to allow for none: s^2 L/R + s trace + determinant = 0.
   const S damping = m.viscous_damping + v.friction.damping;
   const S trace = S(1.0) + damping * L / (R * inertia), determinant = (damping + K * K / R) / inertia;
@@ -206,8 +206,8 @@ S free_return(const Vehicle<S>& v, const S& time) {
 
 /// True where a multiplier is above 1, or so near that another orbit may be near: the load takes back almost all of
 /// what the motor does against a disturbance. Such an orbit shows only in time whether start-up leads there.
-template <Scalar S>
-auto hardly_returns(const Vehicle<S>& v, const S& multiplier, const S& period) {
+template <template <Scalar> class V, Scalar S>
+auto hardly_returns(const V<S>& v, const S& multiplier, const S& period) {
   return !(multiplier < S(0.8)) && !(S(1.0) - multiplier > S(0.1) * free_return(v, period));
 }
 BalancedSpeed<double> balanced_speed(const Vehicle<double>& vehicle);

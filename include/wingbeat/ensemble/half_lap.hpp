@@ -88,7 +88,7 @@ struct HalfLap {
     if constexpr (N == 2) r.dy[1] = m.voltage_reserve * per_inductance * per_omega;
     r.switches[0] = m.force_switch;
     if constexpr (quadratures) {
-      const CycleIntegrals<S> in_time = integrands(vehicle, m, y[0], branch(force));
+      const CycleIntegrals<S> in_time = integrands(m, y[0], branch(force));
       for (std::size_t q = 0; q < lane_integrals.size(); ++q) {
         r.dq[q] = in_time[std::size_t(lane_integrals[q])] * per_omega;
       }

@@ -75,7 +75,7 @@ class LaneOrbit {
   using Mask = wingbeat::Mask<L>;
   using System = HalfLap<L, N>;
   using Matrix = std::array<std::array<L, N>, N>;
-  static constexpr double quarter = 0.5 * pi;
+  static constexpr double quarter = slider_crank_dead_centre;
   static constexpr std::size_t nodes_per_segment = solver::CollocationRule::most;
   static constexpr std::size_t most_nodes = 2 * most_half_segments * nodes_per_segment;
   static constexpr int coarse_samples = 2 * coarse_half_steps + 1;

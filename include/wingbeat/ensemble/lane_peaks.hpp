@@ -281,26 +281,26 @@ L LaneOrbit<L, N>::exchanged_energy() {
 /// The largest lift while |beta'| runs from zero to its peak: at the peak, or where lift falls with speed before it.
 template <class L, int N>
 L LaneOrbit<L, N>::lift_peak(const L& highest_velocity) const {
-  const BladeElement<L>& w = vehicle_.wings;
+  const auto lift_at = [&](const L& speed) { return aero_loads(vehicle_.wings, speed).lift; };
   // Samples of lift over speed find the highest stretch; a parabola's vertex, twice, the maximum in it.
   constexpr int samples = 12;
-  L at = highest_velocity, best = lift_force(w, highest_velocity);
+  L at = highest_velocity, best = lift_at(highest_velocity);
   for (int n = 1; n < samples; ++n) {
     const L u = L(double(n) / samples) * highest_velocity;
-    const L lift = lift_force(w, u);
+    const L lift = lift_at(u);
     const Mask higher = lift > best;
     best = select<L>(higher, lift, best);
     at = select<L>(higher, u, at);
   }
-  const Mask within = at < highest_velocity || lift_force(w, L(L(0.999) * highest_velocity)) > best;
+  const Mask within = at < highest_velocity || lift_at(L(L(0.999) * highest_velocity)) > best;
   if (!any<L>(within)) return best;
   L width = L(1.0 / samples) * highest_velocity;
   for (int n = 0; n < 6; ++n) {
-    const L below = lift_force(w, L(at - width)), here = lift_force(w, at), above = lift_force(w, L(at + width));
+    const L below = lift_at(L(at - width)), here = lift_at(at), above = lift_at(L(at + width));
     const L curve = below - L(2.0) * here + above;
     const L move = L(0.5) * width * (below - above) * inverse_of(select<L>(curve < L(0.0), curve, L(-1e300)));
     at = min(max(at + min(max(move, -width), width), L(0.0)), highest_velocity);
-    best = select<L>(within, max(best, lift_force(w, at)), best);
+    best = select<L>(within, max(best, lift_at(at)), best);
     width = L(0.25) * width;
   }
   return best;

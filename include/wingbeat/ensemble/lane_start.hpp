@@ -31,7 +31,7 @@ void LaneOrbit<L, N>::judge_statics() {
     for (const Place<L>& place : half) {
       const CrankKinematics<L>& k = place.kinematics;
       doubtful_ = doubtful_ || !(least_inertia(v, k) > inertia_margin * v.motor.inertia) ||
-                  !(k.wing_lever > lever_margin * v.crank.hinge_offset);
+                  !(k.wing_lever > lever_margin * typical_lever(v.crank));
       if (springs) {
         doubtful_ = doubtful_ || !(advance_torque(v, k, place.spring_moment, L(L(0.8) * stall)) > L(0.0));
       }
@@ -48,7 +48,7 @@ L LaneOrbit<L, N>::guess_speed() {
     const Place<L>& at = table_[std::size_t(n / count)][std::size_t(stride / 2 + stride * (n % count))];
     places[std::size_t(n)] = load_place(vehicle_, at.kinematics, at.spring_moment);
   }
-  const BalancedSpeed<L> balanced = balanced_speed<L>(vehicle_, places);
+  const BalancedSpeed<L> balanced = balanced_speed(vehicle_, places);
   y_[0] = balanced.slowest;
   if constexpr (N == 2) y_[1] = algebraic_current(vehicle_, vehicle_.voltage, y_[0]);
   return balanced.count;
@@ -65,7 +65,7 @@ void LaneOrbit<L, N>::start_from_rest() {
   L slow_limit = L(1.92 / steps_per_lap) * no_load_;
   // An inductance that is left out here changes the speed by less than its share of the motor's time constant.
   if (lags_) slow_limit = slow_limit + L(2.0) * electrical_to_mechanical_time() * no_load_;
-  constexpr double end = 3.5 * pi;
+  constexpr double end = 4.0 * pi - quarter;
   const L dt = L(two_pi / double(steps_per_lap)) * inverse_of(no_load_);
   if constexpr (N == 2) {  // beyond the method's stability
     doubtful_ = doubtful_ || dt * circuit_resistance(vehicle_) * per_inductance_ > L(2.0);

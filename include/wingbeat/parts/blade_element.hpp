@@ -46,7 +46,7 @@ class CoefficientTable {
   const std::vector<double>& drag() const { return drag_values_; }
 
  private:
-  Cubic piece(const std::vector<Cubic>& pieces, double alpha) const;
+  [[gnu::pure]] Cubic piece(const std::vector<Cubic>& pieces, double alpha) const;
   std::vector<double> alpha_, lift_values_, drag_values_;
   std::vector<Cubic> lift_, drag_;
 };
@@ -133,7 +133,7 @@ bool has_pitch_stop(const BladeElement<S>& w) {
 }
 
 /// How far the passive pitching is from its stop at stroke speed |beta'| [rad/s]: alpha - alpha_min [rad], 1 where
-/// there is no stop. Its sign says which branch of angle_of_attack() holds.
+/// there is no stop. Its sign says which branch of aero_loads() holds.
 template <Scalar S>
 S pitch_margin(const BladeElement<S>& w, const S& stroke_speed) {
   if constexpr (ScalarTraits<S>::reads_tables) {
@@ -142,45 +142,47 @@ S pitch_margin(const BladeElement<S>& w, const S& stroke_speed) {
   return S(1.0);
 }
 
-/// Geometric angle of attack alpha [rad] at stroke speed |beta'| [rad/s]: passive pitching (eq 14). `pitching` is the
-/// branch: +1 free, -1 at the stop. As with tables, batches do not know the stop.
+/// What the air does to all wings at one instant. Everything that needs one of these reads it here.
 template <Scalar S>
-S angle_of_attack(const BladeElement<S>& w, const S& stroke_speed, const S& pitching) {
-  const S free = S(pi / 2.0) - w.pitch_coefficient * stroke_speed;
-  if constexpr (ScalarTraits<S>::reads_tables) {
-    return select(pitching >= S(0.0), free, w.angle_of_attack_min);
-  } else {
-    return free;
-  }
-}
-/// On the branch that holds.
+struct AeroLoads {
+  S angle_of_attack;  ///< alpha, geometric [rad] (eq 14)
+  S pitch_margin;     ///< as pitch_margin() [rad]
+  S lift;             ///< normal to the stroke plane [N] (eq 2)
+  S moment;           ///< M_aero about the hinges, along beta' [N m] (eq 3); a positive one opposes a positive beta'
+  S power;            ///< M_aero beta', what the air takes from the wings [W] (eq 19)
+};
+
+/// The loads at stroke velocity beta' [rad/s] of the sign `stroke`. `pitching` is the branch of the passive pitching:
+/// +1 free, -1 at the stop; as with tables, batches do not know the stop. Always inlined, with all that returns it
+/// (motion_at and below): a right-hand side that reads the moment alone pays for nothing else.
 template <Scalar S>
-S angle_of_attack(const BladeElement<S>& w, const S& stroke_speed) {
-  return angle_of_attack(w, stroke_speed, pitch_margin(w, stroke_speed));
+[[gnu::always_inline]] inline AeroLoads<S> aero_loads(const BladeElement<S>& w, const S& stroke_velocity,
+                                                      const S& stroke, const S& pitching) {
+  const S speed = stroke * stroke_velocity;
+  AeroLoads<S> loads;
+  S alpha = S(pi / 2.0) - w.pitch_coefficient * speed;
+  if constexpr (ScalarTraits<S>::reads_tables) alpha = select(pitching >= S(0.0), alpha, w.angle_of_attack_min);
+  const S C_L = lift_coefficient(w.coefficients, alpha);
+  const S C_D = drag_coefficient(w.coefficients, alpha);
+  loads.angle_of_attack = alpha;
+  loads.pitch_margin = pitch_margin(w, speed);
+  loads.lift = S(0.5) * w.air_density * C_L * square(speed) * w.s2;
+  loads.moment = stroke * (S(0.5) * w.air_density * C_D * square(speed) * w.s3);
+  loads.power = loads.moment * stroke_velocity;
+  return loads;
 }
 
-/// Lift [N] of all wings, normal to the stroke plane (eq 2), at stroke speed |beta'| [rad/s] on a branch of the
-/// pitching.
+/// The loads at stroke speed |beta'| [rad/s], on the branch of the pitching that holds.
 template <Scalar S>
-S lift_force(const BladeElement<S>& w, const S& stroke_speed, const S& pitching) {
-  const S C_L = lift_coefficient(w.coefficients, angle_of_attack(w, stroke_speed, pitching));
-  return S(0.5) * w.air_density * C_L * square(stroke_speed) * w.s2;
-}
-template <Scalar S>
-S lift_force(const BladeElement<S>& w, const S& stroke_speed) {
-  return lift_force(w, stroke_speed, pitch_margin(w, stroke_speed));
+[[gnu::always_inline]] inline AeroLoads<S> aero_loads(const BladeElement<S>& w, const S& stroke_speed) {
+  return aero_loads(w, stroke_speed, S(1.0), pitch_margin(w, stroke_speed));
 }
 
-/// Magnitude of the aerodynamic moment [N m] of all wings about the hinges (eq 3), at stroke speed |beta'| [rad/s] on a
-/// branch of the pitching; it opposes the stroke velocity.
+/// The stroke speed |beta'| [rad/s] at which passive pitching without a stop brings the angle of attack down to alpha
+/// [rad]: eq 14 the other way round.
 template <Scalar S>
-S drag_moment(const BladeElement<S>& w, const S& stroke_speed, const S& pitching) {
-  const S C_D = drag_coefficient(w.coefficients, angle_of_attack(w, stroke_speed, pitching));
-  return S(0.5) * w.air_density * C_D * square(stroke_speed) * w.s3;
-}
-template <Scalar S>
-S drag_moment(const BladeElement<S>& w, const S& stroke_speed) {
-  return drag_moment(w, stroke_speed, pitch_margin(w, stroke_speed));
+S stroke_speed_at(const BladeElement<S>& w, const S& alpha) {
+  return (S(0.5 * pi) - alpha) / w.pitch_coefficient;
 }
 
 }  // namespace wingbeat

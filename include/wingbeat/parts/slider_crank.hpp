@@ -6,6 +6,7 @@
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/core/status.hpp"
+#include "wingbeat/parts/transmission.hpp"
 
 namespace wingbeat {
 
@@ -44,17 +45,6 @@ inline void validate(const SliderCrank<double>& c) {
           c.mid_stroke_height);
 }
 
-/// Position of the mechanism and its levers at one crank angle.
-template <Scalar S>
-struct CrankKinematics {
-  S slider_height;  ///< y = r_c sin theta + l cos gamma [m]
-  S tan_stroke;     ///< tan beta = (y - y_0) / H [1]
-  S stroke_slope;   ///< B1 = d beta / d theta [1]
-  S stroke_curve;   ///< B2 = d2 beta / d theta2 [1]
-  S wing_lever;     ///< g: moment on both wings per unit rod force [m]
-  S crank_lever;    ///< h = cos gamma dy/dtheta: torque on the crank per unit rod force [m]
-};
-
 /// A slider-crank with the quotients that its kinematics needs at every crank angle.
 template <Scalar S>
 struct CrankGeometry {
@@ -92,7 +82,7 @@ CrankKinematics<S> crank_kinematics(const CrankGeometry<S>& geometry, const S& s
   const S cos2_beta = inverse_of(sec2_beta);
 
   CrankKinematics<S> k;
-  k.slider_height = y;
+  k.stroke_offset = S(0.0);
   k.tan_stroke = tan_beta;
   k.stroke_slope = dy * per_H * cos2_beta;
   k.stroke_curve = ddy * per_H * cos2_beta - S(2.0) * tan_beta * square(k.stroke_slope);
@@ -107,14 +97,34 @@ CrankKinematics<S> crank_kinematics(const SliderCrank<S>& c, const S& sin_theta,
   return crank_kinematics(geometry_of(c), sin_theta, cos_theta);
 }
 
-/// Stroke angle beta [rad]. Apart from the kinematics because only springs and reports need it.
+/// y = r_c sin theta + l cos gamma, the slider's height over the crank axis [m].
 template <Scalar S>
-S stroke_angle(const CrankKinematics<S>& k) {
-  using std::atan;
-  return atan(k.tan_stroke);
+S slider_height(const SliderCrank<S>& c, const S& sin_theta, const S& cos_theta) {
+  const S sin_gamma = c.crank_radius / c.rod_length * cos_theta;
+  return c.crank_radius * sin_theta + c.rod_length * root_of(S(S(1.0) - sin_gamma * sin_gamma)).value;
 }
 
-/// Half the peak-to-peak stroke angle [rad], reached at crank angles +-90 degrees (the dead centres).
+/// Crank angle of the upper dead centre; the lower one is at the same angle below the horizontal [rad].
+inline constexpr double slider_crank_dead_centre = 0.5 * pi;
+
+/// The dead centres: dy/dtheta = 0, as long as the rod is longer than the crank.
+inline Reversals reversals(const SliderCrank<double>&) {
+  return {{slider_crank_dead_centre, two_pi - slider_crank_dead_centre}, 2, 1.0};
+}
+
+/// B1 at mid-stroke, r_c / H [1].
+template <Scalar S>
+S typical_stroke_slope(const SliderCrank<S>& c) {
+  return c.crank_radius / c.hinge_offset;
+}
+
+/// g at mid-stroke but for the rod's obliquity, H [m].
+template <Scalar S>
+S typical_lever(const SliderCrank<S>& c) {
+  return c.hinge_offset;
+}
+
+/// Half the peak-to-peak stroke angle [rad], between the dead centres.
 template <Scalar S>
 S stroke_amplitude(const SliderCrank<S>& c) {
   using std::atan;

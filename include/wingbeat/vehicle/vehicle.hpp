@@ -9,12 +9,14 @@
 #include "wingbeat/parts/slider_crank.hpp"
 #include "wingbeat/parts/spring.hpp"
 #include "wingbeat/vehicle/design.hpp"
+#include "wingbeat/vehicle/drive.hpp"
 
 namespace wingbeat {
 
 inline constexpr double standard_gravity = 9.80665;  ///< [m/s2], CGPM 1901
 
-/// The constants of one vehicle in one condition, all referred to the output shaft.
+/// The constants of one vehicle in one condition, all referred to the output shaft. The equations of motion below and
+/// CrankSystem take any template V of the same members whose `crank` is a Transmission.
 template <Scalar S>
 struct Vehicle {
   S voltage;  ///< v that steady flapping sees [V], at the motor terminals where there is no source resistance
@@ -170,7 +172,7 @@ struct Motion {
   S force_switch;         ///< has the sign of F on either branch while the equations have one solution [N kg m3]
   S stroke_velocity;      ///< beta' [rad/s]
   S stroke_acceleration;  ///< beta'' [rad/s2]
-  S aero_moment;          ///< M_aero of all wings [N m], along beta'
+  AeroLoads<S> aero;      ///< of all wings
   S friction_torque;      ///< T_f on the crank, the motor's own friction included [N m]
   S motor_torque;         ///< T_m = F h + T_f [N m] (eq 5)
   S stored_moment;        ///< N_w J_w beta'' + N_w k beta [N m]
@@ -178,15 +180,15 @@ struct Motion {
 
 /// J + A (h + s mu r_e) [kg m2], the divisor of omega' on the branch s (model.md section 2). The equations have one
 /// solution while it is positive for s = +1 and s = -1 and the lever g is positive.
-template <Scalar S>
-S effective_inertia(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& s) {
+template <template <Scalar> class V, Scalar S>
+S effective_inertia(const V<S>& v, const CrankKinematics<S>& k, const S& s) {
   const S A = v.wing_count * v.wing_inertia * k.stroke_slope / k.wing_lever;
   return v.motor.inertia + A * (k.crank_lever + s * v.friction.radius);
 }
 
 /// Moment of all hinge springs, N_w k beta [N m].
-template <Scalar S>
-S spring_moment(const Vehicle<S>& v, const CrankKinematics<S>& k) {
+template <template <Scalar> class V, Scalar S>
+S spring_moment(const V<S>& v, const CrankKinematics<S>& k) {
   // Without springs the arc tangent is a tenth of all the work; its derivative by the stiffness is still wanted.
   if (!ScalarTraits<S>::differentiates && !any<S>(v.spring.stiffness > S(0.0))) return S(0.0);
   return v.wing_count * spring_loads(v.spring, stroke_angle(k)).moment;
@@ -199,7 +201,7 @@ struct Instant {
   S omega;  ///< crank speed [rad/s]
   MotorLoads<S> motor;
   S stroke_velocity;  ///< beta' [rad/s]
-  S aero_moment;      ///< M_aero of all wings [N m], along beta'
+  AeroLoads<S> aero;  ///< of all wings
   S spring_moment;    ///< N_w k beta [N m]
   S load_free;        ///< friction on the crank that does not depend on F [N m]
   S drive;            ///< K i - b omega - load_free [N m]
@@ -211,16 +213,16 @@ struct Instant {
 /// The instant at crank speed omega [rad/s] and current i [A] under the terminal voltage v_t [V], N_k_beta being the
 /// spring_moment() there; `stroke` and `direction` are the signs of beta' and omega (model.md section 2), `pitching` as
 /// in Branch.
-template <Scalar S>
-Instant<S> instant_at(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& N_k_beta, const S& omega, const S& i,
-                      const S& v_t, const S& stroke, const S& direction, const S& pitching = S(1.0)) {
+template <template <Scalar> class V, Scalar S>
+[[gnu::always_inline]] inline Instant<S> instant_at(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta,
+                                                    const S& omega, const S& i, const S& v_t, const S& stroke,
+                                                    const S& direction, const S& pitching = S(1.0)) {
   Instant<S> at;
   at.kinematics = k;
   at.omega = omega;
   at.motor = motor_loads(v.motor, v_t, i, omega);
   at.stroke_velocity = k.stroke_slope * omega;
-  const S stroke_speed = stroke * at.stroke_velocity;
-  at.aero_moment = stroke * drag_moment(v.wings, stroke_speed, pitching);
+  at.aero = aero_loads(v.wings, at.stroke_velocity, stroke, pitching);
   at.spring_moment = N_k_beta;
   at.load_free = load_free_friction(v.friction, omega, direction) + direction * v.motor.friction_torque;
   at.drive = at.motor.torque - at.motor.drag_torque - at.load_free;
@@ -228,14 +230,15 @@ Instant<S> instant_at(const Vehicle<S>& v, const CrankKinematics<S>& k, const S&
   // F = A omega' + C of model.md, both sides times g, which saves dividing by it twice.
   const S N_J = v.wing_count * v.wing_inertia;
   at.A_g = N_J * k.stroke_slope;
-  at.C_g = N_J * k.stroke_curve * square(omega) + at.aero_moment + at.spring_moment;
+  at.C_g = N_J * k.stroke_curve * square(omega) + at.aero.moment + at.spring_moment;
   at.force_switch = v.motor.inertia * at.C_g + at.A_g * at.drive;
   return at;
 }
 
 /// Rod force and accelerations of an instant, on a given branch (model.md section 2, eqs 1, 5-11, 21).
-template <Scalar S>
-Motion<S> motion_on(const Vehicle<S>& v, const Instant<S>& at, const S& i, const S& v_t, const Branch<S>& branch) {
+template <template <Scalar> class V, Scalar S>
+[[gnu::always_inline]] inline Motion<S> motion_on(const V<S>& v, const Instant<S>& at, const S& i, const S& v_t,
+                                                  const Branch<S>& branch) {
   Motion<S> m;
   m.kinematics = at.kinematics;
   const CrankKinematics<S>& k = m.kinematics;
@@ -250,7 +253,7 @@ Motion<S> motion_on(const Vehicle<S>& v, const Instant<S>& at, const S& i, const
   m.current = i;
   m.voltage = v_t;
   m.stroke_velocity = at.stroke_velocity;
-  m.aero_moment = at.aero_moment;
+  m.aero = at.aero;
   m.force_switch = at.force_switch;
   m.rod_force = at.force_switch * divisor;
   m.crank_acceleration = (at.drive * g - at.C_g * lever) * divisor;
@@ -271,9 +274,9 @@ CrankKinematics<S> direct_kinematics() {
 
 /// Rod force and accelerations at crank angle theta (given by sine and cosine), crank speed omega [rad/s] and current
 /// i [A] under the terminal voltage v_t [V], on a given branch.
-template <Scalar S>
-Motion<S> motion_at(const Vehicle<S>& v, const S& sin_theta, const S& cos_theta, const S& omega, const S& i,
-                    const S& v_t, const Branch<S>& branch) {
+template <template <Scalar> class V, Scalar S>
+[[gnu::always_inline]] inline Motion<S> motion_at(const V<S>& v, const S& sin_theta, const S& cos_theta, const S& omega,
+                                                  const S& i, const S& v_t, const Branch<S>& branch) {
   const CrankKinematics<S> k = crank_kinematics(v.crank, sin_theta, cos_theta);
   const S N_k_beta = spring_moment(v, k);
   const Instant<S> at = instant_at(v, k, N_k_beta, omega, i, v_t, branch.stroke, branch.direction, branch.pitching);
@@ -281,42 +284,42 @@ Motion<S> motion_at(const Vehicle<S>& v, const S& sin_theta, const S& cos_theta,
 }
 
 /// Voltage at the motor terminals [V] under the current i [A], where the supply drives `voltage` [V].
-template <Scalar S>
-S terminal_voltage(const Vehicle<S>& v, const S& voltage, const S& i) {
+template <template <Scalar> class V, Scalar S>
+S terminal_voltage(const V<S>& v, const S& voltage, const S& i) {
   return voltage - v.source_resistance * i;
 }
 
 /// All resistance that the current passes, R_a + R_i [ohm].
-template <Scalar S>
-S circuit_resistance(const Vehicle<S>& v) {
+template <template <Scalar> class V, Scalar S>
+S circuit_resistance(const V<S>& v) {
   return v.motor.armature_resistance + v.source_resistance;
 }
 
 /// The current [A] where L_a = 0 and the supply drives `voltage` [V]: i = (v - K omega) / (R_a + R_i).
-template <Scalar S>
-S algebraic_current(const Vehicle<S>& v, const S& voltage, const S& omega) {
+template <template <Scalar> class V, Scalar S>
+S algebraic_current(const V<S>& v, const S& voltage, const S& omega) {
   return (voltage - v.motor.torque_constant * omega) / circuit_resistance(v);
 }
 
 /// Steady speed without load and friction [rad/s], K v / (K^2 + (R_a + R_i) b): the closed form of the wingless
 /// condition.
-template <Scalar S>
-S no_load_speed(const Vehicle<S>& v) {
+template <template <Scalar> class V, Scalar S>
+S no_load_speed(const V<S>& v) {
   const S& K = v.motor.torque_constant;
   return K * v.voltage / (K * K + circuit_resistance(v) * v.motor.viscous_damping);
 }
 
 /// Kinetic energy of all wings and elastic energy of all hinge springs [J].
-template <Scalar S>
-S wing_energy(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& stroke_velocity) {
+template <template <Scalar> class V, Scalar S>
+S wing_energy(const V<S>& v, const CrankKinematics<S>& k, const S& stroke_velocity) {
   const S kinetic = S(0.5) * v.wing_count * v.wing_inertia * square(stroke_velocity);
   if (!ScalarTraits<S>::differentiates && !any<S>(v.spring.stiffness > S(0.0))) return kinetic;
   return kinetic + v.wing_count * spring_loads(v.spring, stroke_angle(k)).energy;
 }
 
 /// Kinetic and elastic energy of rotor, wings, springs and inductance [J].
-template <Scalar S>
-S stored_energy(const Vehicle<S>& v, const CrankKinematics<S>& k, const S& omega, const S& i) {
+template <template <Scalar> class V, Scalar S>
+S stored_energy(const V<S>& v, const CrankKinematics<S>& k, const S& omega, const S& i) {
   return S(0.5) * v.motor.inertia * square(omega) + wing_energy(v, k, S(k.stroke_slope * omega)) +
          S(0.5) * v.motor.armature_inductance * square(i);
 }

@@ -1,0 +1,90 @@
+// What a transmission is to the rest: stroke angle and levers at a crank angle, and where the stroke reverses; model.md
+// sections 2 and 12. slider_crank.hpp is one; anything that satisfies the concept at the end flaps like it.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/core/scalar.hpp"
+
+namespace wingbeat {
+
+/// Position of a transmission and its levers at one crank angle theta. Friction acts on the internal force F, the rod
+/// force of a slider-crank. The stroke angle is beta = stroke_offset + arctan(tan_stroke): a law that knows the tangent
+/// leaves the arc tangent to those who need the angle, one that knows the angle puts it into the offset.
+template <Scalar S>
+struct CrankKinematics {
+  S stroke_offset;  ///< [rad]; 0 of a slider-crank
+  S tan_stroke;     ///< tangent of the stroke angle, less the offset [1]
+  S stroke_slope;   ///< B1 = d beta / d theta [1]
+  S stroke_curve;   ///< B2 = d2 beta / d theta2 [1]
+  S wing_lever;     ///< g: moment on all wings per unit of F [m]
+  S crank_lever;    ///< h: torque on the crank per unit of F [m]; h = g B1 conserves power
+};
+
+/// Stroke angle beta [rad]. Apart from the kinematics because only springs and reports need it.
+template <Scalar S>
+S stroke_angle(const CrankKinematics<S>& k) {
+  using std::atan;
+  return k.stroke_offset + atan(k.tan_stroke);
+}
+
+/// The crank angles at which the stroke velocity of a turning crank changes its sign.
+struct Reversals {
+  static constexpr std::size_t most = 8;
+  std::array<double, most> angle{};  ///< [rad], growing, > 0 and < 2 pi; a reversal at 0 itself is not listed
+  std::size_t count = 0;
+  double first_sign = 1.0;  ///< of d beta / d theta, from crank angle 0 to the first of them
+};
+
+/// The reversals of any transmission, from the sign of d beta / d theta on a grid of crank angles and by bisection: for
+/// those without a closed form. Only the first Reversals::most are found.
+template <class T>
+Reversals find_reversals(const T& transmission) {
+  constexpr int grid = 720;
+  const auto slope = [&](double theta) {
+    return crank_kinematics(transmission, std::sin(theta), std::cos(theta)).stroke_slope;
+  };
+  Reversals found;
+  const double start = 1e-9;
+  double before = start;
+  found.first_sign = sign_of(slope(start));
+  double sign = found.first_sign;
+  for (int n = 1; n <= grid && found.count < Reversals::most; ++n) {
+    const double here = n < grid ? two_pi * n / grid : two_pi - start;
+    if (sign_of(slope(here)) != sign) {
+      double low = before, high = here;
+      for (int k = 0; k < 60; ++k) {
+        const double middle = 0.5 * (low + high);
+        (sign_of(slope(middle)) == sign ? low : high) = middle;
+      }
+      found.angle[found.count++] = high;
+      sign = -sign;
+    }
+    before = here;
+  }
+  return found;
+}
+
+/// A transmission of the scalar S. All functions are found beside its type:
+///
+///   crank_kinematics(t, sin_theta, cos_theta)  at the crank angle with that sine and cosine
+///   reversals(t), validate(t)                  of a transmission of plain numbers
+///   stroke_amplitude(t)                        half the peak-to-peak stroke angle [rad]
+///   typical_stroke_slope(t)                    size of d beta / d theta over a turn [1], for scales
+///   typical_lever(t)                           size of g [m]: beside it a lever counts as lost
+template <class T, class S>
+concept Transmission = requires(const T& t, const S& x) {
+  { crank_kinematics(t, x, x) } -> std::same_as<CrankKinematics<S>>;
+  { stroke_amplitude(t) } -> std::convertible_to<S>;
+  { typical_stroke_slope(t) } -> std::convertible_to<S>;
+  { typical_lever(t) } -> std::convertible_to<S>;
+} && (!std::same_as<S, double> || requires(const T& t) {
+                         { reversals(t) } -> std::same_as<Reversals>;
+                         validate(t);
+                       });
+
+}  // namespace wingbeat
