@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "time/sundials_cvode.hpp"
@@ -86,6 +87,9 @@ class DirectStartUp {
   std::unique_ptr<Cvode> plain_, with_quadratures_;
 
   bool measuring_ = false;
+  std::optional<Metrics<double>> last_metrics_;  ///< of the period before, found with the relative tolerance
+  double measured_with_ = 0.0;
+  int periods_at_tightest_ = 0;
   double variation_ = 0.0, energy_mark_ = 0.0;
   CycleExtremes<double> extremes_{};
   double swing_ = 0.0;  ///< largest |beta| of this period at the ends of steps
@@ -431,8 +435,14 @@ void DirectStartUp::period_done() {
   const double off = rate < 1.0 ? change / (1.0 - rate) : infinity;
   const bool close = off < 0.1 * options_.tolerance;
   if (measuring_) {
+    // The metrics of a period of looser steps tell how far its own steps leave them off.
+    const std::optional<Metrics<double>> before = std::exchange(last_metrics_, std::nullopt);
     take_metrics();
-    if (close || change < noise) {
+    const bool tightest = relative_tolerance_ <= tightest_;
+    const bool agree = before && (tightest || relative_tolerance_ < 0.2 * measured_with_) &&
+                       metrics_apart(*before, *result_.metrics) < 0.3 * options_.tolerance;
+    periods_at_tightest_ += tightest && change < 10.0 * noise;
+    if (((close || change < noise) && agree) || periods_at_tightest_ > 40) {
       done_ = true;
       result_.closure = std::min(off, change / (1.0 - std::min(rate, 0.999)));
       result_.settled = true;
@@ -449,6 +459,9 @@ void DirectStartUp::period_done() {
           vehicle_.drive_frequency, result_.time_to_steady, result_.laps, change);
       return;
     }
+    last_metrics_ = std::exchange(result_.metrics, std::nullopt);
+    measured_with_ = relative_tolerance_;
+    if (close || change < noise) relative_tolerance_ = std::max(tightest_, relative_tolerance_ / 10.0);
   }
   if (rate < 1.0 && off < 1e-2) {
     // What a period's errors leave behind adds up over 1 / (1 - rate) periods.

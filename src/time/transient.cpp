@@ -44,10 +44,11 @@ constexpr double captured_creep = 1e-8;      // [rad] the same where friction ho
 constexpr double same_swing = 1e-4;          // [rad] swings with a varying supply that differ less repeat
 constexpr int averaged_laps_pwm = 8;
 constexpr double settled_without_metrics = 1e-4;
+constexpr double largest_rate = 0.99999;  // of contraction: what is left of a change is no more than 1e5 times it
 constexpr double lap_spread_settled = 1e-2;
 constexpr std::size_t most_turns = 8;  // after which a motion is looked at for repeating
 
-using detail::format, detail::maximum, detail::raise_extremes;
+using detail::format, detail::maximum, detail::metrics_apart, detail::raise_extremes;
 using detail::quadrature_count, detail::quadratures;
 
 class StartUp {
@@ -97,6 +98,7 @@ class StartUp {
   bool swings_repeat();
   bool lap_done();
   bool lap_done_constant();
+  void lap_measured(double rate);
   bool lap_done_averaging();
   bool jump_ahead(double rate);
   bool jump_by_blocks(std::size_t n, std::size_t block);
@@ -155,7 +157,12 @@ class StartUp {
 
   std::unique_ptr<detail::Cvode> plain_, with_quadratures_;
   bool measuring_ = false;
-  int measured_laps_ = 0;
+  int measured_laps_ = 0, laps_at_tightest_ = 0;
+  std::optional<Metrics<double>> last_metrics_;  // of the lap before, found with the relative tolerance
+  double measured_with_ = 0.0;
+  double contraction_ = 0.0;  // of a lap, as the blocks of laps before a jump have shown it
+  int laps_since_jump_ = 0;
+  double change_before_jump_ = infinity;
   double variation_ = 0.0, energy_mark_ = 0.0;
   CycleExtremes<double> extremes_{};
 
@@ -881,6 +888,7 @@ bool StartUp::lap_done() {
 
 bool StartUp::lap_done_constant() {
   ++laps_compared_;
+  ++laps_since_jump_;
   if (crossings_.size() < 2) return false;
   if (turns_ == 1 && laps_compared_ >= 40 && laps_compared_ % 16 == 0) {
     for (std::size_t turns = 2; turns <= most_turns && turns_ == 1; ++turns) {
@@ -899,7 +907,7 @@ bool StartUp::lap_done_constant() {
   const double previous = change_;
   change_ = std::max(std::abs(omega_ - before.omega) / (std::abs(omega_) + 1e-6 * speed_scale_),
                      std::abs(i_ - before.current) / (std::abs(i_) + 0.01 * current_scale_));
-  if (laps_compared_ >= 3 && previous > noise) {
+  if (laps_compared_ >= 3 && previous > noise && !measuring_) {
     last_rate_ = rate_;
     rate_ = std::min(change_ / previous, 10.0);
     if (!rate_seen_) last_rate_ = rate_;
@@ -907,8 +915,8 @@ bool StartUp::lap_done_constant() {
   }
   // The slower of the last two contractions, since complex multipliers make the changes uneven.
   double rate = std::max(rate_, last_rate_);
-  stagnant_ = change_ < 100.0 * noise && change_ > 0.5 * previous ? stagnant_ + 1 : 0;
-  if ((change_ < noise && laps_compared_ >= 3 && (!rate_seen_ || rate >= 0.3)) || stagnant_ >= 2) {
+  stagnant_ = !measuring_ && change_ < 100.0 * noise && change_ > 0.5 * previous ? stagnant_ + 1 : 0;
+  if ((change_ < noise && laps_compared_ >= 3 && !measuring_ && (!rate_seen_ || rate >= 0.3)) || stagnant_ >= 2) {
     // Slow approach or the integrator's own errors? More accuracy tells; at rounding it must be the latter.
     stagnant_ = 0;
     if (relative_tolerance_ <= tightest_ && change_ < 0.1 * options_.tolerance) rate_ = last_rate_ = rate = 0.5;
@@ -917,16 +925,7 @@ bool StartUp::lap_done_constant() {
   const double to_come = rate < 1.0 ? change_ * rate / (1.0 - rate) : infinity;
 
   if (measuring_) {
-    // The lap began as far from the orbit as change / (1 - rate).
-    const double off = change_ / (1.0 - std::min(rate, 0.999));
-    ++measured_laps_;
-    if (off < 0.3 * options_.tolerance || (change_ < noise && measured_laps_ > 1)) {
-      result_.closure = off;
-      take_metrics(int(turns_));
-      flap();
-      return true;
-    }
-    begin_measuring();
+    lap_measured(rate);
     return true;
   }
   if (rate < 1.0 && rate > 0.3 && to_come < 1e-2) {
@@ -938,10 +937,73 @@ bool StartUp::lap_done_constant() {
     return true;
   }
   if (to_come < 0.1 * options_.tolerance || (rate < 1.0 && change_ < noise)) {
+    relative_tolerance_ = std::max(tightest_, std::min(relative_tolerance_, 1e-3 * options_.tolerance));
     begin_measuring();
     return true;
   }
   return jump_ahead(rate);
+}
+
+/// True where a metric is what is left of far larger parts.
+bool cancels(const Metrics<double>& m) {
+  return !(m[Metric::lift_peak] <= 10.0 * std::abs(m[Metric::lift_mean]) &&
+           m[Metric::power_reactive] <= 5.0 * std::abs(m[Metric::power_motor]) &&
+           m[Metric::power_electrical] <= 5.0 * std::abs(m[Metric::power_loss]) &&
+           m[Metric::current_rms] <= 5.0 * std::abs(m[Metric::current_mean]));
+}
+
+/// Takes the metrics of a lap as those of steady flapping where it began close enough to the orbit and a lap of looser
+/// steps gives the same. Otherwise the next lap is measured: with tighter steps, and, where laps converge slowly, from
+/// where the known contraction leads.
+void StartUp::lap_measured(double rate) {
+  const double tolerance = options_.tolerance;
+  const double gain = 1.0 / (1.0 - std::min(std::max(rate, contraction_), largest_rate));
+  // The lap began as far from the orbit as change / (1 - rate).
+  const double off = change_ * gain;
+  const bool tightest = relative_tolerance_ <= tightest_;
+  const std::optional<Metrics<double>> before = std::exchange(last_metrics_, std::nullopt);
+  take_metrics(int(turns_));
+  ++measured_laps_;
+  laps_at_tightest_ += tightest;
+  const bool closed = off < 0.1 * tolerance;
+  // Where errors neither cancel nor add up over laps, steps of a thousandth are known to be enough.
+  const bool enough = gain < 1.5 && relative_tolerance_ <= 1e-3 * tolerance && !cancels(*result_.metrics);
+  const bool agree = enough || ((tightest || relative_tolerance_ < 0.2 * measured_with_) && before &&
+                                metrics_apart(*before, *result_.metrics) < 0.3 * tolerance);
+  const bool rounding = change_ < tolerance && laps_at_tightest_ > (change_ < 30.0 * tightest_ ? 4 : 40);
+  if ((closed && agree) || rounding) {
+    result_.closure = off;
+    flap();
+    return;
+  }
+  last_metrics_ = std::exchange(result_.metrics, std::nullopt);
+  measured_with_ = relative_tolerance_;
+  if (change_ > 100.0 * tolerance || laps_at_tightest_ > 40) {
+    // Not what was known of the contraction: back to plain laps.
+    measuring_ = false;
+    change_ = infinity;
+    rate_ = last_rate_ = 1.0;
+    rate_seen_ = false;
+    laps_compared_ = 1;
+    laps_at_tightest_ = 0;
+    contraction_ = 0.0;
+    last_metrics_.reset();
+    return;
+  }
+  if (laps_since_jump_ == 2 && change_ > 0.5 * change_before_jump_) contraction_ = 0.0;
+  relative_tolerance_ =
+      std::max(tightest_, closed ? relative_tolerance_ / 10.0 : std::min(relative_tolerance_, 3e-3 * tolerance / gain));
+  if (!closed && contraction_ > 0.0 && laps_since_jump_ >= 2) {
+    const Crossing& last = crossings_[crossings_.size() - 2];
+    const double share = contraction_ / (1.0 - contraction_);
+    omega_ += share * (omega_ - last.omega);
+    i_ = inductive_ ? i_ + share * (i_ - last.current) : algebraic_current(vehicle_, voltage(t_), omega_);
+    crossings_.back().omega = omega_;
+    crossings_.back().current = i_;
+    laps_since_jump_ = 0;
+    change_before_jump_ = change_;
+  }
+  begin_measuring();
 }
 
 /// True if the state repeats after so many laps, far better than after one.
@@ -1010,6 +1072,8 @@ bool StartUp::jump_by_blocks(std::size_t n, std::size_t block) {
   t_ += here.skipped;
   end_time_ += here.skipped;
   laps_compared_ = 1;
+  laps_since_jump_ = 0;
+  contraction_ = per_lap;
   change_ = infinity;
   jumped_ = true;
   if (to_the_limit && !options_.metrics) {
