@@ -18,7 +18,6 @@
 #include "wingbeat/study/frequency_search.hpp"
 #include "wingbeat/study/run.hpp"
 #include "wingbeat/study/sampling.hpp"
-#include "wingbeat/vehicle/design_cast.hpp"
 
 namespace wingbeat {
 namespace {
@@ -141,7 +140,7 @@ class Bench {
       jacobian_.setZero();
       for (std::size_t first = 0; first < x.size(); first += gradient_parameters) {
         const std::size_t count = std::min<std::size_t>(gradient_parameters, x.size() - first);
-        Design<GradientJet> seeded = cast_design<GradientJet>(design_at(x));
+        Design<GradientJet> seeded = cast<GradientJet>(design_at(x));
         for (std::size_t k = 0; k < count; ++k) {
           fit_.parameters[first + k].parameter.set_jet(seeded, gradient_seed(x[first + k], int(k)));
         }
@@ -992,19 +991,8 @@ std::string name_of(const MeasuredQuantity& q) {
 const char* unit_of(const MeasuredQuantity& q) { return q.waveform ? unit_of(q.quantity) : metric_info(q.metric).unit; }
 
 std::string condition_name(Condition condition, bool springs) {
-  const char* name = condition == Condition::air ? "air" : condition == Condition::vacuum ? "vacuum" : "wingless";
+  const char* name = name_of(condition);
   return springs ? std::string(name) + " with springs" : name;
-}
-
-const char* law_name(FrictionLaw law) {
-  switch (law) {
-    case FrictionLaw::none: return "none";
-    case FrictionLaw::load_proportional: return "load-proportional";
-    case FrictionLaw::viscous: return "viscous";
-    case FrictionLaw::quadratic: return "quadratic";
-    case FrictionLaw::constant: return "constant";
-  }
-  return "unknown";
 }
 
 FitResult fit_bench(const BenchFit& fit, const std::function<void(const std::string&)>& progress) {
@@ -1026,7 +1014,7 @@ std::vector<FrictionCandidate> compare_friction(const BenchFit& fit,
   std::vector<FrictionCandidate> candidates;
   for (const FrictionLaw law : {FrictionLaw::none, FrictionLaw::viscous, FrictionLaw::quadratic, FrictionLaw::constant,
                                 FrictionLaw::load_proportional}) {
-    say(progress, std::string("friction law ") + law_name(law));
+    say(progress, std::string("friction law ") + name_of(law));
     BenchFit trial = fit;
     trial.profiles = false;
     trial.design.friction.law = law;

@@ -40,7 +40,7 @@ struct CrankSystem {
 
   template <Scalar T>
   CrankSystem<T, N> cast() const {
-    return {vehicle.template cast<T>(), T(speed_floor), T(current_scale)};
+    return {wingbeat::cast<T>(vehicle), T(speed_floor), T(current_scale)};
   }
 
   static double period() { return two_pi; }
