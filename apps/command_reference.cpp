@@ -42,15 +42,13 @@ struct NewArguments {
 };
 
 int write_new(const NewArguments& a) {
-  TransmissionType type = TransmissionType::slider_crank;
-  if (a.transmission == "direct") {
-    type = TransmissionType::direct;
-  } else if (a.transmission != "slider-crank") {
+  const auto type = from_name<TransmissionType>(a.transmission);
+  if (!type) {
     throw InputError("--transmission", 0, 0, "",
-                     fmt::format("must be slider-crank or direct, got {}", in_quotes(a.transmission)));
+                     fmt::format("must be {}, got {}", listed_names<TransmissionType>(), in_quotes(a.transmission)));
   }
   if (a.file == "-") {
-    print(starting_vehicle(type, "new vehicle"));
+    print(starting_vehicle(*type, "new vehicle"));
     return done;
   }
   std::filesystem::path file(a.file);
@@ -63,7 +61,7 @@ int write_new(const NewArguments& a) {
   const std::string stem = one_line(file.stem().string());
   const bool plain = stem.find_first_of("\"\\") == std::string::npos;
   OutputFile output("new", file, {".toml", false});
-  output.write(starting_vehicle(type, plain ? stem : "new vehicle"));
+  output.write(starting_vehicle(*type, plain ? stem : "new vehicle"));
   output.commit();
   return done;
 }

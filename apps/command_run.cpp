@@ -45,18 +45,10 @@ double quantity(const char* option, const std::string& text, const char* unit) {
   }
 }
 
-constexpr std::pair<const char*, Condition> conditions[] = {
-    {"air", Condition::air}, {"vacuum", Condition::vacuum}, {"wingless", Condition::wingless}};
-constexpr std::pair<const char*, Method> methods[] = {{"orbit", Method::orbit}, {"transient", Method::transient}};
-
-template <class E, std::size_t N>
-E choice(const char* option, const std::string& text, const std::pair<const char*, E> (&choices)[N]) {
-  std::string names;
-  for (const auto& [name, value] : choices) {
-    if (text == name) return value;
-    names += fmt::format("{}{}", names.empty() ? "" : &name == &choices[N - 1].first ? " or " : ", ", name);
-  }
-  throw InputError(option, 0, 0, "", fmt::format("must be {}, got {}", names, in_quotes(text)));
+template <NamedEnum E>
+E choice(const char* option, const std::string& text) {
+  if (const auto value = from_name<E>(text)) return *value;
+  throw InputError(option, 0, 0, "", fmt::format("must be {}, got {}", listed_names<E>(), in_quotes(text)));
 }
 
 /// A file to be written, its place reserved before anything is computed.
@@ -98,8 +90,8 @@ void apply_voltage(Supply<double>& supply, const std::string& text) {
 int run(const Arguments& arguments) {
   RunOptions options;
   options.allow_extrapolation = arguments.allow_extrapolation;
-  options.condition = choice("--condition", arguments.condition, conditions);
-  options.method = choice("--method", arguments.method, methods);
+  options.condition = choice<Condition>("--condition", arguments.condition);
+  options.method = choice<Method>("--method", arguments.method);
   try {
     options.tolerance = quantity("--tolerance", arguments.tolerance, "1");
   } catch (const InputError&) {

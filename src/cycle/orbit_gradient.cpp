@@ -7,8 +7,6 @@
 #include <tuple>
 #include <utility>
 
-#include "wingbeat/vehicle/design_cast.hpp"
-
 namespace wingbeat {
 namespace {
 
@@ -94,7 +92,7 @@ MetricGradients metric_gradients(const Design<double>& design, Condition conditi
     for (auto& gradient : result.by_parameter) gradient.fill(absent);
     return result;
   }
-  const Design<GradientJet> plain = cast_design<GradientJet>(design);
+  const Design<GradientJet> plain = cast<GradientJet>(design);
   for (std::size_t first = 0; first == 0 || first < parameters.size(); first += gradient_parameters) {
     const std::size_t count = std::min<std::size_t>(gradient_parameters, parameters.size() - first);
     Design<GradientJet> seeded = plain;

@@ -253,13 +253,11 @@ class LogReader {
   int set_ = -1;
 };
 
-constexpr std::pair<std::string_view, Condition> conditions[] = {
-    {"air", Condition::air}, {"vacuum", Condition::vacuum}, {"wingless", Condition::wingless}};
-constexpr std::pair<std::string_view, Loss> losses[] = {
+constexpr std::pair<const char*, Loss> losses[] = {
     {"none", Loss::none}, {"huber", Loss::huber}, {"soft-l1", Loss::soft_l1}, {"cauchy", Loss::cauchy}};
 
 template <class E, std::size_t N>
-E chosen(const TomlFields& fields, std::string_view key, const std::pair<std::string_view, E> (&choices)[N],
+E chosen(const TomlFields& fields, std::string_view key, const std::pair<const char*, E> (&choices)[N],
          std::optional<std::string_view> fallback = {}) {
   std::vector<std::string_view> names;
   for (const auto& [name, value] : choices) names.push_back(name);
@@ -378,15 +376,14 @@ class BenchReader {
       l.known_keys(keys);
       const std::string file = l.needed_text("file", "the name of a CSV file");
       LogRequest request;
-      request.log.condition = chosen(l, "condition", conditions);
+      request.log.condition = chosen(l, "condition", names_of<Condition>);
       const auto springs = l.boolean("springs");
       if (!springs && has_springs && request.log.condition != Condition::wingless) {
         l.refuse("springs", "missing; the vehicle file has springs: true, or false where they were taken off");
       }
       request.log.springs = springs.value_or(false) && request.log.condition != Condition::wingless;
       if (springs.value_or(false) && !has_springs) l.refuse(l.at("springs"), "springs", "the vehicle file has none");
-      constexpr std::pair<std::string_view, Given> givens[] = {{"voltage", Given::voltage},
-                                                               {"frequency", Given::frequency}};
+      constexpr std::pair<const char*, Given> givens[] = {{"voltage", Given::voltage}, {"frequency", Given::frequency}};
       if (l.has("given")) request.given = chosen(l, "given", givens);
       const auto voltage = l.quantity("voltage", "V"), frequency = l.quantity("frequency", "Hz");
       if (voltage && frequency) l.refuse(l.at("frequency"), "frequency", "give voltage or frequency, not both");

@@ -52,17 +52,17 @@ class Reader {
     attempt([&] {
       if (const Value* name = document_.find("vehicle.name")) d.name = text_of(*name, "vehicle.name", "a text");
     });
-    read_choice("supply.type", supply_types, d.supply.type);
-    read_choice("transmission.type", transmission_types, d.transmission.type);
+    read_choice("supply.type", d.supply.type);
+    read_choice("transmission.type", d.transmission.type);
     attempt([&] { read_formulation(d.transmission); });
-    read_choice("friction.type", friction_laws, d.friction.law);
+    read_choice("friction.type", d.friction.law);
     attempt([&] {
       if (document_.has_section("wing.planform")) return;
       absent_.push_back("wing.planform");
       missing("wing.planform",
               "a table such as { shape = \"semi-ellipse\", length = \"63 mm\", root_chord = \"25 mm\" }");
     });
-    read_choice("wing.planform.shape", planform_shapes, d.wing.planform.shape);
+    read_choice("wing.planform.shape", d.wing.planform.shape);
     check_alternatives();
     attempt([&] { read_coefficients(d.aerodynamics); });
     read_numbers(d);
@@ -147,21 +147,18 @@ class Reader {
     return text_of(*value, path, expected);
   }
 
-  template <class E, std::size_t N>
-  E choice(std::string_view path, const std::pair<std::string_view, E> (&names)[N]) const {
-    const std::string& given = required_text(path);
-    for (const auto& [name, value] : names) {
-      if (name == given) return value;
-    }
+  template <NamedEnum E>
+  E choice(std::string_view path) const {
+    if (const auto value = from_name<E>(required_text(path))) return *value;
     wrong(*document_.find(path), path, find_key<double>(path)->range);
   }
 
   /// A choice on which other keys depend: what depends on one that cannot be read is passed over.
-  template <class E, std::size_t N>
-  void read_choice(std::string_view path, const std::pair<std::string_view, E> (&names)[N], E& result) {
+  template <NamedEnum E>
+  void read_choice(std::string_view path, E& result) {
     unread_.push_back(path);
     attempt([&] {
-      result = choice(path, names);
+      result = choice<E>(path);
       unread_.pop_back();
     });
   }
@@ -209,7 +206,7 @@ class Reader {
   void read_formulation(TransmissionDesign<double>& transmission) const {
     const std::string_view path = "transmission.formulation";
     if (document_.find(path)) {
-      transmission.formulation = choice(path, formulations);
+      transmission.formulation = choice<Formulation>(path);
     } else if (transmission.type == TransmissionType::slider_crank && !is_unread("transmission.type")) {
       missing(path,
               "rod-force or virtual-work: virtual-work conserves power and is the choice for a new vehicle, "

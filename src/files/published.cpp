@@ -122,7 +122,7 @@ class Reader {
     if (trend.kind == Kind::best_friction_law) {
       also({"published_law"});
       known_keys(t, keys);
-      if (t.contains("published_law")) trend.published_law = choice_at(t, "published_law", friction_laws);
+      if (t.contains("published_law")) trend.published_law = choice_at(t, "published_law", names_of<FrictionLaw>);
       trend.unit = std::string("1");  // a literal draws a false warning of GCC 12
       return trend;
     }

@@ -25,8 +25,6 @@ using detail::Kind, detail::Place, detail::place_of, detail::toml_text;
 constexpr std::uint64_t longest_axis = 1000000;
 constexpr std::uint64_t most_designs = 1000000000000;
 constexpr std::size_t most_variants = 1000;
-constexpr std::pair<std::string_view, Condition> conditions[] = {
-    {"air", Condition::air}, {"vacuum", Condition::vacuum}, {"wingless", Condition::wingless}};
 /// Text keys that name or hold tables, of which no axis is made.
 constexpr std::string_view table_keys[] = {"wing.planform.file", "wing.planform.chords",
                                            "aerodynamics.coefficients.table"};
@@ -135,7 +133,7 @@ class StudyReader : public detail::StudySections {
         if (node.kind != Kind::boolean) wrong(node, where, "true or false");
         q.labels.push_back(node.number != 0.0 ? "on" : "off");
       } else if (q.key == "condition") {
-        q.labels.push_back(one_of(node, where, {"air", "vacuum", "wingless"}));
+        q.labels.push_back(name_of(one_of<Condition>(node, where)));
       } else {
         q.labels.push_back(text_of(node, where, find_key<double>(q.key)->range));
       }
@@ -474,9 +472,7 @@ class StudyReader : public detail::StudySections {
       const std::size_t n = index / sweep_->variant_stride[a] % std::size_t(axis.count);
       for (const SweptQuantity& q : axis.quantities) {
         if (q.key == "condition") {
-          for (const auto& [name, condition] : conditions) {
-            if (name == q.labels[n]) result.condition = condition;
-          }
+          result.condition = *from_name<Condition>(q.labels[n]);
         } else if (q.key == "springs") {
           result.springs = q.labels[n] == "on";
         } else if (q.kind != SweptQuantity::Kind::frequency) {

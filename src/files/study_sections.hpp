@@ -212,10 +212,20 @@ class StudySections {
 
   std::string one_of(const TomlNode& node, const std::string& key,
                      std::initializer_list<std::string_view> known) const {
-    const std::span<const std::string_view> names(known.begin(), known.size());
+    return one_of(node, key, std::span(known.begin(), known.size()));
+  }
+
+  template <NamedEnum E>
+  E one_of(const TomlNode& node, const std::string& key) const {
+    std::vector<std::string_view> names;
+    for (const auto& [name, value] : names_of<E>) names.push_back(name);
+    return *from_name<E>(one_of(node, key, names));
+  }
+
+  std::string one_of(const TomlNode& node, const std::string& key, std::span<const std::string_view> known) const {
     std::string expected;
-    for (const std::string_view name : names) {
-      expected += fmt::format("{}\"{}\"", expected.empty() ? "" : name == names.back() ? " or " : ", ", name);
+    for (const std::string_view name : known) {
+      expected += fmt::format("{}\"{}\"", expected.empty() ? "" : name == known.back() ? " or " : ", ", name);
     }
     if (node.kind != Kind::text || std::find(known.begin(), known.end(), node.text) == known.end()) {
       wrong(node, key, expected);
@@ -377,8 +387,7 @@ class StudySections {
   Condition read_condition() const {
     const TomlNode* node = study_->find("condition");
     if (!node) return Condition::air;
-    const std::string name = one_of(*node, "study.condition", {"air", "vacuum", "wingless"});
-    return name == "air" ? Condition::air : name == "vacuum" ? Condition::vacuum : Condition::wingless;
+    return one_of<Condition>(*node, "study.condition");
   }
 
   /// The frequency held, if any. A vehicle whose supply cannot hold one, or that has no steady flapping, is refused.

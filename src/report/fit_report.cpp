@@ -269,7 +269,7 @@ std::string text_friction(std::span<const FrictionCandidate> candidates) {
       squares += p.residual() * p.residual();
       ++count;
     }
-    text += fmt::format("  {:<19}{:>11.1f}{:>13.2f}{:>22}", law_name(c.law), c.aicc_excess,
+    text += fmt::format("  {:<19}{:>11.1f}{:>13.2f}{:>22}", name_of(c.law), c.aicc_excess,
                         std::sqrt(squares / std::max(count, 1)), short_number(c.prediction_error, 3));
     if (springs) text += fmt::format("{:>21}", short_number(c.power_springs_on / c.power_springs_off, 3));
     if (!c.result.unreached.empty()) text += fmt::format("  {} rows not reached", c.result.unreached.size());
@@ -357,7 +357,7 @@ std::string json_fit(const BenchFit& fit, const FitResult& r, std::span<const Fr
     for (const auto& [name, rms] : c.left_out) left[name] = number_or_null(rms);
     Json parameters = Json::object();
     for (const FittedParameter& p : c.result.parameters) parameters[p.key] = p.value ? Json(*p.value) : Json(nullptr);
-    json["friction"].push_back({{"law", law_name(c.law)},
+    json["friction"].push_back({{"law", name_of(c.law)},
                                 {"aicc", number_or_null(c.result.aicc)},
                                 {"aicc_excess", number_or_null(c.aicc_excess)},
                                 {"parameters", parameters},

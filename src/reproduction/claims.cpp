@@ -159,10 +159,10 @@ Claim claim_of(const PublishedTrend& t, const Assessment& a, const std::vector<A
       const auto first = a.laws.begin() + long(f * std::size(compared_friction_laws));
       const auto best = std::min_element(first, first + long(std::size(compared_friction_laws)),
                                          [](const LawPrediction& p, const LawPrediction& q) { return p.rms < q.rms; });
-      c.ours_text[f] = fmt::format("{} ({:.1f} % rms)", law_name(best->law.law), 100.0 * best->rms);
+      c.ours_text[f] = fmt::format("{} ({:.1f} % rms)", name_of(best->law.law), 100.0 * best->rms);
       c.within[f] = t.published_law == best->law.law;
     }
-    c.published_text = t.published_law ? law_name(*t.published_law) : "-";
+    c.published_text = t.published_law ? name_of(*t.published_law) : "-";
   }
   return c;
 }

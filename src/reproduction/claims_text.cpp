@@ -177,7 +177,7 @@ std::string json_claims(const PublishedFile& file, const Assessment& a) {
   json["friction_laws"] = Json::array();
   for (const LawPrediction& p : a.laws) {
     Json entry;
-    entry["law"] = law_name(p.law.law);
+    entry["law"] = name_of(p.law.law);
     entry["formulation"] = variant_name(p.variant);
     entry["coefficient"] = p.law.coefficient;
     entry["calibrated"] = p.law.calibrated;

@@ -61,13 +61,13 @@ std::vector<Sheet> friction_sheets(const Material& m) {
       s.table.add("spring_stiffness_nm_per_rad", "N m/rad", "stiffness of each hinge spring", p.loss.stiffness);
     }
     const std::string which =
-        fmt::format("{}_{}", underscored(law_name(p.law.law)), underscored(wingbeat::name_of(p.law.formulation)));
-    const std::string words = fmt::format("{} friction, {}", law_name(p.law.law), wingbeat::name_of(p.law.formulation));
+        fmt::format("{}_{}", underscored(name_of(p.law.law)), underscored(wingbeat::name_of(p.law.formulation)));
+    const std::string words = fmt::format("{} friction, {}", name_of(p.law.law), wingbeat::name_of(p.law.formulation));
     s.table.add("rod_force_mean_n_" + which, "N", "mean magnitude of the rod force, " + words, f_si);
     s.table.add("power_friction_w_" + which, "W", "mean friction loss, " + words, l_si);
     s.table.add("power_electrical_w_" + which, "W", "mean electrical input power, " + words, e_si);
     if (!first) continue;
-    chart.key.push_back({law_name(p.law.law), style});
+    chart.key.push_back({name_of(p.law.law), style});
     force.curves.push_back({x, f, style});
     loss.curves.push_back({x, l, style});
     input.curves.push_back({x, e, style});

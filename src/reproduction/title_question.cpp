@@ -36,7 +36,7 @@ std::string law_table(const Assessment& a, std::size_t variant) {
   }
   if (laws.empty()) return "";
   std::string html = "<div class=\"wide\"><table class=\"laws\"><thead><tr><th></th><th>published</th>";
-  for (const LawPrediction* p : laws) html += fmt::format("<th>{}</th>", law_name(p->law.law));
+  for (const LawPrediction* p : laws) html += fmt::format("<th>{}</th>", name_of(p->law.law));
   html += "</tr></thead><tbody>\n<tr><td>coefficient</td><td></td>";
   for (const LawPrediction* p : laws) html += fmt::format("<td class=\"n\">{}</td>", coefficient(p->law));
   const PublishedValue& first = laws[0]->comparison.values[0].published;
@@ -158,7 +158,7 @@ std::string question_html(const Material& m) {
       "values with springs that no calibration has seen. Root mean square of the deviations:</p>\n<div "
       "class=\"wide\"><table><thead><tr><th></th>",
       target.published_text, operating_point(target.voltage, target.frequency), load->tests.size());
-  for (const FrictionLaw law : compared_friction_laws) html += fmt::format("<th>{}</th>", law_name(law));
+  for (const FrictionLaw law : compared_friction_laws) html += fmt::format("<th>{}</th>", name_of(law));
   html += "</tr></thead><tbody>\n";
   for (std::size_t f = 0; f < a.variants; ++f) {
     html += fmt::format("<tr><td>{}</td>", variant_name(f));

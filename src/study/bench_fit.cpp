@@ -184,19 +184,8 @@ std::string name_of(const MeasuredQuantity& q) {
 const char* unit_of(const MeasuredQuantity& q) { return q.waveform ? unit_of(q.quantity) : metric_info(q.metric).unit; }
 
 std::string condition_name(Condition condition, bool springs) {
-  const char* name = condition == Condition::air ? "air" : condition == Condition::vacuum ? "vacuum" : "wingless";
+  const char* name = name_of(condition);
   return springs ? std::string(name) + " with springs" : name;
-}
-
-const char* law_name(FrictionLaw law) {
-  switch (law) {
-    case FrictionLaw::none: return "none";
-    case FrictionLaw::load_proportional: return "load-proportional";
-    case FrictionLaw::viscous: return "viscous";
-    case FrictionLaw::quadratic: return "quadratic";
-    case FrictionLaw::constant: return "constant";
-  }
-  return "unknown";
 }
 
 FitResult fit_bench(const BenchFit& fit, const std::function<void(const std::string&)>& progress) {

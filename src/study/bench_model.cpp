@@ -91,7 +91,7 @@ void BenchModel::evaluate(const std::vector<double>& x, bool derivatives) {
     jacobian_.setZero();
     for (std::size_t first = 0; first < x.size(); first += gradient_parameters) {
       const std::size_t count = std::min<std::size_t>(gradient_parameters, x.size() - first);
-      Design<GradientJet> seeded = cast_design<GradientJet>(design_at(x));
+      Design<GradientJet> seeded = cast<GradientJet>(design_at(x));
       for (std::size_t k = 0; k < count; ++k) {
         fit_.parameters[first + k].parameter.set_jet(seeded, gradient_seed(x[first + k], int(k)));
       }

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "wingbeat/study/bench_fit.hpp"
-#include "wingbeat/vehicle/design_cast.hpp"
 
 namespace wingbeat {
 

@@ -50,7 +50,7 @@ std::vector<FrictionCandidate> compare_friction(const BenchFit& fit,
   std::vector<FrictionCandidate> candidates;
   for (const FrictionLaw law : {FrictionLaw::none, FrictionLaw::viscous, FrictionLaw::quadratic, FrictionLaw::constant,
                                 FrictionLaw::load_proportional}) {
-    if (progress) progress(std::string("friction law ") + law_name(law));
+    if (progress) progress(std::string("friction law ") + name_of(law));
     BenchFit trial = fit;
     trial.profiles = false;
     trial.design.friction.law = law;

@@ -37,7 +37,7 @@ VoltageTrial VoltageTrials::at(double voltage) {
   trial.lift_slope = 0.0;
   // A cycle that was simulated in time has no record to be differentiated.
   if (slopes_ && !found.record.empty()) {
-    GradientVehicle seeded{vehicle_.cast<GradientJet>()};
+    GradientVehicle seeded{cast<GradientJet>(vehicle_)};
     const bool has_slot = drive_of(vehicle_).voltage_sets_frequency;  // of its own, for the voltage
     if (!has_slot) seeded.vehicle.voltage = gradient_seed(voltage, 0);
     const OrbitGradient g = orbit_gradient(found, seeded, {.peaks = false});

@@ -62,7 +62,7 @@ TEST(DesignKeys, WhatIsSetIsRead) {
       d.spring.stiffness = 1e-3;
       key.set(d, 0.25);
     }
-    for (const auto& [name, shape] : planform_shapes) {
+    for (const auto& [name, shape] : names_of<PlanformShape>) {
       if (key.get(d)) break;
       d.wing.planform.shape = shape;
       if (key.set(d, 0.25)) break;

@@ -5,6 +5,7 @@
 
 #include "expect_error.hpp"
 #include "wingbeat/core/jet.hpp"
+#include "wingbeat/core/members.hpp"
 
 namespace wingbeat {
 namespace {
@@ -48,7 +49,7 @@ TEST(Battery, SlopesMatchHandCalculation) {
 
 TEST(Battery, DerivativeByChargeIsExactAndContinuous) {
   const Battery<double> b = lithium();
-  const auto dual = b.cast<Jet<1>>();
+  const auto dual = cast<Jet<1>>(b);
   for (const double charge : {0.03, 0.2, 0.6, 0.9}) {
     constexpr double h = 1e-5;
     const double difference = (open_circuit_voltage(b, charge + h) - open_circuit_voltage(b, charge - h)) / (2.0 * h);

@@ -4,6 +4,7 @@
 
 #include "parts/expect_error.hpp"
 #include "wingbeat/core/jet.hpp"
+#include "wingbeat/core/members.hpp"
 #include "wingbeat/parts/blade_element.hpp"
 
 namespace wingbeat {
@@ -119,7 +120,7 @@ TEST(AeroLoads, DualNumbersAgreeWithDifferences) {
       for (const double velocity : {-310.0, -90.0, -1.0, 1.0, 90.0, 310.0}) {
         const double stroke = sign_of(velocity), h = 1e-3 * std::abs(velocity);
         const auto at = [&](double x) { return aero_loads(w, x, stroke, pitching); };
-        const auto dual = aero_loads(w.cast<J>(), J(velocity, 0), J(stroke), J(pitching));
+        const auto dual = aero_loads(cast<J>(w), J(velocity, 0), J(stroke), J(pitching));
         const auto p1 = at(velocity + h), m1 = at(velocity - h), p2 = at(velocity + 2.0 * h);
         const auto m2 = at(velocity - 2.0 * h), here = at(velocity);
         for (double AeroLoads<double>::* load :
@@ -143,7 +144,7 @@ TEST(AeroLoads, DualNumbersAgreeWithDifferences) {
 
 TEST(AeroLoads, HaveDerivativesAtTheReversal) {
   using J = Jet<1>;
-  const auto w = reference().cast<J>();
+  const auto w = cast<J>(reference());
   for (const double stroke : {1.0, -1.0}) {
     const auto loads = aero_loads(w, J(0.0, 0), J(stroke), J(1.0));
     // Forces grow with the square of the speed; the angle falls at the rate C_alpha on either side.

@@ -142,7 +142,7 @@ TEST(Motion, PowerBalancesAtEveryInstant) {
     theta.v[0] = omega;
     w.v[0] = m.crank_acceleration;
     if (v.motor.armature_inductance > 0.0) current.v[0] = m.voltage_reserve / v.motor.armature_inductance;
-    const Vehicle<J> dual = v.cast<J>();
+    const Vehicle<J> dual = cast<J>(v);
     const double stored = stored_energy(dual, crank_kinematics(dual.crank, sin(theta), cos(theta)), w, current).v[0];
     // Without an inductance the state need not satisfy v = R i + K omega: its reserve does no work on the field.
     const double voltage = v.motor.armature_inductance > 0.0

@@ -288,11 +288,11 @@ TEST(CompareFriction, DataOfALoadProportionalVehicleRankItFirst) {
   EXPECT_EQ(ranked[0].law, FrictionLaw::load_proportional);
   EXPECT_EQ(ranked[0].aicc_excess, 0.0);
   for (std::size_t n = 1; n < 5; ++n) {
-    EXPECT_GT(ranked[n].aicc_excess, 100.0) << law_name(ranked[n].law);
-    EXPECT_GT(ranked[n].prediction_error, 2.0 * ranked[0].prediction_error) << law_name(ranked[n].law);
+    EXPECT_GT(ranked[n].aicc_excess, 100.0) << name_of(ranked[n].law);
+    EXPECT_GT(ranked[n].prediction_error, 2.0 * ranked[0].prediction_error) << name_of(ranked[n].law);
     EXPECT_EQ(ranked[n].left_out.size(), 3U);
     // The paper's argument: without load-proportional friction, springs would not save power.
-    EXPECT_GT(ranked[n].power_springs_on / ranked[n].power_springs_off, 0.95) << law_name(ranked[n].law);
+    EXPECT_GT(ranked[n].power_springs_on / ranked[n].power_springs_off, 0.95) << name_of(ranked[n].law);
   }
   EXPECT_LT(ranked[0].power_springs_on / ranked[0].power_springs_off, 0.9);
 }

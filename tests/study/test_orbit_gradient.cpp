@@ -11,7 +11,6 @@
 #include "wingbeat/files/design_keys.hpp"
 #include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/study/run.hpp"
-#include "wingbeat/vehicle/design_cast.hpp"
 
 namespace wingbeat {
 namespace {
@@ -184,7 +183,7 @@ TEST(OrbitGradient, InstantsAgainstDifferences) {
   const DesignParameter p = design_parameter("motor.inertia");
   const SteadyFlapping s = orbit_of(d, Condition::air);
   const double theta[] = {0.1, 1.7, 4.0, 6.2};
-  Design<GradientJet> seeded = cast_design<GradientJet>(d);
+  Design<GradientJet> seeded = cast<GradientJet>(d);
   p.set_jet(seeded, gradient_seed(*p.value(d), 0));
   const OrbitGradient g = orbit_gradient(s, gradient_vehicle(seeded, Condition::air), {.crank_angles = theta});
   const auto moved = [&](double factor) {

@@ -19,9 +19,9 @@ struct StrokeLaw {
   S mean;       ///< [rad]
   S radius;     ///< [m]
 
-  template <Scalar T>
-  StrokeLaw<T> cast() const {
-    return {T(amplitude), T(second), T(phase), T(mean), T(radius)};
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.amplitude, of.second, of.phase, of.mean, of.radius);
   }
 };
 
@@ -82,19 +82,10 @@ struct StrokeLawVehicle {
   TransmissionType transmission = TransmissionType::slider_crank;
   S drive_frequency = S(0);
 
-  template <Scalar T>
-  StrokeLawVehicle<T> cast() const {
-    return {T(voltage),
-            motor.template cast<T>(),
-            crank.template cast<T>(),
-            friction.template cast<T>(),
-            spring.template cast<T>(),
-            T(wing_count),
-            T(wing_inertia),
-            wings.template cast<T>(),
-            T(source_resistance),
-            transmission,
-            T(drive_frequency)};
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.voltage, of.motor, of.crank, of.friction, of.spring, of.wing_count, of.wing_inertia, of.wings,
+               of.source_resistance, of.transmission, of.drive_frequency);
   }
 };
 

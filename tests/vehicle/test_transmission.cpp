@@ -60,7 +60,7 @@ TEST(Transmission, ReversalsAreWhereTheStrokeTurns) {
 TEST(Transmission, StrokeLawIsConsistent) {
   for (const double theta : {0.3, 1.4, 2.9, 4.1, 5.8}) {
     using J = Jet<1>;
-    const auto dual = crank_kinematics(lopsided.cast<J>(), sin(J(theta, 0)), cos(J(theta, 0)));
+    const auto dual = crank_kinematics(cast<J>(lopsided), sin(J(theta, 0)), cos(J(theta, 0)));
     const auto k = crank_kinematics(lopsided, std::sin(theta), std::cos(theta));
     EXPECT_NEAR(stroke_angle(dual).v[0], k.stroke_slope, 1e-15);
     EXPECT_NEAR(dual.stroke_slope.v[0], k.stroke_curve, 1e-15);
@@ -171,7 +171,7 @@ TEST(StrokeLawOrbit, GradientAgreesWithDifferences) {
     return std::array{&of.crank.amplitude, &of.crank.second, &of.crank.radius, &of.spring.stiffness,
                       &of.motor.torque_constant};
   };
-  auto jets = v.cast<GradientJet>();
+  auto jets = cast<GradientJet>(v);
   for (int k = 0; k < gradient_parameters; ++k) {
     GradientJet& p = *parameters(jets)[std::size_t(k)];
     p = gradient_seed(p.a, k);

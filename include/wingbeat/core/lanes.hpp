@@ -12,6 +12,7 @@
 #include <xsimd/xsimd.hpp>
 
 #include "wingbeat/core/math.hpp"
+#include "wingbeat/core/members.hpp"
 #include "wingbeat/core/scalar.hpp"
 
 namespace wingbeat {
@@ -121,6 +122,21 @@ struct ScalarTraits<Lanes<Arch, K>> {
   }
   static double value_of(const S& x) { return x.part[0].get(0); }
 };
+
+/// A part whose numbers are those of part_of(lane) in each lane. Choices are those of lane 0.
+template <class L, template <Scalar> class Part, class PartOf>
+Part<L> in_lanes(const PartOf& part_of) {
+  constexpr int count = number_count<Part<double>>;
+  alignas(64) double numbers[count][std::size_t(L::lanes)];
+  for (int lane = 0; lane < L::lanes; ++lane) {
+    int n = 0;
+    for_each_number(part_of(lane), [&](double x) { numbers[n++][lane] = x; });
+  }
+  Part<L> part = cast<L>(part_of(0));
+  int n = 0;
+  for_each_number(part, [&](L& x) { x = L::load(numbers[n++]); });
+  return part;
+}
 
 template <class Arch, int K>
 Lanes<Arch, K> abs(const Lanes<Arch, K>& x) {

@@ -47,8 +47,8 @@ struct CrankSystem {
 
   template <Scalar T>
   auto cast() const {
-    return CrankSystem<T, N, decltype(vehicle.template cast<T>())>{vehicle.template cast<T>(), T(speed_floor),
-                                                                   T(current_scale)};
+    const auto of_t = wingbeat::cast<T>(vehicle);
+    return CrankSystem<T, N, std::remove_const_t<decltype(of_t)>>{of_t, T(speed_floor), T(current_scale)};
   }
 
   static double period() { return two_pi; }

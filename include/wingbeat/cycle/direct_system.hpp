@@ -48,7 +48,7 @@ struct DirectSystem {
   DirectSystem<T, N> cast() const {
     std::array<T, N> size;
     for (std::size_t n = 0; n < N; ++n) size[n] = T(typical[n]);
-    return {vehicle.template cast<T>(), size};
+    return {wingbeat::cast<T>(vehicle), size};
   }
 
   static double period() { return two_pi; }

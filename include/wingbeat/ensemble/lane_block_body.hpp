@@ -26,10 +26,8 @@ void solve_block(const EnsembleMember* const* members, int count, const LaneSett
   };
   const auto with_states = [&](auto states) {
     constexpr int N = decltype(states)::value;
-    Vehicle<L> vehicle;
-    vehicle.crank.formulation = members[0]->vehicle.crank.formulation;
-    for_each_number(
-        vehicle, [&](L& to, const auto& of) { to = gather([&](const EnsembleMember& m) { return of(m.vehicle); }); });
+    const Vehicle<L> vehicle =
+        in_lanes<L, Vehicle>([&](int lane) -> const Vehicle<double>& { return member(lane).vehicle; });
     LaneOrbit<L, N> orbit(vehicle, settings);
     if (settings.approach == LaneApproach::resume) {
       orbit.visit_start([&](L& to, const auto& of) {

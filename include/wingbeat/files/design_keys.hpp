@@ -6,7 +6,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/vehicle/design.hpp"
@@ -38,36 +37,7 @@ struct Key : KeyText {
   std::string (*text)(const Design<S>&) = nullptr;
 };
 
-// Names of the choices in vehicle files.
-inline constexpr std::pair<std::string_view, SupplyType> supply_types[] = {{"constant", SupplyType::constant},
-                                                                           {"sine", SupplyType::sine},
-                                                                           {"pwm", SupplyType::pwm},
-                                                                           {"battery", SupplyType::battery}};
-inline constexpr std::pair<std::string_view, TransmissionType> transmission_types[] = {
-    {"slider-crank", TransmissionType::slider_crank}, {"direct", TransmissionType::direct}};
-inline constexpr std::pair<std::string_view, Formulation> formulations[] = {
-    {"rod-force", Formulation::rod_force}, {"virtual-work", Formulation::virtual_work}};
-inline constexpr std::pair<std::string_view, FrictionLaw> friction_laws[] = {
-    {"none", FrictionLaw::none},
-    {"load-proportional", FrictionLaw::load_proportional},
-    {"viscous", FrictionLaw::viscous},
-    {"quadratic", FrictionLaw::quadratic},
-    {"constant", FrictionLaw::constant}};
-inline constexpr std::pair<std::string_view, PlanformShape> planform_shapes[] = {
-    {"semi-ellipse", PlanformShape::semi_ellipse},
-    {"rectangle", PlanformShape::rectangle},
-    {"tabulated", PlanformShape::tabulated},
-    {"moments", PlanformShape::moments}};
-
 namespace detail {
-
-template <class E, std::size_t N>
-std::string choice_name(const std::pair<std::string_view, E> (&names)[N], E value) {
-  for (const auto& [name, known] : names) {
-    if (known == value) return std::string(name);
-  }
-  return {};
-}
 
 inline constexpr auto always = [](const auto&) { return true; };
 
@@ -172,8 +142,8 @@ constexpr Key<S> text(KeyText text, std::string (*read)(const Design<S>&)) {
 template <Scalar S>
 std::span<const Key<S>> vehicle_keys() {
   using D = Design<S>;
-  using detail::alternative, detail::always, detail::battery_voltage, detail::choice_name, detail::friction_number,
-      detail::number, detail::replaceable, detail::text, detail::wave_number;
+  using detail::alternative, detail::always, detail::battery_voltage, detail::friction_number, detail::number,
+      detail::replaceable, detail::text, detail::wave_number;
   constexpr std::string_view of_crank = "transmission.type = slider-crank";
   constexpr auto sine = [](const auto& d) { return d.supply.type == SupplyType::sine; };
   constexpr auto with_voltage = [](const auto& d) {
@@ -212,7 +182,7 @@ std::span<const Key<S>> vehicle_keys() {
                 [](auto& d) -> auto& { return d.mass; }),
 
       text<S>({"supply.type", "", "constant, sine, pwm or battery", "required", "what feeds the motor terminals"},
-              [](const D& d) { return choice_name(supply_types, d.supply.type); }),
+              [](const D& d) { return std::string(name_of(d.supply.type)); }),
       number<S>(
           {"supply.voltage", "V", ">= 0", "required", "v, terminal voltage; pwm: while switched on",
            "supply.type = constant|pwm"},
@@ -298,7 +268,7 @@ std::span<const Key<S>> vehicle_keys() {
 
       text<S>({"transmission.type", "", "slider-crank or direct", "required",
                "kind of mechanism between motor and wings; direct: the motor shaft is the wing hinge"},
-              [](const D& d) { return choice_name(transmission_types, d.transmission.type); }),
+              [](const D& d) { return std::string(name_of(d.transmission.type)); }),
       number<S>(
           {"transmission.crank_radius", "m", "> 0, < rod_length", "required", "r_c, crank radius", of_crank},
           [](auto& d) -> auto& { return d.transmission.crank_radius; }, crank),
@@ -326,12 +296,12 @@ std::span<const Key<S>> vehicle_keys() {
               [](const D& d) {
                 return d.transmission.type == TransmissionType::direct
                            ? std::string()
-                           : choice_name(formulations, d.transmission.formulation);
+                           : std::string(name_of(d.transmission.formulation));
               }),
 
       text<S>({"friction.type", "", "none, load-proportional, viscous, quadratic or constant", "required",
                "law of the transmission's friction torque T_f on the crank or shaft; load-proportional needs a rod"},
-              [](const D& d) { return choice_name(friction_laws, d.friction.law); }),
+              [](const D& d) { return std::string(name_of(d.friction.law)); }),
       friction_number<S, FrictionLaw::load_proportional>({"friction.radius", "m", ">= 0", "required",
                                                           "mu r_e, effective friction radius: T_f = mu r_e abs(F)",
                                                           "friction.type = load-proportional"}),
@@ -374,7 +344,7 @@ std::span<const Key<S>> vehicle_keys() {
           direct, wing_resonance),
       text<S>({"wing.planform.shape", "", "semi-ellipse, rectangle, tabulated or moments", "required",
                "how the wing's outline is given"},
-              [](const D& d) { return choice_name(planform_shapes, d.wing.planform.shape); }),
+              [](const D& d) { return std::string(name_of(d.wing.planform.shape)); }),
       number<S>(
           {"wing.planform.length", "m", "> 0", "required", "R, wing root to tip",
            "wing.planform.shape = semi-ellipse|rectangle"},

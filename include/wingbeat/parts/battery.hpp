@@ -27,15 +27,10 @@ struct Battery {
   S charge = S(1);                  ///< state of charge [1], 0 (empty) to 1 (full)
   std::optional<S> cutoff_voltage;  ///< mean terminal voltage of one cell at which flight ends [V], >= 0
 
-  template <Scalar T>
-  Battery<T> cast() const {
-    return {T(cells),
-            T(cell_voltage),
-            discharge_curve,
-            T(internal_resistance),
-            T(capacity),
-            T(charge),
-            cutoff_voltage ? std::optional<T>(T(*cutoff_voltage)) : std::nullopt};
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.cells, of.cell_voltage, of.discharge_curve, of.internal_resistance, of.capacity, of.charge,
+               of.cutoff_voltage);
   }
 };
 

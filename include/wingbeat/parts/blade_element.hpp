@@ -21,9 +21,9 @@ struct CoefficientWave {
   S rate;       ///< multiplies the angle of attack [1]
   S phase;      ///< [rad]
 
-  template <Scalar T>
-  CoefficientWave<T> cast() const {
-    return {T(offset), T(amplitude), T(rate), T(phase)};
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.offset, of.amplitude, of.rate, of.phase);
   }
 };
 
@@ -61,11 +61,9 @@ struct ForceCoefficients {
   CoefficientWave<S> drag;
   Table table = nullptr;
 
-  template <Scalar T>
-  ForceCoefficients<T> cast() const {
-    ForceCoefficients<T> to{lift.template cast<T>(), drag.template cast<T>()};
-    if constexpr (ScalarTraits<T>::reads_tables) to.table = table;
-    return to;
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.lift, of.drag, of.table);
   }
 };
 
@@ -86,10 +84,9 @@ struct BladeElement {
   /// Stop of the passive pitching: alpha never falls below it [rad], 0 to pi/2; minus infinity where there is none.
   S angle_of_attack_min = S(-std::numeric_limits<double>::infinity());
 
-  template <Scalar T>
-  BladeElement<T> cast() const {
-    return {T(air_density),        T(pitch_coefficient), T(s2), T(s3), coefficients.template cast<T>(),
-            T(angle_of_attack_min)};
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.air_density, of.pitch_coefficient, of.s2, of.s3, of.coefficients, of.angle_of_attack_min);
   }
 };
 

@@ -2,12 +2,20 @@
 #pragma once
 
 #include "wingbeat/core/math.hpp"
+#include "wingbeat/core/names.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/core/status.hpp"
 
 namespace wingbeat {
 
 enum class FrictionLaw { none, load_proportional, viscous, quadratic, constant };
+template <>
+inline constexpr std::pair<const char*, FrictionLaw> names_of<FrictionLaw>[] = {
+    {"none", FrictionLaw::none},
+    {"load-proportional", FrictionLaw::load_proportional},
+    {"viscous", FrictionLaw::viscous},
+    {"quadratic", FrictionLaw::quadratic},
+    {"constant", FrictionLaw::constant}};
 
 /// All laws side by side, the unused coefficients zero: a batch may mix laws, and a sum of laws is legal.
 template <Scalar S>
@@ -17,9 +25,9 @@ struct Friction {
   S quadratic = S(0);  ///< c_f: T_f = c_f omega |omega| [N m s2/rad2], >= 0
   S torque = S(0);     ///< T_c: T_f = T_c sign(omega) [N m], >= 0
 
-  template <Scalar T>
-  Friction<T> cast() const {
-    return {T(radius), T(damping), T(quadratic), T(torque)};
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.radius, of.damping, of.quadratic, of.torque);
   }
 };
 

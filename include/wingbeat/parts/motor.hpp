@@ -16,10 +16,10 @@ struct Motor {
   S viscous_damping;         ///< b = b_G + n^2 b_m [N m s/rad], >= 0
   S friction_torque = S(0);  ///< constant friction torque of the motor itself [N m], >= 0
 
-  template <Scalar T>
-  Motor<T> cast() const {
-    return {T(armature_resistance), T(armature_inductance), T(torque_constant), T(inertia),
-            T(viscous_damping),     T(friction_torque)};
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.armature_resistance, of.armature_inductance, of.torque_constant, of.inertia, of.viscous_damping,
+               of.friction_torque);
   }
 };
 
@@ -30,6 +30,11 @@ struct GearMotor {
   Motor<S> motor_shaft;   ///< K_b, J_m, b_m and friction torque at the motor shaft
   S gear_inertia = S(0);  ///< J_G of the gearbox at the output shaft [kg m2], >= 0
   S gear_damping = S(0);  ///< b_G of the gearbox at the output shaft [N m s/rad], >= 0
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.gear_ratio, of.motor_shaft, of.gear_inertia, of.gear_damping);
+  }
 };
 
 /// Motor-shaft constants referred to the output shaft: K = n K_b, J = J_G + n^2 J_m, b = b_G + n^2 b_m, friction torque

@@ -7,12 +7,19 @@
 #include <vector>
 
 #include "wingbeat/core/math.hpp"
+#include "wingbeat/core/names.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/core/status.hpp"
 
 namespace wingbeat {
 
 enum class PlanformShape { semi_ellipse, rectangle, tabulated, moments };
+template <>
+inline constexpr std::pair<const char*, PlanformShape> names_of<PlanformShape>[] = {
+    {"semi-ellipse", PlanformShape::semi_ellipse},
+    {"rectangle", PlanformShape::rectangle},
+    {"tabulated", PlanformShape::tabulated},
+    {"moments", PlanformShape::moments}};
 
 /// One wing's outline. Lengths run from the wing root; the hub offset shifts the root away from the hinge.
 template <Scalar S>
@@ -26,6 +33,11 @@ struct Planform {
   S s2 = S(0);                        ///< moments given outright: S_2 of all wings [m4], >= 0
   S s3 = S(0);                        ///< moments given outright: S_3 of all wings [m5], >= 0
   std::optional<S> chord_ratio = {};  ///< c_0 / R [1], > 0; given, root_chord follows from the length
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.shape, of.length, of.root_chord, of.hub_offset, of.chord_table, of.s2, of.s3, of.chord_ratio);
+  }
 };
 
 /// S_2 = N_w integral c r^2 dr [m4] and S_3 = N_w integral c r^3 dr [m5], r measured from the hinge.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "wingbeat/core/math.hpp"
+#include "wingbeat/core/names.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/parts/transmission.hpp"
@@ -15,11 +16,9 @@ enum class Formulation {
   rod_force,    ///< the paper's eq (1) as printed: g = H (sin gamma tan beta + cos gamma); does not conserve power
   virtual_work  ///< straight frictionless guide: g = H cos gamma / cos^2 beta; F h omega = F g beta' identically
 };
-
-/// As in files and results.
-inline const char* name_of(Formulation formulation) {
-  return formulation == Formulation::rod_force ? "rod-force" : "virtual-work";
-}
+template <>
+inline constexpr std::pair<const char*, Formulation> names_of<Formulation>[] = {
+    {"rod-force", Formulation::rod_force}, {"virtual-work", Formulation::virtual_work}};
 
 /// Geometry of the mechanism. The crank angle theta is measured from the horizontal and grows with rotation.
 template <Scalar S>
@@ -30,9 +29,9 @@ struct SliderCrank {
   S mid_stroke_height;  ///< y_0, slider height over the crank axis at stroke angle zero [m]; l unless given
   Formulation formulation = Formulation::rod_force;
 
-  template <Scalar T>
-  SliderCrank<T> cast() const {
-    return {T(crank_radius), T(rod_length), T(hinge_offset), T(mid_stroke_height), formulation};
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.crank_radius, of.rod_length, of.hinge_offset, of.mid_stroke_height, of.formulation);
   }
 };
 

@@ -13,9 +13,9 @@ template <Scalar S>
 struct HingeSpring {
   S stiffness = S(0);  ///< k of ONE hinge spring [N m/rad], >= 0
 
-  template <Scalar T>
-  HingeSpring<T> cast() const {
-    return {T(stiffness)};
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.stiffness);
   }
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "wingbeat/core/math.hpp"
+#include "wingbeat/core/names.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/parts/battery.hpp"
@@ -11,6 +12,11 @@
 namespace wingbeat {
 
 enum class SupplyType { constant, sine, pwm, battery };
+template <>
+inline constexpr std::pair<const char*, SupplyType> names_of<SupplyType>[] = {{"constant", SupplyType::constant},
+                                                                              {"sine", SupplyType::sine},
+                                                                              {"pwm", SupplyType::pwm},
+                                                                              {"battery", SupplyType::battery}};
 
 template <Scalar S>
 struct Supply {
@@ -20,9 +26,9 @@ struct Supply {
   S duty = S(1);       ///< pwm: fraction of a period switched on [1], 0 to 1
   Battery<S> battery = {};
 
-  template <Scalar T>
-  Supply<T> cast() const {
-    return {type, T(voltage), T(frequency), T(duty), battery.template cast<T>()};
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.type, of.voltage, of.frequency, of.duty, of.battery);
   }
 };
 

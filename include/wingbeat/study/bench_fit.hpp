@@ -222,6 +222,5 @@ std::vector<FrictionCandidate> compare_friction(const BenchFit& fit,
 
 /// "air", "vacuum with springs".
 std::string condition_name(Condition condition, bool springs);
-const char* law_name(FrictionLaw law);
 
 }  // namespace wingbeat

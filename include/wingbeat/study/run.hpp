@@ -16,9 +16,9 @@ enum class Method {
   orbit,     ///< periodic orbit in crank angle, or in the phase of a direct drive's supply
   transient  ///< simulated from rest until steady
 };
-
-/// As in options and results.
-inline const char* name_of(Method method) { return method == Method::orbit ? "orbit" : "transient"; }
+template <>
+inline constexpr std::pair<const char*, Method> names_of<Method>[] = {{"orbit", Method::orbit},
+                                                                      {"transient", Method::transient}};
 
 struct RunOptions {
   Condition condition = Condition::air;

@@ -4,7 +4,10 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
+#include "wingbeat/core/members.hpp"
+#include "wingbeat/core/names.hpp"
 #include "wingbeat/parts/blade_element.hpp"
 #include "wingbeat/parts/friction.hpp"
 #include "wingbeat/parts/motor.hpp"
@@ -21,16 +24,9 @@ enum class Condition {
   vacuum,   ///< no aerodynamics, wings present
   wingless  ///< no wing: rod force zero
 };
-
-/// As in files and options.
-inline const char* name_of(Condition condition) {
-  switch (condition) {
-    case Condition::air: return "air";
-    case Condition::vacuum: return "vacuum";
-    case Condition::wingless: return "wingless";
-  }
-  return "unknown";
-}
+template <>
+inline constexpr std::pair<const char*, Condition> names_of<Condition>[] = {
+    {"air", Condition::air}, {"vacuum", Condition::vacuum}, {"wingless", Condition::wingless}};
 
 /// [motor]: constants at the output shaft, or at the motor shaft with a gear ratio.
 template <Scalar S>
@@ -39,12 +35,20 @@ struct MotorDesign {
   Motor<S> constants;
   S gear_inertia = S(0);  ///< J_G [kg m2], only with gear_ratio
   S gear_damping = S(0);  ///< b_G [N m s/rad], only with gear_ratio
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.gear_ratio, of.constants, of.gear_inertia, of.gear_damping);
+  }
 };
 
 enum class TransmissionType {
   slider_crank,
   direct  ///< the motor shaft is the wing hinge: its angle is the stroke angle
 };
+template <>
+inline constexpr std::pair<const char*, TransmissionType> names_of<TransmissionType>[] = {
+    {"slider-crank", TransmissionType::slider_crank}, {"direct", TransmissionType::direct}};
 
 /// [transmission]. Of a slider-crank exactly one of hinge offset and stroke amplitude is given; of a direct drive
 /// nothing but the type.
@@ -57,6 +61,12 @@ struct TransmissionDesign {
   std::optional<S> mid_stroke_height;  ///< y_0 [m]; l unless given
   Formulation formulation = Formulation::rod_force;
   TransmissionType type = TransmissionType::slider_crank;
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.crank_radius, of.rod_length, of.hinge_offset, of.stroke_amplitude, of.mid_stroke_height,
+               of.formulation, of.type);
+  }
 };
 
 /// [friction]: one law and its coefficient.
@@ -64,6 +74,11 @@ template <Scalar S>
 struct FrictionDesign {
   FrictionLaw law = FrictionLaw::none;
   S coefficient = S(0);  ///< radius [m], damping [N m s/rad], coefficient [N m s2/rad2] or torque [N m] by law
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.law, of.coefficient);
+  }
 };
 
 /// [spring]: at most one of the three; none means no spring.
@@ -74,6 +89,11 @@ struct SpringDesign {
   /// f_s)^2
   std::optional<S> resonance;
   std::optional<S> resonance_ratio;  ///< direct: resonance over drive frequency [1]
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.stiffness, of.resonance, of.resonance_ratio);
+  }
 };
 
 /// [wing]
@@ -84,6 +104,11 @@ struct WingDesign {
   Planform<S> planform;
   /// Direct: resonance of rotor and wings on their springs [Hz]; given, the inertia follows: J_w = k/(2 pi f)^2 - J/N_w
   std::optional<S> resonance;
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.count, of.inertia, of.planform, of.resonance);
+  }
 };
 
 /// [aerodynamics]
@@ -94,6 +119,11 @@ struct AerodynamicsDesign {
   std::string coefficients_name = "translational-2022";  ///< the named set, or "custom" or "table"
   ForceCoefficients<S> coefficients;
   std::optional<S> angle_of_attack_min;  ///< stop of the passive pitching [rad]; none unless given
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.air_density, of.pitch_coefficient, of.coefficients_name, of.coefficients, of.angle_of_attack_min);
+  }
 };
 
 /// Masses that are stated for themselves. What is not counts in Design::mass.
@@ -103,6 +133,11 @@ struct ItemMasses {
   std::optional<S> motor;               ///< motor with its gearbox [kg], >= 0
   std::optional<S> rod_linear_density;  ///< the rod's mass over its length [kg/m], >= 0
   std::optional<S> spring;              ///< one hinge spring [kg], >= 0; one for each wing
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.supply, of.motor, of.rod_linear_density, of.spring);
+  }
 };
 
 template <Scalar S>
@@ -119,6 +154,12 @@ struct Design {
   SpringDesign<S> spring;
   WingDesign<S> wing;
   AerodynamicsDesign<S> aerodynamics;
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.name, of.mass, of.masses, of.bench_torque_constant, of.supply, of.supply_resonance_ratio, of.motor,
+               of.transmission, of.friction, of.spring, of.wing, of.aerodynamics);
+  }
 };
 
 /// True where hinge springs are stated.

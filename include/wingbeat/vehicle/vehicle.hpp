@@ -2,6 +2,7 @@
 #pragma once
 
 #include "wingbeat/core/math.hpp"
+#include "wingbeat/core/members.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/parts/blade_element.hpp"
 #include "wingbeat/parts/friction.hpp"
@@ -31,19 +32,10 @@ struct Vehicle {
   TransmissionType transmission = TransmissionType::slider_crank;
   S drive_frequency = S(0);  ///< of a sine supply, whose amplitude is `voltage` [Hz]; else 0
 
-  template <Scalar T>
-  Vehicle<T> cast() const {
-    return {T(voltage),
-            motor.template cast<T>(),
-            crank.template cast<T>(),
-            friction.template cast<T>(),
-            spring.template cast<T>(),
-            T(wing_count),
-            T(wing_inertia),
-            wings.template cast<T>(),
-            T(source_resistance),
-            transmission,
-            T(drive_frequency)};
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.voltage, of.motor, of.crank, of.friction, of.spring, of.wing_count, of.wing_inertia, of.wings,
+               of.source_resistance, of.transmission, of.drive_frequency);
   }
 };
 
@@ -107,47 +99,6 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
   v.wings.coefficients = design.aerodynamics.coefficients;
   if (design.aerodynamics.angle_of_attack_min) v.wings.angle_of_attack_min = *design.aerodynamics.angle_of_attack_min;
   return v;
-}
-
-/// Calls visit(number, place) for every number of a vehicle, place(other) being where the same number stands in another
-/// one. Not for the transmission, the formulation and the coefficient table, which are no numbers.
-template <Scalar S, class Visit>
-void for_each_number(Vehicle<S>& v, const Visit& visit) {
-#define WINGBEAT_NUMBER(name) visit(v.name, [](auto& of) -> auto& { return of.name; })
-  WINGBEAT_NUMBER(voltage);
-  WINGBEAT_NUMBER(motor.armature_resistance);
-  WINGBEAT_NUMBER(motor.armature_inductance);
-  WINGBEAT_NUMBER(motor.torque_constant);
-  WINGBEAT_NUMBER(motor.inertia);
-  WINGBEAT_NUMBER(motor.viscous_damping);
-  WINGBEAT_NUMBER(motor.friction_torque);
-  WINGBEAT_NUMBER(crank.crank_radius);
-  WINGBEAT_NUMBER(crank.rod_length);
-  WINGBEAT_NUMBER(crank.hinge_offset);
-  WINGBEAT_NUMBER(crank.mid_stroke_height);
-  WINGBEAT_NUMBER(friction.radius);
-  WINGBEAT_NUMBER(friction.damping);
-  WINGBEAT_NUMBER(friction.quadratic);
-  WINGBEAT_NUMBER(friction.torque);
-  WINGBEAT_NUMBER(spring.stiffness);
-  WINGBEAT_NUMBER(wing_count);
-  WINGBEAT_NUMBER(wing_inertia);
-  WINGBEAT_NUMBER(wings.air_density);
-  WINGBEAT_NUMBER(wings.pitch_coefficient);
-  WINGBEAT_NUMBER(wings.s2);
-  WINGBEAT_NUMBER(wings.s3);
-  WINGBEAT_NUMBER(wings.coefficients.lift.offset);
-  WINGBEAT_NUMBER(wings.coefficients.lift.amplitude);
-  WINGBEAT_NUMBER(wings.coefficients.lift.rate);
-  WINGBEAT_NUMBER(wings.coefficients.lift.phase);
-  WINGBEAT_NUMBER(wings.coefficients.drag.offset);
-  WINGBEAT_NUMBER(wings.coefficients.drag.amplitude);
-  WINGBEAT_NUMBER(wings.coefficients.drag.rate);
-  WINGBEAT_NUMBER(wings.coefficients.drag.phase);
-  WINGBEAT_NUMBER(source_resistance);
-  WINGBEAT_NUMBER(wings.angle_of_attack_min);
-  WINGBEAT_NUMBER(drive_frequency);
-#undef WINGBEAT_NUMBER
 }
 
 /// Which smooth branch of the kinked equations holds, each +-1.

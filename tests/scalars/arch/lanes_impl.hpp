@@ -3,7 +3,6 @@
 #pragma once
 
 #include "scalars/arch/lanes.hpp"
-#include "scalars/vehicle_parameters.hpp"
 #include "wingbeat/core/lanes.hpp"
 
 namespace wingbeat::lanes {
@@ -23,12 +22,9 @@ void evaluate(const Case* cases, int count, double* out) {
       }
       return B::load(numbers);
     };
-    Vehicle<B> vehicle = cases[start].vehicle.template cast<B>();
-    const auto targets = parameters(vehicle);
-    for (int p = 0; p < parameter_count; ++p) {
-      *targets[std::size_t(p)].second = gather(
-          [&](const Case& c) { return *parameters(const_cast<Vehicle<double>&>(c.vehicle))[std::size_t(p)].second; });
-    }
+    const Vehicle<B> vehicle = in_lanes<B, Vehicle>([&](int lane) -> const Vehicle<double>& {
+      return cases[start + lane < count ? start + lane : count - 1].vehicle;
+    });
     const B omega = gather([](const Case& c) { return c.omega; });
     const B current = gather([](const Case& c) { return c.current; });
     const B force = gather([](const Case& c) { return c.force; });
@@ -91,7 +87,7 @@ int check_select() {
     integrals.fill(B(0.5));
     extremes.fill(B(1.0));
     integrals[std::size_t(Integral::electrical_work)] = B::load(x);
-    const Vehicle<B> vehicle = Vehicle<double>{}.cast<B>();
+    const Vehicle<B> vehicle = cast<B>(Vehicle<double>{});
     const Metrics<B> m = cycle_metrics(vehicle, integrals, extremes, B(0.0), {});
     m[Metric::efficiency_system].store(got);
     for (int lane = 0; lane < size; ++lane) {
