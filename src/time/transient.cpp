@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "time/direct_transient.hpp"
-#include "time/sundials_cvode.hpp"
+#include "time/integrator.hpp"
 #include "time/transient_tools.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
 
@@ -51,9 +51,9 @@ constexpr std::size_t most_turns = 8;  // after which a motion is looked at for 
 using detail::format, detail::maximum, detail::metrics_apart, detail::raise_extremes;
 using detail::quadrature_count, detail::quadratures;
 
-class StartUp {
+class CrankStartUp {
  public:
-  StartUp(const Vehicle<double>& vehicle, const TransientOptions& options);
+  CrankStartUp(const Vehicle<double>& vehicle, const TransientOptions& options);
   TransientResult run();
 
  private:
@@ -79,7 +79,7 @@ class StartUp {
   bool rates(double t, const double* y, double* dy, bool quadrature) const;
   void root_values(double t, const double* y, double* values, bool measuring);
   void tolerated(const double* y, double* errors, bool measuring) const;
-  std::unique_ptr<detail::Cvode> integrator(bool measuring);
+  std::unique_ptr<detail::Integrator> integrator(bool measuring);
 
   // The course of events.
   void prepare();
@@ -89,9 +89,9 @@ class StartUp {
   bool stick(double low, double high);
   void relax(double until);
   void choose_force_branch();
-  void step_taken(detail::Cvode& cvode, double from);
-  void track_inrush(detail::Cvode& cvode, double from);
-  void track_extremes(detail::Cvode& cvode, double from);
+  void step_taken(detail::Integrator& steps, double from);
+  void track_inrush(detail::Integrator& steps, double from);
+  void track_extremes(detail::Integrator& steps, double from);
   void switch_supply();
   double next_switch() const;
   bool captured();
@@ -155,7 +155,7 @@ class StartUp {
   std::size_t window_laps_ = 0;
   int repeats_ = 0;
 
-  std::unique_ptr<detail::Cvode> plain_, with_quadratures_;
+  std::unique_ptr<detail::Integrator> plain_, with_quadratures_;
   bool measuring_ = false;
   int measured_laps_ = 0, laps_at_tightest_ = 0;
   std::optional<Metrics<double>> last_metrics_;  // of the lap before, found with the relative tolerance
@@ -180,7 +180,7 @@ class StartUp {
   std::size_t turns_ = 1;  // after which the motion repeats
 };
 
-StartUp::StartUp(const Vehicle<double>& vehicle, const TransientOptions& options)
+CrankStartUp::CrankStartUp(const Vehicle<double>& vehicle, const TransientOptions& options)
     : vehicle_(vehicle), options_(options) {
   supply_ = options.supply.value_or(Supply<double>{SupplyType::constant, vehicle.voltage, 0.0, 1.0});
   validate(vehicle_.motor);
@@ -208,7 +208,7 @@ StartUp::StartUp(const Vehicle<double>& vehicle, const TransientOptions& options
   }
 }
 
-Motion<double> StartUp::motion(double t, const double* y, Branch<double>* used) const {
+Motion<double> CrankStartUp::motion(double t, const double* y, Branch<double>* used) const {
   const double sin_theta = std::sin(y[0]);
   const double cos_theta = std::cos(y[0]);
   Branch<double> branch = branch_;
@@ -221,7 +221,7 @@ Motion<double> StartUp::motion(double t, const double* y, Branch<double>* used) 
   return m;
 }
 
-bool StartUp::rates(double t, const double* y, double* dy, bool quadrature) const {
+bool CrankStartUp::rates(double t, const double* y, double* dy, bool quadrature) const {
   Branch<double> branch;
   const Motion<double> m = motion(t, y, &branch);
   dy[0] = y[1];
@@ -234,7 +234,7 @@ bool StartUp::rates(double t, const double* y, double* dy, bool quadrature) cons
   return std::isfinite(dy[1]) && std::isfinite(y[coupled_ - 1]);
 }
 
-void StartUp::root_values(double t, const double* y, double* values, bool measuring) {
+void CrankStartUp::root_values(double t, const double* y, double* values, bool measuring) {
   values[root_standstill] = y[1] / speed_scale_;
   values[root_lap] = y[0] - next_lap_;
   values[root_jam] = std::min({1.0, jam_above_ - y[0], y[0] - jam_below_});
@@ -251,7 +251,7 @@ void StartUp::root_values(double t, const double* y, double* values, bool measur
   }
 }
 
-void StartUp::tolerated(const double* y, double* errors, bool measuring) const {
+void CrankStartUp::tolerated(const double* y, double* errors, bool measuring) const {
   // The crank angle grows for ever: its admissible error must not grow with it.
   errors[0] = relative_tolerance_;
   errors[1] = relative_tolerance_ * (std::abs(y[1]) + 0.01 * speed_scale_);
@@ -262,8 +262,8 @@ void StartUp::tolerated(const double* y, double* errors, bool measuring) const {
   }
 }
 
-std::unique_ptr<detail::Cvode> StartUp::integrator(bool measuring) {
-  detail::CvodeProblem p;
+std::unique_ptr<detail::Integrator> CrankStartUp::integrator(bool measuring) {
+  detail::IntegratorProblem p;
   p.size = coupled_ + (measuring ? quadrature_count : 0);
   p.coupled = coupled_;
   p.roots = measuring ? int(root_measuring_count) : int(root_plain_count);
@@ -276,33 +276,34 @@ std::unique_ptr<detail::Cvode> StartUp::integrator(bool measuring) {
     root_values(t, y, values, measuring);
   };
   p.tolerated = [this, measuring](const double* y, double* errors) { tolerated(y, errors, measuring); };
+  p.longest_step = 0.25 * time_scale_;
   p.typical = {0.1, speed_scale_, current_scale_};
-  return std::make_unique<detail::Cvode>(std::move(p));
+  return detail::make_integrator(options_.integrator, std::move(p));
 }
 
-double StartUp::static_force(const CrankKinematics<double>& k) const {
+double CrankStartUp::static_force(const CrankKinematics<double>& k) const {
   if (wingless_) return 0.0;
   return wingbeat::static_rod_force(k, spring_moment(vehicle_, k));
 }
 
 /// K i - F_s h [N m]: what would turn the crank at rest.
-double StartUp::net_static_torque(double theta, double i) const {
+double CrankStartUp::net_static_torque(double theta, double i) const {
   const CrankKinematics<double> k = kinematics(theta);
   return vehicle_.motor.torque_constant * i - static_force(k) * k.crank_lever;
 }
 
 /// mu r_e |F_s| + T_c [N m]: what friction can hold at rest.
-double StartUp::holding_torque(double theta) const {
+double CrankStartUp::holding_torque(double theta) const {
   return wingbeat::holding_torque(vehicle_, static_force(kinematics(theta)));
 }
 
-double StartUp::wing_energy() const {
+double CrankStartUp::wing_energy() const {
   const CrankKinematics<double> k = kinematics(theta_);
   return wingbeat::wing_energy(vehicle_, k, k.stroke_slope * omega_);
 }
 
 /// di/dt [A/s]; `rates` are needed without inductance only.
-double StartUp::current_slope(double t, const double* y, const double* rates) const {
+double CrankStartUp::current_slope(double t, const double* y, const double* rates) const {
   const Motor<double>& m = vehicle_.motor;
   const double R = circuit_resistance(vehicle_);
   if (inductive_) return (voltage(t) - R * y[2] - m.torque_constant * y[1]) / m.armature_inductance;
@@ -314,7 +315,7 @@ double StartUp::current_slope(double t, const double* y, const double* rates) co
 
 /// The smaller of the effective inertias over J, and the wing lever over H: the equations have one solution while
 /// it is positive.
-double StartUp::uniqueness(double theta) const {
+double CrankStartUp::uniqueness(double theta) const {
   const CrankKinematics<double> k = kinematics(theta);
   const double lever = k.wing_lever / vehicle_.crank.hinge_offset;
   if (!(lever > 0.0)) return lever;
@@ -322,7 +323,7 @@ double StartUp::uniqueness(double theta) const {
 }
 
 /// Nearest crank angles on either side of the start that the crank cannot pass.
-void StartUp::find_jams() {
+void CrankStartUp::find_jams() {
   smallest_inertia_ = vehicle_.motor.inertia;
   if (wingless_) return;
   constexpr int count = 720;
@@ -355,7 +356,7 @@ void StartUp::find_jams() {
   if (std::isfinite(jam_above_)) jam_below_ = first(-1);
 }
 
-void StartUp::prepare() {
+void CrankStartUp::prepare() {
   const Motor<double>& m = vehicle_.motor;
   const double R = circuit_resistance(vehicle_), K = m.torque_constant;
   theta_ = swing_low_ = swing_high_ = options_.crank_angle;
@@ -427,7 +428,7 @@ void StartUp::prepare() {
   sample();
 }
 
-bool StartUp::out_of_budget() {
+bool CrankStartUp::out_of_budget() {
   ++result_.steps;
   if (result_.steps > options_.max_steps) {
     give_up(format("no verdict within %ld integration steps", options_.max_steps));
@@ -444,7 +445,7 @@ bool StartUp::out_of_budget() {
   return done_;
 }
 
-TransientResult StartUp::run() {
+TransientResult CrankStartUp::run() {
   prepare();
   // A motor that never starts is stalled, jammed or not.
   const double drive = vehicle_.motor.torque_constant * supply_.voltage / circuit_resistance(vehicle_);
@@ -470,7 +471,7 @@ TransientResult StartUp::run() {
 }
 
 /// At a standstill: rests for good, waits for the current to break it away, or moves on in the direction of the torque.
-void StartUp::stand() {
+void CrankStartUp::stand() {
   const CrankKinematics<double> k = kinematics(theta_);
   const double load = static_force(k) * k.crank_lever;
   const double hold = vehicle_.friction.radius * std::abs(static_force(k)) + constant_friction_;
@@ -488,7 +489,7 @@ void StartUp::stand() {
 
 /// Crank held by friction while the current stays in [low, high]. True when it breaks away, t_, i_ and the direction
 /// then being set; false when the verdict is in.
-bool StartUp::stick(double low, double high) {
+bool CrankStartUp::stick(double low, double high) {
   const Motor<double>& m = vehicle_.motor;
   const double R = circuit_resistance(vehicle_);
   const double tau = m.armature_inductance / R;
@@ -553,7 +554,7 @@ bool StartUp::stick(double low, double high) {
 }
 
 /// Lets the current of the standing motor run on to the time `until`, before any switching of the supply.
-void StartUp::relax(double until) {
+void CrankStartUp::relax(double until) {
   const Motor<double>& m = vehicle_.motor;
   const double R = circuit_resistance(vehicle_);
   const double tau = m.armature_inductance / R;
@@ -616,14 +617,14 @@ void StartUp::relax(double until) {
   if (options_.record_interval == 0.0 && span > 0.0) sample();
 }
 
-double StartUp::next_switch() const {
+double CrankStartUp::next_switch() const {
   if (supply_.type != SupplyType::pwm) return infinity;
   // Even switches turn on, odd ones off; number 0 is the switching on at t = 0.
   const long next = switches_ + 1;
   return (double(next / 2) + (next % 2 == 1 ? supply_.duty : 0.0)) / supply_.frequency;
 }
 
-void StartUp::switch_supply() {
+void CrankStartUp::switch_supply() {
   ++switches_;
   if (switches_ % 2 == 1) {
     ripple_top_ = i_;
@@ -647,7 +648,7 @@ void StartUp::switch_supply() {
   }
 }
 
-void StartUp::choose_force_branch() {
+void CrankStartUp::choose_force_branch() {
   if (wingless_) return;
   if (force_branch_known_) {
     force_branch_known_ = false;
@@ -669,12 +670,12 @@ void StartUp::choose_force_branch() {
 }
 
 /// Integrates one smooth branch to the next event that ends it.
-void StartUp::slide() {
+void CrankStartUp::slide() {
   choose_force_branch();
-  std::unique_ptr<detail::Cvode>& slot = measuring_ ? with_quadratures_ : plain_;
+  std::unique_ptr<detail::Integrator>& slot = measuring_ ? with_quadratures_ : plain_;
   if (!slot) slot = integrator(measuring_);
-  detail::Cvode& cvode = *slot;
-  double* y = cvode.state();
+  detail::Integrator& steps = *slot;
+  double* y = steps.state();
   y[0] = theta_;
   y[1] = omega_;
   if (inductive_) y[2] = i_;
@@ -688,15 +689,15 @@ void StartUp::slide() {
     if (stop == switching) switch_supply();
     return;
   }
-  if (!cvode.restart(t_, directions, std::min(time_scale_, stop - t_), stop)) {
+  if (!steps.restart(t_, directions, std::min(time_scale_, stop - t_), stop)) {
     give_up("the integrator could not be started");
     return;
   }
   int branch_steps = 0;
   while (true) {
     const double from = t_;
-    const detail::Cvode::Outcome outcome = cvode.advance();
-    if (outcome == detail::Cvode::Outcome::failed) {
+    const detail::Integrator::Outcome outcome = steps.advance();
+    if (outcome == detail::Integrator::Outcome::failed) {
       if (relative_tolerance_ < 1e-9) {
         relative_tolerance_ = tightest_ = 10.0 * relative_tolerance_;
         force_branch_known_ = true;
@@ -706,33 +707,33 @@ void StartUp::slide() {
                      wrap_angle(theta_) * degrees_per_radian));
       return;
     }
-    t_ = cvode.time();
+    t_ = steps.time();
     theta_ = y[0];
     omega_ = y[1];
     i_ = current_of(t_, y);
     if (measuring_) std::copy(y + coupled_, y + coupled_ + quadrature_count, q_);
-    step_taken(cvode, from);
+    step_taken(steps, from);
 
     bool branch_ends = false;
-    if (outcome == detail::Cvode::Outcome::root) {
-      if (cvode.found(root_jam)) {
+    if (outcome == detail::Integrator::Outcome::root) {
+      if (steps.found(root_jam)) {
         jam(theta_);
         return;
       }
-      if (cvode.found(root_standstill)) {
+      if (steps.found(root_standstill)) {
         omega_ = 0.0;
         event(Kind::standstill);
         branch_ends = true;
       }
-      if (cvode.found(root_force)) {
+      if (steps.found(root_force)) {
         event(Kind::force_sign_change);
         branch_.force = -branch_.force;
         force_branch_known_ = omega_ != 0.0;
         branch_ends = true;
       }
       if (measuring_) add_variation();
-      if (cvode.found(root_lap)) branch_ends = lap_done() || branch_ends;
-    } else if (outcome == detail::Cvode::Outcome::stop) {
+      if (steps.found(root_lap)) branch_ends = lap_done() || branch_ends;
+    } else if (outcome == detail::Integrator::Outcome::stop) {
       if (measuring_) add_variation();
       if (stop == switching && t_ >= stop) switch_supply();
       branch_ends = true;
@@ -758,25 +759,25 @@ void StartUp::slide() {
   }
 }
 
-void StartUp::step_taken(detail::Cvode& cvode, double from) {
+void CrankStartUp::step_taken(detail::Integrator& steps, double from) {
   swing_low_ = std::min(swing_low_, theta_);
   swing_high_ = std::max(swing_high_, theta_);
   window_low_ = std::min(window_low_, theta_);
   window_high_ = std::max(window_high_, theta_);
-  track_inrush(cvode, from);
-  if (measuring_) track_extremes(cvode, from);
+  track_inrush(steps, from);
+  if (measuring_) track_extremes(steps, from);
   if (!options_.record) return;
   if (options_.record_interval == 0.0) {
     sample();
     return;
   }
   for (; next_sample_ <= t_; next_sample_ += options_.record_interval) {
-    const double* y = cvode.dense(next_sample_);
+    const double* y = steps.dense(next_sample_);
     result_.samples.push_back({next_sample_, y[0], y[1], current_of(next_sample_, y)});
   }
 }
 
-void StartUp::track_inrush(detail::Cvode& cvode, double from) {
+void CrankStartUp::track_inrush(detail::Integrator& steps, double from) {
   const auto note = [&](double t, double i) {
     if (i > result_.inrush_current) {
       result_.inrush_current = i;
@@ -785,8 +786,8 @@ void StartUp::track_inrush(detail::Cvode& cvode, double from) {
   };
   const auto slope = [&](double t) {
     double rates[3] = {};
-    if (!inductive_) rates[1] = cvode.dense(t, 1)[1];
-    return current_slope(t, cvode.dense(t), rates);
+    if (!inductive_) rates[1] = steps.dense(t, 1)[1];
+    return current_slope(t, steps.dense(t), rates);
   };
   note(t_, i_);
   if (i_ < 0.9 * result_.inrush_current || slope(t_) >= 0.0 || slope(from) <= 0.0) return;
@@ -795,14 +796,14 @@ void StartUp::track_inrush(detail::Cvode& cvode, double from) {
     const double mid = 0.5 * (a + b);
     (slope(mid) > 0.0 ? a : b) = mid;
   }
-  note(a, current_of(a, cvode.dense(a)));
+  note(a, current_of(a, steps.dense(a)));
 }
 
 /// Raises the extremes of the lap to what they reach within the last step, on the integrator's own interpolant.
-void StartUp::track_extremes(detail::Cvode& cvode, double from) {
+void CrankStartUp::track_extremes(detail::Integrator& steps, double from) {
   raise_extremes(
       [&](double t) {
-        const double* y = cvode.dense(t);
+        const double* y = steps.dense(t);
         Branch<double> branch;
         const Motion<double> m = motion(t, y, &branch);
         return extreme_candidates(vehicle_, m, y[1], branch);
@@ -810,7 +811,7 @@ void StartUp::track_extremes(detail::Cvode& cvode, double from) {
       from, t_, extremes_);
 }
 
-void StartUp::add_variation() {
+void CrankStartUp::add_variation() {
   const double energy = wing_energy();
   variation_ += std::abs(energy - energy_mark_);
   energy_mark_ = energy;
@@ -820,7 +821,7 @@ void StartUp::add_variation() {
 /// towards: kinetic energy, spring energy above the equilibrium's and inductive energy together only fall, and are
 /// small already. With Coulomb friction, the equilibrium is where the torque no longer exceeds it: an overdamped crank
 /// creeps there without ever standing still.
-bool StartUp::captured() {
+bool CrankStartUp::captured() {
   if (supply_.type != SupplyType::constant || std::abs(omega_) > 0.02 * speed_scale_) return false;
   const Motor<double>& m = vehicle_.motor;
   const double final_current = switched_voltage_ / circuit_resistance(vehicle_);
@@ -852,7 +853,7 @@ bool StartUp::captured() {
 }
 
 /// With a varying supply: true, with the verdict, when the crank swings without rotating and its swings repeat.
-bool StartUp::swings_repeat() {
+bool CrankStartUp::swings_repeat() {
   if (supply_.type == SupplyType::constant || t_ < window_end_) return false;
   const bool same = window_laps_ == crossings_.size() && std::abs(window_low_ - last_low_) < same_swing &&
                     std::abs(window_high_ - last_high_) < same_swing;
@@ -874,7 +875,7 @@ bool StartUp::swings_repeat() {
 }
 
 /// A forward crossing of theta = 2 pi n. True if the integrator must start afresh.
-bool StartUp::lap_done() {
+bool CrankStartUp::lap_done() {
   const double before = crossings_.empty() ? 0.0 : crossings_.back().time + crossings_.back().skipped;
   crossings_.push_back({t_, omega_, i_, t_ - before, 0.0});
   event(Kind::revolution);
@@ -886,7 +887,7 @@ bool StartUp::lap_done() {
   return restart;
 }
 
-bool StartUp::lap_done_constant() {
+bool CrankStartUp::lap_done_constant() {
   ++laps_compared_;
   ++laps_since_jump_;
   if (crossings_.size() < 2) return false;
@@ -955,7 +956,7 @@ bool cancels(const Metrics<double>& m) {
 /// Takes the metrics of a lap as those of steady flapping where it began close enough to the orbit and a lap of looser
 /// steps gives the same. Otherwise the next lap is measured: with tighter steps, and, where laps converge slowly, from
 /// where the known contraction leads.
-void StartUp::lap_measured(double rate) {
+void CrankStartUp::lap_measured(double rate) {
   const double tolerance = options_.tolerance;
   const double gain = 1.0 / (1.0 - std::min(std::max(rate, contraction_), largest_rate));
   // The lap began as far from the orbit as change / (1 - rate).
@@ -1007,7 +1008,7 @@ void StartUp::lap_measured(double rate) {
 }
 
 /// True if the state repeats after so many laps, far better than after one.
-bool StartUp::repeats_after(std::size_t laps) const {
+bool CrankStartUp::repeats_after(std::size_t laps) const {
   const std::size_t n = crossings_.size();
   if (n < 4 * laps) return false;
   for (std::size_t k = n - 2 * laps; k < n; ++k) {
@@ -1024,7 +1025,7 @@ bool StartUp::repeats_after(std::size_t laps) const {
 /// less than the one before, which single laps of a heavy rotor do not show above the integrator's errors. To the limit
 /// (Aitken) once that changes nothing a start-up is looked at for: less than a thousandth. Half of the way, but no more
 /// than a fifth of the speed, where a heavy rotor has far to go.
-bool StartUp::jump_ahead(double rate) {
+bool CrankStartUp::jump_ahead(double rate) {
   const std::size_t n = crossings_.size();
   if (options_.record || turns_ > 1 || laps_compared_ < 5 || rate < 0.3) return false;
   const std::size_t laps = std::size_t(laps_compared_) - 2;  // the first one after a jump still settles
@@ -1036,7 +1037,7 @@ bool StartUp::jump_ahead(double rate) {
   return false;
 }
 
-bool StartUp::jump_by_blocks(std::size_t n, std::size_t block) {
+bool CrankStartUp::jump_by_blocks(std::size_t n, std::size_t block) {
   const auto difference = [&](std::size_t back) {
     const Crossing& a = crossings_[n - 1 - (back + 1) * block];
     const Crossing& b = crossings_[n - 1 - back * block];
@@ -1084,7 +1085,7 @@ bool StartUp::jump_by_blocks(std::size_t n, std::size_t block) {
 }
 
 /// Start of the first lap from which on every lap's duration is within 1 % of the period.
-double StartUp::time_of_steadiness(double period) const {
+double CrankStartUp::time_of_steadiness(double period) const {
   const auto off = [&](std::size_t lap) { return std::abs(period / lap_time(lap) - 1.0); };
   std::size_t lap = crossings_.size();
   while (lap > 0 && off(lap - 1) <= 1e-2) --lap;
@@ -1096,7 +1097,7 @@ double StartUp::time_of_steadiness(double period) const {
   return last.time + last.skipped * std::clamp(std::log(before / 1e-2) / std::log(before / after), 0.0, 1.0);
 }
 
-double StartUp::lap_scatter(std::size_t laps) const {
+double CrankStartUp::lap_scatter(std::size_t laps) const {
   const std::size_t n = crossings_.size();
   double mean = 0.0, scatter = 0.0;
   for (std::size_t k = n - laps; k < n; ++k) mean += lap_time(k) / double(laps);
@@ -1105,7 +1106,7 @@ double StartUp::lap_scatter(std::size_t laps) const {
 }
 
 /// Supplies that vary: laps share no period with the supply in general, so averages over several laps are compared.
-bool StartUp::lap_done_averaging() {
+bool CrankStartUp::lap_done_averaging() {
   constexpr std::size_t window = averaged_laps_pwm;
   const std::size_t n = crossings_.size();
   if (measuring_) {
@@ -1123,7 +1124,7 @@ bool StartUp::lap_done_averaging() {
   return true;
 }
 
-void StartUp::begin_measuring() {
+void CrankStartUp::begin_measuring() {
   if (!measuring_) measured_laps_ = 0;
   measuring_ = true;
   std::fill(std::begin(q_), std::end(q_), 0.0);
@@ -1135,7 +1136,7 @@ void StartUp::begin_measuring() {
   energy_mark_ = wing_energy();
 }
 
-void StartUp::take_metrics(int laps) {
+void CrankStartUp::take_metrics(int laps) {
   const std::size_t n = crossings_.size();
   const double start = int(n) > laps ? crossings_[n - 1 - std::size_t(laps)].time : 0.0;
   CycleIntegrals<double>& integrals = result_.integrals;
@@ -1147,7 +1148,7 @@ void StartUp::take_metrics(int laps) {
   if (ripple_count_ > 0) result_.current_ripple = ripple_sum_ / double(ripple_count_);
 }
 
-void StartUp::flap() {
+void CrankStartUp::flap() {
   done_ = true;
   result_.status = FlappingStatus::flapping;
   const double period =
@@ -1170,7 +1171,7 @@ void StartUp::flap() {
       result_.settled ? "" : "; laps and supply share no period");
 }
 
-void StartUp::rest(double theta, bool held_by_friction) {
+void CrankStartUp::rest(double theta, bool held_by_friction) {
   done_ = true;
   result_.settled = true;
   theta_ = theta;
@@ -1207,7 +1208,7 @@ void StartUp::rest(double theta, bool held_by_friction) {
                 degrees, stall_torque);
 }
 
-void StartUp::jam(double theta) {
+void CrankStartUp::jam(double theta) {
   done_ = true;
   event(Kind::jam);
   result_.settled = true;
@@ -1228,7 +1229,7 @@ void StartUp::jam(double theta) {
       degrees, inertia);
 }
 
-void StartUp::give_up(const std::string& why) {
+void CrankStartUp::give_up(const std::string& why) {
   done_ = true;
   result_.settled = false;
   const std::size_t n = crossings_.size();
@@ -1250,7 +1251,7 @@ void StartUp::give_up(const std::string& why) {
 
 TransientResult simulate_start_up(const Vehicle<double>& vehicle, const TransientOptions& options) {
   if (vehicle.transmission == TransmissionType::direct) return detail::simulate_direct_start_up(vehicle, options);
-  return StartUp(vehicle, options).run();
+  return CrankStartUp(vehicle, options).run();
 }
 
 }  // namespace wingbeat
