@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "time/integrator.hpp"
+#include "time/recorder.hpp"
 #include "time/transient_tools.hpp"
 #include "wingbeat/cycle/direct_balance.hpp"
 
@@ -62,13 +63,11 @@ class DirectStartUp {
   bool out_of_budget();
   void give_up(const std::string& why);
   void event(Kind kind) { result_.events.push_back({t_, y_[0], kind}); }
-  void sample() {
-    if (options_.record) result_.samples.push_back({t_, y_[0], y_[1], current_of(t_, y_)});
-  }
 
   Vehicle<double> vehicle_;
   const TransientOptions& options_;
   TransientResult result_;
+  Recorder recorder_{options_, result_};
   double w_, period_;
   bool inductive_, sticks_, stiff_ = false, done_ = false;
   int coupled_;
@@ -82,7 +81,6 @@ class DirectStartUp {
   double q_[quadrature_count] = {};
   bool stuck_ = false;
   double direction_ = 1.0;  ///< of a slip, where there is constant friction
-  double next_sample_ = 0.0;
   std::unique_ptr<Integrator> plain_, with_quadratures_;
 
   bool measuring_ = false;
@@ -300,11 +298,7 @@ void DirectStartUp::step_taken(Integrator& steps, double from) {
   swing_ = std::max(swing_, std::abs(y_[0]));
   travel_[y_[0] > stroke_before_] += std::abs(y_[0] - stroke_before_);
   stroke_before_ = y_[0];
-  const double i = std::abs(current_of(t_, y_));
-  if (i > result_.inrush_current) {
-    result_.inrush_current = i;
-    result_.inrush_current_time = t_;
-  }
+  recorder_.note_current(t_, std::abs(current_of(t_, y_)));
   if (measuring_) {
     raise_extremes(
         [&](double t) {
@@ -320,15 +314,10 @@ void DirectStartUp::step_taken(Integrator& steps, double from) {
       result_.cycle.push_back(row(std::min(at, t_), steps.dense(std::min(at, t_))));
     }
   }
-  if (!options_.record) return;
-  if (options_.record_interval == 0.0) {
-    sample();
-    return;
-  }
-  for (; next_sample_ <= t_; next_sample_ += options_.record_interval) {
-    const double* y = steps.dense(next_sample_);
-    result_.samples.push_back({next_sample_, y[0], y[1], current_of(next_sample_, y)});
-  }
+  recorder_.step_taken({t_, y_[0], y_[1], current_of(t_, y_)}, [&](double t) {
+    const double* y = steps.dense(t);
+    return TransientSample{t, y[0], y[1], current_of(t, y)};
+  });
 }
 
 void DirectStartUp::add_variation() {
@@ -501,9 +490,8 @@ TransientResult DirectStartUp::run() {
   std::copy(y_, y_ + 3, before_);
   swing_ = std::abs(y_[0]);
   stroke_before_ = y_[0];
-  result_.inrush_current = std::abs(current_of(0.0, y_));
-  next_sample_ = options_.record_interval;
-  sample();
+  recorder_.start(std::abs(current_of(0.0, y_)));
+  recorder_.sample({t_, y_[0], y_[1], current_of(t_, y_)});
   while (!done_) {
     const double end = double(result_.laps + 1) * period_;
     const double until = options_.max_time > 0.0 ? std::min(end, options_.max_time) : end;
