@@ -182,30 +182,6 @@ void note_domain(const Vehicle<double>& vehicle, RunResult& result) {
 
 }  // namespace
 
-StartUp start_up_in_time(double tolerance) {
-  return [tolerance](const Vehicle<double>& vehicle) {
-    TransientOptions options;
-    options.tolerance = std::max(tolerance, transient_tightest);
-    options.metrics = false;
-    const TransientResult r = simulate_start_up(vehicle, options);
-    StartUpOutcome outcome{r.status, r.settled, r.detail, r.crank_speed, r.current, r.stroke_angle, {}};
-    if (r.status != FlappingStatus::flapping || !r.settled) return outcome;
-    outcome.cycle = [vehicle, state = outcome](double wanted, const Reporting& reporting) {
-      TransientOptions onward;
-      onward.tolerance = std::max(wanted, transient_tightest);
-      onward.reporting = reporting;
-      onward.crank_angle = state.stroke_angle;
-      onward.crank_speed = state.crank_speed;
-      onward.current = state.current;
-      const TransientResult cycle = simulate_start_up(vehicle, onward);
-      if (!cycle.settled || !cycle.metrics) return std::optional<SimulatedCycle>();
-      return std::optional(
-          SimulatedCycle{*cycle.metrics, std::max(onward.tolerance, cycle.closure), cycle.averaged_laps});
-    };
-    return outcome;
-  };
-}
-
 RunResult run_design(const Design<double>& design, const RunOptions& options) {
   require(options.tolerance >= 1e-12 && options.tolerance <= 1e-2, "tolerance", "must lie between 1e-12 and 1e-2", "1",
           options.tolerance);

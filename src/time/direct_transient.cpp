@@ -6,7 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "time/sundials_cvode.hpp"
+#include "time/integrator.hpp"
+#include "time/recorder.hpp"
 #include "time/transient_tools.hpp"
 #include "wingbeat/cycle/direct_balance.hpp"
 
@@ -43,7 +44,7 @@ class DirectStartUp {
   Motion<double> motion(double t, const double* y) const;
   bool rates(double t, const double* y, double* dy, bool measuring) const;
   void root_values(double t, const double* y, double* values, bool measuring) const;
-  std::unique_ptr<Cvode> integrator(bool measuring);
+  std::unique_ptr<Integrator> integrator(bool measuring);
   double wing_energy() const {
     return 0.5 * vehicle_.wing_count *
            (vehicle_.wing_inertia * square(y_[1]) + vehicle_.spring.stiffness * square(y_[0]));
@@ -51,8 +52,7 @@ class DirectStartUp {
 
   void advance(double until);
   void come_to_rest();
-  void step_taken(Cvode& cvode, double from);
-  void add_rows(Cvode* cvode);
+  void step_taken(Integrator& steps, double from);
   WaveformRow row(double t, const double* y) const;
   void add_variation();
   void period_done();
@@ -63,13 +63,11 @@ class DirectStartUp {
   bool out_of_budget();
   void give_up(const std::string& why);
   void event(Kind kind) { result_.events.push_back({t_, y_[0], kind}); }
-  void sample() {
-    if (options_.record) result_.samples.push_back({t_, y_[0], y_[1], current_of(t_, y_)});
-  }
 
   Vehicle<double> vehicle_;
   const TransientOptions& options_;
   TransientResult result_;
+  Recorder recorder_{options_, result_};
   double w_, period_;
   bool inductive_, sticks_, stiff_ = false, done_ = false;
   int coupled_;
@@ -83,8 +81,7 @@ class DirectStartUp {
   double q_[quadrature_count] = {};
   bool stuck_ = false;
   double direction_ = 1.0;  ///< of a slip, where there is constant friction
-  double next_sample_ = 0.0;
-  std::unique_ptr<Cvode> plain_, with_quadratures_;
+  std::unique_ptr<Integrator> plain_, with_quadratures_;
 
   bool measuring_ = false;
   std::optional<Metrics<double>> last_metrics_;  ///< of the period before, found with the relative tolerance
@@ -200,8 +197,8 @@ void DirectStartUp::root_values(double t, const double* y, double* values, bool 
   values[root_velocity] = stuck_ ? 1.0 : y[1] / speed_scale_;
 }
 
-std::unique_ptr<Cvode> DirectStartUp::integrator(bool measuring) {
-  CvodeProblem p;
+std::unique_ptr<Integrator> DirectStartUp::integrator(bool measuring) {
+  IntegratorProblem p;
   p.size = coupled_ + (measuring ? quadrature_count : 0);
   p.coupled = coupled_;
   p.roots = measuring ? int(root_count) : 1;
@@ -221,8 +218,9 @@ std::unique_ptr<Cvode> DirectStartUp::integrator(bool measuring) {
       errors[coupled_ + k] = relative_tolerance_ * (std::abs(y[coupled_ + k]) + 0.01 * quadrature_scale_[k]);
     }
   };
+  p.longest_step = 0.25 * period_;
   p.typical = {stroke_scale_, speed_scale_, current_scale_};
-  return std::make_unique<Cvode>(std::move(p));
+  return make_integrator(options_.integrator, std::move(p));
 }
 
 /// The shaft has come to rest where constant friction acts: it is held, or moves on where it is pulled.
@@ -242,21 +240,21 @@ void DirectStartUp::advance(double until) {
     t_ = until;
     return;
   }
-  std::unique_ptr<Cvode>& slot = measuring_ ? with_quadratures_ : plain_;
+  std::unique_ptr<Integrator>& slot = measuring_ ? with_quadratures_ : plain_;
   if (!slot) slot = integrator(measuring_);
-  Cvode& cvode = *slot;
-  double* y = cvode.state();
+  Integrator& steps = *slot;
+  double* y = steps.state();
   std::copy(y_, y_ + coupled_, y);
   if (measuring_) std::copy(q_, q_ + quadrature_count, y + coupled_);
   int directions[root_count] = {stuck_ ? -1 : int(-direction_), 0, 0};
-  if (!cvode.restart(t_, directions, std::min(period_, until - t_), until)) {
+  if (!steps.restart(t_, directions, std::min(period_, until - t_), until)) {
     give_up("the integrator could not be started");
     return;
   }
   while (!done_) {
     const double from = t_;
-    const Cvode::Outcome outcome = cvode.advance();
-    if (outcome == Cvode::Outcome::failed) {
+    const Integrator::Outcome outcome = steps.advance();
+    if (outcome == Integrator::Outcome::failed) {
       if (relative_tolerance_ < 1e-9) {
         relative_tolerance_ = tightest_ = 10.0 * relative_tolerance_;
         return;
@@ -264,14 +262,14 @@ void DirectStartUp::advance(double until) {
       give_up(format("the integrator failed at t = %.6g s", t_));
       return;
     }
-    t_ = cvode.time();
+    t_ = steps.time();
     std::copy(y, y + coupled_, y_);
     if (measuring_) std::copy(y + coupled_, y + coupled_ + quadrature_count, q_);
-    step_taken(cvode, from);
-    if (outcome == Cvode::Outcome::stop) return;
-    if (outcome == Cvode::Outcome::root) {
+    step_taken(steps, from);
+    if (outcome == Integrator::Outcome::stop) return;
+    if (outcome == Integrator::Outcome::root) {
       if (measuring_) add_variation();
-      if (cvode.found(root_motion)) {
+      if (steps.found(root_motion)) {
         if (stuck_) {
           stuck_ = false;
           direction_ = sign_of(pull(t_, y_));
@@ -296,19 +294,15 @@ WaveformRow DirectStartUp::row(double t, const double* y) const {
   return waveform_row(vehicle_, m, t - double(result_.laps) * period_, y[0], m.stroke_velocity, y[0]);
 }
 
-void DirectStartUp::step_taken(Cvode& cvode, double from) {
+void DirectStartUp::step_taken(Integrator& steps, double from) {
   swing_ = std::max(swing_, std::abs(y_[0]));
   travel_[y_[0] > stroke_before_] += std::abs(y_[0] - stroke_before_);
   stroke_before_ = y_[0];
-  const double i = std::abs(current_of(t_, y_));
-  if (i > result_.inrush_current) {
-    result_.inrush_current = i;
-    result_.inrush_current_time = t_;
-  }
+  recorder_.note_current(t_, std::abs(current_of(t_, y_)));
   if (measuring_) {
     raise_extremes(
         [&](double t) {
-          const double* y = cvode.dense(t);
+          const double* y = steps.dense(t);
           const Motion<double> m = motion(t, y);
           return extreme_candidates(m, m.stroke_velocity, branch_at(y), y[0]);
         },
@@ -317,18 +311,13 @@ void DirectStartUp::step_taken(Cvode& cvode, double from) {
     while (last > 0 && int(result_.cycle.size()) <= last) {
       const double at = period_ * (result_.laps + double(result_.cycle.size()) / last);
       if (at > t_ + 1e-12 * period_) break;
-      result_.cycle.push_back(row(std::min(at, t_), cvode.dense(std::min(at, t_))));
+      result_.cycle.push_back(row(std::min(at, t_), steps.dense(std::min(at, t_))));
     }
   }
-  if (!options_.record) return;
-  if (options_.record_interval == 0.0) {
-    sample();
-    return;
-  }
-  for (; next_sample_ <= t_; next_sample_ += options_.record_interval) {
-    const double* y = cvode.dense(next_sample_);
-    result_.samples.push_back({next_sample_, y[0], y[1], current_of(next_sample_, y)});
-  }
+  recorder_.step_taken({t_, y_[0], y_[1], current_of(t_, y_)}, [&](double t) {
+    const double* y = steps.dense(t);
+    return TransientSample{t, y[0], y[1], current_of(t, y)};
+  });
 }
 
 void DirectStartUp::add_variation() {
@@ -501,9 +490,8 @@ TransientResult DirectStartUp::run() {
   std::copy(y_, y_ + 3, before_);
   swing_ = std::abs(y_[0]);
   stroke_before_ = y_[0];
-  result_.inrush_current = std::abs(current_of(0.0, y_));
-  next_sample_ = options_.record_interval;
-  sample();
+  recorder_.start(std::abs(current_of(0.0, y_)));
+  recorder_.sample({t_, y_[0], y_[1], current_of(t_, y_)});
   while (!done_) {
     const double end = double(result_.laps + 1) * period_;
     const double until = options_.max_time > 0.0 ? std::min(end, options_.max_time) : end;

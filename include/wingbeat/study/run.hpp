@@ -51,9 +51,6 @@ struct RunResult {
   Design<double> design;                    ///< as computed: with the voltage or duty that was found
 };
 
-/// What a vehicle does from rest, by simulate_start_up: the judge that find_steady_flapping asks in doubt.
-StartUp start_up_in_time(double tolerance = 1e-6);
-
 /// Computes one validated design. Throws ParameterError for a crank on a sine supply where Method::orbit, a frequency
 /// or a lift is asked for (it has no periodic orbit in crank angle), for a battery where a frequency or a lift is, for
 /// a duty above 1 and for options out of range.

@@ -1,6 +1,7 @@
-// Start-up in the time domain by SUNDIALS CVODE: from rest (or any state) to steady flapping, standstill or jam;
+// Start-up in the time domain: from rest (or any state) to steady flapping, standstill or jam;
 // model.md sections 2, 'Not flapping', and 6. Of a direct drive, read shaft for crank: its angle is the stroke angle,
-// and a lap is a period of the supply. Independent of the periodic-orbit solver, so that each can check the other.
+// and a lap is a period of the supply. By SUNDIALS CVODE it is independent of
+// the periodic-orbit solver, so that each can check the other; by the project's own steps it needs nothing.
 #pragma once
 
 #include <functional>
@@ -11,10 +12,17 @@
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/cycle/record.hpp"
+#include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/parts/supply.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
+
+enum class TimeIntegrator {
+  automatic,  ///< SUNDIALS where the library is built with it, else its own steps
+  sundials,   ///< CVODE: Adams with functional iteration, BDF with Newton where stiff
+  own_steps   ///< Dormand and Prince's 8(5,3) pair, five-stage Radau IIA where stiff: the steps of the orbit solver
+};
 
 struct TransientOptions {
   double tolerance = 1e-6;  ///< wanted relative accuracy of the metrics of steady flapping [1], 1e-11 to 1e-2
@@ -37,6 +45,7 @@ struct TransientOptions {
   /// gives no metrics.
   bool metrics = true;
   Reporting reporting;
+  TimeIntegrator integrator = TimeIntegrator::automatic;
   std::function<bool()> cancel;  ///< polled now and then; true ends the computation unsettled
 };
 
@@ -96,12 +105,15 @@ struct TransientResult {
 
   long steps = 0;             ///< integration steps
   long rate_evaluations = 0;  ///< evaluations of the equations of motion
-  bool stiff = false;         ///< BDF with Newton was used, otherwise Adams with functional iteration
+  bool stiff = false;         ///< an implicit method was used: BDF, or Radau IIA
 };
 
 /// Simulates start-up until the vehicle flaps steadily, rests for good, or jams. Throws ParameterError for parameters
 /// out of range; every outcome, running out of time included, is a result. Rotation direction, sticking and the sign of
 /// the rod force are tracked by root finding; the equations are (1, 5-11, 21) on each smooth branch.
 TransientResult simulate_start_up(const Vehicle<double>& vehicle, const TransientOptions& options = {});
+
+/// What a vehicle does from rest, by simulate_start_up: the judge that find_steady_flapping asks in doubt.
+StartUp start_up_in_time(double tolerance = 1e-6, TimeIntegrator integrator = TimeIntegrator::automatic);
 
 }  // namespace wingbeat

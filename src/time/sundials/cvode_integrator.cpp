@@ -1,9 +1,6 @@
-// CVODE behind values and callables: one initial value problem with root functions, integrated step by step.
-#pragma once
-
+// SUNDIALS CVODE as an integrator.
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <new>
 #include <utility>
 #include <vector>
@@ -14,25 +11,15 @@
 #include <sunmatrix/sunmatrix_dense.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
-namespace wingbeat::detail {
+#include "time/integrator.hpp"
 
-struct CvodeProblem {
-  int size = 0;
-  int coupled = 0;  ///< the rates depend on the first `coupled` unknowns alone; the rest are quadratures
-  int roots = 0;
-  bool stiff = false;
-  std::function<bool(double t, const double* y, double* rates)> rates;  ///< false: cannot be evaluated there
-  std::function<void(double t, const double* y, double* values)> root_functions;
-  std::function<void(const double* y, double* errors)> tolerated;  ///< admissible local error of each unknown, > 0
-  std::vector<double> typical;  ///< size of the coupled unknowns, for the difference quotients of the Jacobian
-};
+namespace wingbeat::detail {
+namespace {
 
 /// Owns a CVODE integrator. The address of an object must not change: CVODE keeps it.
-class Cvode {
+class Cvode : public Integrator {
  public:
-  enum class Outcome { step, root, stop, failed };
-
-  explicit Cvode(CvodeProblem problem) : problem_(std::move(problem)), found_(std::size_t(problem_.roots)) {
+  explicit Cvode(IntegratorProblem problem) : problem_(std::move(problem)), found_(std::size_t(problem_.roots)) {
     const sunindextype n = problem_.size;
     check(SUNContext_Create(nullptr, &context_) == 0);
     y_ = N_VNew_Serial(n, context_);
@@ -63,7 +50,7 @@ class Cvode {
   }
   Cvode(const Cvode&) = delete;
   Cvode& operator=(const Cvode&) = delete;
-  ~Cvode() {
+  ~Cvode() override {
     if (memory_) CVodeFree(&memory_);
     if (nonlinear_) SUNNonlinSolFree(nonlinear_);
     if (linear_) SUNLinSolFree(linear_);
@@ -73,11 +60,9 @@ class Cvode {
     if (context_) SUNContext_Free(&context_);
   }
 
-  double* state() { return N_VGetArrayPointer(y_); }
+  double* state() override { return N_VGetArrayPointer(y_); }
 
-  /// Starts afresh from state() at time t. `directions`: which sign changes of each root function count (+1 rising,
-  /// -1 falling, 0 both). `horizon`: a time ahead that bounds the first step. Steps end at `stop` exactly.
-  bool restart(double t, int* directions, double horizon, double stop) {
+  bool restart(double t, int* directions, double horizon, double stop) override {
     bool good = CVodeReInit(memory_, t, y_) == CV_SUCCESS;
     if (problem_.roots > 0) good = good && CVodeSetRootDirection(memory_, directions) == CV_SUCCESS;
     time_ = t;
@@ -85,8 +70,7 @@ class Cvode {
     return good && CVodeSetStopTime(memory_, stop) == CV_SUCCESS;
   }
 
-  /// One internal step, cut short at a root or at the stop time; state() and time() are there then.
-  Outcome advance() {
+  Outcome advance() override {
     realtype t = time_;
     const int flag = CVode(memory_, time_ + horizon_, y_, &t, CV_ONE_STEP);
     time_ = t;
@@ -98,11 +82,10 @@ class Cvode {
     if (flag < 0) return Outcome::failed;
     return Outcome::step;
   }
-  double time() const { return time_; }
-  bool found(int root) const { return found_[std::size_t(root)] != 0; }
+  double time() const override { return time_; }
+  bool found(int root) const override { return found_[std::size_t(root)] != 0; }
 
-  /// The unknowns, or their derivatives of the given order, at a time within the last internal step.
-  const double* dense(double t, int derivative = 0) {
+  const double* dense(double t, int derivative) override {
     if (CVodeGetDky(memory_, t, derivative, dense_) != CV_SUCCESS) return state();
     return N_VGetArrayPointer(dense_);
   }
@@ -145,7 +128,7 @@ class Cvode {
     return 0;
   }
 
-  CvodeProblem problem_;
+  IntegratorProblem problem_;
   std::vector<int> found_;
   std::vector<double> shifted_, shifted_rates_;
   SUNContext context_ = nullptr;
@@ -158,5 +141,11 @@ class Cvode {
   double time_ = 0.0;
   double horizon_ = 0.0;
 };
+
+}  // namespace
+
+std::unique_ptr<Integrator> sundials_integrator(IntegratorProblem problem) {
+  return std::make_unique<Cvode>(std::move(problem));
+}
 
 }  // namespace wingbeat::detail

@@ -1,0 +1,212 @@
+#include "time/crank_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "time/transient_tools.hpp"
+
+namespace wingbeat::detail {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+CrankModel::CrankModel(const Vehicle<double>& of, const Supply<double>& on) : vehicle(of), supply(on) {
+  validate(vehicle.motor);
+  validate(vehicle.crank);
+  validate(vehicle.friction);
+  validate(vehicle.spring);
+  validate(vehicle.wings);
+  validate(supply);
+  require(vehicle.wing_count >= 0.0, "wing.count", "must be >= 0", "1", vehicle.wing_count);
+  require(vehicle.wing_inertia >= 0.0, "wing.inertia", "must be >= 0", "kg m2", vehicle.wing_inertia);
+  require(vehicle.source_resistance >= 0.0, "supply.internal_resistance", "must be >= 0", "ohm",
+          vehicle.source_resistance);
+  vehicle.voltage = mean_voltage(supply);
+  const bool steady_pwm = supply.type == SupplyType::pwm && (supply.duty <= 0.0 || supply.duty >= 1.0);
+  if (steady_pwm || supply.type == SupplyType::battery) supply = {SupplyType::constant, vehicle.voltage, 0.0, 1.0};
+}
+
+void CrankModel::start(double theta, double omega, double current) {
+  const Motor<double>& m = vehicle.motor;
+  const double R = circuit_resistance(vehicle), K = m.torque_constant;
+  now = {};
+  now.theta = theta;
+  now.omega = omega;
+  inductive = m.armature_inductance > 0.0;
+  coupled = inductive ? 3 : 2;
+  wingless = vehicle.wing_count * vehicle.wing_inertia == 0.0 && vehicle.wing_count * vehicle.spring.stiffness == 0.0 &&
+             vehicle.wings.air_density * vehicle.wings.s3 == 0.0;
+  constant_friction = breakaway_torque(vehicle);
+  now.switched_voltage = supply.voltage;
+  now.i = inductive ? current : algebraic_current(vehicle, voltage(0.0), omega);
+  find_jams();
+
+  const double damping = m.viscous_damping + vehicle.friction.damping;
+  current_scale = supply.voltage / R;
+  speed_scale = K * supply.voltage / (K * K + R * damping);
+  if (vehicle.friction.quadratic > 0.0) {
+    speed_scale = std::min(speed_scale, std::sqrt(K * current_scale / vehicle.friction.quadratic));
+  }
+  if (!(speed_scale > 0.0)) speed_scale = omega != 0.0 ? std::abs(omega) : 1.0;
+  if (!(current_scale > 0.0)) current_scale = std::max(std::abs(now.i), K * speed_scale / R);
+  const double wings =
+      vehicle.wing_count * vehicle.wing_inertia * square(vehicle.crank.crank_radius / vehicle.crank.hinge_offset);
+  electrical_time = m.armature_inductance / R;
+  mechanical_time = (m.inertia + wings) * R / (K * K + R * m.viscous_damping);
+  drive_period = supply.type == SupplyType::constant ? 0.0 : 1.0 / supply.frequency;
+  time_scale = two_pi / speed_scale;
+  force_scale = (m.inertia + wings) * K * current_scale * vehicle.crank.hinge_offset / vehicle.crank.crank_radius;
+  fastest_decay = inductive ? std::max(1.0 / electrical_time, damping / smallest_inertia)
+                            : (damping + K * K / R) / smallest_inertia;
+}
+
+Motion<double> CrankModel::motion(double t, const double* y, Branch<double>* used) const {
+  const double sin_theta = std::sin(y[0]);
+  const double cos_theta = std::cos(y[0]);
+  Branch<double> branch = now.branch;
+  branch.stroke = sign_of(cos_theta * y[1]);  // B1 has the sign of cos theta as long as the rod outreaches the crank
+  const double i = current_of(t, y), v_t = terminal_voltage(vehicle, voltage(t), i);
+  Motion<double> m = motion_at(vehicle, sin_theta, cos_theta, y[1], i, v_t, branch);
+  branch.pitching = sign_of(pitch_margin(vehicle.wings, std::abs(m.stroke_velocity)));
+  if (branch.pitching < 0.0) m = motion_at(vehicle, sin_theta, cos_theta, y[1], i, v_t, branch);
+  if (used) *used = branch;
+  return m;
+}
+
+bool CrankModel::rates(double t, const double* y, double* dy, bool quadrature) const {
+  Branch<double> branch;
+  const Motion<double> m = motion(t, y, &branch);
+  dy[0] = y[1];
+  dy[1] = m.crank_acceleration;
+  if (inductive) dy[2] = m.voltage_reserve / vehicle.motor.armature_inductance;
+  if (quadrature) {
+    const CycleIntegrals<double> all = integrands(m, y[1], branch);
+    for (int k = 0; k < quadrature_count; ++k) dy[coupled + k] = all[std::size_t(quadratures[k])];
+  }
+  return std::isfinite(dy[1]) && std::isfinite(y[coupled - 1]);
+}
+
+double CrankModel::static_force(const CrankKinematics<double>& k) const {
+  if (wingless) return 0.0;
+  return wingbeat::static_rod_force(k, spring_moment(vehicle, k));
+}
+
+/// K i - F_s h [N m]: what would turn the crank at rest.
+double CrankModel::net_static_torque(double theta, double i) const {
+  const CrankKinematics<double> k = kinematics(theta);
+  return vehicle.motor.torque_constant * i - static_force(k) * k.crank_lever;
+}
+
+/// mu r_e |F_s| + T_c [N m]: what friction can hold at rest.
+double CrankModel::holding_torque(double theta) const {
+  return wingbeat::holding_torque(vehicle, static_force(kinematics(theta)));
+}
+
+double CrankModel::wing_energy() const {
+  const CrankKinematics<double> k = kinematics(now.theta);
+  return wingbeat::wing_energy(vehicle, k, k.stroke_slope * now.omega);
+}
+
+/// di/dt [A/s]; `rates` are needed without inductance only.
+double CrankModel::current_slope(double t, const double* y, const double* rates) const {
+  const Motor<double>& m = vehicle.motor;
+  const double R = circuit_resistance(vehicle);
+  if (inductive) return (voltage(t) - R * y[2] - m.torque_constant * y[1]) / m.armature_inductance;
+  const double angular = two_pi * supply.frequency;
+  const double voltage_slope = supply.type == SupplyType::sine ? supply.voltage * angular * std::cos(angular * t) : 0.0;
+  return (voltage_slope - m.torque_constant * rates[1]) / R;
+}
+
+/// The smaller of the effective inertias over J, and the wing lever over H: the equations have one solution while
+/// it is positive.
+double CrankModel::uniqueness(double theta) const {
+  const CrankKinematics<double> k = kinematics(theta);
+  const double lever = k.wing_lever / vehicle.crank.hinge_offset;
+  if (!(lever > 0.0)) return lever;
+  return std::min(lever, least_inertia(vehicle, k) / vehicle.motor.inertia);
+}
+
+/// Nearest crank angles on either side of the start that the crank cannot pass.
+void CrankModel::find_jams() {
+  smallest_inertia = vehicle.motor.inertia;
+  if (wingless) return;
+  constexpr int count = 720;
+  constexpr double spacing = two_pi / count;
+  double margin[count];
+  for (int k = 0; k < count; ++k) margin[k] = uniqueness(now.theta + k * spacing);
+  const auto at = [&](int k) { return margin[((k % count) + count) % count]; };
+  const auto bisect = [&](double free, double jammed) {
+    for (int k = 0; k < 60; ++k) {
+      const double mid = 0.5 * (free + jammed);
+      (uniqueness(mid) > smallest_margin ? free : jammed) = mid;
+    }
+    return jammed;
+  };
+  const auto first = [&](int direction) {
+    for (int k = 0; k <= count; ++k) {
+      const double here = now.theta + direction * k * spacing;
+      if (at(direction * k) <= smallest_margin) return k == 0 ? here : bisect(here - direction * spacing, here);
+      // A narrow window of jam may hide between two samples.
+      const double before = at(direction * (k - 1)), after = at(direction * (k + 1));
+      if (at(direction * k) <= std::min(before, after) && at(direction * k) < 0.2) {
+        const auto [where, least] = maximum([&](double x) { return -uniqueness(x); }, here - spacing, here + spacing);
+        if (-least <= smallest_margin) return bisect(here - direction * spacing, where);
+      }
+    }
+    return direction * infinity;
+  };
+  smallest_inertia *= std::clamp(*std::min_element(margin, margin + count), 1e-3, 1.0);
+  jam_above = first(1);
+  if (std::isfinite(jam_above)) jam_below = first(-1);
+}
+
+double CrankModel::next_switch() const {
+  if (supply.type != SupplyType::pwm) return infinity;
+  // Even switches turn on, odd ones off; number 0 is the switching on at t = 0.
+  const long next = now.switches + 1;
+  return (double(next / 2) + (next % 2 == 1 ? supply.duty : 0.0)) / supply.frequency;
+}
+
+void CrankModel::choose_force_branch() {
+  if (wingless) return;
+  if (now.force_branch_known) {
+    now.force_branch_known = false;
+    return;
+  }
+  double y[3] = {now.theta, now.omega, now.i};
+  double value = motion(now.t, y).force_switch / force_scale;
+  if (std::abs(value) < 1e-9) {
+    // The sign is about to be decided: look a little ahead, by the midpoint rule.
+    const double ahead = 1e-5 * time_scale;
+    double dy[3] = {}, mid[3] = {}, dmid[3] = {};
+    rates(now.t, y, dy, false);
+    for (int k = 0; k < coupled; ++k) mid[k] = y[k] + 0.5 * ahead * dy[k];
+    rates(now.t + 0.5 * ahead, mid, dmid, false);
+    for (int k = 0; k < coupled; ++k) y[k] += ahead * dmid[k];
+    value = motion(now.t + ahead, y).force_switch;
+  }
+  now.branch.force = sign_of(value);
+}
+
+std::array<double, CrankModel::indicator_count> CrankModel::indicators(double t, const double* y) const {
+  std::array<double, indicator_count> values;
+  values[standstill] = y[1] / speed_scale;
+  values[jam] = std::min({1.0, jam_above - y[0], y[0] - jam_below});
+  values[force] = values[stored_moment] = values[dead_centre] = 1.0;
+  if (wingless) return values;
+  const Motion<double> m = motion(t, y);
+  values[force] = m.force_switch / force_scale;
+  values[stored_moment] = m.stored_moment / (force_scale / vehicle.motor.inertia);
+  values[dead_centre] = std::cos(y[0]);
+  return values;
+}
+
+void CrankModel::switch_supply() {
+  ++now.switches;
+  now.switched_voltage = now.switches % 2 == 0 ? supply.voltage : 0.0;
+  if (!inductive) now.i = algebraic_current(vehicle, now.switched_voltage, now.omega);
+}
+
+}  // namespace wingbeat::detail

@@ -1,0 +1,83 @@
+// A slider-crank vehicle on its supply, in time: its equations, its events, and the state that goes with them;
+// model.md section 2.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/cycle/static_balance.hpp"
+#include "wingbeat/parts/supply.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
+
+namespace wingbeat::detail {
+
+/// The unknowns are theta [rad], not wrapped, omega [rad/s] and, with an inductance, i [A].
+class CrankModel {
+ public:
+  /// Everything that moves: copied to save it, assigned to go back.
+  struct State {
+    double t = 0.0, theta = 0.0, omega = 0.0, i = 0.0;
+    Branch<double> branch{1.0, 1.0, 1.0, 1.0};  ///< force and direction; the others follow from the unknowns
+    bool force_branch_known = false;            ///< branch.force was set where the force has just changed its sign
+    double switched_voltage = 0.0;              ///< of a supply that is no sine, at this moment [V]
+    long switches = 0;                          ///< of a pwm supply so far: even ones turn on, number 0 at t = 0
+  };
+  /// Functions of the state whose sign changes are events.
+  enum Indicator { force, standstill, jam, stored_moment, dead_centre, indicator_count };
+
+  /// Throws ParameterError for numbers out of range.
+  CrankModel(const Vehicle<double>& vehicle, const Supply<double>& supply);
+  /// Sets the state at t = 0 and what follows from it; without inductance the current follows from the voltage instead.
+  void start(double theta, double omega, double current);
+
+  double voltage(double t) const {
+    return supply.type == SupplyType::sine ? voltage_at(supply, t) : now.switched_voltage;
+  }
+  double current_of(double t, const double* y) const {
+    return inductive ? y[2] : algebraic_current(vehicle, voltage(t), y[1]);
+  }
+  CrankKinematics<double> kinematics(double theta) const {
+    return crank_kinematics(vehicle.crank, std::sin(theta), std::cos(theta));
+  }
+  /// What acts at the unknowns y, on the branch `used`.
+  Motion<double> motion(double t, const double* y, Branch<double>* used = nullptr) const;
+  /// dy/dt and, where asked for, the integrands of `quadratures` behind them. False: not finite.
+  bool rates(double t, const double* y, double* dy, bool quadrature) const;
+  std::array<double, indicator_count> indicators(double t, const double* y) const;
+  double static_force(const CrankKinematics<double>& k) const;
+  double net_static_torque(double theta, double i) const;
+  double holding_torque(double theta) const;
+  double wing_energy() const;
+  double current_slope(double t, const double* y, const double* rates) const;
+  double uniqueness(double theta) const;
+
+  /// Decides the sign of the rod force by the state, or by what it is about to become.
+  void choose_force_branch();
+  /// When a pwm supply switches next [s].
+  double next_switch() const;
+  /// Switches it.
+  void switch_supply();
+
+  Vehicle<double> vehicle;
+  Supply<double> supply;
+  bool inductive = true;
+  bool wingless = false;
+  int coupled = 3;  ///< number of unknowns
+  double constant_friction = 0.0;
+  double speed_scale = 1.0, current_scale = 1.0, time_scale = 1.0, force_scale = 1.0;
+  double electrical_time = 0.0, mechanical_time = 0.0;  ///< time constants [s]
+  double drive_period = 0.0;                            ///< of a supply that varies [s]
+  double fastest_decay = 0.0;                           ///< [1/s]
+  double jam_below = -std::numeric_limits<double>::infinity(), jam_above = std::numeric_limits<double>::infinity();
+  double smallest_inertia = 0.0;  ///< [kg m2]
+  State now;
+
+  static constexpr double smallest_margin = 1e-6;  ///< of J: below it the mechanism counts as jammed
+
+ private:
+  void find_jams();
+};
+
+}  // namespace wingbeat::detail

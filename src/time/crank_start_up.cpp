@@ -1,0 +1,460 @@
+#include "time/crank_start_up.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace wingbeat::detail {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+enum Root { root_force, root_standstill, root_lap, root_jam, root_plain_count };
+enum { root_stored_moment = root_plain_count, root_dead_centre, root_measuring_count };
+
+// A lap holds some hundred steps of Adams at usual tolerances; only if the fastest decay is much quicker than that do
+// the larger steps of BDF make up for its lower order. A branch that takes Adams more steps than the last number is
+// taken as stiff whatever the estimate said.
+constexpr double stiff_decays_per_lap = 500.0;
+constexpr int stiff_steps_per_branch = 2000;
+
+}  // namespace
+
+CrankStartUp::CrankStartUp(const Vehicle<double>& vehicle, const TransientOptions& options)
+    : options_(options),
+      model_(vehicle, options.supply.value_or(Supply<double>{SupplyType::constant, vehicle.voltage, 0.0, 1.0})),
+      recorder_(options_, result_) {
+  require(options.tolerance >= 1e-11 && options.tolerance <= 1e-2, "transient.tolerance",
+          "must lie between 1e-11 and 1e-2", "1", options.tolerance);
+  require(options.max_time >= 0.0, "transient.max_time", "must be >= 0", "s", options.max_time);
+  require(options.record_interval >= 0.0, "transient.record_interval", "must be >= 0", "s", options.record_interval);
+  require(std::isfinite(options.crank_angle), "transient.crank_angle", "must be finite", "rad", options.crank_angle);
+  require(std::isfinite(options.crank_speed), "transient.crank_speed", "must be finite", "rad/s", options.crank_speed);
+  require(std::isfinite(options.current), "transient.current", "must be finite", "A", options.current);
+  if (options.supply && options.supply->type == SupplyType::pwm && model_.supply.type == SupplyType::constant) {
+    result_.current_ripple = 0.0;
+  }
+}
+
+void CrankStartUp::prepare() {
+  model_.start(options_.crank_angle, options_.crank_speed, options_.current);
+  const Vehicle<double>& vehicle = model_.vehicle;
+  const Motor<double>& m = vehicle.motor;
+  const double R = circuit_resistance(vehicle), K = m.torque_constant;
+  const double lap = model_.time_scale, drive = model_.drive_period;
+  const double mechanical = model_.mechanical_time, electrical = model_.electrical_time;
+  swing_low_ = swing_high_ = now_.theta;
+  const double released = 0.5 * pi * std::sqrt(vehicle.wing_count * vehicle.spring.stiffness / m.inertia);
+  runaway_speed_ = 1e3 * std::max({model_.speed_scale, std::abs(now_.omega), std::abs(now_.i) * R / K, released});
+
+  stiff_ = model_.fastest_decay * (drive > 0.0 ? std::min(lap, drive) : lap) > stiff_decays_per_lap;
+  result_.stiff = stiff_;
+  relative_tolerance_ = std::max(tightest_, (stiff_ ? 3e-3 : 1e-2) * options_.tolerance);
+  loosest_ = relative_tolerance_;
+
+  end_time_ = options_.max_time > 0.0                  ? options_.max_time
+              : model_.supply.type == SupplyType::sine ? 50.0 * (lap + drive) + 100.0 * (mechanical + electrical)
+                                                       : 1000.0 * (lap + mechanical + electrical + drive);
+
+  window_ = std::max({lap, 8.0 * drive, 0.5 * mechanical, electrical});
+  window_end_ = window_;
+  window_low_ = window_high_ = now_.theta;
+
+  const double force = K * model_.current_scale / model_.vehicle.crank.crank_radius;
+  const double power = model_.current_scale * K * model_.speed_scale + model_.current_scale * model_.current_scale * R;
+  const auto natural = [&](Integral which) {
+    switch (which) {
+      case Integral::current: return model_.current_scale;
+      case Integral::current_square: return square(model_.current_scale);
+      case Integral::speed_square: return square(model_.speed_scale);
+      case Integral::lift:
+        return model_.vehicle.wings.air_density * model_.vehicle.wings.s2 *
+                   square(model_.speed_scale * model_.vehicle.crank.crank_radius / model_.vehicle.crank.hinge_offset) +
+               1e-6 * force;
+      case Integral::rod_force: return force;
+      default: return power;
+    }
+  };
+  for (int k = 0; k < quadrature_count; ++k) quadrature_scale_[k] = lap * natural(quadratures[k]);
+
+  next_lap_ = two_pi * (std::floor(now_.theta / two_pi) + 1.0);
+  recorder_.start(now_.i);
+  sample();
+}
+
+void CrankStartUp::root_values(double t, const double* y, double* values, bool measuring) {
+  const auto indicators = model_.indicators(t, y);
+  values[root_force] = last_force_switch_ = indicators[CrankModel::force];
+  values[root_standstill] = indicators[CrankModel::standstill];
+  values[root_lap] = y[0] - next_lap_;
+  values[root_jam] = indicators[CrankModel::jam];
+  if (!measuring) return;
+  values[root_stored_moment] = indicators[CrankModel::stored_moment];
+  values[root_dead_centre] = indicators[CrankModel::dead_centre];
+}
+
+void CrankStartUp::tolerated(const double* y, double* errors, bool measuring) const {
+  // The crank angle grows for ever: its admissible error must not grow with it.
+  errors[0] = relative_tolerance_;
+  errors[1] = relative_tolerance_ * (std::abs(y[1]) + 0.01 * model_.speed_scale);
+  if (model_.inductive) errors[2] = relative_tolerance_ * (std::abs(y[2]) + 0.01 * model_.current_scale);
+  if (!measuring) return;
+  for (int k = 0; k < quadrature_count; ++k) {
+    errors[model_.coupled + k] = relative_tolerance_ * (std::abs(y[model_.coupled + k]) + 0.01 * quadrature_scale_[k]);
+  }
+}
+
+std::unique_ptr<Integrator> CrankStartUp::integrator(bool measuring) {
+  IntegratorProblem p;
+  p.size = model_.coupled + (measuring ? quadrature_count : 0);
+  p.coupled = model_.coupled;
+  p.roots = measuring ? int(root_measuring_count) : int(root_plain_count);
+  p.stiff = stiff_;
+  p.rates = [this, measuring](double t, const double* y, double* dy) {
+    ++result_.rate_evaluations;
+    return model_.rates(t, y, dy, measuring);
+  };
+  p.root_functions = [this, measuring](double t, const double* y, double* values) {
+    root_values(t, y, values, measuring);
+  };
+  p.tolerated = [this, measuring](const double* y, double* errors) { tolerated(y, errors, measuring); };
+  p.longest_step = 0.25 * model_.time_scale;
+  p.typical = {0.1, model_.speed_scale, model_.current_scale};
+  return make_integrator(options_.integrator, std::move(p));
+}
+
+TransientResult CrankStartUp::run() {
+  prepare();
+  // A motor that never starts is stalled, jammed or not.
+  const double drive =
+      model_.vehicle.motor.torque_constant * model_.supply.voltage / circuit_resistance(model_.vehicle);
+  const bool starts = now_.omega != 0.0 || now_.theta != 0.0 || drive > model_.constant_friction;
+  if (starts && model_.uniqueness(now_.theta) <= CrankModel::smallest_margin && !model_.wingless) jam(now_.theta);
+  while (!done_) {
+    if (now_.omega == 0.0) {
+      stand();
+    } else {
+      now_.branch.direction = sign_of(now_.omega);
+    }
+    if (!done_) slide();
+    if (!done_) out_of_budget();
+  }
+  result_.end_time = now_.t;
+  result_.end_crank_angle = now_.theta;
+  result_.laps = int(crossings_.size());
+  if (!crossings_.empty()) {
+    result_.crank_speed = crossings_.back().omega;
+    result_.current = crossings_.back().current;
+  }
+  return std::move(result_);
+}
+
+bool CrankStartUp::out_of_budget() {
+  ++result_.steps;
+  if (result_.steps > options_.max_steps) {
+    give_up(format("no verdict within %ld integration steps", options_.max_steps));
+  } else if (options_.cancel && result_.steps % 512 == 0 && options_.cancel()) {
+    give_up("cancelled");
+  } else if (std::abs(now_.omega) > runaway_speed_) {
+    give_up(
+        format("the crank speeds up without bound (%.3g rad/s): this transmission formulation does not conserve "
+               "power and feeds it",
+               now_.omega));
+  } else if (now_.t >= end_time_) {
+    give_up(format("no verdict within %.6g s", end_time_));
+  }
+  return done_;
+}
+
+/// At a standstill: rests for good, waits for the current to break it away, or moves on in the direction of the torque.
+void CrankStartUp::stand() {
+  const CrankKinematics<double> k = model_.kinematics(now_.theta);
+  const double load = model_.static_force(k) * k.crank_lever;
+  const double hold = model_.vehicle.friction.radius * std::abs(model_.static_force(k)) + model_.constant_friction;
+  const double K = model_.vehicle.motor.torque_constant;
+  if (!model_.inductive) now_.i = model_.voltage(now_.t) / circuit_resistance(model_.vehicle);
+  const double net = K * now_.i - load;
+  if (std::abs(net) > hold) {
+    now_.branch.direction = sign_of(net);
+    return;
+  }
+  const double from = now_.t;
+  if (!stick((load - hold) / K, (load + hold) / K)) return;
+  if (now_.t > from || crossings_.empty()) event(Kind::breakaway);
+}
+
+/// Crank held by friction while the current stays in [low, high]. True when it breaks away, now_.t, now_.i and the
+/// direction then being set; false when the verdict is in.
+bool CrankStartUp::stick(double low, double high) {
+  const Motor<double>& m = model_.vehicle.motor;
+  const double R = circuit_resistance(model_.vehicle);
+  const double tau = m.armature_inductance / R;
+  const auto inside = [&](double i) { return i >= low && i <= high; };
+
+  if (model_.supply.type == SupplyType::constant && inside(now_.switched_voltage / R)) {
+    rest(now_.theta, true);
+    return false;
+  }
+  if (model_.supply.type == SupplyType::pwm) {
+    // The current's limit cycle; on the way there it stays between its start and the cycle's ends.
+    const double period = 1.0 / model_.supply.frequency;
+    double top = model_.supply.voltage / R, bottom = 0.0;
+    if (model_.inductive) {
+      top *= std::expm1(-model_.supply.duty * period / tau) / std::expm1(-period / tau);
+      bottom = top * std::exp(-(1.0 - model_.supply.duty) * period / tau);
+    }
+    if (inside(top) && inside(bottom)) {
+      rest(now_.theta, true);
+      return false;
+    }
+  }
+  const double started = now_.t;
+  while (!out_of_budget()) {
+    if (model_.supply.type == SupplyType::sine) {
+      const double period = 1.0 / model_.supply.frequency;
+      if (now_.t - started > 40.0 * tau + 2.0 * period) {
+        rest(now_.theta, true);
+        return false;
+      }
+      const double before_t = now_.t, before_i = now_.i;
+      relax(std::min(end_time_, now_.t + period / 64.0));
+      if (inside(now_.i)) continue;
+      double a = before_t, b = now_.t;
+      for (int k = 0; k < 60; ++k) {
+        const double mid = 0.5 * (a + b);
+        now_.t = before_t;
+        now_.i = before_i;
+        relax(mid);
+        (inside(now_.i) ? a : b) = mid;
+      }
+      now_.branch.direction = now_.i > high ? 1.0 : -1.0;
+      if (!inside(now_.i)) now_.i = now_.i > high ? high : low;
+      return true;
+    }
+    const double limit = now_.switched_voltage / R;
+    const double piece_end = std::min(end_time_, model_.next_switch());
+    if (!inside(limit)) {
+      const double bound = limit > high ? high : low;
+      const double wait = model_.inductive ? tau * std::max(0.0, std::log((limit - now_.i) / (limit - bound))) : 0.0;
+      if (now_.t + wait <= piece_end) {
+        relax(now_.t + wait);
+        if (model_.inductive) now_.i = bound;
+        now_.branch.direction = limit > high ? 1.0 : -1.0;
+        return true;
+      }
+    }
+    relax(piece_end);
+    if (piece_end < end_time_) switch_supply();
+  }
+  return false;
+}
+
+/// Lets the current of the standing motor run on to the time `until`, before any switching of the supply.
+void CrankStartUp::relax(double until) {
+  const Motor<double>& m = model_.vehicle.motor;
+  const double R = circuit_resistance(model_.vehicle);
+  const double tau = m.armature_inductance / R;
+  const double start = now_.t, i_0 = now_.i, span = until - start;
+  const auto forced = [&](double t) {
+    if (model_.supply.type != SupplyType::sine) return now_.switched_voltage / R;
+    const double angular = two_pi * model_.supply.frequency, lag = std::atan(angular * tau);
+    return model_.supply.voltage / R * std::cos(lag) * std::sin(angular * t - lag);
+  };
+  const auto current = [&](double t) {
+    return model_.inductive ? forced(t) + (i_0 - forced(start)) * std::exp(-(t - start) / tau) : forced(t);
+  };
+  if (measuring_ && span > 0.0) {
+    const double force = std::abs(model_.static_force(model_.kinematics(now_.theta)));
+    double charge = 0.0, heat = 0.0, work = 0.0;
+    if (model_.supply.type == SupplyType::sine) {
+      constexpr double node = 0.77459666924148337704;  // three-point Gauss; spans are 1/64 of a drive period at most
+      for (const auto& [at, weight] : {std::pair{-node, 5.0 / 18.0}, {0.0, 4.0 / 9.0}, {node, 5.0 / 18.0}}) {
+        const double t = start + 0.5 * span * (1.0 + at);
+        charge += weight * span * current(t);
+        heat += weight * span * square(current(t));
+        work += weight * span * current(t) * terminal_voltage(model_.vehicle, model_.voltage(t), current(t));
+      }
+    } else {
+      const double limit = forced(start);
+      const double d = model_.inductive ? i_0 - limit : 0.0;
+      const double a = model_.inductive ? -tau * std::expm1(-span / tau) : 0.0;
+      const double b = model_.inductive ? -0.5 * tau * std::expm1(-2.0 * span / tau) : 0.0;
+      charge = limit * span + d * a;
+      heat = square(limit) * span + 2.0 * limit * d * a + square(d) * b;
+      work = now_.switched_voltage * charge - model_.vehicle.source_resistance * heat;
+    }
+    for (int k = 0; k < quadrature_count; ++k) {
+      switch (quadratures[k]) {
+        case Integral::current: q_[k] += charge; break;
+        case Integral::current_square: q_[k] += heat; break;
+        case Integral::electrical_work: q_[k] += work; break;
+        case Integral::rod_force: q_[k] += force * span; break;
+        default: break;
+      }
+    }
+  }
+  recorder_.samples_until(until, [&](double t) { return TransientSample{t, now_.theta, 0.0, current(t)}; });
+  now_.i = current(until);
+  now_.t = until;
+  recorder_.note_current(now_.t, now_.i);
+  if (measuring_) {
+    double& top = extremes_[std::size_t(Extreme::current)];
+    top = std::max(top, now_.i);
+    double& slowest = extremes_[std::size_t(Extreme::crank_speed_min)];
+    slowest = std::max(slowest, 0.0);
+  }
+  if (options_.record_interval == 0.0 && span > 0.0) sample();
+}
+
+void CrankStartUp::switch_supply() {
+  const double i = now_.i, duty = model_.supply.duty;
+  model_.switch_supply();
+  if (now_.switches % 2 == 1) {
+    ripple_top_ = i;
+  } else {
+    if (measuring_ && std::isfinite(ripple_bottom_)) {
+      const double line = ripple_bottom_ + duty * (i - ripple_bottom_);
+      ripple_sum_ += ripple_top_ - line;
+      ++ripple_count_;
+    }
+    ripple_bottom_ = measuring_ ? i : absent;
+  }
+  if (options_.record) {
+    event(Kind::supply_switch);
+    sample();
+  }
+  recorder_.note_current(now_.t, now_.i);
+}
+
+/// Integrates one smooth branch to the next event that ends it.
+void CrankStartUp::slide() {
+  model_.choose_force_branch();
+  std::unique_ptr<Integrator>& slot = measuring_ ? with_quadratures_ : plain_;
+  if (!slot) slot = integrator(measuring_);
+  Integrator& steps = *slot;
+  double* y = steps.state();
+  y[0] = now_.theta;
+  y[1] = now_.omega;
+  if (model_.inductive) y[2] = now_.i;
+  if (measuring_) std::copy(q_, q_ + quadrature_count, y + model_.coupled);
+
+  int directions[root_measuring_count] = {int(-now_.branch.force), int(-now_.branch.direction), 1, -1, 0, 0};
+  const double switching = model_.next_switch();
+  const double stop = std::min(end_time_, switching);
+  if (stop - now_.t < 1e-13 * std::max(now_.t, stop)) {
+    now_.t = stop;
+    if (stop == switching) switch_supply();
+    return;
+  }
+  if (!steps.restart(now_.t, directions, std::min(model_.time_scale, stop - now_.t), stop)) {
+    give_up("the integrator could not be started");
+    return;
+  }
+  int branch_steps = 0;
+  while (true) {
+    const double from = now_.t;
+    const Integrator::Outcome outcome = steps.advance();
+    if (outcome == Integrator::Outcome::failed) {
+      if (relative_tolerance_ < 1e-9) {
+        relative_tolerance_ = tightest_ = 10.0 * relative_tolerance_;
+        now_.force_branch_known = true;
+        return;
+      }
+      give_up(format("the integrator failed at t = %.6g s, crank angle %.4f deg", now_.t,
+                     wrap_angle(now_.theta) * degrees_per_radian));
+      return;
+    }
+    now_.t = steps.time();
+    now_.theta = y[0];
+    now_.omega = y[1];
+    now_.i = model_.current_of(now_.t, y);
+    if (measuring_) std::copy(y + model_.coupled, y + model_.coupled + quadrature_count, q_);
+    step_taken(steps, from);
+
+    bool branch_ends = false;
+    if (outcome == Integrator::Outcome::root) {
+      if (steps.found(root_jam)) {
+        jam(now_.theta);
+        return;
+      }
+      if (steps.found(root_standstill)) {
+        now_.omega = 0.0;
+        event(Kind::standstill);
+        branch_ends = true;
+      }
+      if (steps.found(root_force)) {
+        event(Kind::force_sign_change);
+        now_.branch.force = -now_.branch.force;
+        now_.force_branch_known = now_.omega != 0.0;
+        branch_ends = true;
+      }
+      if (measuring_) add_variation();
+      if (steps.found(root_lap)) branch_ends = lap_done() || branch_ends;
+    } else if (outcome == Integrator::Outcome::stop) {
+      if (measuring_) add_variation();
+      if (stop == switching && now_.t >= stop) switch_supply();
+      branch_ends = true;
+    } else {
+      // Roots that the integrator may not see: a sign that was wrong from the start of the branch.
+      if (now_.branch.direction * now_.omega < -1e-9 * model_.speed_scale) branch_ends = true;
+      if (!model_.wingless && now_.branch.force * last_force_switch_ < -1e-8) {
+        now_.branch.force = -now_.branch.force;
+        now_.force_branch_known = true;
+        branch_ends = true;
+      }
+      if (!branch_ends && captured()) return;
+    }
+    if (done_ || swings_repeat() || branch_ends) return;
+    if (out_of_budget()) return;
+    if (!stiff_ && ++branch_steps > stiff_steps_per_branch) {
+      stiff_ = result_.stiff = true;
+      plain_.reset();
+      with_quadratures_.reset();
+      now_.force_branch_known = true;
+      return;
+    }
+  }
+}
+
+void CrankStartUp::step_taken(Integrator& steps, double from) {
+  swing_low_ = std::min(swing_low_, now_.theta);
+  swing_high_ = std::max(swing_high_, now_.theta);
+  window_low_ = std::min(window_low_, now_.theta);
+  window_high_ = std::max(window_high_, now_.theta);
+  track_inrush(steps, from);
+  if (measuring_) track_extremes(steps, from);
+  recorder_.step_taken({now_.t, now_.theta, now_.omega, now_.i}, [&](double t) {
+    const double* y = steps.dense(t);
+    return TransientSample{t, y[0], y[1], model_.current_of(t, y)};
+  });
+}
+
+void CrankStartUp::track_inrush(Integrator& steps, double from) {
+  const auto slope = [&](double t) {
+    double rates[3] = {};
+    if (!model_.inductive) rates[1] = steps.dense(t, 1)[1];
+    return model_.current_slope(t, steps.dense(t), rates);
+  };
+  recorder_.note_current(now_.t, now_.i);
+  if (now_.i < 0.9 * result_.inrush_current || slope(now_.t) >= 0.0 || slope(from) <= 0.0) return;
+  double a = from, b = now_.t;
+  for (int k = 0; k < 50 && b - a > 1e-9 * (now_.t - from); ++k) {
+    const double mid = 0.5 * (a + b);
+    (slope(mid) > 0.0 ? a : b) = mid;
+  }
+  recorder_.note_current(a, model_.current_of(a, steps.dense(a)));
+}
+
+/// Raises the extremes of the lap to what they reach within the last step, on the integrator's own interpolant.
+void CrankStartUp::track_extremes(Integrator& steps, double from) {
+  raise_extremes(
+      [&](double t) {
+        const double* y = steps.dense(t);
+        Branch<double> branch;
+        const Motion<double> m = model_.motion(t, y, &branch);
+        return extreme_candidates(m, y[1], branch);
+      },
+      from, now_.t, extremes_);
+}
+
+}  // namespace wingbeat::detail

@@ -1,0 +1,115 @@
+// Start-up of a crank-driven vehicle, for simulate_start_up(): the model's course of events, the settling of its laps,
+// the verdict.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "time/crank_model.hpp"
+#include "time/integrator.hpp"
+#include "time/recorder.hpp"
+#include "time/transient_tools.hpp"
+#include "wingbeat/time/transient.hpp"
+
+namespace wingbeat::detail {
+
+class CrankStartUp {
+ public:
+  CrankStartUp(const Vehicle<double>& vehicle, const TransientOptions& options);
+  CrankStartUp(const CrankStartUp&) = delete;
+  TransientResult run();
+
+ private:
+  using Kind = TransientEvent::Kind;
+
+  // What the integrator asks for.
+  void root_values(double t, const double* y, double* values, bool measuring);
+  void tolerated(const double* y, double* errors, bool measuring) const;
+  std::unique_ptr<Integrator> integrator(bool measuring);
+
+  // The course of events.
+  void prepare();
+  void slide();
+  void stand();
+  bool stick(double low, double high);
+  void relax(double until);
+  void step_taken(Integrator& steps, double from);
+  void track_inrush(Integrator& steps, double from);
+  void track_extremes(Integrator& steps, double from);
+  void switch_supply();
+  bool captured();
+  bool swings_repeat();
+  bool lap_done();
+  bool lap_done_constant();
+  void lap_measured(double rate);
+  bool lap_done_averaging();
+  bool jump_ahead(double rate);
+  bool jump_by_blocks(std::size_t n, std::size_t block);
+  void begin_measuring();
+  void take_metrics(int laps);
+  double lap_time(std::size_t lap) const { return crossings_[lap].lap; }
+  bool repeats_after(std::size_t laps) const;
+  double time_of_steadiness(double period) const;
+  double lap_scatter(std::size_t laps) const;
+  void add_variation();
+
+  void event(Kind kind) { result_.events.push_back({now_.t, now_.theta, kind}); }
+  void sample() { recorder_.sample({now_.t, now_.theta, now_.omega, now_.i}); }
+  bool out_of_budget();
+  void rest(double theta, bool held_by_friction);
+  void jam(double theta);
+  void flap();
+  void give_up(const std::string& why);
+
+  TransientOptions options_;
+  TransientResult result_;
+  CrankModel model_;
+  CrankModel::State& now_ = model_.now;
+  Recorder recorder_;
+  bool done_ = false;
+  bool stiff_ = false;
+
+  double relative_tolerance_ = 1e-8, loosest_ = 1e-8;
+  double tightest_ = 1e-13;  // what rounding leaves room for; grows where the integrator finds less
+  double quadrature_scale_[quadrature_count] = {};
+  double end_time_ = 0.0, runaway_speed_ = std::numeric_limits<double>::infinity();
+
+  double q_[quadrature_count] = {};
+  double ripple_top_ = absent, ripple_bottom_ = absent, ripple_sum_ = 0.0;
+  long ripple_count_ = 0;
+  double last_force_switch_ = 0.0;
+  double next_lap_ = 0.0;
+  double swing_low_ = 0.0, swing_high_ = 0.0;
+  double window_ = 0.0, window_end_ = 0.0, window_low_ = 0.0, window_high_ = 0.0, last_low_ = 0.0, last_high_ = 0.0;
+  std::size_t window_laps_ = 0;
+  int repeats_ = 0;
+
+  std::unique_ptr<Integrator> plain_, with_quadratures_;
+  bool measuring_ = false;
+  int measured_laps_ = 0, laps_at_tightest_ = 0;
+  std::optional<Metrics<double>> last_metrics_;  // of the lap before, found with the relative tolerance
+  double measured_with_ = 0.0;
+  double contraction_ = 0.0;  // of a lap, as the blocks of laps before a jump have shown it
+  int laps_since_jump_ = 0;
+  double change_before_jump_ = std::numeric_limits<double>::infinity();
+  double variation_ = 0.0, energy_mark_ = 0.0;
+  CycleExtremes<double> extremes_{};
+
+  struct Crossing {
+    double time, omega, current;
+    double lap;      // duration of the lap that ended here [s]
+    double skipped;  // time of the laps that a jump left out after it [s]
+  };
+  std::vector<Crossing> crossings_;
+  int laps_compared_ = 0;  // successive laps since the start or the last jump
+  double change_ = std::numeric_limits<double>::infinity(), rate_ = 1.0, last_rate_ = 1.0;
+  bool rate_seen_ = false;
+  int stagnant_ = 0;
+  bool jumped_ = false;
+  std::size_t turns_ = 1;  // after which the motion repeats
+};
+
+}  // namespace wingbeat::detail

@@ -1,0 +1,189 @@
+#include "time/crank_start_up.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "wingbeat/core/text.hpp"
+
+namespace wingbeat::detail {
+namespace {
+
+constexpr double captured_amplitude = 1e-4;  // [rad] swings about a stable equilibrium that are smaller cannot leave
+constexpr double captured_creep = 1e-8;      // [rad] the same where friction holds: the angle itself is the answer
+constexpr double same_swing = 1e-4;          // [rad] swings with a varying supply that differ less repeat
+constexpr double lap_spread_settled = 1e-2;
+
+}  // namespace
+
+/// True, with the verdict, when the crank can no longer leave the stable equilibrium that it swings about or creeps
+/// towards: kinetic energy, spring energy above the equilibrium's and inductive energy together only fall, and are
+/// small already. With Coulomb friction, the equilibrium is where the torque no longer exceeds it: an overdamped crank
+/// creeps there without ever standing still.
+bool CrankStartUp::captured() {
+  if (model_.supply.type != SupplyType::constant || std::abs(now_.omega) > 0.02 * model_.speed_scale) return false;
+  const Motor<double>& m = model_.vehicle.motor;
+  const double final_current = now_.switched_voltage / circuit_resistance(model_.vehicle);
+  if (model_.wingless || model_.vehicle.spring.stiffness == 0.0) {
+    if (final_current > 0.0 || std::abs(now_.omega) > 1e-7 * model_.speed_scale) return false;
+    rest(now_.theta, false);
+    return true;
+  }
+  const auto excess_torque = [&](double theta) {
+    return model_.net_static_torque(theta, final_current) - now_.branch.direction * model_.holding_torque(theta);
+  };
+  double theta = now_.theta, slope = 0.0;
+  for (int k = 0; k < 5; ++k) {
+    constexpr double step = 1e-6;
+    slope = (excess_torque(theta + step) - excess_torque(theta - step)) / (2.0 * step);
+    if (!(slope < 0.0)) return false;
+    theta -= excess_torque(theta) / slope;
+    if (!(std::abs(theta - now_.theta) < 0.01)) return false;
+  }
+  const double scale = m.torque_constant * model_.current_scale;
+  if (std::abs(excess_torque(theta)) > 1e-9 * scale) return false;
+  const bool friction = model_.holding_torque(theta) > 1e-9 * scale;
+  const double inertia = effective_inertia(model_.vehicle, model_.kinematics(now_.theta), 0.0);
+  const double energy = inertia * square(now_.omega) - slope * square(theta - now_.theta) +
+                        m.armature_inductance * square(now_.i - final_current);
+  if (energy > -slope * square(friction ? captured_creep : captured_amplitude)) return false;
+  rest(theta, friction);
+  return true;
+}
+
+/// With a varying supply: true, with the verdict, when the crank swings without rotating and its swings repeat.
+bool CrankStartUp::swings_repeat() {
+  if (model_.supply.type == SupplyType::constant || now_.t < window_end_) return false;
+  const bool same = window_laps_ == crossings_.size() && std::abs(window_low_ - last_low_) < same_swing &&
+                    std::abs(window_high_ - last_high_) < same_swing;
+  repeats_ = same ? repeats_ + 1 : 0;
+  last_low_ = window_low_;
+  last_high_ = window_high_;
+  window_low_ = window_high_ = now_.theta;
+  window_laps_ = crossings_.size();
+  window_end_ = now_.t + window_;
+  if (repeats_ < 3) return false;
+  done_ = true;
+  result_.settled = true;
+  result_.status = FlappingStatus::locked;
+  result_.time_to_steady = now_.t;
+  if (last_high_ - last_low_ < same_swing) result_.lock_angle = wrap_angle(0.5 * (last_low_ + last_high_));
+  result_.detail = format("does not rotate: the crank moves with the supply between %.4f and %.4f deg",
+                          last_low_ * degrees_per_radian, last_high_ * degrees_per_radian);
+  return true;
+}
+
+/// Start of the first lap from which on every lap's duration is within 1 % of the period.
+double CrankStartUp::time_of_steadiness(double period) const {
+  const auto off = [&](std::size_t lap) { return std::abs(period / lap_time(lap) - 1.0); };
+  std::size_t lap = crossings_.size();
+  while (lap > 0 && off(lap - 1) <= 1e-2) --lap;
+  if (lap == 0) return 0.0;
+  const Crossing& last = crossings_[lap - 1];
+  if (last.skipped == 0.0 || lap == crossings_.size()) return last.time;
+  // Among the laps left out, which approach the period geometrically.
+  const double before = off(lap - 1), after = std::max(off(lap), 1e-6);
+  return last.time + last.skipped * std::clamp(std::log(before / 1e-2) / std::log(before / after), 0.0, 1.0);
+}
+
+void CrankStartUp::flap() {
+  done_ = true;
+  result_.status = FlappingStatus::flapping;
+  const double period =
+      options_.metrics ? result_.integrals[std::size_t(Integral::time)] : lap_time(crossings_.size() - 1);
+  result_.time_to_steady = time_of_steadiness(period);
+  if (model_.supply.type == SupplyType::constant) {
+    result_.settled = true;
+    result_.detail = format("flaps steadily at %.6g Hz from %.4g s on; after %d laps they repeat to %.1g%s",
+                            1.0 / period, result_.time_to_steady, int(crossings_.size()), change_,
+                            jumped_      ? " (slow convergence, extrapolated)"
+                            : turns_ > 1 ? format(" every %d laps", int(turns_)).c_str()
+                                         : "");
+    return;
+  }
+  result_.settled = result_.lap_scatter < lap_spread_settled;
+  result_.detail = format(
+      "flaps at %.6g Hz, averaged over %d laps whose durations differ by up to %.2g %% from their "
+      "mean%s",
+      1.0 / period, result_.averaged_laps, 100.0 * result_.lap_scatter,
+      result_.settled ? "" : "; laps and supply share no period");
+}
+
+void CrankStartUp::rest(double theta, bool held_by_friction) {
+  done_ = true;
+  result_.settled = true;
+  now_.theta = theta;
+  now_.omega = 0.0;
+  const double R = circuit_resistance(model_.vehicle);
+  // A switched supply drives with its mean voltage.
+  const double v = model_.supply.type == SupplyType::pwm ? model_.vehicle.voltage : model_.supply.voltage;
+  const double stall_torque = model_.vehicle.motor.torque_constant * v / R;
+  const double mean_current = model_.supply.type == SupplyType::sine ? 0.0 : model_.vehicle.voltage / R;
+  const double angle = wrap_angle(theta);
+  const double load = std::abs(model_.net_static_torque(theta, mean_current));
+  result_.lock_angle = angle;
+  result_.torque_margin = held_by_friction ? std::max(0.0, model_.holding_torque(theta) - load) : 0.0;
+  result_.time_to_steady = now_.t;
+  const double degrees = angle * degrees_per_radian;
+  if (stall_torque <= model_.constant_friction) {
+    result_.status = FlappingStatus::stalled;
+    result_.detail = format(
+        "the motor cannot turn: stall torque %.4g N m does not exceed the constant friction of "
+        "%.4g N m (crank at %.4f deg)",
+        stall_torque, model_.constant_friction, degrees);
+    return;
+  }
+  result_.status = FlappingStatus::locked;
+  result_.detail =
+      held_by_friction
+          ? format(
+                "rests at crank angle %.4f deg: friction holds %.4g N m there, %.4g N m more than motor and springs "
+                "apply",
+                degrees, model_.holding_torque(theta), *result_.torque_margin)
+          : format(
+                "rests at crank angle %.4f deg: the springs balance the stall torque of %.4g N m in a stable "
+                "equilibrium",
+                degrees, stall_torque);
+}
+
+void CrankStartUp::jam(double theta) {
+  done_ = true;
+  event(Kind::jam);
+  result_.settled = true;
+  result_.status = FlappingStatus::jammed;
+  result_.jam_angle = wrap_angle(theta);
+  result_.time_to_steady = now_.t;
+  const CrankKinematics<double> k = model_.kinematics(theta);
+  const double degrees = *result_.jam_angle * degrees_per_radian;
+  if (k.wing_lever <= 2.0 * CrankModel::smallest_margin * model_.vehicle.crank.hinge_offset) {
+    result_.detail = format("jams at crank angle %.4f deg: the rod force loses its lever on the wings (g = %.2g m)",
+                            degrees, k.wing_lever);
+    return;
+  }
+  const double inertia =
+      std::min(effective_inertia(model_.vehicle, k, 1.0), effective_inertia(model_.vehicle, k, -1.0));
+  result_.detail = format(
+      "jams at crank angle %.4f deg: rotor inertia and rod-force friction leave no unique "
+      "acceleration (J + A (h - mu r_e) = %.2g kg m2)",
+      degrees, inertia);
+}
+
+void CrankStartUp::give_up(const std::string& why) {
+  done_ = true;
+  result_.settled = false;
+  const std::size_t n = crossings_.size();
+  const bool turning = n >= 2 && now_.t - crossings_.back().time < 3.0 * lap_time(n - 1);
+  result_.status = FlappingStatus::undecided;
+  result_.time_to_steady = now_.t;
+  if (turning) {
+    if (measuring_ && measured_laps_ > 0 && model_.supply.type != SupplyType::constant) {
+      result_.lap_scatter = lap_scatter(std::size_t(measured_laps_));
+    }
+    result_.detail = format("%s; it flaps at %.6g Hz then", why.c_str(), 1.0 / lap_time(n - 1));
+  } else {
+    result_.detail = format("%s; the crank makes no forward revolutions then, it has been between %.4g and %.4g deg",
+                            why.c_str(), swing_low_ * degrees_per_radian, swing_high_ * degrees_per_radian);
+  }
+}
+
+}  // namespace wingbeat::detail

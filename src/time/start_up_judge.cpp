@@ -1,0 +1,38 @@
+#include <algorithm>
+
+#include "wingbeat/time/transient.hpp"
+
+namespace wingbeat {
+namespace {
+
+constexpr double tightest = 1e-11;  // what TransientOptions::tolerance admits
+
+}  // namespace
+
+StartUp start_up_in_time(double tolerance, TimeIntegrator integrator) {
+  return [tolerance, integrator](const Vehicle<double>& vehicle) {
+    TransientOptions options;
+    options.integrator = integrator;
+    options.tolerance = std::max(tolerance, tightest);
+    options.metrics = false;
+    const TransientResult r = simulate_start_up(vehicle, options);
+    StartUpOutcome outcome{r.status, r.settled, r.detail, r.crank_speed, r.current, r.stroke_angle, {}};
+    if (r.status != FlappingStatus::flapping || !r.settled) return outcome;
+    outcome.cycle = [vehicle, integrator, state = outcome](double wanted, const Reporting& reporting) {
+      TransientOptions onward;
+      onward.integrator = integrator;
+      onward.tolerance = std::max(wanted, tightest);
+      onward.reporting = reporting;
+      onward.crank_angle = state.stroke_angle;
+      onward.crank_speed = state.crank_speed;
+      onward.current = state.current;
+      const TransientResult cycle = simulate_start_up(vehicle, onward);
+      if (!cycle.settled || !cycle.metrics) return std::optional<SimulatedCycle>();
+      return std::optional(
+          SimulatedCycle{*cycle.metrics, std::max(onward.tolerance, cycle.closure), cycle.averaged_laps});
+    };
+    return outcome;
+  };
+}
+
+}  // namespace wingbeat
