@@ -6,6 +6,11 @@
 #include "wingbeat/cycle/direct_balance.hpp"
 
 namespace wingbeat::detail {
+namespace {
+
+constexpr double stiff_decays_per_period = 500.0;
+
+}  // namespace
 
 DirectModel::DirectModel(const Vehicle<double>& of) : vehicle(of) {
   validate(vehicle.motor);
@@ -91,6 +96,26 @@ std::array<double, DirectModel::indicator_count> DirectModel::indicators(double 
   values[velocity] = y[1] / speed_scale;
   return values;
 }
+
+void DirectModel::begin_piece() {
+  if (!sticks || now.stuck) return;
+  now.direction = sign_of(now.y[1]);
+  if (now.y[1] == 0.0) come_to_rest();
+}
+
+void DirectModel::handle(std::size_t indicator) {
+  if (indicator != motion_ends) return;
+  now.y[1] = 0.0;
+  if (now.stuck) break_away();
+}
+
+void DirectModel::tolerated(double relative, const double* y, double* errors) const {
+  errors[0] = relative * (std::abs(y[0]) + 0.01 * stroke_scale);
+  errors[1] = relative * (std::abs(y[1]) + 0.01 * speed_scale);
+  if (inductive) errors[2] = relative * (std::abs(y[2]) + 0.01 * current_scale);
+}
+
+bool DirectModel::stiff() const { return fastest_decay * period > stiff_decays_per_period; }
 
 void DirectModel::come_to_rest() {
   now.y[1] = 0.0;

@@ -1,8 +1,10 @@
 // A direct drive in time: its equations, its events, and the state that goes with them; model.md section 6.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
@@ -28,6 +30,23 @@ class DirectModel {
   /// Sets the state at t = 0 and the scales that follow from it.
   void start(double beta, double speed, double current);
 
+  // As TimeModel asks.
+  bool ended() const { return false; }
+  void begin_piece();
+  void unknowns(double* y) const { std::copy_n(now.y, coupled, y); }
+  void set(double t, const double* y) {
+    now.t = t;
+    std::copy_n(y, coupled, now.y);
+  }
+  void handle(std::size_t indicator);
+  bool branch_lost() { return sticks && !now.stuck && now.direction * now.y[1] < -1e-9 * speed_scale; }
+  double next_switch() const { return std::numeric_limits<double>::infinity(); }
+  void switch_supply() {}
+  void tolerated(double relative, const double* y, double* errors) const;
+  std::array<double, 3> typical() const { return {stroke_scale, speed_scale, current_scale}; }
+  double longest_step() const { return now.stuck ? period / 64.0 : 0.25 * period; }
+  bool stiff() const;
+
   double voltage(double t) const { return vehicle.voltage * std::sin(w * t); }
   double current_of(double t, const double* y) const {
     return inductive ? y[2] : algebraic_current(vehicle, voltage(t), y[1]);
@@ -42,7 +61,7 @@ class DirectModel {
   Motion<double> motion(double t, const double* y) const;
   /// dy/dt and, where asked for, the integrands of `quadratures` behind them. False: not finite.
   bool rates(double t, const double* y, double* dy, bool quadrature) const;
-  std::array<double, indicator_count> indicators(double t, const double* y, bool all) const;
+  std::array<double, indicator_count> indicators(double t, const double* y, bool all = true) const;
   double wing_energy() const {
     return 0.5 * vehicle.wing_count *
            (vehicle.wing_inertia * square(now.y[1]) + vehicle.spring.stiffness * square(now.y[0]));

@@ -17,7 +17,6 @@ namespace {
 using Kind = TransientEvent::Kind;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-constexpr double stiff_decays_per_period = 500.0;
 constexpr int sticking_pieces = 512;    // of a period: how often a stuck shaft is looked at
 constexpr int creep_periods = 8;        // of ever shorter slips in one direction, that end at rest
 constexpr int contraction_periods = 4;  // over which the contraction is taken: complex multipliers make it uneven
@@ -79,7 +78,7 @@ DirectStartUp::DirectStartUp(const Vehicle<double>& vehicle, const TransientOpti
           "must lie between 1e-11 and 1e-2", "1", options.tolerance);
   model_.start(options.crank_angle, options.crank_speed, options.current);
   const Motor<double>& m = model_.vehicle.motor;
-  stiff_ = model_.fastest_decay * model_.period > stiff_decays_per_period;
+  stiff_ = model_.stiff();
   result_.stiff = stiff_;
   relative_tolerance_ = std::max(tightest_, (stiff_ ? 1e-3 : 3e-3) * options.tolerance);
 
@@ -119,9 +118,7 @@ std::unique_ptr<Integrator> DirectStartUp::integrator(bool measuring) {
     root_values(t, y, values, measuring);
   };
   p.tolerated = [this, measuring](const double* y, double* errors) {
-    errors[0] = relative_tolerance_ * (std::abs(y[0]) + 0.01 * model_.stroke_scale);
-    errors[1] = relative_tolerance_ * (std::abs(y[1]) + 0.01 * model_.speed_scale);
-    if (model_.inductive) errors[2] = relative_tolerance_ * (std::abs(y[2]) + 0.01 * model_.current_scale);
+    model_.tolerated(relative_tolerance_, y, errors);
     for (int k = 0; measuring && k < quadrature_count; ++k) {
       errors[model_.coupled + k] =
           relative_tolerance_ * (std::abs(y[model_.coupled + k]) + 0.01 * quadrature_scale_[k]);
