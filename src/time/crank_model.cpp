@@ -10,6 +10,10 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+// A lap holds some hundred steps of Adams at usual tolerances; only if the fastest decay is much quicker than that do
+// the larger steps of BDF make up for its lower order.
+constexpr double stiff_decays_per_lap = 500.0;
+
 }  // namespace
 
 CrankModel::CrankModel(const Vehicle<double>& of, const Supply<double>& on) : vehicle(of), supply(on) {
@@ -58,6 +62,7 @@ void CrankModel::start(double theta, double omega, double current) {
   drive_period = supply.type == SupplyType::constant ? 0.0 : 1.0 / supply.frequency;
   time_scale = two_pi / speed_scale;
   force_scale = (m.inertia + wings) * K * current_scale * vehicle.crank.hinge_offset / vehicle.crank.crank_radius;
+  now.jammed = !wingless && uniqueness(theta) <= smallest_margin;
   fastest_decay = inductive ? std::max(1.0 / electrical_time, damping / smallest_inertia)
                             : (damping + K * K / R) / smallest_inertia;
 }
@@ -76,6 +81,11 @@ Motion<double> CrankModel::motion(double t, const double* y, Branch<double>* use
 }
 
 bool CrankModel::rates(double t, const double* y, double* dy, bool quadrature) const {
+  if (now.stuck) {
+    dy[0] = dy[1] = 0.0;
+    if (inductive) dy[2] = (voltage(t) - circuit_resistance(vehicle) * y[2]) / vehicle.motor.armature_inductance;
+    return true;
+  }
   Branch<double> branch;
   const Motion<double> m = motion(t, y, &branch);
   dy[0] = y[1];
@@ -193,6 +203,12 @@ void CrankModel::choose_force_branch() {
 std::array<double, CrankModel::indicator_count> CrankModel::indicators(double t, const double* y) const {
   std::array<double, indicator_count> values;
   values[standstill] = y[1] / speed_scale;
+  if (now.stuck) {
+    const double hold = holding_torque(y[0]);
+    values.fill(1.0);
+    values[standstill] = (hold - std::abs(net_static_torque(y[0], current_of(t, y)))) / hold;
+    return values;
+  }
   values[jam] = std::min({1.0, jam_above - y[0], y[0] - jam_below});
   values[force] = values[stored_moment] = values[dead_centre] = 1.0;
   if (wingless) return values;
@@ -201,6 +217,73 @@ std::array<double, CrankModel::indicator_count> CrankModel::indicators(double t,
   values[stored_moment] = m.stored_moment / (force_scale / vehicle.motor.inertia);
   values[dead_centre] = std::cos(y[0]);
   return values;
+}
+
+/// At a standstill it is held, or moves on in the direction of the torque.
+void CrankModel::begin_piece() {
+  if (now.stuck) return;
+  now.branch.direction = sign_of(now.omega);
+  if (now.omega == 0.0) {
+    if (!inductive) now.i = algebraic_current(vehicle, voltage(now.t), 0.0);
+    const double net = net_static_torque(now.theta, now.i), hold = holding_torque(now.theta);
+    now.branch.direction = sign_of(net);
+    now.stuck = hold > 0.0 && std::abs(net) <= hold;
+    if (now.stuck) return;
+  }
+  choose_force_branch();
+}
+
+void CrankModel::unknowns(double* y) const {
+  y[0] = now.theta;
+  y[1] = now.omega;
+  if (inductive) y[2] = now.i;
+}
+
+void CrankModel::set(double t, const double* y) {
+  now.t = t;
+  now.theta = y[0];
+  now.omega = y[1];
+  now.i = current_of(t, y);
+}
+
+std::array<int, CrankModel::indicator_count> CrankModel::directions() const {
+  return {int(-now.branch.force), now.stuck ? -1 : int(-now.branch.direction), -1, 0, 0};
+}
+
+void CrankModel::handle(std::size_t indicator) {
+  if (indicator == jam) now.jammed = true;
+  if (indicator == standstill) {
+    now.stuck = false;
+    now.omega = 0.0;
+  }
+  if (indicator == force) {
+    now.branch.force = -now.branch.force;
+    now.force_branch_known = now.omega != 0.0;
+  }
+}
+
+/// True where a sign was wrong from the start of the piece, which an integrator may not see as a change.
+bool CrankModel::branch_lost() {
+  if (now.stuck) return false;
+  if (now.branch.direction * now.omega < -1e-9 * speed_scale) return true;
+  double y[3];
+  unknowns(y);
+  if (wingless || now.branch.force * indicators(now.t, y)[force] >= -1e-8) return false;
+  now.branch.force = -now.branch.force;
+  now.force_branch_known = true;
+  return true;
+}
+
+void CrankModel::tolerated(double relative, const double* y, double* errors) const {
+  // The crank angle grows for ever: its admissible error must not grow with it.
+  errors[0] = relative;
+  errors[1] = relative * (std::abs(y[1]) + 0.01 * speed_scale);
+  if (inductive) errors[2] = relative * (std::abs(y[2]) + 0.01 * current_scale);
+}
+
+bool CrankModel::stiff() const {
+  const double span = drive_period > 0.0 ? std::min(time_scale, drive_period) : time_scale;
+  return fastest_decay * span > stiff_decays_per_lap;
 }
 
 void CrankModel::switch_supply() {

@@ -22,6 +22,8 @@ class CrankModel {
     Branch<double> branch{1.0, 1.0, 1.0, 1.0};  ///< force and direction; the others follow from the unknowns
     bool force_branch_known = false;            ///< branch.force was set where the force has just changed its sign
     double switched_voltage = 0.0;              ///< of a supply that is no sine, at this moment [V]
+    bool stuck = false;                         ///< stands where friction holds it; for step_to() alone
+    bool jammed = false;                        ///< the same: has reached where its equations have no unique solution
     long switches = 0;                          ///< of a pwm supply so far: even ones turn on, number 0 at t = 0
   };
   /// Functions of the state whose sign changes are events.
@@ -31,6 +33,19 @@ class CrankModel {
   CrankModel(const Vehicle<double>& vehicle, const Supply<double>& supply);
   /// Sets the state at t = 0 and what follows from it; without inductance the current follows from the voltage instead.
   void start(double theta, double omega, double current);
+
+  // As TimeModel asks.
+  bool ended() const { return now.jammed; }
+  void begin_piece();
+  void unknowns(double* y) const;
+  void set(double t, const double* y);
+  std::array<int, indicator_count> directions() const;
+  void handle(std::size_t indicator);
+  bool branch_lost();
+  void tolerated(double relative, const double* y, double* errors) const;
+  std::array<double, 3> typical() const { return {0.1, speed_scale, current_scale}; }
+  double longest_step() const { return 0.25 * time_scale; }
+  bool stiff() const;
 
   double voltage(double t) const {
     return supply.type == SupplyType::sine ? voltage_at(supply, t) : now.switched_voltage;

@@ -12,10 +12,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 enum Root { root_force, root_standstill, root_lap, root_jam, root_plain_count };
 enum { root_stored_moment = root_plain_count, root_dead_centre, root_measuring_count };
 
-// A lap holds some hundred steps of Adams at usual tolerances; only if the fastest decay is much quicker than that do
-// the larger steps of BDF make up for its lower order. A branch that takes Adams more steps than the last number is
-// taken as stiff whatever the estimate said.
-constexpr double stiff_decays_per_lap = 500.0;
+// A branch that takes more steps is taken as stiff whatever the estimate said.
 constexpr int stiff_steps_per_branch = 2000;
 
 }  // namespace
@@ -47,7 +44,7 @@ void CrankStartUp::prepare() {
   const double released = 0.5 * pi * std::sqrt(vehicle.wing_count * vehicle.spring.stiffness / m.inertia);
   runaway_speed_ = 1e3 * std::max({model_.speed_scale, std::abs(now_.omega), std::abs(now_.i) * R / K, released});
 
-  stiff_ = model_.fastest_decay * (drive > 0.0 ? std::min(lap, drive) : lap) > stiff_decays_per_lap;
+  stiff_ = model_.stiff();
   result_.stiff = stiff_;
   relative_tolerance_ = std::max(tightest_, (stiff_ ? 3e-3 : 1e-2) * options_.tolerance);
   loosest_ = relative_tolerance_;
@@ -94,10 +91,7 @@ void CrankStartUp::root_values(double t, const double* y, double* values, bool m
 }
 
 void CrankStartUp::tolerated(const double* y, double* errors, bool measuring) const {
-  // The crank angle grows for ever: its admissible error must not grow with it.
-  errors[0] = relative_tolerance_;
-  errors[1] = relative_tolerance_ * (std::abs(y[1]) + 0.01 * model_.speed_scale);
-  if (model_.inductive) errors[2] = relative_tolerance_ * (std::abs(y[2]) + 0.01 * model_.current_scale);
+  model_.tolerated(relative_tolerance_, y, errors);
   if (!measuring) return;
   for (int k = 0; k < quadrature_count; ++k) {
     errors[model_.coupled + k] = relative_tolerance_ * (std::abs(y[model_.coupled + k]) + 0.01 * quadrature_scale_[k]);

@@ -1,0 +1,132 @@
+#include "time/direct_model.hpp"
+
+#include <algorithm>
+
+#include "time/transient_tools.hpp"
+#include "wingbeat/cycle/direct_balance.hpp"
+
+namespace wingbeat::detail {
+namespace {
+
+constexpr double stiff_decays_per_period = 500.0;
+
+}  // namespace
+
+DirectModel::DirectModel(const Vehicle<double>& of) : vehicle(of) {
+  validate(vehicle.motor);
+  validate(vehicle.friction);
+  validate(vehicle.spring);
+  validate(vehicle.wings);
+  require(vehicle.voltage >= 0.0, "supply.amplitude", "must be >= 0", "V", vehicle.voltage);
+  require(vehicle.drive_frequency > 0.0, "supply.frequency", "must be > 0", "Hz", vehicle.drive_frequency);
+  w = two_pi * vehicle.drive_frequency;
+  period = 1.0 / vehicle.drive_frequency;
+  inductive = vehicle.motor.armature_inductance > 0.0;
+  coupled = inductive ? 3 : 2;
+}
+
+void DirectModel::start(double beta, double speed, double current) {
+  const Motor<double>& m = vehicle.motor;
+  const DirectBalance balance = direct_balance(vehicle);
+  drive_torque = balance.drive_torque;
+  holding_torque = balance.breakaway_torque;
+  sticks = holding_torque > 0.0;
+
+  const double inertia = m.inertia + vehicle.wing_count * vehicle.wing_inertia;
+  const double natural = std::max(w, std::sqrt(vehicle.wing_count * vehicle.spring.stiffness / inertia));
+  now = {};
+  now.y[0] = beta;
+  now.y[1] = speed;
+  now.y[2] = inductive ? current : 0.0;
+  speed_scale = balance.responses.empty() ? std::max(0.0, drive_torque - holding_torque) / (inertia * w)
+                                          : std::abs(balance.responses.back().speed);
+  speed_scale = std::max({speed_scale, std::abs(now.y[1]), std::abs(now.y[0]) * natural});
+  if (!(speed_scale > 0.0)) speed_scale = 1.0;
+  stroke_scale = std::max(speed_scale / natural, std::abs(now.y[0]));
+  current_scale = std::max({drive_torque / m.torque_constant, std::abs(now.y[2]),
+                            1e-3 * m.torque_constant * speed_scale / m.armature_resistance});
+
+  const double damping = m.viscous_damping + vehicle.friction.damping;
+  fastest_decay = inductive ? std::max(m.armature_resistance / m.armature_inductance, damping / inertia)
+                            : (damping + square(m.torque_constant) / m.armature_resistance) / inertia;
+}
+
+Branch<double> DirectModel::branch_at(const double* y) const {
+  const double way = sticks ? now.direction : sign_of(y[1]);
+  return {way, 1.0, way, 1.0, sign_of(pitch_margin(vehicle.wings, std::abs(y[1])))};
+}
+
+Motion<double> DirectModel::motion(double t, const double* y) const {
+  const double i = current_of(t, y), v = voltage(t), springs = springs_of(y[0]);
+  const Branch<double> branch = branch_at(y);
+  const double omega = now.stuck ? 0.0 : y[1];
+  const Instant<double> at = instant_at(vehicle, direct_kinematics<double>(), springs, omega, i, v, branch.stroke,
+                                        branch.direction, branch.pitching);
+  Motion<double> m = motion_on(vehicle, at, i, v, branch);
+  if (now.stuck) {
+    m.crank_acceleration = m.stroke_acceleration = 0.0;
+    m.rod_force = m.stored_moment = springs;
+    m.motor_torque = at.motor.torque;
+    m.friction_torque = at.motor.torque - springs;
+  }
+  return m;
+}
+
+bool DirectModel::rates(double t, const double* y, double* dy, bool quadrature) const {
+  const Motion<double> m = motion(t, y);
+  dy[0] = m.stroke_velocity;
+  dy[1] = m.crank_acceleration;
+  if (inductive) dy[2] = m.voltage_reserve / vehicle.motor.armature_inductance;
+  if (quadrature) {
+    const CycleIntegrals<double> all = integrands(m, m.stroke_velocity, branch_at(y));
+    for (int k = 0; k < quadrature_count; ++k) dy[coupled + k] = all[std::size_t(quadratures[k])];
+  }
+  return std::isfinite(dy[1]) && std::isfinite(y[coupled - 1]);
+}
+
+std::array<double, DirectModel::indicator_count> DirectModel::indicators(double t, const double* y, bool all) const {
+  std::array<double, indicator_count> values;
+  values[motion_ends] = !sticks     ? 1.0
+                        : now.stuck ? (holding_torque - std::abs(pull(t, y))) / holding_torque
+                                    : y[1] / speed_scale;
+  values[stored_moment] = values[velocity] = 1.0;
+  if (!all || now.stuck) return values;
+  const double torque = vehicle.motor.torque_constant * current_scale;
+  values[stored_moment] = motion(t, y).stored_moment / torque;
+  values[velocity] = y[1] / speed_scale;
+  return values;
+}
+
+void DirectModel::begin_piece() {
+  if (!sticks || now.stuck) return;
+  now.direction = sign_of(now.y[1]);
+  if (now.y[1] == 0.0) come_to_rest();
+}
+
+void DirectModel::handle(std::size_t indicator) {
+  if (indicator != motion_ends) return;
+  now.y[1] = 0.0;
+  if (now.stuck) break_away();
+}
+
+void DirectModel::tolerated(double relative, const double* y, double* errors) const {
+  errors[0] = relative * (std::abs(y[0]) + 0.01 * stroke_scale);
+  errors[1] = relative * (std::abs(y[1]) + 0.01 * speed_scale);
+  if (inductive) errors[2] = relative * (std::abs(y[2]) + 0.01 * current_scale);
+}
+
+bool DirectModel::stiff() const { return fastest_decay * period > stiff_decays_per_period; }
+
+void DirectModel::come_to_rest() {
+  now.y[1] = 0.0;
+  const double torque = pull(now.t, now.y);
+  now.stuck = std::abs(torque) <= holding_torque;
+  now.direction = sign_of(torque);
+}
+
+void DirectModel::break_away() {
+  now.stuck = false;
+  now.direction = sign_of(pull(now.t, now.y));
+}
+
+}  // namespace wingbeat::detail

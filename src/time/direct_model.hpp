@@ -1,0 +1,86 @@
+// A direct drive in time: its equations, its events, and the state that goes with them; model.md section 6.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
+
+namespace wingbeat::detail {
+
+/// The unknowns are beta [rad], beta' [rad/s] and, with an inductance, i [A].
+class DirectModel {
+ public:
+  /// Everything that moves: copied to save it, assigned to go back.
+  struct State {
+    double t = 0.0;
+    double y[3] = {};
+    bool stuck = false;      ///< constant friction holds the shaft
+    double direction = 1.0;  ///< of a slip, where there is constant friction
+  };
+  /// Functions of the state whose sign changes are events: of the motion, the speed or, where the shaft is stuck, what
+  /// friction has left to hold; the moment stored in wings and springs; the speed.
+  enum Indicator { motion_ends, stored_moment, velocity, indicator_count };
+
+  /// Throws ParameterError for numbers out of range.
+  explicit DirectModel(const Vehicle<double>& vehicle);
+  /// Sets the state at t = 0 and the scales that follow from it.
+  void start(double beta, double speed, double current);
+
+  // As TimeModel asks.
+  bool ended() const { return false; }
+  void begin_piece();
+  void unknowns(double* y) const { std::copy_n(now.y, coupled, y); }
+  void set(double t, const double* y) {
+    now.t = t;
+    std::copy_n(y, coupled, now.y);
+  }
+  void handle(std::size_t indicator);
+  bool branch_lost() { return sticks && !now.stuck && now.direction * now.y[1] < -1e-9 * speed_scale; }
+  double next_switch() const { return std::numeric_limits<double>::infinity(); }
+  void switch_supply() {}
+  void tolerated(double relative, const double* y, double* errors) const;
+  std::array<double, 3> typical() const { return {stroke_scale, speed_scale, current_scale}; }
+  double longest_step() const { return now.stuck ? period / 64.0 : 0.25 * period; }
+  bool stiff() const;
+
+  double voltage(double t) const { return vehicle.voltage * std::sin(w * t); }
+  double current_of(double t, const double* y) const {
+    return inductive ? y[2] : algebraic_current(vehicle, voltage(t), y[1]);
+  }
+  double springs_of(double beta) const { return vehicle.wing_count * vehicle.spring.stiffness * beta; }
+  /// K i - N_w k beta [N m] at rest.
+  double pull(double t, const double* y) const {
+    const double i = inductive ? y[2] : algebraic_current(vehicle, voltage(t), 0.0);
+    return vehicle.motor.torque_constant * i - springs_of(y[0]);
+  }
+  Branch<double> branch_at(const double* y) const;
+  Motion<double> motion(double t, const double* y) const;
+  /// dy/dt and, where asked for, the integrands of `quadratures` behind them. False: not finite.
+  bool rates(double t, const double* y, double* dy, bool quadrature) const;
+  std::array<double, indicator_count> indicators(double t, const double* y, bool all = true) const;
+  double wing_energy() const {
+    return 0.5 * vehicle.wing_count *
+           (vehicle.wing_inertia * square(now.y[1]) + vehicle.spring.stiffness * square(now.y[0]));
+  }
+  /// Which sign changes of each indicator count.
+  std::array<int, indicator_count> directions() const { return {now.stuck ? -1 : int(-now.direction), 0, 0}; }
+  /// The shaft has come to rest where constant friction acts: it is held, or moves on where it is pulled.
+  void come_to_rest();
+  /// The pull has outgrown what friction holds.
+  void break_away();
+
+  Vehicle<double> vehicle;
+  double w, period;  ///< of the supply: angular frequency [rad/s], duration [s]
+  bool inductive, sticks;
+  int coupled;  ///< number of unknowns
+  double holding_torque, drive_torque;
+  double stroke_scale = 1.0, speed_scale = 1.0, current_scale = 1.0;
+  double fastest_decay = 0.0;  ///< [1/s]
+  State now;
+};
+
+}  // namespace wingbeat::detail
