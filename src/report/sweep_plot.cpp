@@ -12,10 +12,10 @@
 
 #include "report/figure.hpp"
 #include "report/sweep_status_plot.hpp"
-#include "wingbeat/files/design_keys.hpp"
 #include "wingbeat/files/netcdf.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/study/sweep_best.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 namespace {
@@ -40,7 +40,7 @@ std::string words(const std::string& key) {
   if (dot == std::string::npos) return spaced(key);
   const std::string leaf = key.substr(dot + 1);
   int same = 0;
-  for (const auto& known : vehicle_keys<double>()) same += known.path.substr(known.path.rfind('.') + 1) == leaf;
+  for (const auto& known : parameter_table<double>()) same += known.path.substr(known.path.rfind('.') + 1) == leaf;
   if (same == 1 && leaf.find('_') != std::string::npos) return spaced(leaf);
   const std::string above = key.substr(0, dot);
   return spaced(above.substr(above.rfind('.') + 1) + " " + leaf);
