@@ -10,10 +10,10 @@
 #include "options.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/files/design_file.hpp"
-#include "wingbeat/files/design_keys.hpp"
 #include "wingbeat/files/output_file.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/report/reference.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat::app {
 namespace {
@@ -77,7 +77,7 @@ void add_keys(CLI::App& program, Action& action) {
   command->callback([a, &action] {
     action = [a] {
       std::vector<std::string_view> names;
-      for (const auto& key : vehicle_keys<double>()) names.push_back(key.path);
+      for (const auto& key : parameter_table<double>()) names.push_back(key.path);
       return show(*a, text_keys, json_keys, "key", names);
     };
   });

@@ -6,8 +6,8 @@
 #include <charconv>
 #include <system_error>
 
-#include "wingbeat/files/design_keys.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat::app {
 namespace {

@@ -13,10 +13,10 @@
 #include "files/toml_fields.hpp"
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/files/design_file.hpp"
-#include "wingbeat/files/design_keys.hpp"
 #include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 namespace {
@@ -253,21 +253,6 @@ class LogReader {
   int set_ = -1;
 };
 
-constexpr std::pair<const char*, Loss> losses[] = {
-    {"none", Loss::none}, {"huber", Loss::huber}, {"soft-l1", Loss::soft_l1}, {"cauchy", Loss::cauchy}};
-
-template <class E, std::size_t N>
-E chosen(const TomlFields& fields, std::string_view key, const std::pair<const char*, E> (&choices)[N],
-         std::optional<std::string_view> fallback = {}) {
-  std::vector<std::string_view> names;
-  for (const auto& [name, value] : choices) names.push_back(name);
-  const std::string name = fields.choice(key, names, fallback);
-  for (const auto& [known, value] : choices) {
-    if (known == name) return value;
-  }
-  return choices[0].second;
-}
-
 class BenchReader {
  public:
   BenchReader(const std::filesystem::path& file, std::span<const std::string> overrides)
@@ -305,7 +290,7 @@ class BenchReader {
     if (!options) return;
     const std::string_view keys[] = {"loss", "loss_scale", "starts", "seed", "tolerance"};
     options->known_keys(keys);
-    fit.loss = chosen(*options, "loss", losses, "none");
+    fit.loss = options->choice<Loss>("loss", Loss::none);
     fit.loss_scale = options->quantity("loss_scale", "1").value_or(fit.loss_scale);
     if (!(fit.loss_scale > 0.0)) options->refuse(options->at("loss_scale"), "loss_scale", "must be > 0");
     fit.starts = options->count("starts", 1).value_or(1);
@@ -376,15 +361,14 @@ class BenchReader {
       l.known_keys(keys);
       const std::string file = l.needed_text("file", "the name of a CSV file");
       LogRequest request;
-      request.log.condition = chosen(l, "condition", names_of<Condition>);
+      request.log.condition = l.choice<Condition>("condition");
       const auto springs = l.boolean("springs");
       if (!springs && has_springs && request.log.condition != Condition::wingless) {
         l.refuse("springs", "missing; the vehicle file has springs: true, or false where they were taken off");
       }
       request.log.springs = springs.value_or(false) && request.log.condition != Condition::wingless;
       if (springs.value_or(false) && !has_springs) l.refuse(l.at("springs"), "springs", "the vehicle file has none");
-      constexpr std::pair<const char*, Given> givens[] = {{"voltage", Given::voltage}, {"frequency", Given::frequency}};
-      if (l.has("given")) request.given = chosen(l, "given", givens);
+      if (l.has("given")) request.given = l.choice<Given>("given");
       const auto voltage = l.quantity("voltage", "V"), frequency = l.quantity("frequency", "Hz");
       if (voltage && frequency) l.refuse(l.at("frequency"), "frequency", "give voltage or frequency, not both");
       if (voltage || frequency) {

@@ -57,8 +57,7 @@ MotorDatasheet parse_datasheet(std::string_view text, const std::string& file_na
   s.name = sheet->text("name").value_or("");
   sheet->text("source");
   sheet->text("note");
-  const std::string_view shafts[] = {"motor", "output"};
-  s.shaft = sheet->choice("shaft", shafts, "motor") == "output" ? Shaft::output : Shaft::motor;
+  s.shaft = sheet->choice<Shaft>("shaft", s.shaft);
   s.gear_ratio = sheet->quantity("gear_ratio", "1").value_or(1.0);
   s.gear_efficiency = sheet->quantity("gear_efficiency", "1");
   for (const Field& f : fields) errors.attempt([&] { s.*f.value = sheet->quantity(f.key, f.unit); });

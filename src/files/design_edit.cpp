@@ -14,6 +14,7 @@
 #include "files/toml_document.hpp"
 #include "files/toml_spans.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 namespace fs = std::filesystem;

@@ -10,17 +10,16 @@
 #include <fstream>
 #include <memory>
 #include <system_error>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "files/input_errors.hpp"
 #include "files/table_csv.hpp"
 #include "files/toml_document.hpp"
-#include "wingbeat/files/design_keys.hpp"
 #include "wingbeat/files/file_record.hpp"
 #include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 
@@ -141,7 +140,7 @@ class Reader {
   }
 
   const std::string& required_text(std::string_view path) const {
-    const std::string_view expected = find_key<double>(path)->range;
+    const std::string_view expected = find_parameter<double>(path)->range.text;
     const Value* value = document_.find(path);
     if (!value) missing(path, expected);
     return text_of(*value, path, expected);
@@ -150,7 +149,7 @@ class Reader {
   template <NamedEnum E>
   E choice(std::string_view path) const {
     if (const auto value = from_name<E>(required_text(path))) return *value;
-    wrong(*document_.find(path), path, find_key<double>(path)->range);
+    wrong(*document_.find(path), path, find_parameter<double>(path)->range.text);
   }
 
   /// A choice on which other keys depend: what depends on one that cannot be read is passed over.
@@ -167,11 +166,6 @@ class Reader {
     return std::find(unread_.begin(), unread_.end(), path) != unread_.end();
   }
 
-  [[noreturn]] void unsupported(std::string_view path, std::string_view given) const {
-    document_.locate(path).refuse(
-        std::string(path), fmt::format("{} is not supported yet; expected {}", given, find_key<double>(path)->range));
-  }
-
   double number_of(const Value& value, std::string_view path, std::string_view unit) const {
     if (value.kind == Value::Kind::number) {
       if (!std::isfinite(value.number)) wrong(value, path, quantity_example(unit));
@@ -185,22 +179,27 @@ class Reader {
     }
   }
 
-  /// True if the choices made so far leave a place for the key; refuses a key that is given without one.
-  bool belongs(const KeyText& key) const {
+  /// True if the choices made so far leave a place for the key.
+  bool has_place(const ParameterText& key) const {
     if (key.only_with.empty()) return true;
     const Requirement requirement = requirement_of(key.only_with);
-    if (is_unread(requirement.key)) return false;
-    const Value* choice = document_.find(requirement.key);
-    if (choice && requirement.allows(choice->text)) return true;
-    if (const Value* value = document_.find(key.path)) {
-      if (!choice) {
-        value->origin.refuse(std::string(key.path), fmt::format("needs {}, which is not given", requirement.key));
-      }
-      value->origin.refuse(std::string(key.path),
-                           fmt::format("belongs to {0} = {1}, but {0} is {2}", requirement.key,
-                                       fmt::join(requirement.values, " or "), in_quotes(choice->text)));
+    const Value* choice = document_.find(requirement.path);
+    return !is_unread(requirement.path) && choice && requirement.allows(choice->text);
+  }
+
+  /// The same; refuses a key that is given without a place.
+  bool belongs(const ParameterText& key) const {
+    if (has_place(key)) return true;
+    const Requirement requirement = requirement_of(key.only_with);
+    const Value* value = document_.find(key.path);
+    if (!value || is_unread(requirement.path)) return false;
+    const Value* choice = document_.find(requirement.path);
+    if (!choice) {
+      value->origin.refuse(std::string(key.path), fmt::format("needs {}, which is not given", requirement.path));
     }
-    return false;
+    value->origin.refuse(std::string(key.path),
+                         fmt::format("belongs to {0} = {1}, but {0} is {2}", requirement.path,
+                                     fmt::join(requirement.values, " or "), in_quotes(choice->text)));
   }
 
   void read_formulation(TransmissionDesign<double>& transmission) const {
@@ -215,68 +214,59 @@ class Reader {
   }
 
   void read_numbers(Design<double>& d) {
-    for (const auto& key : vehicle_keys<double>()) {
+    for (const auto& key : parameter_table<double>()) {
       attempt([&] {
         if (!belongs(key) || !key.set) return;
         if (const Value* value = document_.find(key.path)) {
           const double number = number_of(*value, key.path, key.unit);
           if (!key.set(d, number)) value->origin.refuse(std::string(key.path), "has no place in this vehicle");
-          check_sign(*value, key, number);
-        } else if (key.fallback == "required") {
+          check_range(*value, key, number);
+        } else if (key.fallback == "required" && !key.has_alternative()) {
           missing(key.path, quantity_example(key.unit));
         }
       });
     }
   }
 
-  /// The ranges that need no other key, each at its own line; validate() sees to the rest.
-  static void check_sign(const Value& value, const KeyText& key, double number) {
-    const bool fits = key.range == "> 0" ? number > 0.0 : key.range == ">= 0" ? number >= 0.0 : true;
-    if (fits) return;
-    const std::string expected = fmt::format("must be {}", key.range);
-    value.origin.refuse(std::string(key.path), range_message(expected.c_str(), std::string(key.unit).c_str(), number));
+  /// Each at its own line; validate() sees to what needs another key.
+  static void check_range(const Value& value, const ParameterText& key, double number) {
+    if (key.range.holds(number)) return;
+    value.origin.refuse(std::string(key.path),
+                        range_message(key.range.expected, std::string(key.unit).c_str(), number));
   }
 
   void check_alternatives() {
-    const auto is = [&](std::string_view path, std::string_view text) {
-      return !is_unread(path) && document_.find(path)->text == text;
-    };
-    const bool tabulated = is("wing.planform.shape", "tabulated");
-    const bool outline = is("wing.planform.shape", "semi-ellipse") || is("wing.planform.shape", "rectangle");
-    const bool direct = is("transmission.type", "direct");
-    const bool switching = is("supply.type", "sine") || is("supply.type", "pwm");
-    const bool ratio = document_.find("spring.resonance_ratio");
-    // Alternatives of a direct drive alone are not offered to others.
-    const std::tuple<std::string_view, std::string_view, bool, bool> pairs[] = {
-        {"transmission.hinge_offset", "transmission.stroke_amplitude", !direct && !is_unread("transmission.type"),
-         true},
-        {"spring.stiffness", "spring.resonance", document_.has_section("spring") && !ratio, true},
-        {"spring.stiffness", "spring.resonance_ratio", false, true},
-        {"spring.resonance", "spring.resonance_ratio", false, true},
-        {"supply.frequency", "supply.resonance_ratio", switching, direct},
-        {"wing.inertia", "wing.resonance", true, direct},
-        {"wing.planform.root_chord", "wing.planform.chord_ratio", outline, true},
-        {"wing.planform.file", "wing.planform.chords", tabulated, true},
-        {"supply.cell_voltage", "supply.discharge_curve", is("supply.type", "battery"), true}};
-    for (const auto& [one, other, required, offered] : pairs) {
-      attempt([&, one = one, other = other, required = required, offered = offered] {
-        check_alternative(one, other, required, offered);
-      });
+    const auto keys = parameter_table<double>();
+    for (std::size_t n = 0; n < keys.size(); ++n) {
+      const ParameterText& one = keys[n];
+      bool first = one.has_alternative(), given = document_.find(one.path);
+      for (const std::string& other : alternatives_of(one)) {
+        const Parameter<double>* found = find_parameter<double>(other);
+        if (found && found < &keys[n]) first = false;
+        if (found && found > &keys[n]) attempt([&] { refuse_both(one.path, other); });
+        given = given || document_.find(other);
+      }
+      if (first && !given) attempt([&] { require_either(one, alternatives_of(one).front()); });
     }
   }
 
-  void check_alternative(std::string_view one, std::string_view other, bool required, bool offered) const {
-    const Value* first = document_.find(one);
+  static std::string_view leaf_of(std::string_view path) { return path.substr(path.rfind('.') + 1); }
+
+  void refuse_both(std::string_view one, const std::string& other) const {
     const Value* second = document_.find(other);
-    const auto leaf = [](std::string_view path) { return path.substr(path.rfind('.') + 1); };
-    if (first && second) {
-      second->origin.refuse(std::string(other), fmt::format("give {} or {}, not both", leaf(one), leaf(other)));
-    }
-    if (!required || first || second || known_to_be_wrong(other)) return;
-    const std::string_view unit = find_key<double>(one)->unit;
-    missing(one, unit.empty() ? std::string("the name of a CSV file, or chords instead")
-                 : offered    ? fmt::format("{}, or {} instead", quantity_example(unit), leaf(other))
-                              : quantity_example(unit));
+    if (!document_.find(one) || !second) return;
+    second->origin.refuse(other, fmt::format("give {} or {}, not both", leaf_of(one), leaf_of(other)));
+  }
+
+  void require_either(const ParameterText& one, const std::string& other) const {
+    const Parameter<double>* second = find_parameter<double>(other);
+    const std::string_view section = one.path.substr(0, one.path.rfind('.'));
+    if (one.fallback != "required" || !second || !has_place(one) || !document_.has_section(section)) return;
+    if (known_to_be_wrong(other)) return;
+    const std::string one_like_it =
+        one.unit.empty() ? fmt::format("the {}", one.range.text) : quantity_example(one.unit);
+    // Alternatives of a direct drive alone are not offered to others.
+    missing(one.path, has_place(*second) ? fmt::format("{}, or {} instead", one_like_it, leaf_of(other)) : one_like_it);
   }
 
   void read_coefficients(AerodynamicsDesign<double>& a) const {
@@ -310,7 +300,7 @@ class Reader {
       return;
     }
     // The numbers themselves come with the others.
-    for (const auto& key : vehicle_keys<double>()) {
+    for (const auto& key : parameter_table<double>()) {
       if (key.set && key.path.starts_with(path + ".") && !document_.find(key.path)) {
         missing(key.path, quantity_example(key.unit));
       }

@@ -1,12 +1,12 @@
 #include "wingbeat/files/design_parameter.hpp"
 
-#include "wingbeat/files/design_keys.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 
 DesignParameter design_parameter(std::string_view path) {
-  const Key<double>& plain = numeric_key<double>(path);
-  const Key<GradientJet>& jets = numeric_key<GradientJet>(path);
+  const Parameter<double>& plain = numeric_parameter<double>(path);
+  const Parameter<GradientJet>& jets = numeric_parameter<GradientJet>(path);
   return {std::string(path), std::string(plain.unit), plain.set, jets.set, plain.get};
 }
 

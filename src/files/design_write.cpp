@@ -5,7 +5,7 @@
 
 #include "files/design_write.hpp"
 #include "wingbeat/files/design_file.hpp"
-#include "wingbeat/files/design_keys.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 
@@ -64,10 +64,10 @@ std::string toml_quantity(double x, std::string_view unit) {
 std::vector<WrittenKey> written_keys(const Design<double>& design) {
   const bool custom = design.aerodynamics.coefficients_name == "custom";
   std::vector<WrittenKey> keys;
-  const auto write = [&](const KeyText& key, std::string text, std::optional<double> number = {}) {
+  const auto write = [&](const ParameterText& key, std::string text, std::optional<double> number = {}) {
     keys.push_back({key.path, key.unit, std::move(text), number});
   };
-  for (const auto& key : vehicle_keys<double>()) {
+  for (const auto& key : parameter_table<double>()) {
     const bool of_wave = key.get && key.path.starts_with("aerodynamics.coefficients.");
     if (key.path == "wing.planform.chords") {
       if (design.wing.planform.shape == PlanformShape::tabulated) write(key, chord_rows(design.wing.planform));

@@ -7,8 +7,8 @@
 #include <system_error>
 
 #include "wingbeat/files/design_file.hpp"
-#include "wingbeat/files/design_keys.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 namespace fs = std::filesystem;

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "wingbeat/files/design_file.hpp"
-#include "wingbeat/files/design_keys.hpp"
 #include "wingbeat/files/netcdf.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 namespace {
@@ -20,7 +20,7 @@ std::string variable_name(const std::string& key) {
   return name;
 }
 
-std::string meaning_of(const DesignParameter& p) { return std::string(find_key<double>(p.key)->meaning); }
+std::string meaning_of(const DesignParameter& p) { return std::string(find_parameter<double>(p.key)->meaning); }
 
 /// What the best design's own searches found.
 void write_best(NetcdfFile& data, const OptimiseStudy& study, const OptimiseResult& r) {

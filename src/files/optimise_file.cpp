@@ -133,8 +133,7 @@ class OptimiseReader : public detail::StudySections {
       if (search->kind != Kind::table) wrong(*search, "search", "a section [search]");
       known_keys(*search, "search", {"method", "population", "generations", "screen", "seed", "designs"});
       if (const TomlNode* method = search->find("method")) {
-        const std::string name = one_of(*method, "search.method", {"nsga2", "moead"});
-        evolution.method = name == "nsga2" ? EvolutionMethod::nsga2 : EvolutionMethod::moead;
+        evolution.method = one_of<EvolutionMethod>(*method, "search.method");
       }
       if (const TomlNode* population = search->find("population")) {
         evolution.population = unsigned(whole_number(*population, "search.population", 8, 10000));

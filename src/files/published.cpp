@@ -10,16 +10,13 @@
 #include <tuple>
 #include <utility>
 
-#include "wingbeat/files/design_keys.hpp"
 #include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 namespace {
-
-constexpr std::pair<const char*, Basis> bases[] = {
-    {"calibrated", Basis::calibrated}, {"predicted", Basis::predicted}, {"given", Basis::given}};
 
 constexpr std::pair<const char*, PublishedTrend::Kind> kinds[] = {
     {"crossing", PublishedTrend::Kind::crossing},
@@ -98,7 +95,7 @@ class Reader {
         published_at(t, "published", v.relative_to ? "1" : metric_info(v.metric).unit);
     v.tolerance = tolerance_at(t, file);
     if (t.contains("where")) v.where = text_at(t, "where");
-    if (t.contains("basis")) v.basis = choice_at(t, "basis", bases);
+    if (t.contains("basis")) v.basis = choice_at(t, "basis", names_of<Basis>);
     return v;
   }
 
@@ -108,7 +105,7 @@ class Reader {
     trend.kind = choice_at(t, "kind", kinds);
     trend.statement = text_at(t, "statement");
     trend.where = text_at(t, "where");
-    trend.basis = choice_at(t, "basis", bases);
+    trend.basis = choice_at(t, "basis", names_of<Basis>);
     for (const auto& [key, text] :
          {std::pair("reason", &trend.reason), std::pair("note", &trend.note), std::pair("erratum", &trend.erratum)}) {
       if (t.contains(key)) *text = text_at(t, key);
@@ -334,8 +331,6 @@ PublishedFile read_published(const std::filesystem::path& file, std::span<const 
     return read_design(find_vehicle(file.parent_path(), design), overrides);
   });
 }
-
-const char* name_of(Basis basis) { return bases[std::size_t(basis)].first; }
 
 std::string operating_point(const std::optional<double>& voltage, const std::optional<double>& frequency) {
   return voltage ? fmt::format("{:.6g} V", *voltage) : fmt::format("{:.6g} Hz", frequency.value_or(absent));

@@ -12,9 +12,9 @@
 
 #include "files/study_sections.hpp"
 #include "wingbeat/cycle/metrics.hpp"
-#include "wingbeat/files/design_keys.hpp"
 #include "wingbeat/files/file_record.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 namespace {
@@ -86,7 +86,7 @@ class StudyReader : public detail::StudySections {
     q.name = q.key;
     std::replace(q.name.begin(), q.name.end(), '.', '_');
     q.unit = "1";
-    const Key<double>* key = find_key<double>(q.key);
+    const Parameter<double>* key = find_parameter<double>(q.key);
     if (!used_.insert(q.key).second) refuse(node, where, fmt::format("{} is varied already", q.key));
     if (set_.contains(q.key)) refuse(node, where, fmt::format("{} is given in [set] already", q.key));
     no_override_of(q.key, "has no effect: the study varies it");
@@ -135,7 +135,7 @@ class StudyReader : public detail::StudySections {
       } else if (q.key == "condition") {
         q.labels.push_back(name_of(one_of<Condition>(node, where)));
       } else {
-        q.labels.push_back(text_of(node, where, find_key<double>(q.key)->range));
+        q.labels.push_back(text_of(node, where, find_parameter<double>(q.key)->range.text));
       }
       return;
     }
@@ -554,13 +554,13 @@ class StudyReader : public detail::StudySections {
       for_each_number([&](const SweepAxis& axis, std::size_t q) {
         const SweptQuantity& quantity = axis.quantities[q];
         if (quantity.set(d, number_at(axis, q, 0.5))) return;
-        const std::string_view only_with = find_key<double>(quantity.key)->only_with;
+        const std::string_view only_with = find_parameter<double>(quantity.key)->only_with;
         refuse(origins_.at(quantity.key), quantity.key,
                only_with.empty() ? "has no place in this vehicle" : fmt::format("only with {}", only_with));
       });
       for_each_number([&](const SweepAxis& axis, std::size_t q) {
         const SweptQuantity& quantity = axis.quantities[q];
-        const auto found = find_key<double>(quantity.key)->get(d);
+        const auto found = find_parameter<double>(quantity.key)->get(d);
         if (!found || *found != number_at(axis, q, 0.5)) {
           refuse(origins_.at(quantity.key), quantity.key, "another varied key takes its place");
         }

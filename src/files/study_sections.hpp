@@ -21,10 +21,10 @@
 #include "files/toml_document.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/files/design_file.hpp"
-#include "wingbeat/files/design_keys.hpp"
 #include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat::detail {
 
@@ -298,7 +298,7 @@ class StudySections {
   void flatten(const TomlNode& table, const std::string& path) {
     for (const auto& [key, node] : table.members) {
       const std::string full = path.empty() ? key : path + "." + key;
-      const bool known = find_key<double>(full) != nullptr;
+      const bool known = find_parameter<double>(full) != nullptr;
       const bool has_place = attempt([&, &n = node] {
         if (!known && !is_section(full)) refuse(n, "set." + one_line(full), unknown_key_message(full));
       });
@@ -426,7 +426,7 @@ class StudySections {
       refuse(node, where, fmt::format("{} has no effect where the frequency is held", key));
     }
     if (!parameter.value(design)) {
-      const std::string_view only_with = find_key<double>(key)->only_with;
+      const std::string_view only_with = find_parameter<double>(key)->only_with;
       Design<double> trial = design;
       const bool has_place = parameter.set(trial, 1.0);
       refuse(node, where,

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "wingbeat/files/design_file.hpp"
-#include "wingbeat/files/design_keys.hpp"
 #include "wingbeat/files/netcdf.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 
@@ -21,7 +21,8 @@ void write_tolerance(const ToleranceStudy& study, const ToleranceResult& result,
   const auto sample = data.define_dimension("sample", base);
   const Sweep sweep = tolerance_sweep(study);
   for (const SweptQuantity& q : sweep.axes.front().quantities) {
-    const auto variable = data.define_variable(q.name, {sample}, q.unit, std::string(find_key<double>(q.key)->meaning));
+    const auto variable =
+        data.define_variable(q.name, {sample}, q.unit, std::string(find_parameter<double>(q.key)->meaning));
     data.set_key(variable, q.key);
     data.write(variable, std::span(q.values).subspan(0, base));
   }

@@ -58,8 +58,7 @@ class ToleranceReader : public detail::StudySections {
     if (node->kind != Kind::table) wrong(*node, "samples", "a section [samples]");
     known_keys(*node, "samples", {"method", "count", "seed", "indices", "resamples"});
     if (const TomlNode* method = node->find("method")) {
-      const std::string name = one_of(*method, "samples.method", {"sobol", "monte-carlo"});
-      study.method = name == "sobol" ? ToleranceMethod::sobol : ToleranceMethod::monte_carlo;
+      study.method = one_of<ToleranceMethod>(*method, "samples.method");
     }
     if (const TomlNode* count = node->find("count")) study.count = whole_number(*count, "samples.count", 2, 1000000);
     if (const TomlNode* seed = node->find("seed")) {
@@ -89,7 +88,7 @@ class ToleranceReader : public detail::StudySections {
     const std::string& unit = p.parameter.unit;
     const double present = *p.parameter.value(study_result_->design);
     const TomlNode& kind = need(node, "parameter", "distribution", "\"normal\", \"uniform\" or \"lognormal\"");
-    const std::string name = one_of(kind, "parameter.distribution", {"normal", "uniform", "lognormal"});
+    const std::string name = name_of(one_of<DistributionKind>(kind, "parameter.distribution"));
     const auto not_with = [&](std::initializer_list<const char*> keys) {
       for (const char* other : keys) {
         if (const TomlNode* given = node.find(other)) {

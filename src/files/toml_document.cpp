@@ -11,8 +11,8 @@
 #include <optional>
 #include <utility>
 
-#include "wingbeat/files/design_keys.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 
@@ -20,20 +20,6 @@ namespace {
 
 constexpr std::size_t largest_text = 4u << 20;
 constexpr int deepest_nesting = 16;
-
-/// Keys of which a vehicle may have one. An override of one removes the file's other.
-constexpr std::pair<std::string_view, std::string_view> alternatives[] = {
-    {"transmission.hinge_offset", "transmission.stroke_amplitude"},
-    {"spring.stiffness", "spring.resonance"},
-    {"spring.stiffness", "spring.resonance_ratio"},
-    {"spring.resonance", "spring.resonance_ratio"},
-    {"supply.frequency", "supply.resonance_ratio"},
-    {"wing.inertia", "wing.resonance"},
-    {"wing.planform.root_chord", "wing.planform.chord_ratio"},
-    {"wing.planform.file", "wing.planform.chords"},
-    {"supply.cell_voltage", "supply.discharge_curve"},
-    {"aerodynamics.coefficients.table", "aerodynamics.coefficients.lift"},
-    {"aerodynamics.coefficients.table", "aerodynamics.coefficients.drag"}};
 
 int line_of(const toml::source_position& p) { return int(p.line); }
 int column_of(const toml::source_position& p) { return int(p.column); }
@@ -288,7 +274,7 @@ class Flattener {
   }
 
   void enter(const toml::node& node, const std::string& path, const Origin& origin) {
-    const bool known = find_key<double>(path) != nullptr, section = is_section(path);
+    const bool known = find_parameter<double>(path) != nullptr, section = is_section(path);
     if (!known && !section) {
       const std::string meant = nearest_key(path);
       if (!meant.empty()) document_.spoiled.push_back(meant);
@@ -348,7 +334,7 @@ void spell_out_coefficients(Document& document, std::string_view overridden) {
   const Origin origin = document.locate(path);
   document.values.erase(path);
   document.sections.insert_or_assign(path, origin);
-  for (const auto& key : vehicle_keys<double>()) {
+  for (const auto& key : parameter_table<double>()) {
     if (key.get && key.path != path && at_or_below(key.path, path)) {
       document.values[std::string(key.path)] = {Value::Kind::number, "", *key.get(named), {}, origin};
     }
@@ -383,7 +369,7 @@ void apply_override(Document& document, const std::string& assignment) {
   if (equals == std::string::npos) origin.refuse("", "expected KEY=VALUE, as in --set supply.voltage=\"3 V\"");
   const std::string path(trim(std::string_view(assignment).substr(0, equals)));
   const std::string_view text = trim(std::string_view(assignment).substr(equals + 1));
-  if (!find_key<double>(path) && !is_section(path)) {
+  if (!find_parameter<double>(path) && !is_section(path)) {
     origin.refuse(one_line(path), unknown_key_message(path));
   }
 
@@ -404,9 +390,11 @@ void apply_override(Document& document, const std::string& assignment) {
   }
 
   const auto from_file = [](const Value& value) { return !value.origin.overridden; };
-  for (const auto& [one, other] : alternatives) {
-    if (at_or_below(path, one)) erase_below(document.values, other, from_file);
-    if (at_or_below(path, other)) erase_below(document.values, one, from_file);
+  for (const auto& key : parameter_table<double>()) {
+    for (const std::string& other : alternatives_of(key)) {
+      if (at_or_below(path, key.path)) erase_below(document.values, other, from_file);
+      if (at_or_below(path, other)) erase_below(document.values, key.path, from_file);
+    }
   }
 }
 
@@ -446,11 +434,6 @@ std::string kind_of(const TomlNode& node) {
   return node.text;
 }
 
-bool are_alternatives(std::string_view one, std::string_view other) {
-  return std::any_of(std::begin(alternatives), std::end(alternatives),
-                     [&](const auto& pair) { return pair == std::pair(one, other) || pair == std::pair(other, one); });
-}
-
 const Value* Document::find(std::string_view path) const {
   const auto found = values.find(path);
   return found == values.end() ? nullptr : &found->second;
@@ -481,31 +464,14 @@ Document parse_document(std::string_view text, std::string_view file_name) {
   return document;
 }
 
-Requirement requirement_of(std::string_view only_with) {
-  Requirement result;
-  const auto equals = only_with.find(" = ");
-  result.key = only_with.substr(0, equals);
-  if (equals == std::string_view::npos) return result;
-  for (std::string_view rest = only_with.substr(equals + 3);;) {
-    const auto bar = rest.find('|');
-    result.values.push_back(rest.substr(0, bar));
-    if (bar == std::string_view::npos) return result;
-    rest.remove_prefix(bar + 1);
-  }
-}
-
-bool Requirement::allows(std::string_view value) const {
-  return values.empty() || std::find(values.begin(), values.end(), value) != values.end();
-}
-
 void apply_overrides(Document& document, std::span<const std::string> overrides) {
   InputErrors errors;
   for (const std::string& assignment : overrides) errors.attempt([&] { apply_override(document, assignment); });
-  for (const auto& key : vehicle_keys<double>()) {
+  for (const auto& key : parameter_table<double>()) {
     if (key.only_with.empty()) continue;
     const Requirement requirement = requirement_of(key.only_with);
     const Value* value = document.find(key.path);
-    const Value* choice = document.find(requirement.key);
+    const Value* choice = document.find(requirement.path);
     if (value && choice && !value->origin.overridden && choice->origin.overridden &&
         !requirement.allows(choice->text)) {
       document.values.erase(std::string(key.path));

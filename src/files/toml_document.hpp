@@ -77,21 +77,10 @@ TomlNode parse_toml_tree(std::string_view text, std::string_view file_name);
 /// "a number", "an array": what a node is, for messages.
 std::string kind_of(const TomlNode& node);
 
-/// True for two keys of which a vehicle may have one, such as transmission.hinge_offset and .stroke_amplitude.
-bool are_alternatives(std::string_view one, std::string_view other);
-
 /// Throws InputError for text that is not TOML. Unknown keys are among the document's errors.
 Document parse_document(std::string_view text, std::string_view file_name);
 
 /// Applies overrides as read_design documents it. Throws InputError for those that cannot be, the others being applied.
 void apply_overrides(Document& document, std::span<const std::string> overrides);
-
-/// The two sides of "KEY = VALUE|VALUE" in KeyText::only_with.
-struct Requirement {
-  std::string_view key;
-  std::vector<std::string_view> values;  ///< empty: the key need only be given
-  bool allows(std::string_view value) const;
-};
-Requirement requirement_of(std::string_view only_with);
 
 }  // namespace wingbeat

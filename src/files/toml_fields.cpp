@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "files/input_errors.hpp"
-#include "wingbeat/files/design_keys.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 

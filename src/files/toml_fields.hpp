@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "files/toml_document.hpp"
+#include "wingbeat/core/names.hpp"
 
 namespace wingbeat {
 
@@ -35,6 +36,14 @@ class TomlFields {
   /// One of the names; `fallback` where the key is not given, which must not be unless there is one.
   std::string choice(std::string_view key, std::span<const std::string_view> names,
                      std::optional<std::string_view> fallback = {}) const;
+  /// A value of an enumeration by its name.
+  template <NamedEnum E>
+  E choice(std::string_view key, std::optional<E> fallback = {}) const {
+    std::vector<std::string_view> names;
+    for (const auto& [name, value] : names_of<E>) names.push_back(name);
+    if (fallback && !has(key)) return *fallback;
+    return *from_name<E>(choice(key, names));
+  }
   std::optional<TomlFields> table(std::string_view key) const;
   /// The tables of [[key]]; empty where there is none.
   std::vector<TomlFields> tables(std::string_view key) const;

@@ -8,10 +8,10 @@
 #include "report/figure.hpp"
 #include "report/report_tools.hpp"
 #include "wingbeat/files/design_file.hpp"
-#include "wingbeat/files/design_keys.hpp"
 #include "wingbeat/files/netcdf.hpp"
 #include "wingbeat/report/optimise_report.hpp"
 #include "wingbeat/report/report.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 namespace {
@@ -21,7 +21,7 @@ using Outcome = ParetoResult::Outcome;
 
 constexpr int width = 100;
 
-const char* name_of(EvolutionMethod method) { return method == EvolutionMethod::nsga2 ? "NSGA-II" : "MOEA/D"; }
+const char* algorithm_of(EvolutionMethod method) { return method == EvolutionMethod::nsga2 ? "NSGA-II" : "MOEA/D"; }
 
 /// Parameters, then choices: all that a design of the study sets.
 std::vector<const DesignParameter*> parameters_of(const ParetoStudy& study) {
@@ -152,7 +152,7 @@ std::string text_front(const OptimiseFile& file, const ParetoStudy& study, const
     return text;
   }
   fmt::format_to(out, "{}: {} generations of {}, {} designs solved, {} of them feasible\n\n",
-                 name_of(study.evolution.method), study.evolution.generations, study.evolution.population,
+                 algorithm_of(study.evolution.method), study.evolution.generations, study.evolution.population,
                  r.evaluated.size(), std::count(r.feasible.begin(), r.feasible.end(), true));
   fmt::format_to(out, "front of {} designs; hypervolume {:.6g} {} up to\n  {}\n", r.front.size(), r.hypervolume,
                  hypervolume_unit(study), reference_text(study, r));
@@ -204,7 +204,7 @@ std::string json_front(const OptimiseFile& file, const ParetoStudy& study, const
   for (const ParetoObjective& o : study.objectives) {
     json["objectives"].push_back({{"metric", metric_info(o.metric).key}, {"maximise", o.maximise}});
   }
-  json["method"] = study.evolution.method == EvolutionMethod::nsga2 ? "nsga2" : "moead";
+  json["method"] = name_of(study.evolution.method);
   json["population"] = study.evolution.population;
   json["generations"] = study.evolution.generations;
   for (int s = 0; s < sweep_status_count; ++s) {
@@ -260,7 +260,7 @@ void write_front(const ParetoStudy& study, const ParetoResult& r, const std::str
                           .vehicle = write_design(study.vehicles[0].design),
                           .study = input,
                           .condition = name_of(study.condition),
-                          .method = name_of(study.evolution.method)});
+                          .method = algorithm_of(study.evolution.method)});
   const auto parameters = parameters_of(study);
   const auto designs = [&](const std::string& dimension, const std::string& prefix, const char* of,
                            std::span<const ParetoDesign> list, const MetricSet& metrics) {
@@ -277,7 +277,7 @@ void write_front(const ParetoStudy& study, const ParetoResult& r, const std::str
       std::string name = parameters[k]->key;
       std::replace(name.begin(), name.end(), '.', '_');
       const std::string& key = parameters[k]->key;
-      data.set_key(column(name, parameters[k]->unit, std::string(find_key<double>(key)->meaning),
+      data.set_key(column(name, parameters[k]->unit, std::string(find_parameter<double>(key)->meaning),
                           [k](const ParetoDesign& d) { return d.parameters[k]; }),
                    key);
     }

@@ -11,9 +11,9 @@
 
 #include "files/toml_document.hpp"
 #include "wingbeat/cycle/metrics.hpp"
-#include "wingbeat/files/design_keys.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/report/report.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 namespace {
@@ -27,9 +27,9 @@ bool holds(std::string_view text, std::string_view part) {
   return std::search(text.begin(), text.end(), part.begin(), part.end(), same) != text.end();
 }
 
-std::vector<const KeyText*> keys_with(const std::string& filter) {
-  std::vector<const KeyText*> found;
-  for (const auto& key : vehicle_keys<double>()) {
+std::vector<const ParameterText*> keys_with(const std::string& filter) {
+  std::vector<const ParameterText*> found;
+  for (const auto& key : parameter_table<double>()) {
     if (holds(key.path, filter) || holds(key.meaning, filter) || key.unit == filter) found.push_back(&key);
   }
   return found;
@@ -55,49 +55,43 @@ std::string choices_of(std::string_view only_with) {
 
 /// What a new vehicle states, by key. All else it may state is offered as a comment.
 using Statement = std::pair<std::string_view, std::string_view>;
-constexpr Statement slider_crank[] = {{"vehicle.mass", "3.34 g"},
-                                      {"supply.type", "constant"},
-                                      {"supply.voltage", "3 V"},
-                                      {"motor.armature_resistance", "9 ohm"},
-                                      {"motor.armature_inductance", "29 mH"},
-                                      {"motor.torque_constant", "10 mN m/A"},
-                                      {"motor.inertia", "1.5e-7 kg m2"},
-                                      {"motor.viscous_damping", "3.6e-6 N m s/rad"},
-                                      {"transmission.type", "slider-crank"},
-                                      {"transmission.formulation", "virtual-work"},
-                                      {"transmission.crank_radius", "5 mm"},
-                                      {"transmission.rod_length", "20 mm"},
-                                      {"transmission.hinge_offset", "6 mm"},
-                                      {"friction.type", "load-proportional"},
-                                      {"friction.radius", "2.5 mm"},
-                                      {"wing.count", "2"},
-                                      {"wing.inertia", "7.2e-8 kg m2"},
-                                      {"wing.planform.shape", "semi-ellipse"},
-                                      {"wing.planform.length", "63 mm"},
-                                      {"wing.planform.root_chord", "25 mm"},
-                                      {"aerodynamics.air_density", "1.225 kg/m3"},
-                                      {"aerodynamics.pitch_coefficient", "5 ms"},
-                                      {"aerodynamics.coefficients", "translational-2022"}};
-constexpr Statement direct[] = {{"vehicle.mass", "3.34 g"},
-                                {"supply.type", "sine"},
-                                {"supply.amplitude", "3 V"},
-                                {"supply.frequency", "22 Hz"},
-                                {"motor.armature_resistance", "9 ohm"},
-                                {"motor.armature_inductance", "29 mH"},
-                                {"motor.torque_constant", "10 mN m/A"},
-                                {"motor.inertia", "1.5e-7 kg m2"},
-                                {"motor.viscous_damping", "3.6e-6 N m s/rad"},
-                                {"transmission.type", "direct"},
-                                {"friction.type", "none"},
-                                {"spring.resonance", "22 Hz"},
-                                {"wing.count", "2"},
-                                {"wing.inertia", "7.2e-8 kg m2"},
-                                {"wing.planform.shape", "semi-ellipse"},
-                                {"wing.planform.length", "63 mm"},
-                                {"wing.planform.root_chord", "25 mm"},
-                                {"aerodynamics.air_density", "1.225 kg/m3"},
-                                {"aerodynamics.pitch_coefficient", "5 ms"},
-                                {"aerodynamics.coefficients", "translational-2022"}};
+constexpr Statement every_vehicle[] = {{"vehicle.mass", "3.34 g"},
+                                       {"motor.armature_resistance", "9 ohm"},
+                                       {"motor.armature_inductance", "29 mH"},
+                                       {"motor.torque_constant", "10 mN m/A"},
+                                       {"motor.inertia", "1.5e-7 kg m2"},
+                                       {"motor.viscous_damping", "3.6e-6 N m s/rad"},
+                                       {"wing.count", "2"},
+                                       {"wing.inertia", "7.2e-8 kg m2"},
+                                       {"wing.planform.shape", name_of(PlanformShape::semi_ellipse)},
+                                       {"wing.planform.length", "63 mm"},
+                                       {"wing.planform.root_chord", "25 mm"},
+                                       {"aerodynamics.air_density", "1.225 kg/m3"},
+                                       {"aerodynamics.pitch_coefficient", "5 ms"},
+                                       {"aerodynamics.coefficients", "translational-2022"}};
+constexpr Statement with_crank[] = {{"supply.type", name_of(SupplyType::constant)},
+                                    {"supply.voltage", "3 V"},
+                                    {"transmission.type", name_of(TransmissionType::slider_crank)},
+                                    {"transmission.formulation", name_of(Formulation::virtual_work)},
+                                    {"transmission.crank_radius", "5 mm"},
+                                    {"transmission.rod_length", "20 mm"},
+                                    {"transmission.hinge_offset", "6 mm"},
+                                    {"friction.type", name_of(FrictionLaw::load_proportional)},
+                                    {"friction.radius", "2.5 mm"}};
+constexpr Statement directly_driven[] = {{"supply.type", name_of(SupplyType::sine)},
+                                         {"supply.amplitude", "3 V"},
+                                         {"supply.frequency", "22 Hz"},
+                                         {"transmission.type", name_of(TransmissionType::direct)},
+                                         {"friction.type", name_of(FrictionLaw::none)},
+                                         {"spring.resonance", "22 Hz"}};
+
+std::vector<Statement> statements_of(TransmissionType transmission) {
+  std::vector<Statement> all(std::begin(every_vehicle), std::end(every_vehicle));
+  const bool direct = transmission == TransmissionType::direct;
+  const std::span<const Statement> own = direct ? std::span<const Statement>(directly_driven) : with_crank;
+  all.insert(all.end(), own.begin(), own.end());
+  return all;
+}
 
 const std::string_view* stated(std::span<const Statement> statements, std::string_view path) {
   const auto found = std::find_if(statements.begin(), statements.end(), [&](const auto& s) { return s.first == path; });
@@ -105,12 +99,12 @@ const std::string_view* stated(std::span<const Statement> statements, std::strin
 }
 
 /// "5 mm" as `"5 mm"`, 2 as it is.
-std::string toml_value(const KeyText& key, std::string_view value) {
+std::string toml_value(const ParameterText& key, std::string_view value) {
   return key.unit == "1" ? std::string(value) : fmt::format("\"{}\"", value);
 }
 
 /// A value to put in for a key that a new vehicle does not state: the example of its unit.
-std::string example_of(const KeyText& key) {
+std::string example_of(const ParameterText& key) {
   if (key.unit.empty()) return "\"...\"";
   const std::string example = quantity_example(key.unit);
   const auto quote = example.find('"');
@@ -125,22 +119,20 @@ std::string commented(const std::string& comment) {
   return lines + "\n";
 }
 
-bool has_place(const KeyText& key, std::span<const Statement> statements) {
+bool has_place(const ParameterText& key, std::span<const Statement> statements) {
   if (key.only_with.empty()) return true;
   const Requirement requirement = requirement_of(key.only_with);
-  const std::string_view* choice = stated(statements, requirement.key);
+  const std::string_view* choice = stated(statements, requirement.path);
   return choice && requirement.allows(*choice);
 }
 
-std::string comment_on(const KeyText& key, bool is_stated, std::span<const Statement> statements) {
-  std::string text = fmt::format("{}; {}", key.meaning, key.range);
-  const bool has_other = key.fallback.starts_with("required or ");
-  const std::string section(key.path.substr(0, key.path.rfind('.') + 1));
-  const Key<double>* other = has_other ? find_key<double>(section + std::string(key.fallback.substr(12))) : nullptr;
+std::string comment_on(const ParameterText& key, bool is_stated, std::span<const Statement> statements) {
+  std::string text = fmt::format("{}; {}", key.meaning, key.range.text);
+  const std::vector<std::string> others = alternatives_of(key);
+  const Parameter<double>* other = others.empty() ? nullptr : find_parameter<double>(others.front());
   if (other && has_place(*other, statements)) {
-    text +=
-        fmt::format("; {} {}{}", is_stated ? "or" : "instead of", key.fallback.substr(12), is_stated ? " instead" : "");
-  } else if (!is_stated && !has_other && key.fallback != "required") {
+    text += fmt::format("; {} {}{}", is_stated ? "or" : "instead of", key.alternatives[0], is_stated ? " instead" : "");
+  } else if (!is_stated && key.fallback != "required") {
     text += fmt::format("; default: {}", key.fallback);
   }
   return text;
@@ -150,8 +142,9 @@ std::string comment_on(const KeyText& key, bool is_stated, std::span<const State
 
 std::string text_keys(const std::string& filter) {
   std::string text;
-  for (const KeyText* key : keys_with(filter)) {
-    text += fmt::format("{}  [{}]  {}; default: {}\n", key->path, unit_shown(key->unit), key->range, key->fallback);
+  for (const ParameterText* key : keys_with(filter)) {
+    text += fmt::format("{}  [{}]  {}; default: {}\n", key->path, unit_shown(key->unit), key->range.text,
+                        default_text(*key));
     std::string meaning(key->meaning);
     if (!key->only_with.empty()) meaning += fmt::format(" (only with {})", choices_of(key->only_with));
     text += fmt::format("    {}\n", wrapped(meaning, 92, 4));
@@ -162,14 +155,14 @@ std::string text_keys(const std::string& filter) {
 std::string json_keys(const std::string& filter) {
   Json json;
   json["keys"] = Json::array();
-  for (const KeyText* key : keys_with(filter)) {
+  for (const ParameterText* key : keys_with(filter)) {
     const auto text_or_null = [](std::string_view text) {
       return text.empty() ? Json(nullptr) : Json(std::string(text));
     };
     json["keys"].push_back({{"key", std::string(key->path)},
                             {"unit", text_or_null(key->unit)},
-                            {"range", std::string(key->range)},
-                            {"default", std::string(key->fallback)},
+                            {"range", std::string(key->range.text)},
+                            {"default", default_text(*key)},
                             {"meaning", std::string(key->meaning)},
                             {"only_with", text_or_null(choices_of(key->only_with))}});
   }
@@ -193,9 +186,26 @@ std::string json_metrics(const std::string& filter) {
   return json.dump(2) + "\n";
 }
 
+std::string vehicle_file_reference() {
+  std::string result;
+  std::string section;
+  for (const auto& key : parameter_table<double>()) {
+    const std::string top(key.path.substr(0, key.path.find('.')));
+    if (top != section) {
+      section = top;
+      result += fmt::format("\n## [{}]\n\n| key | unit | range | default | meaning |\n", section);
+      result += "| --- | --- | --- | --- | --- |\n";
+    }
+    std::string meaning(key.meaning);
+    if (!key.only_with.empty()) meaning += " (only with `" + choices_of(key.only_with) + "`)";
+    const std::string_view unit = key.unit.empty() ? "text" : key.unit == "1" ? "-" : key.unit;
+    result += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.path, unit, key.range.text, default_text(key), meaning);
+  }
+  return result;
+}
+
 std::string starting_vehicle(TransmissionType transmission, const std::string& name) {
-  const bool is_direct = transmission == TransmissionType::direct;
-  const std::span<const Statement> statements = is_direct ? std::span<const Statement>(direct) : slider_crank;
+  const std::vector<Statement> statements = statements_of(transmission);
   std::string text =
       "# A vehicle file for wingbeat. What stands behind # at the beginning of a line is optional or another choice.\n"
       "# Quantities carry a unit; `wingbeat keys` lists all keys, docs/vehicle-file.md explains them.\n";
@@ -212,7 +222,7 @@ std::string starting_vehicle(TransmissionType transmission, const std::string& n
              return s.first.starts_with(here) && s.first.find('.', here.size()) == std::string_view::npos;
            });
   };
-  for (const auto& key : vehicle_keys<double>()) {
+  for (const auto& key : parameter_table<double>()) {
     // Single coefficients would take the place of the named set: too many for a beginning.
     if (!has_place(key, statements) || key.path.starts_with("aerodynamics.coefficients.")) continue;
     enter(key.path, section_is_stated(key.path));

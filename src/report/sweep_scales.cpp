@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "wingbeat/files/design_keys.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 namespace {
@@ -46,7 +46,7 @@ std::string words(const std::string& key) {
   if (dot == std::string::npos) return spaced(key);
   const std::string leaf = key.substr(dot + 1);
   int same = 0;
-  for (const auto& known : vehicle_keys<double>()) same += known.path.substr(known.path.rfind('.') + 1) == leaf;
+  for (const auto& known : parameter_table<double>()) same += known.path.substr(known.path.rfind('.') + 1) == leaf;
   if (same == 1 && leaf.find('_') != std::string::npos) return spaced(leaf);
   const std::string above = key.substr(0, dot);
   return spaced(above.substr(above.rfind('.') + 1) + " " + leaf);

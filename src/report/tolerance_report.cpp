@@ -8,9 +8,9 @@
 #include "report/figure.hpp"
 #include "report/report_tools.hpp"
 #include "wingbeat/files/design_file.hpp"
-#include "wingbeat/files/design_keys.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/report/report.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 namespace {
@@ -179,7 +179,7 @@ std::string text_tolerance(const ToleranceStudy& study, const ToleranceResult& r
 std::string json_tolerance(const ToleranceStudy& study, const ToleranceResult& result) {
   Json json;
   json["title"] = study.title;
-  json["method"] = study.method == ToleranceMethod::sobol ? "sobol" : "monte-carlo";
+  json["method"] = name_of(study.method);
   json["samples"] = base_count(study);
   json["vehicles"] = result.vehicles;
   for (std::size_t k = 0; k < study.parameters.size(); ++k) {

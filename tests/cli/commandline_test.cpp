@@ -6,7 +6,7 @@
 
 #include "program.hpp"
 #include "wingbeat/cycle/metrics.hpp"
-#include "wingbeat/files/design_keys.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace cli {
 namespace {
@@ -296,11 +296,11 @@ TEST_F(CommandLine, NewWritesAFileThatRuns) {
 
 TEST_F(CommandLine, KeysAndMetricsAreTheTables) {
   const Json keys = run({"keys", "--json"}).json();
-  ASSERT_EQ(keys["keys"].size(), wingbeat::vehicle_keys<double>().size());
+  ASSERT_EQ(keys["keys"].size(), wingbeat::parameter_table<double>().size());
   EXPECT_EQ(keys["keys"][0]["key"], "vehicle.name");
   EXPECT_TRUE(keys["keys"][0]["unit"].is_null());
   const std::string text = run({"keys"}).out;
-  for (const auto& key : wingbeat::vehicle_keys<double>()) EXPECT_THAT(text, HasSubstr(std::string(key.path)));
+  for (const auto& key : wingbeat::parameter_table<double>()) EXPECT_THAT(text, HasSubstr(std::string(key.path)));
   EXPECT_THAT(run({"keys", "crank_radius"}).out,
               testing::AllOf(StartsWith("transmission.crank_radius  [m]  > 0"), Not(HasSubstr("armature"))));
   const Outcome none = run({"keys", "crank_radios"});

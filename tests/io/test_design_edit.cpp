@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "wingbeat/files/design_edit.hpp"
-#include "wingbeat/files/design_keys.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 namespace {
@@ -58,10 +58,10 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 void set(Design<double>& design, std::string_view key, double value) {
-  ASSERT_TRUE(numeric_key<double>(key).set(design, value)) << key;
+  ASSERT_TRUE(numeric_parameter<double>(key).set(design, value)) << key;
 }
 
-double value(const Design<double>& design, std::string_view key) { return *numeric_key<double>(key).get(design); }
+double value(const Design<double>& design, std::string_view key) { return *numeric_parameter<double>(key).get(design); }
 
 TEST(DesignEdit, ChangesTheValuesAloneInTheirOwnUnits) {
   Design<double> design = parse_design(vehicle, "v.toml");

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <map>
 
-#include "wingbeat/files/design_keys.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
@@ -73,7 +73,7 @@ std::string override_refusal(const std::string& assignment) { return refusal(veh
 std::map<std::string, std::string> fingerprint(const Design<double>& d) {
   std::map<std::string, std::string> result;
   const auto bits = [](double x) { return std::to_string(std::bit_cast<std::uint64_t>(x)); };
-  for (const auto& key : vehicle_keys<double>()) {
+  for (const auto& key : parameter_table<double>()) {
     const std::string path(key.path);
     if (key.text) {
       result[path] = key.text(d);

@@ -5,8 +5,8 @@
 
 #include "vehicle/random_vehicle.hpp"
 #include "wingbeat/cycle/orbit_gradient.hpp"
-#include "wingbeat/files/design_keys.hpp"
 #include "wingbeat/files/design_parameter.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 namespace {
@@ -18,7 +18,7 @@ SteadyFlapping orbit_of(const Design<double>& design) {
 
 void expect_gradients(const Design<double>& design, double tolerance) {
   std::vector<DesignParameter> parameters;
-  for (const auto& key : vehicle_keys<double>()) {
+  for (const auto& key : parameter_table<double>()) {
     if (!key.set || key.path == "wing.count") continue;
     const auto value = key.get(design);
     if (value && *value != 0.0) parameters.push_back(design_parameter(key.path));

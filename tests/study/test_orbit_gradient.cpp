@@ -8,9 +8,9 @@
 #include <limits>
 
 #include "vehicle/random_vehicle.hpp"
-#include "wingbeat/files/design_keys.hpp"
 #include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/study/run.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 namespace {
@@ -45,7 +45,7 @@ std::optional<Metrics<double>> metrics_at_frequency(Design<double> design, Condi
 
 std::vector<DesignParameter> numeric_parameters(const Design<double>& design) {
   std::vector<DesignParameter> parameters;
-  for (const auto& key : vehicle_keys<double>()) {
+  for (const auto& key : parameter_table<double>()) {
     if (!key.set || key.path == "wing.count" || key.path == "supply.cells") continue;  // whole
     const auto value = key.get(design);
     if (!value || (*value == 0.0 && key.path != "motor.friction_torque" && key.path != "spring.stiffness")) continue;

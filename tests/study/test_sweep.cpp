@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "vehicle/reference_vehicle.hpp"
-#include "wingbeat/files/design_keys.hpp"
 #include "wingbeat/study/run.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 SweptQuantity number_of(const char* key, std::vector<double> values) {
   SweptQuantity q;
   q.key = q.name = key;
-  q.set = numeric_key<double>(key).set;
+  q.set = numeric_parameter<double>(key).set;
   q.values = std::move(values);
   return q;
 }

@@ -1,4 +1,4 @@
-// Motor data sheets as TOML, and the identified motor as text. For the keys see docs/motors.md.
+// Motor data sheets: TOML in, what it states out. For the keys see docs/motors.md.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Vehicle files: TOML in, a validated Design out, and back. For the keys see files/design_keys.hpp and
+// Vehicle files: TOML in, a validated Design out, and back. For the keys see vehicle/parameters.hpp and
 // docs/vehicle-file.md.
 #pragma once
 

@@ -1,4 +1,4 @@
-// The optimum of one objective as a data set and as a figure.
+// The optimum of one objective as a data set.
 #pragma once
 
 #include <filesystem>

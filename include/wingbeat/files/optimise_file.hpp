@@ -1,4 +1,4 @@
-// Optimisation studies: TOML in, a checked study out; reports of its result. See docs/optimise.md.
+// Optimisation studies: TOML in, a checked study out, and the trials that it asks for. See docs/optimise.md.
 #pragma once
 
 #include <filesystem>

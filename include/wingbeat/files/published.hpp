@@ -21,7 +21,9 @@ enum class Basis {
   predicted,   ///< it was not
   given        ///< it follows from the published tables
 };
-const char* name_of(Basis basis);
+template <>
+inline constexpr std::pair<const char*, Basis> names_of<Basis>[] = {
+    {"calibrated", Basis::calibrated}, {"predicted", Basis::predicted}, {"given", Basis::given}};
 
 /// One published number: a metric of a design, or its ratio to the same metric of another.
 struct PublishedValue {

@@ -1,4 +1,4 @@
-// Tolerance studies: TOML in, a checked study out; reports, data set and figure of its result. See docs/tolerance.md.
+// Tolerance studies: TOML in, a checked study out. See docs/tolerance.md.
 #pragma once
 
 #include <filesystem>

@@ -16,6 +16,9 @@ std::string json_keys(const std::string& filter);
 std::string text_metrics(const std::string& filter);
 std::string json_metrics(const std::string& filter);
 
+/// All keys as Markdown: the generated part of docs/vehicle-file.md.
+std::string vehicle_file_reference();
+
 /// A vehicle file that flaps and holds every key that such a vehicle may have, each explained, the optional ones as
 /// comments.
 std::string starting_vehicle(TransmissionType transmission, const std::string& name);

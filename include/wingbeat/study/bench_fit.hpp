@@ -33,6 +33,9 @@ const char* unit_of(const MeasuredQuantity& quantity);
 
 /// What was set on the bench; the other one follows.
 enum class Given { voltage, frequency };
+template <>
+inline constexpr std::pair<const char*, Given> names_of<Given>[] = {{"voltage", Given::voltage},
+                                                                    {"frequency", Given::frequency}};
 
 /// One row of a log; of a waveform log, one crank angle.
 struct BenchRow {
@@ -64,6 +67,9 @@ struct FreeParameter {
 };
 
 enum class Loss { none, huber, soft_l1, cauchy };
+template <>
+inline constexpr std::pair<const char*, Loss> names_of<Loss>[] = {
+    {"none", Loss::none}, {"huber", Loss::huber}, {"soft-l1", Loss::soft_l1}, {"cauchy", Loss::cauchy}};
 
 struct BenchFit {
   Design<double> design;  ///< with the springs of the logs that have them

@@ -3,9 +3,16 @@
 
 #include <limits>
 
+#include "wingbeat/core/names.hpp"
+
 namespace wingbeat {
 
 enum class DistributionKind { normal, uniform, lognormal };
+template <>
+inline constexpr std::pair<const char*, DistributionKind> names_of<DistributionKind>[] = {
+    {"normal", DistributionKind::normal},
+    {"uniform", DistributionKind::uniform},
+    {"lognormal", DistributionKind::lognormal}};
 
 /// What an uncertain number may be. A finite `lower` or `upper` truncates a normal or lognormal distribution: what lies
 /// beyond is cut off, the rest scaled up.

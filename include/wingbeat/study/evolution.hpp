@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "wingbeat/core/names.hpp"
+
 namespace wingbeat {
 
 /// Objectives, all to be minimised, of points whose coordinates are numbers from 0 to 1, then whole numbers.
@@ -24,6 +26,9 @@ enum class EvolutionMethod {
   nsga2,  ///< Deb, Pratap, Agarwal and Meyarivan, IEEE Trans. Evol. Comput. 6(2), 2002
   moead   ///< MOEA/D-DE: Li and Zhang, IEEE Trans. Evol. Comput. 13(2), 2009
 };
+template <>
+inline constexpr std::pair<const char*, EvolutionMethod> names_of<EvolutionMethod>[] = {
+    {"nsga2", EvolutionMethod::nsga2}, {"moead", EvolutionMethod::moead}};
 
 struct EvolutionOptions {
   EvolutionMethod method = EvolutionMethod::nsga2;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "wingbeat/core/names.hpp"
 #include "wingbeat/parts/motor.hpp"
 
 namespace wingbeat {
@@ -20,6 +21,8 @@ struct MotorPoint {
 };
 
 enum class Shaft { motor, output };
+template <>
+inline constexpr std::pair<const char*, Shaft> names_of<Shaft>[] = {{"motor", Shaft::motor}, {"output", Shaft::output}};
 
 /// A data sheet. Torques, speeds, constants and the inertia stand for `shaft`; the rotor's own inertia and size always
 /// for the motor shaft.

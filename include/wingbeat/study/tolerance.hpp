@@ -32,6 +32,9 @@ enum class ToleranceMethod {
   sobol,       ///< scrambled Sobol sequence
   monte_carlo  ///< pseudo-random
 };
+template <>
+inline constexpr std::pair<const char*, ToleranceMethod> names_of<ToleranceMethod>[] = {
+    {"sobol", ToleranceMethod::sobol}, {"monte-carlo", ToleranceMethod::monte_carlo}};
 
 struct ToleranceStudy {
   std::string title;

@@ -1,6 +1,4 @@
-#include "wingbeat/files/design_keys.hpp"
-
-#include <fmt/format.h>
+#include "wingbeat/vehicle/parameters.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -35,7 +33,7 @@ std::string_view parent_of(std::string_view path) {
 
 std::vector<std::string_view> sections() {
   std::vector<std::string_view> result;
-  for (const auto& key : vehicle_keys<double>()) {
+  for (const auto& key : parameter_table<double>()) {
     for (std::string_view path = parent_of(key.path); !path.empty(); path = parent_of(path)) {
       if (std::find(result.begin(), result.end(), path) == result.end()) result.push_back(path);
     }
@@ -53,8 +51,49 @@ struct Nearest {
 
 }  // namespace
 
+std::string default_text(const ParameterText& parameter) {
+  std::string text(parameter.fallback);
+  if (text == "required" && parameter.has_alternative()) text += " or " + std::string(parameter.alternatives[0]);
+  return text;
+}
+
+std::vector<std::string> alternatives_of(const ParameterText& parameter) {
+  std::vector<std::string> paths;
+  for (const std::string_view name : parameter.alternatives) {
+    if (!name.empty()) paths.push_back(std::string(parent_of(parameter.path)) + "." + std::string(name));
+  }
+  return paths;
+}
+
+bool are_alternatives(std::string_view one, std::string_view other) {
+  const auto replaces = [](std::string_view path, std::string_view by) {
+    const ParameterText* parameter = find_parameter<double>(path);
+    if (!parameter) return false;
+    const std::vector<std::string> paths = alternatives_of(*parameter);
+    return std::find(paths.begin(), paths.end(), by) != paths.end();
+  };
+  return replaces(one, other) || replaces(other, one);
+}
+
+Requirement requirement_of(std::string_view only_with) {
+  Requirement result;
+  const auto equals = only_with.find(" = ");
+  result.path = only_with.substr(0, equals);
+  if (equals == std::string_view::npos) return result;
+  for (std::string_view rest = only_with.substr(equals + 3);;) {
+    const auto bar = rest.find('|');
+    result.values.push_back(rest.substr(0, bar));
+    if (bar == std::string_view::npos) return result;
+    rest.remove_prefix(bar + 1);
+  }
+}
+
+bool Requirement::allows(std::string_view value) const {
+  return values.empty() || std::find(values.begin(), values.end(), value) != values.end();
+}
+
 bool is_section(std::string_view path) {
-  for (const auto& key : vehicle_keys<double>()) {
+  for (const auto& key : parameter_table<double>()) {
     if (key.path.size() > path.size() && key.path.starts_with(path) && key.path[path.size()] == '.') return true;
   }
   return false;
@@ -71,7 +110,7 @@ std::string nearest_key(std::string_view path) {
   constexpr std::size_t longest = 80;
   if (path.size() > longest) return {};
   Nearest nearest;
-  for (const auto& key : vehicle_keys<double>()) {
+  for (const auto& key : parameter_table<double>()) {
     nearest.offer(key.path, edit_distance(path, key.path));
     // The right name in the wrong section.
     if (leaf_of(key.path) == leaf_of(path)) nearest.offer(key.path, 2);
@@ -85,12 +124,12 @@ std::string unknown_key_message(std::string_view path) {
   const std::string_view parent = parent_of(path);
   const bool top = parent.empty();
   if (const std::string near = nearest_key(path); !near.empty()) {
-    const bool section = is_section(near) && !find_key<double>(near);
+    const bool section = is_section(near) && !find_parameter<double>(near);
     return "unknown key; did you mean " + (section && top ? "[" + near + "]" : near) + "?";
   }
   std::string known;
   if (!top && is_section(parent)) {
-    for (const auto& key : vehicle_keys<double>()) {
+    for (const auto& key : parameter_table<double>()) {
       if (parent_of(key.path) == parent) known += (known.empty() ? "" : ", ") + std::string(leaf_of(key.path));
     }
     if (!known.empty()) return "unknown key; [" + std::string(parent) + "] knows " + known;
@@ -99,30 +138,6 @@ std::string unknown_key_message(std::string_view path) {
     if (parent_of(section).empty()) known += (known.empty() ? "[" : ", [") + std::string(section) + "]";
   }
   return "unknown key; the sections are " + known;
-}
-
-std::string vehicle_file_reference() {
-  std::string result;
-  std::string section;
-  for (const auto& key : vehicle_keys<double>()) {
-    const std::string top(key.path.substr(0, key.path.find('.')));
-    if (top != section) {
-      section = top;
-      result += fmt::format("\n## [{}]\n\n| key | unit | range | default | meaning |\n", section);
-      result += "| --- | --- | --- | --- | --- |\n";
-    }
-    std::string meaning(key.meaning);
-    if (!key.only_with.empty()) {
-      std::string choice(key.only_with);
-      for (auto bar = choice.find('|'); bar != std::string::npos; bar = choice.find('|', bar)) {
-        choice.replace(bar, 1, " or ");
-      }
-      meaning += " (only with `" + choice + "`)";
-    }
-    const std::string_view unit = key.unit.empty() ? "text" : key.unit == "1" ? "-" : key.unit;
-    result += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.path, unit, key.range, key.fallback, meaning);
-  }
-  return result;
 }
 
 }  // namespace wingbeat
