@@ -93,7 +93,7 @@ constexpr void for_each_number(P& part, const Visit& visit) {
 }
 
 template <Scalar T, template <Scalar> class Part, Scalar S>
-constexpr Part<T> cast(const Part<S>& part);
+constexpr auto cast(const Part<S>& part);
 
 namespace detail {
 
@@ -114,9 +114,10 @@ constexpr auto converted(const M& member) {
 
 }  // namespace detail
 
-/// The same part with every number as a T, choices and texts carried along; tables where a T can read them.
+/// The same part with every number as a T, choices and texts carried along; tables where a T can read them. A Part<T>:
+/// as a return type that is written down, clang 14 crashes on it.
 template <Scalar T, template <Scalar> class Part, Scalar S>
-constexpr Part<T> cast(const Part<S>& part) {
+constexpr auto cast(const Part<S>& part) {
   static_assert(lists_every_member<Part<S>>, "a member is missing in Part::members");
   return Part<S>::members(part, [](const auto&... member) { return Part<T>{detail::converted<T>(member)...}; });
 }
