@@ -126,7 +126,8 @@ struct ScalarTraits<Lanes<Arch, K>> {
 /// A part whose numbers are those of part_of(lane) in each lane. Choices are those of lane 0.
 template <class L, template <Scalar> class Part, class PartOf>
 Part<L> in_lanes(const PartOf& part_of) {
-  constexpr int count = number_count<Part<double>>;
+  // Not Part<double>, on which clang 14 crashes.
+  constexpr int count = number_count<std::remove_cvref_t<decltype(part_of(0))>>;
   alignas(64) double numbers[count][std::size_t(L::lanes)];
   for (int lane = 0; lane < L::lanes; ++lane) {
     int n = 0;
