@@ -42,7 +42,7 @@ int run(const Arguments& arguments) {
 
   EnduranceOptions options;
   options.allow_extrapolation = arguments.allow_extrapolation;
-  const EnduranceResult result = fly_to_the_end(design, options);
+  const EnduranceResult result = simulate_discharge(design, options);
   const bool flies = result.endurance() > 0.0;
   if (flies && output) {
     write_endurance(result,

@@ -185,7 +185,7 @@ int run(const Arguments& arguments) {
   if (flaps && has_metrics) return done;
   if (waveforms || cycle_plot || power_plot) complain("no steady flapping: no file was written");
   if (flaps || result.status == FlappingStatus::undecided) {
-    complain("no verdict: " + result.detail);
+    complain("no decision: " + result.detail);
     return failed;
   }
   return does_not_flap;

@@ -41,7 +41,7 @@ constexpr double high_goal = 10.0 * goal;  // and at the 99th percentile
 constexpr double periodic = 1e-6;          // a lap that returns to its start within this, relatively, is the orbit
 constexpr double coarse = 1e-4;            // tolerance of the first laps, which only approach the orbit
 constexpr double settled = 3e-2;           // change over a coarse lap below which the real ones begin
-constexpr int most_laps = 60;
+constexpr int max_laps = 60;
 constexpr double lap_start = -0.5 * pi;  // the lower dead centre
 
 struct Steady {
@@ -89,7 +89,7 @@ struct Peer {
     const Motion<double> m = motion_on(vehicle, at, i, vehicle.voltage, branch);
     const double dt = 1.0 / omega;
     du[0] = m.crank_acceleration * dt / scale[0];
-    du[1] = m.voltage_reserve / vehicle.motor.armature_inductance * dt / scale[1];
+    du[1] = m.inductive_voltage / vehicle.motor.armature_inductance * dt / scale[1];
     if constexpr (N == all_states) {
       du[2] = dt / scale[2];
       du[3] = m.aero.lift * dt / scale[3];
@@ -116,10 +116,10 @@ Steady flap(const Peer& peer, bool start_coarse, const Plain& plain, const Measu
   int laps = 0;
   for (double change = 1.0; start_coarse && change > settled; ++laps) {
     const std::array<double, 2> from{u[0], u[1]};
-    if (laps == most_laps || !plain(laps, u.data())) return {};
+    if (laps == max_laps || !plain(laps, u.data())) return {};
     change = change_of(from.data(), u.data());
   }
-  for (; laps < most_laps; ++laps) {
+  for (; laps < max_laps; ++laps) {
     const std::array<double, 2> from{u[0], u[1]};
     u[2] = u[3] = u[4] = 0.0;
     if (!measured(laps, u.data())) return {};

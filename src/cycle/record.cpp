@@ -5,14 +5,14 @@
 namespace wingbeat {
 namespace {
 
-/// `pace` receives d theta / dt [rad/s].
+/// `phase_rate` receives d theta / dt [rad/s].
 template <class Recorded>
 WaveformRow row_inside(const Recorded& recorded, const solver::Step<decltype(Recorded::system)>& step,
-                       double start_time, double theta, double& pace) {
+                       double start_time, double theta, double& phase_rate) {
   const auto& system = recorded.system;
   const auto result = solver::evaluate_inside<true>(system, recorded.lap, step, theta);
   const Motion<double> m = system.motion(theta, result.y, step.signs);
-  pace = system.pace(result.y);
+  phase_rate = system.phase_rate(result.y);
   return waveform_row(system.vehicle, m, start_time + result.dq[std::size_t(Integral::time)],
                       system.shaft_angle(theta, result.y), system.shaft_speed(result.y),
                       system.stroke_angle(m, result.y));
@@ -64,8 +64,8 @@ WaveformRow CycleRecord::at(double theta) const {
         for (const auto* before = recorded.lap.steps.data(); before != &step; ++before) {
           time += before->dq[std::size_t(Integral::time)];
         }
-        double pace;
-        return row_inside(recorded, step, time, theta, pace);
+        double phase_rate;
+        return row_inside(recorded, step, time, theta, phase_rate);
       },
       laps_);
 }
@@ -86,12 +86,12 @@ std::vector<WaveformRow> CycleRecord::waveform(int count) const {
             ++n;
           }
           // Newton for the crank angle at this time.
-          double pace = recorded.system.pace(steps[n].y);
-          double theta = steps[n].x + std::min(steps[n].h, (time - start_time) * pace);
-          WaveformRow row = row_inside(recorded, steps[n], start_time, theta, pace);
+          double phase_rate = recorded.system.phase_rate(steps[n].y);
+          double theta = steps[n].x + std::min(steps[n].h, (time - start_time) * phase_rate);
+          WaveformRow row = row_inside(recorded, steps[n], start_time, theta, phase_rate);
           for (int iteration = 0; iteration < 20 && std::abs(row.time - time) > 1e-14 * period_time; ++iteration) {
-            theta = std::clamp(theta + (time - row.time) * pace, steps[n].x, steps[n].x + steps[n].h);
-            row = row_inside(recorded, steps[n], start_time, theta, pace);
+            theta = std::clamp(theta + (time - row.time) * phase_rate, steps[n].x, steps[n].x + steps[n].h);
+            row = row_inside(recorded, steps[n], start_time, theta, phase_rate);
           }
           rows.push_back(row);
         }

@@ -95,12 +95,12 @@ StaticBalance static_balance(const Vehicle<double>& v) {
   std::array<double, angle_count> inertia, lever, advance;
   for (std::size_t n = 0; n < angle_count; ++n) {
     const CrankKinematics<double> k = crank_kinematics(v.crank, circle.sine[n], circle.cosine[n]);
-    inertia[n] = least_inertia(v, k);
+    inertia[n] = min_inertia(v, k);
     lever[n] = k.wing_lever;
     if (springs) advance[n] = advance_torque(v, k, spring_moment(v, k), s.stall_torque);
   }
   std::tie(s.inertia_angle, s.inertia_least) = least_on_circle(
-      [&](double angle) { return least_inertia(v, kinematics_at(v, angle)); }, inertia, 0.3 * v.motor.inertia);
+      [&](double angle) { return min_inertia(v, kinematics_at(v, angle)); }, inertia, 0.3 * v.motor.inertia);
   std::tie(s.lever_angle, s.lever_least) = least_on_circle(
       [&](double angle) { return kinematics_at(v, angle).wing_lever; }, lever, 0.1 * typical_lever(v.crank));
   if (springs) {

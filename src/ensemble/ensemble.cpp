@@ -29,7 +29,7 @@ LaneSolver solver_for(InstructionSet isa) {
 
 /// Angle that a crank turns by at the speed without load while its current decays by a factor of e: up to here lanes
 /// take it for a lag, of which they leave out what is of higher order. Segments are forty times as long.
-double most_lag(double tolerance) { return 0.007 * std::min(std::sqrt(tolerance / 1e-6), 1.0); }
+double max_lag(double tolerance) { return 0.007 * std::min(std::sqrt(tolerance / 1e-6), 1.0); }
 
 /// How a tolerance is met.
 struct Plan {
@@ -47,7 +47,7 @@ Plan plan_for(const EnsembleOptions& options) {
   want(Quantity::velocity, velocity);
   want(Quantity::current, wanted(Metric::current_peak));
   want(Quantity::force, wanted(Metric::rod_force_peak));
-  want(Quantity::slowness, wanted(Metric::crank_speed_min));
+  want(Quantity::negated_speed, wanted(Metric::crank_speed_min));
   want(Quantity::speed, wanted(Metric::crank_speed_max));
   want(Quantity::energy, wanted(Metric::power_reactive));
   s.multipliers = wanted(Metric::floquet_multiplier_max);
@@ -57,7 +57,7 @@ Plan plan_for(const EnsembleOptions& options) {
   const double digits = -std::log10(options.tolerance);
   const bool peaks = std::any_of(s.wanted.begin(), s.wanted.end(), [](bool on) { return on; });
   const auto even = [](double x) {
-    return std::clamp(2 * int(std::ceil(0.5 * x)), 6, solver::most_collocation_intervals);
+    return std::clamp(2 * int(std::ceil(0.5 * x)), 6, solver::max_collocation_intervals);
   };
   want(Quantity::velocity, velocity || options.domain);
   s.velocity_aside = options.domain && !velocity;
@@ -72,14 +72,14 @@ Plan plan_for(const EnsembleOptions& options) {
   finer.implicit = true;
   for (LaneSettings& again : plan.again) {
     ++finer.sweeps;
-    finer.segments = std::min(finer.segments + 2, most_half_segments);
+    finer.segments = std::min(finer.segments + 2, max_half_segments);
     again = finer;
-    finer.intervals = std::min(finer.intervals + 2, solver::most_collocation_intervals);
+    finer.intervals = std::min(finer.intervals + 2, solver::max_collocation_intervals);
   }
   plan.from_rest = s;
   plan.from_rest.approach = LaneApproach::from_rest;
   plan.from_rest.sweeps += 1;
-  plan.from_rest.segments = most_half_segments;
+  plan.from_rest.segments = max_half_segments;
   plan.from_rest.implicit = true;
   plan.from_rest_finely = plan.from_rest;
   plan.from_rest_finely.start_up_steps = 16 * plan.from_rest.start_up_steps;
@@ -132,15 +132,15 @@ class EnsembleRun {
   LaneCurrent current_of(const Vehicle<double>& v) const {
     if (!(v.motor.armature_inductance > 0.0)) return LaneCurrent::algebraic;
     const double lag = v.motor.armature_inductance / circuit_resistance(v) * no_load_speed(v);
-    return lag < most_lag(options_.tolerance) ? LaneCurrent::lagging : LaneCurrent::state;
+    return lag < max_lag(options_.tolerance) ? LaneCurrent::lagging : LaneCurrent::state;
   }
 
   /// Few need more than the first attempt: all of a kind together fill the lanes of the others.
   void solve_alike(const std::vector<std::size_t>& all) {
-    std::vector<std::size_t> doubtful, still_doubtful, inexact, left;
-    run(all, plan_.first, doubtful, inexact);
-    run(doubtful, plan_.from_rest, still_doubtful, inexact);
-    run(still_doubtful, plan_.from_rest_finely, left, inexact);
+    std::vector<std::size_t> unresolved, still_unresolved, inexact, left;
+    run(all, plan_.first, unresolved, inexact);
+    run(unresolved, plan_.from_rest, still_unresolved, inexact);
+    run(still_unresolved, plan_.from_rest_finely, left, inexact);
     for (const LaneSettings& finer : plan_.again) {
       std::vector<std::size_t> still_inexact;
       run(inexact, finer, left, still_inexact);
@@ -151,7 +151,7 @@ class EnsembleRun {
   }
 
   /// Solves those members; settles the outcomes of the exact ones, and lists the others.
-  void run(const std::vector<std::size_t>& which, LaneSettings settings, std::vector<std::size_t>& doubtful,
+  void run(const std::vector<std::size_t>& which, LaneSettings settings, std::vector<std::size_t>& unresolved,
            std::vector<std::size_t>& inexact) {
     if (which.empty()) return;
     settings.current = current_of(members_[which.front()].vehicle);
@@ -167,11 +167,11 @@ class EnsembleRun {
     }
     for (const std::size_t n : which) {
       const LaneResult& r = results_[n];
-      if (settings.approach == LaneApproach::from_rest) rotates_[n] = r.verdict == LaneVerdict::rotates;
-      if (r.verdict == LaneVerdict::locked) {
+      if (settings.approach == LaneApproach::from_rest) rotates_[n] = r.assessment == LaneAssessment::rotates;
+      if (r.assessment == LaneAssessment::locked) {
         settle(n, FlappingStatus::locked);
-      } else if (r.verdict == LaneVerdict::doubtful) {
-        doubtful.push_back(n);
+      } else if (r.assessment == LaneAssessment::unresolved) {
+        unresolved.push_back(n);
       } else if (!(r.error_estimate <= options_.tolerance)) {
         inexact.push_back(n);
       } else {

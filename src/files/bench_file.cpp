@@ -294,10 +294,10 @@ class BenchReader {
     fit.loss_scale = options->quantity("loss_scale", "1").value_or(fit.loss_scale);
     if (!(fit.loss_scale > 0.0)) options->refuse(options->at("loss_scale"), "loss_scale", "must be > 0");
     fit.starts = options->count("starts", 1).value_or(1);
-    if (fit.starts > most_fit_starts) {
+    if (fit.starts > max_fit_starts) {
       options->refuse(
           options->at("starts"), "starts",
-          fmt::format("must be at most {}, got {}; every start is a whole fit", most_fit_starts, fit.starts));
+          fmt::format("must be at most {}, got {}; every start is a whole fit", max_fit_starts, fit.starts));
     }
     fit.seed = std::uint64_t(options->count("seed", 0).value_or(1));
     fit.tolerance = options->quantity("tolerance", "1").value_or(fit.tolerance);

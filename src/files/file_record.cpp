@@ -117,9 +117,9 @@ void FileRecord::clear() {
 fs::path followed(const std::string& option, const fs::path& path) {
   std::error_code error;
   fs::path at = fs::absolute(path, error);
-  constexpr int most_links = 40;
+  constexpr int max_links = 40;
   for (int links = 0; fs::is_symlink(fs::symlink_status(at, error)); ++links) {
-    if (links == most_links) refuse(option, path, "cannot be written: its symbolic links lead round in a circle");
+    if (links == max_links) refuse(option, path, "cannot be written: its symbolic links lead round in a circle");
     const fs::path next = fs::read_symlink(at, error);
     if (error) refuse(option, path, "cannot be written: " + error.message());
     at = next.is_absolute() ? next : at.parent_path() / next;

@@ -203,8 +203,8 @@ class OptimiseReader : public detail::StudySections {
                          "take fewer values, or bounds instead",
                          combinations, most));
     }
-    if (file.study.parameters.size() + file.choices.size() + 1 > ScrambledSobol::most_dimensions) {
-      refuse(list, "parameter", fmt::format("more than {} parameters", ScrambledSobol::most_dimensions - 1));
+    if (file.study.parameters.size() + file.choices.size() + 1 > ScrambledSobol::max_dimensions) {
+      refuse(list, "parameter", fmt::format("more than {} parameters", ScrambledSobol::max_dimensions - 1));
     }
   }
 

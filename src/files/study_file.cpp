@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 using detail::Kind, detail::Place, detail::place_of, detail::toml_text;
 
 constexpr std::uint64_t longest_axis = 1000000;
-constexpr std::uint64_t most_designs = 1000000000000;
-constexpr std::size_t most_variants = 1000;
+constexpr std::uint64_t max_designs = 1000000000000;
+constexpr std::size_t max_variants = 1000;
 /// Text keys that name or hold tables, of which no axis is made.
 constexpr std::string_view table_keys[] = {"wing.planform.file", "wing.planform.chords",
                                            "aerodynamics.coefficients.table"};
@@ -313,8 +313,8 @@ class StudyReader : public detail::StudySections {
     const TomlNode* seed = node.find("seed");
     const std::uint64_t s = seed ? whole_number(*seed, "samples.seed", 0, std::uint64_t(1) << 53) : 1;
     if (name == "sobol") {
-      if (axis.quantities.size() > ScrambledSobol::most_dimensions) {
-        refuse(ranges, "samples.range", fmt::format("sobol varies at most {} keys", ScrambledSobol::most_dimensions));
+      if (axis.quantities.size() > ScrambledSobol::max_dimensions) {
+        refuse(ranges, "samples.range", fmt::format("sobol varies at most {} keys", ScrambledSobol::max_dimensions));
       }
       axis.sobol.emplace(axis.quantities.size(), s);
     } else {
@@ -435,7 +435,7 @@ class StudyReader : public detail::StudySections {
   void check_size() const {
     std::uint64_t product = 1;
     for (std::size_t a = 0; a < sweep_->axes.size(); ++a) {
-      if (sweep_->axes[a].count > most_designs / product) {
+      if (sweep_->axes[a].count > max_designs / product) {
         refuse(axis_places_[a], "axis", "the study has more than 1e12 designs");
       }
       product *= sweep_->axes[a].count;
@@ -454,8 +454,8 @@ class StudyReader : public detail::StudySections {
     for (std::size_t a = sweep.axes.size(); a-- > 0;) {
       if (!has_choice(sweep.axes[a])) continue;
       sweep.variant_stride[a] = count;
-      if (sweep.axes[a].count > most_variants / count) {
-        refuse(axis_places_[a], "axis", fmt::format("more than {} combinations of choices", most_variants));
+      if (sweep.axes[a].count > max_variants / count) {
+        refuse(axis_places_[a], "axis", fmt::format("more than {} combinations of choices", max_variants));
       }
       count *= std::size_t(sweep.axes[a].count);
     }

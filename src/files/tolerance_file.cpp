@@ -41,10 +41,10 @@ class ToleranceReader : public detail::StudySections {
       refuse(*study_, "study", "nothing is uncertain; give [[parameter]] sections or [fit]");
     }
     const std::size_t dimensions = (study.indices ? 2 : 1) * study.parameters.size();
-    if (dimensions > ScrambledSobol::most_dimensions) {
+    if (dimensions > ScrambledSobol::max_dimensions) {
       refuse(*study_, "parameter",
              fmt::format("{} parameters are more than a study can vary at once ({})", study.parameters.size(),
-                         ScrambledSobol::most_dimensions / (study.indices ? 2 : 1)));
+                         ScrambledSobol::max_dimensions / (study.indices ? 2 : 1)));
     }
     check_centre();
     return study;

@@ -43,7 +43,7 @@ std::string identifiability(const FitResult& r) {
     }
     text += "\n";
   }
-  text += "\nWhat the data can tell\n";
+  text += "\nIdentifiability\n";
   for (const std::string& sentence : describe(r.findings)) text += "  " + wrapped(sentence, 88, 4) + "\n";
 
   text += "\nShare of the information, the other parameters known\n";

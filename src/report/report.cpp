@@ -179,8 +179,8 @@ std::string json_report(const RunResult& result) {
   Json json;
   json["status"] = result.status == FlappingStatus::undecided ? Json(nullptr) : Json(name_of(result.status));
   json["status_detail"] = result.detail;
-  const bool judged = result.status == FlappingStatus::flapping && std::isfinite(result.metrics[Metric::frequency]);
-  json["domain"] = judged ? Json(name_of(result.domain)) : Json(nullptr);
+  const bool assessed = result.status == FlappingStatus::flapping && std::isfinite(result.metrics[Metric::frequency]);
+  json["domain"] = assessed ? Json(name_of(result.domain)) : Json(nullptr);
   json["domain_detail"] = result.domain_detail.empty() ? Json(nullptr) : Json(result.domain_detail);
   json["warnings"] = result.warnings;
   const auto& table = metric_table();

@@ -11,13 +11,13 @@
 namespace wingbeat {
 namespace {
 
-constexpr const char* curve_styles[most_curves] = {blue_solid,
-                                                   vermillion_dashed,
-                                                   black_dotted,
-                                                   "dt (14,4,3,4) lw 1.3 lc rgb '#009e73'",
-                                                   "dt (20,5) lw 1.3 lc rgb '#cc79a7'",
-                                                   "dt (6,3) lw 1.3 lc rgb '#56b4e9'"};
-constexpr const char* curve_colours[most_curves] = {"#0072b2", "#d55e00", "#000000", "#009e73", "#cc79a7", "#56b4e9"};
+constexpr const char* curve_styles[max_curves] = {blue_solid,
+                                                  vermillion_dashed,
+                                                  black_dotted,
+                                                  "dt (14,4,3,4) lw 1.3 lc rgb '#009e73'",
+                                                  "dt (20,5) lw 1.3 lc rgb '#cc79a7'",
+                                                  "dt (6,3) lw 1.3 lc rgb '#56b4e9'"};
+constexpr const char* curve_colours[max_curves] = {"#0072b2", "#d55e00", "#000000", "#009e73", "#cc79a7", "#56b4e9"};
 
 /// "springs on, condition air": the choices of one curve.
 std::string curve_name(const Sweep& sweep, std::uint64_t index) {

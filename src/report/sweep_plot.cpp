@@ -10,8 +10,8 @@
 namespace wingbeat {
 namespace {
 
-constexpr std::uint64_t most_designs_drawn = 4000000;
-constexpr std::size_t most_panels = 4;
+constexpr std::uint64_t max_designs_drawn = 4000000;
+constexpr std::size_t max_panels = 4;
 
 }  // namespace
 
@@ -28,11 +28,11 @@ std::vector<Metric> metrics_to_plot(const Study& study, std::span<const std::str
   if (numbers < 1 || numbers > 2) {
     refuse(fmt::format("the study has {} axes of numbers; plots have one or two", numbers));
   }
-  if (numbers == 1 && curves > most_curves) {
-    refuse(fmt::format("the choices make {} curves; a plot has at most {}", curves, most_curves));
+  if (numbers == 1 && curves > max_curves) {
+    refuse(fmt::format("the choices make {} curves; a plot has at most {}", curves, max_curves));
   }
   if (numbers == 2 && curves > 1) refuse("contours of two axes leave no room for choices; sweep them one by one");
-  if (sweep.size() > most_designs_drawn) refuse("more than 4,000,000 designs are not drawn");
+  if (sweep.size() > max_designs_drawn) refuse("more than 4,000,000 designs are not drawn");
 
   std::vector<Metric> metrics;
   for (const std::string& name : names) {
@@ -46,7 +46,7 @@ std::vector<Metric> metrics_to_plot(const Study& study, std::span<const std::str
     }
     metrics.push_back(Metric(index));
   }
-  if (metrics.size() > most_panels) refuse(fmt::format("at most {} metrics are drawn", most_panels));
+  if (metrics.size() > max_panels) refuse(fmt::format("at most {} metrics are drawn", max_panels));
   if (!metrics.empty()) return metrics;
   for (const Metric m : {Metric::lift_mean, Metric::efficiency_system}) {
     if (sweep.options.metrics[std::size_t(m)]) metrics.push_back(m);

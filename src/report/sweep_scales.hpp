@@ -14,7 +14,7 @@
 
 namespace wingbeat {
 
-inline constexpr std::uint64_t most_curves = 6;
+inline constexpr std::uint64_t max_curves = 6;
 
 bool is_number(const SweepAxis& axis);
 /// A parameter in words: "crank radius", "supply voltage"; with its section where the last word alone says too little.

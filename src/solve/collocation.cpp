@@ -10,7 +10,7 @@ namespace {
 
 /// Legendre polynomials 0 .. n + 1 at t, and their derivatives.
 struct Legendre {
-  double value[most_collocation_intervals + 2], slope[most_collocation_intervals + 2];
+  double value[max_collocation_intervals + 2], slope[max_collocation_intervals + 2];
 
   Legendre(int n, double t) {
     value[0] = 1.0, value[1] = t;
@@ -63,7 +63,7 @@ CollocationRule make_rule(int n) {
 
 const CollocationRule& collocation_rule(int intervals) {
   static const std::array rules = [] {
-    std::array<CollocationRule, most_collocation_intervals / 2> made;
+    std::array<CollocationRule, max_collocation_intervals / 2> made;
     for (std::size_t n = 0; n < made.size(); ++n) made[n] = make_rule(2 * int(n) + 2);
     return made;
   }();

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "study/bench_fitter.hpp"
-#include "study/fit_findings.hpp"
+#include "study/fit_identifiability.hpp"
 #include "study/fit_misfit.hpp"
 #include "study/fit_profile.hpp"
 #include "study/fit_stages.hpp"
@@ -28,7 +28,7 @@ void tell(const std::function<void(const std::string&)>& progress, const std::st
 void check_fit(const BenchFit& fit) {
   std::set<std::string> keys;
   if (fit.logs.empty()) throw ParameterError("log", "missing: there is nothing to fit to");
-  require(fit.starts >= 1 && fit.starts <= most_fit_starts, "fit.starts", "must lie between 1 and 1000", "1",
+  require(fit.starts >= 1 && fit.starts <= max_fit_starts, "fit.starts", "must lie between 1 and 1000", "1",
           fit.starts);
   for (const FreeParameter& p : fit.parameters) {
     if (!keys.insert(p.parameter.key).second) throw ParameterError(p.parameter.key, "is given twice");
@@ -121,7 +121,7 @@ FitResult run_fit(const BenchFit& fit, bool reweight, const std::function<void(c
   result.converged = best.converged;
   result.message = best.message;
 
-  find_what_data_tell(fit, fitter, best.x, result);
+  assess_identifiability(fit, fitter, best.x, result);
   std::vector<double> kept = best.x;
   for (std::size_t k = 0; k < kept.size(); ++k) kept[k] = result.parameters[k].kept;
   result.design = bench.design_at(kept);

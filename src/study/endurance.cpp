@@ -363,7 +363,7 @@ class Flight {
 
 }  // namespace
 
-EnduranceResult fly_to_the_end(const Design<double>& design, const EnduranceOptions& options) {
+EnduranceResult simulate_discharge(const Design<double>& design, const EnduranceOptions& options) {
   require(options.tolerance >= 1e-10 && options.tolerance <= 1e-2, "endurance.tolerance",
           "must lie between 1e-10 and 1e-2", "1", options.tolerance);
   require(options.intervals >= 1, "endurance.intervals", "must be >= 1", "1", options.intervals);

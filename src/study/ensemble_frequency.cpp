@@ -7,9 +7,9 @@
 namespace wingbeat {
 namespace {
 
-constexpr int most_rounds = 25;
+constexpr int max_rounds = 25;
 /// Where so many trials do not flap, the search of one settles the member.
-constexpr int most_still = 3;
+constexpr int max_still = 3;
 
 /// The search for one member's voltage.
 struct Search {
@@ -106,7 +106,7 @@ void solve_ensemble_at_frequency(std::span<EnsembleMember> members, std::span<co
   }
   std::vector<EnsembleMember> trials(members.size());
   std::vector<EnsembleOutcome> results(members.size());
-  for (int round = 0; round < most_rounds && !searches.empty(); ++round) {
+  for (int round = 0; round < max_rounds && !searches.empty(); ++round) {
     const std::size_t active = searches.size();
     for (std::size_t k = 0; k < active; ++k) {
       trials[k] = members[searches[k].member];
@@ -121,7 +121,7 @@ void solve_ensemble_at_frequency(std::span<EnsembleMember> members, std::span<co
       if (advance(s, flaps, results[k].metrics[Metric::frequency], closeness)) {
         members[s.member].vehicle.voltage = tried;
         settled.push_back(s.member);
-      } else if (!(s.next <= s.limit) || s.still >= most_still) {
+      } else if (!(s.next <= s.limit) || s.still >= max_still) {
         left.push_back(s.member);
       } else {
         searches[kept++] = s;

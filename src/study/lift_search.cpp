@@ -18,11 +18,11 @@ using detail::VoltageTrials;
 
 /// The lift coefficient is a wave in the angle of attack: between two trials the smallest angle changes by no more than
 /// this share of a radian of the wave, so that no more than an eighth of it passes unseen.
-constexpr double most_phase = pi / 4.0;
+constexpr double max_phase = pi / 4.0;
 /// The same for a table of coefficients, whose features are not known [deg].
-constexpr double most_table_step_deg = 10.0;
+constexpr double max_table_step_deg = 10.0;
 /// A cubic between two trials is trusted where it misses the trial half-way by no more than this share of the lift.
-constexpr double most_misfit = 0.02;
+constexpr double max_misfit = 0.02;
 /// Intervals narrower than this, in ln v, are edges or jumps.
 constexpr double narrowest = 1e-5;
 
@@ -34,8 +34,8 @@ class LiftTrace {
       : trials_(std::move(trials)), target_(lift), where_(where) {
     const BladeElement<double>& w = trials_.vehicle().wings;
     const double rate = std::abs(w.coefficients.lift.rate);
-    step_deg_ = w.coefficients.table ? most_table_step_deg
-                                     : std::min(degrees_per_radian * most_phase / std::max(rate, 1e-3), 30.0);
+    step_deg_ = w.coefficients.table ? max_table_step_deg
+                                     : std::min(degrees_per_radian * max_phase / std::max(rate, 1e-3), 30.0);
   }
 
   FrequencySearch run() {
@@ -151,9 +151,9 @@ class LiftTrace {
     const double size = std::max({std::abs(a.lift), std::abs(m.lift), std::abs(b.lift)});
     const double h = log_width(a, b);
     const Hermite frequency{std::log(a.frequency), h * a.frequency_slope, std::log(b.frequency), h * b.frequency_slope};
-    return std::abs(lift.value(0.5) - m.lift) <= most_misfit * size &&
-           std::abs(lift.slope(0.5) - h * m.lift_slope) <= 8.0 * most_misfit * size &&
-           std::abs(frequency.value(0.5) - std::log(m.frequency)) <= most_misfit;
+    return std::abs(lift.value(0.5) - m.lift) <= max_misfit * size &&
+           std::abs(lift.slope(0.5) - h * m.lift_slope) <= 8.0 * max_misfit * size &&
+           std::abs(frequency.value(0.5) - std::log(m.frequency)) <= max_misfit;
   }
 
   /// Where the vehicle starts to flap, or ceases to.

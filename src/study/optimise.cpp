@@ -532,7 +532,7 @@ class Neighbourhood {
 };
 
 /// A study without parameters: the one design there is.
-void judge(const Problem& problem, OptimiseResult& result) {
+void assess(const Problem& problem, OptimiseResult& result) {
   const OptimiseStudy& study = problem.study();
   const Problem::Evaluation only = problem.evaluate(Vector(), false);
   result.evaluations = result.starts = 1;
@@ -588,7 +588,7 @@ OptimiseResult optimise(const OptimiseStudy& study, const StartUp& start_up, con
   OptimiseResult result;
   const Problem problem(study, start_up);
   if (study.parameters.empty()) {
-    judge(problem, result);
+    assess(problem, result);
     return result;
   }
   const std::vector<Vector> ranked = screened(problem, start_up, result.screen);

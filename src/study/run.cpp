@@ -69,7 +69,7 @@ void last_lap(const Vehicle<double>& vehicle, const Supply<double>& supply, Tran
     const double current = !(L_a > 0.0) ? algebraic_current(vehicle, v, omega)
                            : supply.type == SupplyType::pwm
                                ? a.current + x * (b.current - a.current)
-                               : hermite(a.current, b.current, ma.voltage_reserve / L_a, mb.voltage_reserve / L_a);
+                               : hermite(a.current, b.current, ma.inductive_voltage / L_a, mb.inductive_voltage / L_a);
     const Motion<double> m = motion_of(vehicle, theta, omega, current, v);
     result.cycle.push_back(
         waveform_row(vehicle, m, time - start, theta - start_angle, omega, stroke_angle(m.kinematics)));

@@ -67,7 +67,7 @@ double PseudoRandom::operator()(std::uint64_t index, std::size_t dimension) cons
 }
 
 ScrambledSobol::ScrambledSobol(std::size_t dimensions, std::uint64_t seed) {
-  require(dimensions >= 1 && dimensions <= most_dimensions, "samples", "must vary 1 to 100 parameters", "1",
+  require(dimensions >= 1 && dimensions <= max_dimensions, "samples", "must vary 1 to 100 parameters", "1",
           double(dimensions));
   dimensions_.resize(dimensions);
   for (std::size_t d = 0; d < dimensions; ++d) dimensions_[d].seed = std::uint32_t(mixed(seed, 2 * d + 1) >> 32);

@@ -11,7 +11,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int averaged_laps_pwm = 8;
 constexpr double settled_without_metrics = 1e-4;
 constexpr double largest_rate = 0.99999;  // of contraction: what is left of a change is no more than 1e5 times it
-constexpr std::size_t most_turns = 8;     // after which a motion is looked at for repeating
+constexpr std::size_t max_turns = 8;      // after which a motion is looked at for repeating
 
 /// True where a metric is what is left of far larger parts.
 bool cancels(const Metrics<double>& m) {
@@ -41,7 +41,7 @@ bool CrankStartUp::lap_done_constant() {
   ++laps_since_jump_;
   if (crossings_.size() < 2) return false;
   if (turns_ == 1 && laps_compared_ >= 40 && laps_compared_ % 16 == 0) {
-    for (std::size_t turns = 2; turns <= most_turns && turns_ == 1; ++turns) {
+    for (std::size_t turns = 2; turns <= max_turns && turns_ == 1; ++turns) {
       if (!repeats_after(turns)) continue;
       turns_ = turns;
       change_ = infinity;

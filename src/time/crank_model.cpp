@@ -90,7 +90,7 @@ bool CrankModel::rates(double t, const double* y, double* dy, bool quadrature) c
   const Motion<double> m = motion(t, y, &branch);
   dy[0] = y[1];
   dy[1] = m.crank_acceleration;
-  if (inductive) dy[2] = m.voltage_reserve / vehicle.motor.armature_inductance;
+  if (inductive) dy[2] = m.inductive_voltage / vehicle.motor.armature_inductance;
   if (quadrature) {
     const CycleIntegrals<double> all = integrands(m, y[1], branch);
     for (int k = 0; k < quadrature_count; ++k) dy[coupled + k] = all[std::size_t(quadratures[k])];
@@ -135,7 +135,7 @@ double CrankModel::uniqueness(double theta) const {
   const CrankKinematics<double> k = kinematics(theta);
   const double lever = k.wing_lever / vehicle.crank.hinge_offset;
   if (!(lever > 0.0)) return lever;
-  return std::min(lever, least_inertia(vehicle, k) / vehicle.motor.inertia);
+  return std::min(lever, min_inertia(vehicle, k) / vehicle.motor.inertia);
 }
 
 /// Nearest crank angles on either side of the start that the crank cannot pass.

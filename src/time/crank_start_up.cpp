@@ -146,7 +146,7 @@ TransientResult CrankStartUp::run() {
 bool CrankStartUp::out_of_budget() {
   ++result_.steps;
   if (result_.steps > options_.max_steps) {
-    give_up(format("no verdict within %ld integration steps", options_.max_steps));
+    give_up(format("no decision within %ld integration steps", options_.max_steps));
   } else if (options_.cancel && result_.steps % 512 == 0 && options_.cancel()) {
     give_up("cancelled");
   } else if (std::abs(now_.omega) > runaway_speed_) {
@@ -155,7 +155,7 @@ bool CrankStartUp::out_of_budget() {
                "power and feeds it",
                now_.omega));
   } else if (now_.t >= end_time_) {
-    give_up(format("no verdict within %.6g s", end_time_));
+    give_up(format("no decision within %.6g s", end_time_));
   }
   return done_;
 }
@@ -178,7 +178,7 @@ void CrankStartUp::stand() {
 }
 
 /// Crank held by friction while the current stays in [low, high]. True when it breaks away, now_.t, now_.i and the
-/// direction then being set; false when the verdict is in.
+/// direction then being set; false when the decision is in.
 bool CrankStartUp::stick(double low, double high) {
   const Motor<double>& m = model_.vehicle.motor;
   const double R = circuit_resistance(model_.vehicle);

@@ -1,5 +1,5 @@
 // Start-up of a crank-driven vehicle, for simulate_start_up(): the model's course of events, the settling of its laps,
-// the verdict.
+// the decision.
 #pragma once
 
 #include <limits>

@@ -76,7 +76,7 @@ bool DirectModel::rates(double t, const double* y, double* dy, bool quadrature) 
   const Motion<double> m = motion(t, y);
   dy[0] = m.stroke_velocity;
   dy[1] = m.crank_acceleration;
-  if (inductive) dy[2] = m.voltage_reserve / vehicle.motor.armature_inductance;
+  if (inductive) dy[2] = m.inductive_voltage / vehicle.motor.armature_inductance;
   if (quadrature) {
     const CycleIntegrals<double> all = integrands(m, m.stroke_velocity, branch_at(y));
     for (int k = 0; k < quadrature_count; ++k) dy[coupled + k] = all[std::size_t(quadratures[k])];

@@ -246,7 +246,7 @@ void DirectStartUp::take_metrics() {
   result_.averaged_laps = 1;
 }
 
-/// True, with the verdict, where nothing moves the shaft any more.
+/// True, with the decision, where nothing moves the shaft any more.
 bool DirectStartUp::rests_for_good() {
   const Motor<double>& m = model_.vehicle.motor;
   const bool no_drive = model_.vehicle.voltage == 0.0 && std::abs(now_.y[1]) < 1e-9 * model_.speed_scale &&
@@ -275,7 +275,7 @@ bool DirectStartUp::rests_for_good() {
   return true;
 }
 
-/// True, with the verdict, where the drive alone cannot break the shaft away and the springs let it creep towards an
+/// True, with the decision, where the drive alone cannot break the shaft away and the springs let it creep towards an
 /// angle of rest: from standstill to standstill the angle is a monotone map of itself, and slips in one direction end
 /// where there are none.
 bool DirectStartUp::creeps_to_rest() {
@@ -368,11 +368,11 @@ void DirectStartUp::period_done() {
 bool DirectStartUp::out_of_budget() {
   ++result_.steps;
   if (result_.steps > options_.max_steps) {
-    give_up(format("no verdict within %ld integration steps", options_.max_steps));
+    give_up(format("no decision within %ld integration steps", options_.max_steps));
   } else if (options_.cancel && result_.steps % 512 == 0 && options_.cancel()) {
     give_up("cancelled");
   } else if (options_.max_time > 0.0 && now_.t >= options_.max_time) {
-    give_up(format("no verdict within %.6g s", options_.max_time));
+    give_up(format("no decision within %.6g s", options_.max_time));
   }
   return done_;
 }

@@ -12,8 +12,8 @@
 namespace wingbeat::detail {
 namespace {
 
-constexpr int most_attempts = 400;  // to take one step
-constexpr int looks = 4;            // within a step, for root functions that change sign twice
+constexpr int max_attempts = 400;  // to take one step
+constexpr int looks = 4;           // within a step, for root functions that change sign twice
 
 /// The problem as solve/explicit_step.hpp and implicit_step.hpp want it.
 template <int N>
@@ -84,7 +84,7 @@ class OwnIntegrator : public Integrator {
     start_rates_ = rates_;
     std::fill(found_.begin(), found_.end(), false);
     double h = std::min(step_ > 0.0 ? step_ : first_step(), problem_.longest_step);
-    for (int attempt = 0; attempt < most_attempts; ++attempt) {
+    for (int attempt = 0; attempt < max_attempts; ++attempt) {
       const bool last = from_ + 1.001 * h >= stop_;
       if (last) h = stop_ - from_;
       if (!(h > 4e-16 * std::abs(from_)) || !(h > 0.0)) return Outcome::failed;

@@ -1,4 +1,4 @@
-// Steps a model in time to any moment, through its events, and back: no verdict, no recording.
+// Steps a model in time to any moment, through its events, and back: no decision, no recording.
 #pragma once
 
 #include <algorithm>
@@ -41,10 +41,10 @@ enum class StepOutcome { reached, ended, failed };
 template <TimeModel Model>
 StepOutcome step_to(Model& model, double until, double tolerance, TimeIntegrator which = TimeIntegrator::own_steps) {
   constexpr std::size_t indicators = std::tuple_size_v<decltype(model.indicators(0.0, nullptr))>;
-  constexpr int most_pieces = 1000000;
+  constexpr int max_pieces = 1000000;
   for (int piece = 0; model.now.t < until; ++piece) {
     if (model.ended()) return StepOutcome::ended;
-    if (piece == most_pieces) return StepOutcome::failed;
+    if (piece == max_pieces) return StepOutcome::failed;
     const double switching = model.next_switch(), stop = std::min(until, switching);
     if (stop - model.now.t < 1e-13 * std::max(model.now.t, stop)) {
       model.now.t = stop;

@@ -18,7 +18,7 @@ TEST_F(Fit, WritesAVehicleThatRunsAndItsCovariance) {
   EXPECT_EQ(o.status, 0);
   EXPECT_EQ(o.err, "wrote " + path("fitted.toml") + "\nwrote " + path("fitted.covariance.toml") + "\nwrote " +
                        path("residuals.svg") + "\n");
-  for (const char* part : {"3 parameters, 36 rows", "converged", "friction.radius", "What the data can tell",
+  for (const char* part : {"3 parameters, 36 rows", "converged", "friction.radius", "Identifiability",
                            "only air determines aerodynamics.pitch_coefficient", "Share of the information"}) {
     EXPECT_THAT(o.out, HasSubstr(part));
   }

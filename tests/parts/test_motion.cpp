@@ -85,7 +85,7 @@ TEST(Motion, SatisfiesTheEquationsOnBothBranches) {
       expect_balance({v.motor.torque_constant * at.current, -m.rod_force * k.crank_lever, -T_f,
                       -v.motor.inertia * m.crank_acceleration, -v.motor.viscous_damping * omega});
       // (11)
-      expect_balance({at.voltage, -m.voltage_reserve, -v.motor.armature_resistance * at.current,
+      expect_balance({at.voltage, -m.inductive_voltage, -v.motor.armature_resistance * at.current,
                       -v.motor.torque_constant * omega});
       EXPECT_DOUBLE_EQ(m.stored_moment, v.wing_count * v.wing_inertia * m.stroke_acceleration +
                                             v.wing_count * v.spring.stiffness * stroke_angle(k));
@@ -141,7 +141,7 @@ TEST(Motion, PowerBalancesAtEveryInstant) {
     J theta(at.theta), w(omega), current(i);
     theta.v[0] = omega;
     w.v[0] = m.crank_acceleration;
-    if (v.motor.armature_inductance > 0.0) current.v[0] = m.voltage_reserve / v.motor.armature_inductance;
+    if (v.motor.armature_inductance > 0.0) current.v[0] = m.inductive_voltage / v.motor.armature_inductance;
     const Vehicle<J> dual = cast<J>(v);
     const double stored = stored_energy(dual, crank_kinematics(dual.crank, sin(theta), cos(theta)), w, current).v[0];
     // Without an inductance the state need not satisfy v = R i + K omega: its reserve does no work on the field.
@@ -196,7 +196,7 @@ TEST(Motion, WinglessVehicleHasNoRodForceAndSettlesAtTheNoLoadSpeed) {
     EXPECT_EQ(m.rod_force, 0.0);
     EXPECT_EQ(m.aero.moment, 0.0);
     EXPECT_NEAR(m.crank_acceleration, 0.0, 1e-9);
-    EXPECT_NEAR(m.voltage_reserve, 0.0, 3e-14);
+    EXPECT_NEAR(m.inductive_voltage, 0.0, 3e-14);
   }
 }
 
@@ -217,7 +217,7 @@ TEST(Motion, AlgebraicCurrentLeavesNoVoltageReserve) {
   const Vehicle<double> v = resolve(d);
   const double i = algebraic_current(v, 3.0, 120.0);
   EXPECT_NEAR(i, (3.0 - 1.2) / 9.0, 1e-16);
-  EXPECT_NEAR(motion_at(v, 0.6, 0.8, 120.0, i, 3.0, {1.0, 1.0, 1.0, 1.0}).voltage_reserve, 0.0, 1e-15);
+  EXPECT_NEAR(motion_at(v, 0.6, 0.8, 120.0, i, 3.0, {1.0, 1.0, 1.0, 1.0}).inductive_voltage, 0.0, 1e-15);
 }
 
 TEST(Motion, DesignChecksNameTheirKey) {

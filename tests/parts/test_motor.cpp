@@ -32,7 +32,7 @@ TEST(Motor, GearingKeepsEnergyAndPower) {
   EXPECT_NEAR(out.power_viscous, in.power_viscous, 1e-15);
   EXPECT_NEAR(out.torque * omega, in.torque * shaft, 1e-15);
   EXPECT_NEAR(m.friction_torque * omega, motor_shaft.friction_torque * shaft, 1e-15);
-  EXPECT_NEAR(out.voltage_reserve, in.voltage_reserve, 1e-14);
+  EXPECT_NEAR(out.inductive_voltage, in.inductive_voltage, 1e-14);
 }
 
 TEST(Motor, GearRatioOneWithoutGearboxChangesNothing) {
@@ -48,7 +48,7 @@ TEST(Motor, ElectricalPowerIsCopperLossPlusFieldPlusShaft) {
     for (const double i : {-0.4, 0.0, 0.3}) {
       for (const double omega : {-200.0, 0.0, 150.0}) {
         const auto loads = motor_loads(reference, v, i, omega);
-        EXPECT_NEAR(v * i, loads.power_copper + loads.voltage_reserve * i + loads.torque * omega, 1e-15);
+        EXPECT_NEAR(v * i, loads.power_copper + loads.inductive_voltage * i + loads.torque * omega, 1e-15);
         EXPECT_GE(loads.power_copper, 0.0);
         EXPECT_GE(loads.power_viscous, 0.0);
         EXPECT_DOUBLE_EQ(loads.power_viscous, loads.drag_torque * omega);
@@ -63,7 +63,7 @@ TEST(Motor, NoLoadSpeedBalancesTorqueAndVoltage) {
   EXPECT_NEAR(omega, 226.58610271903323, 1e-11);
   const double i = reference.viscous_damping * omega / reference.torque_constant;
   const auto loads = motor_loads(reference, 3.0, i, omega);
-  EXPECT_NEAR(loads.voltage_reserve, 0.0, 1e-14);
+  EXPECT_NEAR(loads.inductive_voltage, 0.0, 1e-14);
   EXPECT_NEAR(loads.torque, loads.drag_torque, 1e-18);
 }
 
@@ -75,7 +75,7 @@ TEST(Motor, NoLoadSpeedWithoutDampingIsVoltageOverConstant) {
 }
 
 TEST(Motor, StalledMotorDrawsVoltageOverResistance) {
-  EXPECT_NEAR(motor_loads(reference, 3.0, 3.0 / 9.0, 0.0).voltage_reserve, 0.0, 1e-15);
+  EXPECT_NEAR(motor_loads(reference, 3.0, 3.0 / 9.0, 0.0).inductive_voltage, 0.0, 1e-15);
 }
 
 TEST(Motor, RefusesConstantsOutOfRange) {

@@ -30,7 +30,7 @@ std::array<S, instant_size> instant(const Vehicle<S>& v, const Point<S>& p) {
                                      k.wing_lever,
                                      k.crank_lever,
                                      m.crank_acceleration,
-                                     m.voltage_reserve,
+                                     m.inductive_voltage,
                                      m.rod_force,
                                      m.force_switch,
                                      m.stroke_velocity,
@@ -54,7 +54,7 @@ std::array<S, instant_size> instant(const Vehicle<S>& v, const Point<S>& p) {
 }
 
 /// Where the residual work stands among the outputs of instant(): a difference that is rounding alone for virtual work,
-/// to be judged beside the motor work.
+/// to be assessed beside the motor work.
 inline constexpr std::size_t residual_at = motion_size + std::size_t(Integral::residual_work);
 inline constexpr std::size_t motor_work_at = motion_size + std::size_t(Integral::motor_work);
 

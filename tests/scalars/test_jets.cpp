@@ -80,7 +80,7 @@ void expect_derivatives(const F& f, const Inputs<double>& at, double tolerance, 
       const double difference = (8.0 * (p1[out] - m1[out]) - (p2[out] - m2[out])) / (12.0 * h);
       const double derivative = jets[out].v[n];
       double size = std::abs(derivative) + std::abs(values[out] / value);
-      // What must vanish up to rounding is judged beside what it is the difference of.
+      // What must vanish up to rounding is assessed beside what it is the difference of.
       if (out == residual) size += std::abs(values[motor_work] / value) + std::abs(jets[motor_work].v[n]);
       EXPECT_NEAR(derivative, difference, tolerance * size) << "output " << out << " by variable " << n;
     }

@@ -56,7 +56,7 @@ TEST_P(Collocation, PolynomialsOfItsDegreeAreIntegratedDifferentiatedAndTakenApa
 }
 
 // y' = -y + cos x on [0, h], solved at the nodes by repeated substitution: at the end the error falls as h^(2 n + 1).
-TEST(CollocationOrder, EndsOfStretchesAreOfTwiceTheOrder) {
+TEST(CollocationOrder, EndsOfSubintervalsAreOfTwiceTheOrder) {
   const CollocationRule& rule = collocation_rule(2);
   const auto error = [&](double h) {
     double y[3] = {1.0, 1.0, 1.0};

@@ -201,14 +201,14 @@ TEST(DomainOfEndurance, NoHoverIsClaimedOutside) {
   EnduranceOptions options;
   options.intervals = 8;
   options.tolerance = 1e-5;
-  const EnduranceResult kept = fly_to_the_end(d, options);
+  const EnduranceResult kept = simulate_discharge(d, options);
   ASSERT_FALSE(kept.rows.empty());
   EXPECT_TRUE(kept.rows.front().domain.any());
   EXPECT_GE(kept.rows.front().metrics[Metric::lift_to_weight], 1.0);
   EXPECT_EQ(kept.hover, Hover::outside);
   EXPECT_TRUE(kept.rows.back().domain.none());
   options.allow_extrapolation = true;
-  EXPECT_EQ(fly_to_the_end(d, options).hover, Hover::kept);
+  EXPECT_EQ(simulate_discharge(d, options).hover, Hover::kept);
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ double chemical_energy(const Battery<double>& b, double from, double to) {
 
 TEST(Endurance, EnergyAtTheTerminalsIsChemicalEnergyLessTheInternalLoss) {
   const Design<double> d = hovering_design();
-  const EnduranceResult r = fly_to_the_end(d);
+  const EnduranceResult r = simulate_discharge(d);
   ASSERT_EQ(r.end, EnduranceEnd::empty) << r.detail;
   const EnduranceRow& last = r.rows.back();
   const double chemical = chemical_energy(d.supply.battery, 1.0, 0.0);
@@ -53,7 +53,7 @@ TEST(Endurance, EnergyAtTheTerminalsIsChemicalEnergyLessTheInternalLoss) {
 // The integral of P_e over time by Simpson's rule between the rows of the curve, from runs of their own.
 TEST(Endurance, EnergyIsTheIntegralOfPowerByAnIndependentQuadrature) {
   const Design<double> d = hovering_design();
-  const EnduranceResult r = fly_to_the_end(d);
+  const EnduranceResult r = simulate_discharge(d);
   const auto& curve = d.supply.battery.discharge_curve;
   double energy = 0.0, time = 0.0;
   for (std::size_t k = 1; k < curve.size(); ++k) {
@@ -75,9 +75,9 @@ TEST(Endurance, EnergyIsTheIntegralOfPowerByAnIndependentQuadrature) {
 
 TEST(Endurance, HalvesWithTheCapacity) {
   Design<double> d = hovering_design();
-  const EnduranceResult whole = fly_to_the_end(d);
+  const EnduranceResult whole = simulate_discharge(d);
   d.supply.battery.capacity *= 0.5;
-  const EnduranceResult half = fly_to_the_end(d);
+  const EnduranceResult half = simulate_discharge(d);
   EXPECT_DOUBLE_EQ(half.endurance(), 0.5 * whole.endurance());
   ASSERT_TRUE(whole.hover_lost && half.hover_lost);
   EXPECT_DOUBLE_EQ(half.hover_lost->time, 0.5 * whole.hover_lost->time);
@@ -92,7 +92,7 @@ TEST(Endurance, WinglessClosedForm) {
   d.supply.battery.internal_resistance = 2.0;
   d.supply.battery.capacity = 180.0;
   d.supply.battery.charge = 0.75;
-  const EnduranceResult r = fly_to_the_end(d, {.condition = Condition::wingless});
+  const EnduranceResult r = simulate_discharge(d, {.condition = Condition::wingless});
   const Motor<double>& m = d.motor.constants;
   const double i = 3.7 * m.viscous_damping / (square(m.torque_constant) + 11.0 * m.viscous_damping);
   EXPECT_NEAR(r.endurance(), 0.75 * 180.0 / i, 1e-9 * r.endurance());
@@ -110,7 +110,7 @@ TEST(Endurance, LinearCurveGivesALogarithm) {
   b.discharge_curve = {{0.0, 3.0}, {1.0, 4.0}};
   b.internal_resistance = 2.0;
   b.capacity = 100.0;
-  const EnduranceResult r = fly_to_the_end(d, {.condition = Condition::wingless});
+  const EnduranceResult r = simulate_discharge(d, {.condition = Condition::wingless});
   const Motor<double>& m = d.motor.constants;
   const double per_volt = m.viscous_damping / (square(m.torque_constant) + 11.0 * m.viscous_damping);
   EXPECT_NEAR(r.endurance(), 100.0 / per_volt * std::log(4.0 / 3.0), 1e-9 * r.endurance());
@@ -121,10 +121,10 @@ TEST(Endurance, ManyRowsOfADischargeCurveCostNoOrbits) {
   Design<double> d = hovering_design();
   Battery<double>& b = d.supply.battery;
   b.discharge_curve = {{0.0, 2.9}, {1.0, 3.6}};
-  const EnduranceResult few = fly_to_the_end(d);
+  const EnduranceResult few = simulate_discharge(d);
   b.discharge_curve.clear();
   for (int n = 0; n <= 2000; ++n) b.discharge_curve.emplace_back(n / 2000.0, 2.9 + 0.7 * n / 2000.0);
-  const EnduranceResult many = fly_to_the_end(d);
+  const EnduranceResult many = simulate_discharge(d);
   EXPECT_NEAR(many.endurance(), few.endurance(), 1e-9 * few.endurance());
   EXPECT_NEAR(many.rows.back().lift_impulse, few.rows.back().lift_impulse, 1e-9 * few.rows.back().lift_impulse);
   EXPECT_LT(few.evaluations, 400);
@@ -135,14 +135,14 @@ TEST(Endurance, ManyRowsOfADischargeCurveCostNoOrbits) {
   for (int n = 0; n <= 2000; ++n) {
     b.discharge_curve[std::size_t(n)].second = 0.5 * open_circuit_voltage(smooth.supply.battery, n / 2000.0);
   }
-  const EnduranceResult sampled = fly_to_the_end(d), exact = fly_to_the_end(smooth);
+  const EnduranceResult sampled = simulate_discharge(d), exact = simulate_discharge(smooth);
   EXPECT_NEAR(sampled.endurance(), exact.endurance(), 1e-6 * exact.endurance());
   EXPECT_LT(sampled.evaluations, 1000);
 }
 
 TEST(Endurance, HoverIsLostWhereLiftEqualsWeight) {
   const Design<double> d = hovering_design();
-  const EnduranceResult r = fly_to_the_end(d);
+  const EnduranceResult r = simulate_discharge(d);
   ASSERT_EQ(r.hover, Hover::lost);
   const EnduranceRow& at = *r.hover_lost;
   EXPECT_GT(at.charge, 0.05);
@@ -165,17 +165,17 @@ TEST(Endurance, HoverIsLostWhereLiftEqualsWeight) {
 TEST(Endurance, HoverNeverKeptAndUnknown) {
   Design<double> d = hovering_design();
   d.supply.battery.cells = 1.0;
-  EXPECT_EQ(fly_to_the_end(d).hover, Hover::never);
+  EXPECT_EQ(simulate_discharge(d).hover, Hover::never);
   d.supply.battery.cells = 3.0;
-  EXPECT_EQ(fly_to_the_end(d).hover, Hover::kept);
+  EXPECT_EQ(simulate_discharge(d).hover, Hover::kept);
   d.mass.reset();
-  EXPECT_EQ(fly_to_the_end(d).hover, Hover::unknown);
+  EXPECT_EQ(simulate_discharge(d).hover, Hover::unknown);
 }
 
 TEST(Endurance, CutoffEndsTheFlight) {
   Design<double> d = hovering_design();
   d.supply.battery.cutoff_voltage = 2.7;
-  const EnduranceResult r = fly_to_the_end(d);
+  const EnduranceResult r = simulate_discharge(d);
   ASSERT_EQ(r.end, EnduranceEnd::cutoff);
   EXPECT_NEAR(r.rows.back().metrics[Metric::voltage], 5.4, 1e-9);
   EXPECT_GT(r.rows.back().charge, 0.0);
@@ -184,7 +184,7 @@ TEST(Endurance, CutoffEndsTheFlight) {
   const double chemical = chemical_energy(d.supply.battery, 1.0, r.rows.back().charge);
   EXPECT_NEAR(r.rows.back().energy_electrical + r.rows.back().energy_internal, chemical, 1e-9 * chemical);
   d.supply.battery.cutoff_voltage = 4.0;
-  const EnduranceResult none = fly_to_the_end(d);
+  const EnduranceResult none = simulate_discharge(d);
   EXPECT_EQ(none.end, EnduranceEnd::cutoff);
   EXPECT_EQ(none.endurance(), 0.0);
   EXPECT_THAT(none.detail, testing::HasSubstr("from the start"));
@@ -199,7 +199,7 @@ TEST(Endurance, EndsWhereTheCrankStops) {
   b.discharge_curve = {{0.0, 1.0}, {1.0, 4.0}};
   b.internal_resistance = 1.0;
   b.capacity = 100.0;
-  const EnduranceResult r = fly_to_the_end(d, {.condition = Condition::wingless});
+  const EnduranceResult r = simulate_discharge(d, {.condition = Condition::wingless});
   ASSERT_EQ(r.end, EnduranceEnd::stops) << r.detail;
   EXPECT_NEAR(r.rows.back().open_circuit_voltage, 2e-3 * 10.0 / 0.01, 2e-2);
   EXPECT_THAT(r.detail, testing::HasSubstr("no longer turns the crank"));
@@ -209,7 +209,7 @@ TEST(Endurance, SaysWhyItDoesNotStart) {
   Design<double> d = hovering_design();
   d.supply.battery.internal_resistance = 500.0;
   d.motor.constants.friction_torque = 1e-3;
-  const EnduranceResult r = fly_to_the_end(d);
+  const EnduranceResult r = simulate_discharge(d);
   EXPECT_EQ(r.end, EnduranceEnd::never_starts);
   EXPECT_EQ(r.status, FlappingStatus::stalled);
   EXPECT_TRUE(r.rows.empty());
@@ -221,21 +221,21 @@ TEST(Endurance, SaysWhyItDoesNotStart) {
 TEST(Endurance, EmptyFromTheStart) {
   Design<double> d = hovering_design();
   d.supply.battery.charge = 0.0;
-  const EnduranceResult r = fly_to_the_end(d);
+  const EnduranceResult r = simulate_discharge(d);
   EXPECT_EQ(r.end, EnduranceEnd::empty);
   EXPECT_EQ(r.endurance(), 0.0);
   EXPECT_EQ(r.detail, "the battery is empty from the start");
 }
 
 TEST(Endurance, RefusesOtherSuppliesAndOptions) {
-  EXPECT_THROW(fly_to_the_end(reference_design()), ParameterError);
-  EXPECT_THROW(fly_to_the_end(hovering_design(), {.tolerance = 1e-12}), ParameterError);
-  EXPECT_THROW(fly_to_the_end(hovering_design(), {.intervals = 0}), ParameterError);
+  EXPECT_THROW(simulate_discharge(reference_design()), ParameterError);
+  EXPECT_THROW(simulate_discharge(hovering_design(), {.tolerance = 1e-12}), ParameterError);
+  EXPECT_THROW(simulate_discharge(hovering_design(), {.intervals = 0}), ParameterError);
 }
 
 TEST(Endurance, ShippedDesignCannotHoverOnOneCell) {
   const Design<double> d = read_design(std::filesystem::path(WINGBEAT_DATA) / "designs" / "friction2022-battery.toml");
-  const EnduranceResult r = fly_to_the_end(d);
+  const EnduranceResult r = simulate_discharge(d);
   EXPECT_EQ(r.hover, Hover::never);
   EXPECT_GT(r.endurance(), 300.0);
   EXPECT_LT(r.endurance(), 900.0);

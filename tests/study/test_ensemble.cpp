@@ -27,11 +27,11 @@ EnsembleMember member_of(const Design<double>& design, Condition condition = Con
 /// Start-up in time, asked once per vehicle: both solvers of a comparison share its answers.
 StartUp remembered_start_up() {
   auto known = std::make_shared<std::map<std::array<double, 6>, StartUpOutcome>>();
-  return [known, judge = start_up_in_time()](const Vehicle<double>& v) {
+  return [known, assess = start_up_in_time()](const Vehicle<double>& v) {
     const std::array<double, 6> key = {v.voltage,      v.motor.inertia,   v.motor.torque_constant, v.crank.crank_radius,
                                        v.wing_inertia, v.spring.stiffness};
     const auto [at, is_new] = known->try_emplace(key);
-    if (is_new) at->second = judge(v);
+    if (is_new) at->second = assess(v);
     return at->second;
   };
 }

@@ -299,8 +299,8 @@ TEST(MotorIdentification, LossesNeedAFactOrANamedFallback) {
   s.resistance = 5.4;
   s.torque_constant = 2.1e-3;
   s.rotor_inertia = 5e-9;
-  const MotorIdentification silent = identify_motor(s);
-  EXPECT_THAT(silent.missing, testing::ElementsAre(HasSubstr("viscous damping: give no_load_current")));
+  const MotorIdentification insensitive = identify_motor(s);
+  EXPECT_THAT(insensitive.missing, testing::ElementsAre(HasSubstr("viscous damping: give no_load_current")));
   s.assume_typical_damping = true;
   const MotorIdentification assumed = identify_motor(s);
   ASSERT_TRUE(assumed.complete());

@@ -93,7 +93,7 @@ TEST(OwnSteps, RepeatToTheBit) {
   for (std::size_t k = 0; k < first.samples.size(); ++k) EXPECT_EQ(first.samples[k].current, second.samples[k].current);
 }
 
-// Without a judge the bare core called these flapping: they have an orbit, but lock on the way to it.
+// Without a assess the bare core called these flapping: they have an orbit, but lock on the way to it.
 TEST(OwnSteps, JudgeWhatLocksOnTheWay) {
   int corrected = 0;
   for (int n = 0; n < 15; ++n) {
@@ -103,11 +103,12 @@ TEST(OwnSteps, JudgeWhatLocksOnTheWay) {
       design.spring.stiffness = 3e-3;
       design.transmission.crank_radius = crank_radius;
       const Vehicle<double> vehicle = resolve(design);
-      const FlappingStatus judged =
+      const FlappingStatus assessed =
           find_steady_flapping(vehicle, {}, start_up_in_time(1e-6, TimeIntegrator::own_steps)).status;
-      EXPECT_TRUE(judged == FlappingStatus::flapping || judged == FlappingStatus::locked ||
-                  judged == FlappingStatus::stalled);
-      corrected += judged == FlappingStatus::locked && find_steady_flapping(vehicle).status == FlappingStatus::flapping;
+      EXPECT_TRUE(assessed == FlappingStatus::flapping || assessed == FlappingStatus::locked ||
+                  assessed == FlappingStatus::stalled);
+      corrected +=
+          assessed == FlappingStatus::locked && find_steady_flapping(vehicle).status == FlappingStatus::flapping;
     }
   }
   EXPECT_GE(corrected, 2);

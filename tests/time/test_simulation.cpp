@@ -1,4 +1,4 @@
-// The models in time, stepped to any moment and back, without a verdict.
+// The models in time, stepped to any moment and back, without a decision.
 #include "time/simulation.hpp"
 
 #include <gtest/gtest.h>

@@ -27,7 +27,7 @@ Design<double> direct_design() {
 }
 
 /// Largest relative deviation of metrics that both have. What vanishes over a period of a symmetric motion, the mean
-/// current and what follows from it, is judged beside the peak.
+/// current and what follows from it, is assessed beside the peak.
 double deviation(const Metrics<double>& a, const Metrics<double>& b, std::string& where) {
   double worst = 0.0;
   for (int m = 0; m < metric_count; ++m) {

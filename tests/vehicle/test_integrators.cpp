@@ -109,11 +109,11 @@ TEST(Integrators, JudgeAlikeNearLocking) {
         design.spring.stiffness = stiffness;
         design.transmission.crank_radius = crank_radius;
         const Vehicle<double> vehicle = resolve(design);
-        const auto judged = [&](TimeIntegrator integrator) {
+        const auto assessed = [&](TimeIntegrator integrator) {
           return find_steady_flapping(vehicle, {}, start_up_in_time(1e-6, integrator)).status;
         };
-        const FlappingStatus status = judged(TimeIntegrator::sundials);
-        EXPECT_EQ(judged(TimeIntegrator::own_steps), status) << n << " " << stiffness << " " << crank_radius;
+        const FlappingStatus status = assessed(TimeIntegrator::sundials);
+        EXPECT_EQ(assessed(TimeIntegrator::own_steps), status) << n << " " << stiffness << " " << crank_radius;
         ++(status == FlappingStatus::flapping ? flapping : others);
       }
     }

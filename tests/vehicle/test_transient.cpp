@@ -398,7 +398,7 @@ TEST(Transient, BudgetsEndUnsettled) {
   const TransientResult short_time = simulate_start_up(reference_vehicle(), options);
   EXPECT_FALSE(short_time.settled);
   EXPECT_DOUBLE_EQ(short_time.end_time, 0.02);
-  EXPECT_THAT(short_time.detail, HasSubstr("no verdict within 0.02 s"));
+  EXPECT_THAT(short_time.detail, HasSubstr("no decision within 0.02 s"));
 
   options = {};
   options.max_laps = 2;

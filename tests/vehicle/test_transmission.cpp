@@ -139,7 +139,7 @@ TEST(StrokeLawOrbit, IsWhatTheEquationsReachInTime) {
       branch.force = -1.0;
       m = motion_at(v, s, c, y[1], y[2], v.voltage, branch);
     }
-    return {y[1], m.crank_acceleration, m.voltage_reserve / v.motor.armature_inductance};
+    return {y[1], m.crank_acceleration, m.inductive_voltage / v.motor.armature_inductance};
   };
   const double dt = 4e-6;
   State y = {0.0, 0.5 * no_load_speed(v), 0.1};

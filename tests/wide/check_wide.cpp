@@ -2,7 +2,7 @@
 // vehicle/wide_boxes.hpp.
 //   check_wide [COUNT]            vehicles of each box, 500 unless given
 //     --box NAME                  that box alone
-//     --vehicle N                 that vehicle of the box alone, with its file and every verdict
+//     --vehicle N                 that vehicle of the box alone, with its file and every decision
 //     --seed S  --threads T
 // Exit status 1 if any two statuses, or the orbits reached, differ.
 #include <algorithm>

@@ -99,7 +99,7 @@ struct CrankSystem {
   }
   static const S& shaft_speed(const State& y) { return y[0]; }
   /// d theta / dt [rad/s].
-  static const S& pace(const State& y) { return y[0]; }
+  static const S& phase_rate(const State& y) { return y[0]; }
 
   [[gnu::always_inline]] Motion<S> motion(const S& theta, const State& y, const Signs& signs) const {
     using std::cos;
@@ -121,7 +121,7 @@ struct CrankSystem {
     const S per_omega = S(1.0) / y[0];
     solver::Rates<CrankSystem> r;
     r.dy[0] = m.crank_acceleration * per_omega;
-    if constexpr (N == 2) r.dy[1] = m.voltage_reserve / vehicle.motor.armature_inductance * per_omega;
+    if constexpr (N == 2) r.dy[1] = m.inductive_voltage / vehicle.motor.armature_inductance * per_omega;
     r.switches = {m.force_switch, m.aero.pitch_margin, m.stored_moment};
     if constexpr (quadratures) {
       const CycleIntegrals<S> in_time = integrands(m, y[0], branch(signs));

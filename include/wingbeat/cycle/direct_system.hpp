@@ -65,8 +65,8 @@ struct DirectSystem {
   }
 
   /// Angular frequency of the supply [rad/s]: d phi / dt.
-  S pace() const { return S(two_pi) * vehicle.drive_frequency; }
-  S pace(const State&) const { return pace(); }
+  S phase_rate() const { return S(two_pi) * vehicle.drive_frequency; }
+  S phase_rate(const State&) const { return phase_rate(); }
   static const S& shaft_speed(const State& y) { return y[1]; }
   static const S& shaft_angle(const S&, const State& y) { return y[0]; }
   static const S& stroke_angle(const Motion<S>&, const State& y) { return y[0]; }
@@ -158,19 +158,19 @@ struct DirectSystem {
   solver::Rates<DirectSystem> rates(const S& phi, const State& y, const Signs& signs) const {
     using std::abs;
     const Motion<S> m = motion(phi, y, signs);
-    const S per_pace = S(1.0) / pace();
+    const S per_phase_rate = S(1.0) / phase_rate();
     const bool stuck = value_of(signs[slip]) < 0.0;
     solver::Rates<DirectSystem> r;
-    r.dy[0] = m.stroke_velocity * per_pace;
-    r.dy[1] = m.crank_acceleration * per_pace;
-    if constexpr (N == 3) r.dy[2] = m.voltage_reserve / vehicle.motor.armature_inductance * per_pace;
+    r.dy[0] = m.stroke_velocity * per_phase_rate;
+    r.dy[1] = m.crank_acceleration * per_phase_rate;
+    if constexpr (N == 3) r.dy[2] = m.inductive_voltage / vehicle.motor.armature_inductance * per_phase_rate;
     r.switches[velocity] = stuck ? signs[velocity] : y[1];
     r.switches[release] = stuck ? S(holding_torque() - abs(pull(phi, y))) : S(1.0);
     r.switches[pitching] = m.aero.pitch_margin;
     r.switches[stored] = m.stored_moment;
     if constexpr (quadratures) {
       const CycleIntegrals<S> in_time = integrands(m, m.stroke_velocity, branch(signs));
-      for (std::size_t q = 0; q < in_time.size(); ++q) r.dq[q] = in_time[q] * per_pace;
+      for (std::size_t q = 0; q < in_time.size(); ++q) r.dq[q] = in_time[q] * per_phase_rate;
     }
     return r;
   }

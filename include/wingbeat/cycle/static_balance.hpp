@@ -77,7 +77,7 @@ S lock_margin(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta, con
 
 /// The least of J + A (h + s mu r_e) over both branches [kg m2]; <= 0 jams.
 template <template <Scalar> class V, Scalar S>
-S least_inertia(const V<S>& v, const CrankKinematics<S>& k) {
+S min_inertia(const V<S>& v, const CrankKinematics<S>& k) {
   using std::min;
   return min(effective_inertia(v, k, S(1.0)), effective_inertia(v, k, S(-1.0)));
 }

@@ -30,7 +30,7 @@ struct StartUpOutcome {
   double current = 0.0;       ///< flapping: i there [A]
   double stroke_angle = 0.0;  ///< flapping, direct drive: beta there [rad]
   /// Flapping: goes on with the simulation for the metrics of the settled cycle, to a tolerance; empty if it does not
-  /// settle. A judge that cannot tell them leaves this empty.
+  /// settle. An assessment that cannot tell them leaves this empty.
   std::function<std::optional<SimulatedCycle>(double tolerance, const Reporting& reporting)> cycle;
 };
 using StartUp = std::function<StartUpOutcome(const Vehicle<double>&)>;
@@ -55,8 +55,8 @@ struct SteadyFlapping {
 
 /// Finds the steady flapping of a validated vehicle. Never throws on account of the vehicle, never hangs, never returns
 /// NaN but for absent metrics. `start_up` decides what happens from rest where the orbit alone cannot: where the crank
-/// could lock or jam, where several orbits may exist, and where no orbit is found. Without it such vehicles are judged
-/// by statics alone.
+/// could lock or jam, where several orbits may exist, and where no orbit is found. Without it such vehicles are
+/// assessed by statics alone.
 SteadyFlapping find_steady_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options = {},
                                     const StartUp& start_up = {});
 

@@ -54,7 +54,7 @@ struct EnsembleOutcome {
 
 /// Solves every member into the outcome of the same index, on the calling thread. A member's outcome depends on nothing
 /// but the member, the options and the instruction set: not on its neighbours, its place or the number of members.
-/// `start_up` judges, as in find_steady_flapping, what does not rotate for certain. Throws ParameterError for options
+/// `start_up` assesses, as in find_steady_flapping, what does not rotate for certain. Throws ParameterError for options
 /// out of range or an instruction set this processor lacks; never on account of a vehicle.
 void solve_ensemble(std::span<const EnsembleMember> members, const EnsembleOptions& options, const StartUp& start_up,
                     std::span<EnsembleOutcome> outcomes);

@@ -85,7 +85,7 @@ struct HalfLap {
     const S per_omega = inverse_of(y[0]);
     solver::Rates<HalfLap> r;
     r.dy[0] = m.crank_acceleration * per_omega;
-    if constexpr (N == 2) r.dy[1] = m.voltage_reserve * per_inductance * per_omega;
+    if constexpr (N == 2) r.dy[1] = m.inductive_voltage * per_inductance * per_omega;
     r.switches[0] = m.force_switch;
     if constexpr (quadratures) {
       const CycleIntegrals<S> in_time = integrands(m, y[0], branch(force));

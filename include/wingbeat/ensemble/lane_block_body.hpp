@@ -46,11 +46,11 @@ void solve_block(const EnsembleMember* const* members, int count, const LaneSett
       scatter(found.values[m], [m](LaneResult& r) -> double& { return r.metrics.values[m]; });
     }
     scatter(orbit.error_estimate(), [](LaneResult& r) -> double& { return r.error_estimate; });
-    select<L>(orbit.locked(), L(2.0), select<L>(orbit.doubtful(), L(1.0), L(0.0))).store(numbers);
+    select<L>(orbit.locked(), L(2.0), select<L>(orbit.unresolved(), L(1.0), L(0.0))).store(numbers);
     for (int lane = 0; lane < count; ++lane) {
-      results[lane]->verdict = numbers[lane] == 0.0   ? LaneVerdict::rotates
-                               : numbers[lane] == 1.0 ? LaneVerdict::doubtful
-                                                      : LaneVerdict::locked;
+      results[lane]->assessment = numbers[lane] == 0.0   ? LaneAssessment::rotates
+                                  : numbers[lane] == 1.0 ? LaneAssessment::unresolved
+                                                         : LaneAssessment::locked;
     }
     orbit.visit_start(
         [&](L& from, const auto& to) { scatter(from, [&](LaneResult& r) -> double& { return to(r.start); }); });

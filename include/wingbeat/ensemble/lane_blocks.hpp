@@ -19,11 +19,11 @@
 
 namespace wingbeat {
 
-inline constexpr int most_half_segments = 12;  ///< of half a lap
-inline constexpr int most_force_switches = 3;  ///< sign changes of the rod force within half a lap
+inline constexpr int max_half_segments = 12;  ///< of half a lap
+inline constexpr int max_force_switches = 3;  ///< sign changes of the rod force within half a lap
 
 /// A quantity of which extremes are sought.
-enum class Quantity { velocity, current, slowness, speed, force, energy };
+enum class Quantity { velocity, current, negated_speed, speed, force, energy };
 inline constexpr int quantity_count = 6;
 
 /// One vehicle of an ensemble, validated and resolved.
@@ -34,8 +34,8 @@ struct EnsembleMember {
 
 /// Where a lap begins: near the orbit, at the lower dead centre.
 struct LapStart {
-  std::array<double, 2> state;                                       ///< omega [rad/s], i [A]
-  std::array<std::array<double, most_force_switches>, 2> switch_at;  ///< of either half lap [rad]
+  std::array<double, 2> state;                                      ///< omega [rad/s], i [A]
+  std::array<std::array<double, max_force_switches>, 2> switch_at;  ///< of either half lap [rad]
   std::array<double, 2> switch_count, first_sign;
   std::array<double, 4> monodromy;  ///< of a lap, to a few per cent
 };
@@ -68,16 +68,16 @@ struct LaneSettings {
   bool multipliers = false;
 };
 
-enum class LaneVerdict {
+enum class LaneAssessment {
   rotates,
-  doubtful,  ///< may lock, stall, jam or have several orbits, or is beyond this solver's means
-  locked     ///< from rest it has come to a stop, in time, where it stays
+  unresolved,  ///< may lock, stall, jam or have several orbits, or is beyond this solver's means
+  locked       ///< from rest it has come to a stop, in time, where it stays
 };
 
 struct LaneResult {
   Metrics<double> metrics;
   double error_estimate;  ///< of the cycle's means, relative
-  LaneVerdict verdict;
+  LaneAssessment assessment;
   LapStart start;
 };
 

@@ -1,13 +1,13 @@
 // The current behind a small inductance on SIMD lanes: the part of LaneOrbit in which it is no state, but lags behind
-// the speed. To first order i = (v - K omega - L_a di/dt) / R, di/dt being that of the course found before.
+// the speed. To first order i = (v - K omega - L_a di/dt) / R, di/dt being that of the trajectory found before.
 #pragma once
 
 #include "wingbeat/ensemble/lane_orbit.hpp"
 
 namespace wingbeat {
 
-/// The inductance's voltage at the nodes from the course of the current that it leaves, twice: an iteration gains the
-/// ratio of its time constant to that of the course.
+/// The inductance's voltage at the nodes from the trajectory of the current that it leaves, twice: an iteration gains
+/// the ratio of its time constant to that of the trajectory.
 template <class L, int N>
 void LaneOrbit<L, N>::let_current_lag() {
   if constexpr (N == 1) {
@@ -23,12 +23,12 @@ void LaneOrbit<L, N>::let_current_lag() {
           const L inductance_per_h = inductance * inverse_of(max(L(mesh.u[s + 1] - mesh.u[s]), L(1e-12)));
           std::array<L, nodes_per_segment> current;
           for (std::size_t j = 0; j <= intervals; ++j) {
-            current[j] = algebraic_current(vehicle_, L(vehicle_.voltage - drop_[base + j]), course_[base + j][0]);
+            current[j] = algebraic_current(vehicle_, L(vehicle_.voltage - drop_[base + j]), trajectory_[base + j][0]);
           }
           for (std::size_t m = 0; m <= intervals; ++m) {
             L slope(0.0);
             for (std::size_t j = 0; j <= intervals; ++j) slope = slope + L(rule_.slope[m][j]) * current[j];
-            const L drop = inductance_per_h * course_[base + m][0] * slope;
+            const L drop = inductance_per_h * trajectory_[base + m][0] * slope;
             change = change + abs(drop - drop_[base + m]);
             drop_[base + m] = drop;
           }
@@ -39,15 +39,15 @@ void LaneOrbit<L, N>::let_current_lag() {
   }
 }
 
-/// Where the course bends, at a sign change of the rod force, the current goes on from what it was before and has
+/// Where the trajectory bends, at a sign change of the rod force, the current goes on from what it was before and has
 /// relaxed within a time constant: what that adds to state and integrals, up to the square of the angle it takes.
 template <class L, int N>
 auto LaneOrbit<L, N>::relaxation(System system, std::size_t base, const L& force) const -> solver::Rates<System> {
   solver::Rates<System> after, before;
-  evaluate<true>(system, place_of(base), course_[base], force, after);
+  evaluate<true>(system, place_of(base), trajectory_[base], force, after);
   system.drop = drop_[base - 1];
-  evaluate<true>(system, place_of(base), course_[base], force, before);
-  const L angle = vehicle_.motor.armature_inductance * course_[base][0] * inverse_of(circuit_resistance(vehicle_));
+  evaluate<true>(system, place_of(base), trajectory_[base], force, before);
+  const L angle = vehicle_.motor.armature_inductance * trajectory_[base][0] * inverse_of(circuit_resistance(vehicle_));
   for (std::size_t n = 0; n < N; ++n) after.dy[n] = angle * (before.dy[n] - after.dy[n]);
   for (std::size_t q = 0; q < after.dq.size(); ++q) after.dq[q] = angle * (before.dq[q] - after.dq[q]);
   return after;
@@ -75,7 +75,7 @@ void LaneOrbit<L, N>::lag_with(System system, std::size_t node, const L& by, con
                                solver::Rates<System>& below, solver::Rates<System>& above) const {
   const L per_acceleration =
       vehicle_.motor.armature_inductance * vehicle_.motor.torque_constant * inverse_of(circuit_resistance(vehicle_));
-  const State& y = course_[node];
+  const State& y = trajectory_[node];
   const L acceleration = rates_[node][0] * y[0];
   for (solver::Rates<System>* rates : {&below, &above}) {
     State moved = y;

@@ -25,11 +25,11 @@ L LaneOrbit<L, N>::floquet_multiplier() {
       for (std::size_t m = 0; m <= intervals; ++m) {
         if (lags_) system.drop = drop_[base + m];
         for (std::size_t column = 0; column < N; ++column) {
-          const L by = column == 0 ? L(1e-4) * course_[base + m][0] : L(1e-4) * current_scale_;
-          State moved = course_[base + m];
+          const L by = column == 0 ? L(1e-4) * trajectory_[base + m][0] : L(1e-4) * current_scale_;
+          State moved = trajectory_[base + m];
           moved[column] = moved[column] - by;
           evaluate<false>(system, place_of(base + m), moved, mesh.force[s], below);
-          moved[column] = course_[base + m][column] + by;
+          moved[column] = trajectory_[base + m][column] + by;
           evaluate<false>(system, place_of(base + m), moved, mesh.force[s], above);
           if (lags_) lag_with(system, base + m, by, mesh.force[s], below, above);
           const L per_both = L(0.5) * inverse_of(by);

@@ -2,13 +2,13 @@
 //
 // A lap runs from the lower dead centre through two half laps, on each of which the stroke velocity keeps its sign. The
 // half laps' segments end where the rod force changes sign, which differs from lane to lane while the number of
-// segments does not. Coarse laps find where; a lap with one step per segment gives a first course and its derivatives;
-// Newton's method makes it satisfy the equations at the Lobatto points of every segment, and the lap its own end.
-// Everything is computed lane by lane without looking at the neighbours, so that a vehicle gets the same bits in any
-// company.
+// segments does not. Coarse laps find where; a lap with one step per segment gives a first trajectory and its
+// derivatives; Newton's method makes it satisfy the equations at the Lobatto points of every segment, and the lap its
+// own end. Everything is computed lane by lane without looking at the neighbours, so that a vehicle gets the same bits
+// in any company.
 //
-// lane_start.hpp holds the way to the first course, lane_lag.hpp the current behind a small inductance, lane_peaks.hpp
-// the search for extremes, lane_multiplier.hpp the lap map's derivative.
+// lane_start.hpp holds the way to the first trajectory, lane_lag.hpp the current behind a small inductance,
+// lane_peaks.hpp the search for extremes, lane_multiplier.hpp the lap map's derivative.
 #pragma once
 
 #include <array>
@@ -27,12 +27,12 @@
 namespace wingbeat {
 
 inline constexpr int coarse_half_steps = 8;
-inline constexpr int most_energy_extremes = 5;  ///< of the energy stored in wings and springs, within half a lap
+inline constexpr int max_energy_extremes = 5;  ///< of the energy stored in wings and springs, within half a lap
 
 /// Where the rod force changes sign within half a lap.
 template <class L>
 struct ForceSwitches {
-  std::array<L, most_force_switches> at;  ///< [rad], growing; pi/2 beyond the count
+  std::array<L, max_force_switches> at;  ///< [rad], growing; pi/2 beyond the count
   L count;
   L first_sign;  ///< sign of the rod force at the start
 };
@@ -40,18 +40,18 @@ struct ForceSwitches {
 /// The segments of half a lap.
 template <class L>
 struct HalfMesh {
-  std::array<L, most_half_segments + 1> u;
-  std::array<L, most_half_segments> force;  ///< sign of the rod force on each segment
+  std::array<L, max_half_segments + 1> u;
+  std::array<L, max_half_segments> force;  ///< sign of the rod force on each segment
 };
 
 /// Value and derivative by crank angle: |beta'| [rad/s], i [A], -omega and omega [rad/s], |F| [N], energy stored in
 /// wings and springs [J].
 template <class L>
-struct Reading {
+struct Observable {
   L value, slope;
 };
 
-/// A stretch between two nodes in which a quantity rises from its start and falls towards its end.
+/// A subinterval between two nodes in which a quantity rises from its start and falls towards its end.
 template <class L>
 struct PeakBracket {
   L segment;          ///< of the lap, counted from 0
@@ -61,9 +61,9 @@ struct PeakBracket {
   L estimate;
 };
 
-/// The course of the state over one segment, another one in every lane.
+/// The trajectory of the state over one segment, another one in every lane.
 template <class L, int N>
-struct SegmentCourse {
+struct SegmentTrajectory {
   L half, u, length, force;
   std::array<std::array<L, N>, solver::CollocationRule::most + 1> legendre;  ///< coefficients of the state
   std::array<L, solver::CollocationRule::most + 1> drop;                     ///< and of HalfLap::drop
@@ -77,7 +77,7 @@ class LaneOrbit {
   using Matrix = std::array<std::array<L, N>, N>;
   static constexpr double quarter = slider_crank_dead_centre;
   static constexpr std::size_t nodes_per_segment = solver::CollocationRule::most;
-  static constexpr std::size_t most_nodes = 2 * most_half_segments * nodes_per_segment;
+  static constexpr std::size_t max_nodes = 2 * max_half_segments * nodes_per_segment;
   static constexpr int coarse_samples = 2 * coarse_half_steps + 1;
 
  public:
@@ -102,7 +102,7 @@ class LaneOrbit {
 
   // After solve():
   const L& error_estimate() const { return error_estimate_; }
-  const Mask& doubtful() const { return doubtful_; }
+  const Mask& unresolved() const { return unresolved_; }
   const Mask& locked() const { return locked_; }
   /// Calls visit(lanes, place), place(LapStart&) being where the number stands there, for all of where the next lap
   /// starts: to set it before solve(), or to keep it afterwards.
@@ -111,7 +111,7 @@ class LaneOrbit {
     for (std::size_t n = 0; n < N; ++n) visit(y_[n], [n](auto& start) -> double& { return start.state[n]; });
     for (std::size_t half = 0; half < 2; ++half) {
       ForceSwitches<L>& s = switches_[half];
-      for (std::size_t n = 0; n < most_force_switches; ++n) {
+      for (std::size_t n = 0; n < max_force_switches; ++n) {
         visit(s.at[n], [half, n](auto& start) -> double& { return start.switch_at[half][n]; });
       }
       visit(s.count, [half](auto& start) -> double& { return start.switch_count[half]; });
@@ -126,7 +126,7 @@ class LaneOrbit {
   System half_lap(int half) const { return {vehicle_, geometry_, per_inductance_, L(half == 0 ? 1.0 : -1.0)}; }
 
   [[gnu::noinline, gnu::flatten]] void tabulate();
-  [[gnu::noinline, gnu::flatten]] void judge_statics();
+  [[gnu::noinline, gnu::flatten]] void assess_statics();
   [[gnu::noinline, gnu::flatten]] L guess_speed();
   [[gnu::noinline, gnu::flatten]] void start_from_rest();
   [[gnu::noinline]] void replace_stiff(const System& system, const L& u, const L& h, const State& y, State& end,
@@ -153,12 +153,13 @@ class LaneOrbit {
   [[gnu::noinline, gnu::flatten]] void read(const System& system, const L& u, const State& y, const L& force,
                                             const Motion<L>& m, const State& dy, const L& drop_slope,
                                             const std::array<bool, quantity_count>& wanted,
-                                            std::array<Reading<L>, quantity_count>& out) const;
-  [[gnu::noinline, gnu::flatten]] void follow(const L& segment, SegmentCourse<L, N>& course) const;
-  [[gnu::noinline, gnu::flatten]] Reading<L> reading_inside(Quantity quantity, const SegmentCourse<L, N>& course,
-                                                            const L& x) const;
+                                            std::array<Observable<L>, quantity_count>& out) const;
+  [[gnu::noinline, gnu::flatten]] void follow(const L& segment, SegmentTrajectory<L, N>& trajectory) const;
+  [[gnu::noinline, gnu::flatten]] Observable<L> observable_inside(Quantity quantity,
+                                                                  const SegmentTrajectory<L, N>& trajectory,
+                                                                  const L& x) const;
   template <class Visit>
-  void for_each_stretch(int half, Quantity quantity, const L& floor, const Visit& visit) const;
+  void for_each_subinterval(int half, Quantity quantity, const L& floor, const Visit& visit) const;
   static void keep(const PeakBracket<L>& from, const Mask& where, PeakBracket<L>& to);
   static L estimate_peak(PeakBracket<L>& b);
   [[gnu::noinline, gnu::flatten]] L refine(Quantity quantity, const L& sign, PeakBracket<L> b);
@@ -207,25 +208,25 @@ class LaneOrbit {
   Matrix monodromy_;  ///< of a lap
   std::array<std::array<Place<L>, coarse_samples>, 2> table_;
   State y_;  ///< where a lap starts
-  Mask doubtful_, locked_;
+  Mask unresolved_, locked_;
   Mask lost_;  ///< the crank comes near standstill on the way to the orbit
   std::array<ForceSwitches<L>, 2> switches_{};
   std::array<HalfMesh<L>, 2> mesh_;
 
   /// Where a segment starts as march() leaves it, and the derivatives of the rates there and in its middle.
-  struct Stretch {
+  struct Subinterval {
     State y, rates;
     std::array<Matrix, 2> jacobian;
   };
-  std::array<Stretch, 2 * most_half_segments + 1> stretches_;
+  std::array<Subinterval, 2 * max_half_segments + 1> subintervals_;
   // At the nodes, segment after segment; where segments meet there is one for either.
-  std::array<Place<L>, most_nodes> places_;
-  std::array<State, most_nodes> course_, rates_, correction_;
-  std::array<L, most_nodes> force_;
-  std::array<L, 2 * most_half_segments>
-      off_;                              ///< of each segment's start from the sign change before it [rad], 0 without
-  std::array<Matrix, most_nodes> step_;  ///< derivative of the state by that at the node before
-  std::array<std::array<Reading<L>, most_nodes>, quantity_count> readings_;
+  std::array<Place<L>, max_nodes> places_;
+  std::array<State, max_nodes> trajectory_, rates_, correction_;
+  std::array<L, max_nodes> force_;
+  std::array<L, 2 * max_half_segments>
+      off_;                             ///< of each segment's start from the sign change before it [rad], 0 without
+  std::array<Matrix, max_nodes> step_;  ///< derivative of the state by that at the node before
+  std::array<std::array<Observable<L>, max_nodes>, quantity_count> observables_;
 
   std::array<L, lane_integrals.size()> integrals_;
   std::array<L, 5> high_, low_;  ///< sums of the last and last but two coefficients of what limits the error
@@ -233,9 +234,9 @@ class LaneOrbit {
   bool reads_ = false;  ///< anything
   // The current behind the speed, where the inductance is small.
   bool lags_;
-  std::array<L, most_nodes> drop_;  ///< HalfLap::drop at the nodes
-  L lag_residual_;                  ///< its last change, of the voltage
-  L layer_;                         ///< largest relaxation() of the speed, relative
+  std::array<L, max_nodes> drop_;  ///< HalfLap::drop at the nodes
+  L lag_residual_;                 ///< its last change, of the voltage
+  L layer_;                        ///< largest relaxation() of the speed, relative
 
   L slowest_, residual_, switch_offset_;
   L step_error_, speed_error_;  ///< of what the segments' polynomials leave out: at all, and of speed and time
@@ -370,15 +371,15 @@ L LaneOrbit<L, N>::find_switches(int half, const L* u, const L* force, int count
     }
     t = select<L>(t >= L(0.0) && t <= L(1.0), t, min(max(straight, L(0.0)), L(1.0)));
     const L at = u[k] + h * t;
-    for (int n = 0; n < most_force_switches; ++n) {
+    for (int n = 0; n < max_force_switches; ++n) {
       found.at[std::size_t(n)] = select<L>(changes && found.count == L(double(n)), at, found.at[std::size_t(n)]);
     }
     found.count = select<L>(changes, found.count + L(1.0), found.count);
   }
-  doubtful_ = doubtful_ || found.count > L(double(most_force_switches));
+  unresolved_ = unresolved_ || found.count > L(double(max_force_switches));
   ForceSwitches<L>& known = switches_[std::size_t(half)];
   L offset(0.0);
-  for (std::size_t n = 0; n < most_force_switches; ++n) offset = max(offset, abs(found.at[n] - known.at[n]));
+  for (std::size_t n = 0; n < max_force_switches; ++n) offset = max(offset, abs(found.at[n] - known.at[n]));
   known = found;
   return offset;
 }
@@ -390,26 +391,26 @@ void LaneOrbit<L, N>::build_mesh(int half) {
   const ForceSwitches<L>& s = switches_[std::size_t(half)];
   HalfMesh<L>& mesh = mesh_[std::size_t(half)];
   const L all(steps);
-  std::array<L, most_force_switches + 2> node, at, per_step;
+  std::array<L, max_force_switches + 2> node, at, per_step;
   node[0] = L(0.0);
   at[0] = L(-quarter);
-  for (std::size_t n = 0; n < most_force_switches; ++n) {
+  for (std::size_t n = 0; n < max_force_switches; ++n) {
     const Mask used = s.count > L(double(n));
     const L wanted = nearest_whole(L((s.at[n] + L(quarter)) * L(steps / pi)));
     const L within = min(max(wanted, node[n] + L(1.0)), all - (s.count - L(double(n))));
     node[n + 1] = select<L>(used, within, all);
     at[n + 1] = select<L>(used, s.at[n], L(quarter));
   }
-  node[most_force_switches + 1] = all;
-  at[most_force_switches + 1] = L(quarter);
-  for (std::size_t n = 0; n <= most_force_switches; ++n) {
+  node[max_force_switches + 1] = all;
+  at[max_force_switches + 1] = L(quarter);
+  for (std::size_t n = 0; n <= max_force_switches; ++n) {
     per_step[n] = (at[n + 1] - at[n]) * inverse_of(max(L(node[n + 1] - node[n]), L(0.5)));
   }
   for (int m = 0; m <= steps; ++m) {
     const L here(m);
     L u = at[0] + per_step[0] * here;
     L force = s.first_sign;
-    for (std::size_t n = 1; n <= most_force_switches; ++n) {
+    for (std::size_t n = 1; n <= max_force_switches; ++n) {
       const Mask beyond = here >= node[n] && node[n] < all;
       u = select<L>(beyond, at[n] + per_step[n] * (here - node[n]), u);
       force = select<L>(beyond, -force, force);
@@ -419,7 +420,8 @@ void LaneOrbit<L, N>::build_mesh(int half) {
   }
 }
 
-/// Nodes on segments that end at the switches as march() left them, with its course and derivatives interpolated there.
+/// Nodes on segments that end at the switches as march() left them, with its trajectory and derivatives interpolated
+/// there.
 template <class L, int N>
 void LaneOrbit<L, N>::place_nodes() {
   for (std::size_t row = 0; row < N; ++row) {
@@ -431,8 +433,8 @@ void LaneOrbit<L, N>::place_nodes() {
     build_mesh(half);
     const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
     for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
-      const Stretch& from = stretches_[std::size_t(half * segments_) + s];
-      const Stretch& to = stretches_[std::size_t(half * segments_) + s + 1];
+      const Subinterval& from = subintervals_[std::size_t(half * segments_) + s];
+      const Subinterval& to = subintervals_[std::size_t(half * segments_) + s + 1];
       const std::size_t base = first_node(half, s);
       const L u = mesh.u[s], h = mesh.u[s + 1] - u, h_before = before.u[s + 1] - before.u[s];
       const L shift = u - before.u[s], stretched = h - h_before;
@@ -462,8 +464,8 @@ void LaneOrbit<L, N>::place_nodes() {
         if (m > 0 || s == 0) places_[base + m] = system.place(u + L(x) * h);
         const L moved = (shift + L(x) * stretched) * per_h_before;
         for (std::size_t n = 0; n < N; ++n) {
-          course_[base + m][n] = from.y[n] + L(x) * (c1[n] + L(x) * (c2[n] + L(x) * c3[n])) +
-                                 moved * (c1[n] + L(2.0 * x) * c2[n] + L(3.0 * x * x) * c3[n]);
+          trajectory_[base + m][n] = from.y[n] + L(x) * (c1[n] + L(x) * (c2[n] + L(x) * c3[n])) +
+                                     moved * (c1[n] + L(2.0 * x) * c2[n] + L(3.0 * x * x) * c3[n]);
         }
         if (m == 0) continue;
         const double width = x - rule_.node[m - 1], t = x - 0.5 * width;
@@ -494,7 +496,7 @@ void LaneOrbit<L, N>::propose(std::size_t base, const L& h, State& end) {
       const L weight(rule_.between[m][j]);
       for (std::size_t n = 0; n < N; ++n) sum[n] = sum[n] + weight * rates_[base + j][n];
     }
-    for (std::size_t n = 0; n < N; ++n) sum[n] = h * sum[n] - (course_[base + m][n] - course_[base + m - 1][n]);
+    for (std::size_t n = 0; n < N; ++n) sum[n] = h * sum[n] - (trajectory_[base + m][n] - trajectory_[base + m - 1][n]);
     // (1 - z)^-1 = (1 + step) / 2
     const Matrix& step = step_[base + m];
     const State before = end;
@@ -516,10 +518,10 @@ template <class L, int N>
 void LaneOrbit<L, N>::correct(State end) {
   const std::size_t per_segment = std::size_t(rule_.intervals + 1), nodes = first_node(2, 0);
   State by;
-  for (std::size_t n = 0; n < N; ++n) by[n] = end[n] + course_[nodes - 1][n] - course_[0][n];
+  for (std::size_t n = 0; n < N; ++n) by[n] = end[n] + trajectory_[nodes - 1][n] - trajectory_[0][n];
   close_lap(by);
   L sum(0.0);
-  slowest_ = course_[0][0];
+  slowest_ = trajectory_[0][0];
   const L per_speed = inverse_of(slowest_), per_current = inverse_of(current_scale_);
   for (std::size_t base = 0; base < nodes; base += per_segment) {
     for (std::size_t m = 0; m < per_segment; ++m) {
@@ -536,15 +538,15 @@ void LaneOrbit<L, N>::correct(State end) {
       }
       sum = sum + abs(by[0]) * per_speed;
       if constexpr (N == 2) sum = sum + abs(by[1]) * per_current;
-      for (std::size_t n = 0; n < N; ++n) course_[node][n] = course_[node][n] + by[n];
-      slowest_ = min(slowest_, course_[node][0]);
+      for (std::size_t n = 0; n < N; ++n) trajectory_[node][n] = trajectory_[node][n] + by[n];
+      slowest_ = min(slowest_, trajectory_[node][0]);
     }
   }
   residual_ = sum * L(1.0 / double(nodes));
-  y_ = course_[0];
+  y_ = trajectory_[0];
 }
 
-/// The equations at all nodes, and the corrections that follow; the last sweep takes integrals and readings, too.
+/// The equations at all nodes, and the corrections that follow; the last sweep takes integrals and observables, too.
 ///
 /// Where a node stands off the sign change it was meant for by d, the wrong branch has held, or will hold, over d. The
 /// difference of the branches grows linearly from zero there, so that half of d times the difference at the node is the
@@ -585,7 +587,7 @@ void LaneOrbit<L, N>::sweep() {
           highest = max(highest, abs(rates.switches[0]));
           if (m > 0 && m < intervals) overlooked = max(overlooked, -(rates.switches[0] * sign));
         } else {
-          evaluate<false>(system, place_of(base + m), course_[base + m], sign, rates);
+          evaluate<false>(system, place_of(base + m), trajectory_[base + m], sign, rates);
         }
         rates_[base + m] = rates.dy;
         force_[base + m] = rates.switches[0];
@@ -594,7 +596,7 @@ void LaneOrbit<L, N>::sweep() {
         if (half == 0 && s == 0) continue;
         // From the end of the segment before to the start of this one.
         State& jump = correction_[base];
-        for (std::size_t n = 0; n < N; ++n) jump[n] = course_[base - 1][n] - course_[base][n];
+        for (std::size_t n = 0; n < N; ++n) jump[n] = trajectory_[base - 1][n] - trajectory_[base][n];
         if (s == 0) continue;
         const Mask switches = mesh.force[s - 1] * sign < L(0.0);
         if (!any<L>(switches)) continue;
@@ -611,7 +613,7 @@ void LaneOrbit<L, N>::sweep() {
             for (std::size_t q = 0; q < integrals_.size(); ++q) {
               integrals_[q] = integrals_[q] + select<L>(switches, by.dq[q], L(0.0));
             }
-            layer_ = max(layer_, select<L>(switches, abs(by.dy[0]) * inverse_of(course_[base][0]), L(0.0)));
+            layer_ = max(layer_, select<L>(switches, abs(by.dy[0]) * inverse_of(trajectory_[base][0]), L(0.0)));
           }
         }
         if constexpr (last) {
@@ -629,18 +631,18 @@ void LaneOrbit<L, N>::sweep() {
         add_tails(controlled, base, h);
         if (wanted_[std::size_t(Quantity::force)]) {
           const L per_h = inverse_of(max(h, L(1e-12)));
-          auto& readings = readings_[std::size_t(Quantity::force)];
+          auto& observables = observables_[std::size_t(Quantity::force)];
           for (std::size_t m = 0; m <= intervals; ++m) {
             L slope(0.0);
             for (std::size_t j = 0; j <= intervals; ++j)
-              slope = slope + L(rule_.slope[m][j]) * readings[base + j].value;
-            readings[base + m].slope = slope * per_h;
+              slope = slope + L(rule_.slope[m][j]) * observables[base + j].value;
+            observables[base + m].slope = slope * per_h;
           }
         }
       }
     }
     if constexpr (last) {
-      std::array<L, 2 * most_half_segments + 1> u, force;
+      std::array<L, 2 * max_half_segments + 1> u, force;
       for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
         const std::size_t base = first_node(half, s);
         u[2 * s] = mesh.u[s];
@@ -675,7 +677,7 @@ template <class L, int N>
 void LaneOrbit<L, N>::add_tails(const std::array<std::array<L, nodes_per_segment>, 4>& controlled, std::size_t base,
                                 const L& h) {
   const std::size_t n = std::size_t(rule_.intervals);
-  const L per_omega = inverse_of(course_[base][0]);
+  const L per_omega = inverse_of(trajectory_[base][0]);
   for (std::size_t c = 0; c < high_.size(); ++c) {
     L tail[4] = {L(0.0), L(0.0), L(0.0), L(0.0)};
     for (std::size_t j = 0; j <= n; ++j) {
@@ -687,18 +689,18 @@ void LaneOrbit<L, N>::add_tails(const std::array<std::array<L, nodes_per_segment
   }
 }
 
-/// The readings wanted at a state, with the motion there.
+/// The observables wanted at a state, with the motion there.
 template <class L, int N>
 void LaneOrbit<L, N>::read(const System& system, const L& u, const State& y, const L& force, const Motion<L>& m,
                            const State& dy, const L& drop_slope, const std::array<bool, quantity_count>& wanted,
-                           std::array<Reading<L>, quantity_count>& out) const {
+                           std::array<Observable<L>, quantity_count>& out) const {
   const auto is_wanted = [&](Quantity q) { return wanted[std::size_t(q)]; };
-  const auto at = [&](Quantity q) -> Reading<L>& { return out[std::size_t(q)]; };
+  const auto at = [&](Quantity q) -> Observable<L>& { return out[std::size_t(q)]; };
   if (is_wanted(Quantity::velocity)) {
     at(Quantity::velocity) = {system.half * m.stroke_velocity, system.half * m.stroke_acceleration * inverse_of(y[0])};
   }
   if (is_wanted(Quantity::speed)) at(Quantity::speed) = {y[0], dy[0]};
-  if (is_wanted(Quantity::slowness)) at(Quantity::slowness) = {-y[0], -dy[0]};
+  if (is_wanted(Quantity::negated_speed)) at(Quantity::negated_speed) = {-y[0], -dy[0]};
   if (is_wanted(Quantity::current)) {
     if constexpr (N == 2) {
       at(Quantity::current) = {y[1], dy[1]};
@@ -731,19 +733,19 @@ void LaneOrbit<L, N>::read(const System& system, const L& u, const State& y, con
   }
 }
 
-/// Rates and readings at a node.
+/// Rates and observables at a node.
 template <class L, int N>
 void LaneOrbit<L, N>::visit_node(const System& system, std::size_t node, const L& force, solver::Rates<System>& rates) {
-  const Motion<L> motion = system.motion(place_of(node), course_[node], force);
-  rates = system.template rates_of<true>(motion, course_[node], force);
+  const Motion<L> motion = system.motion(place_of(node), trajectory_[node], force);
+  rates = system.template rates_of<true>(motion, trajectory_[node], force);
   if (!reads_) return;
   std::array<bool, quantity_count> wanted = wanted_;
   wanted[std::size_t(Quantity::force)] = false;
-  std::array<Reading<L>, quantity_count> readings;
-  read(system, L(0.0), course_[node], force, motion, rates.dy, L(0.0), wanted, readings);
-  readings[std::size_t(Quantity::force)].value = force * motion.rod_force;
+  std::array<Observable<L>, quantity_count> observables;
+  read(system, L(0.0), trajectory_[node], force, motion, rates.dy, L(0.0), wanted, observables);
+  observables[std::size_t(Quantity::force)].value = force * motion.rod_force;
   for (std::size_t q = 0; q < std::size_t(quantity_count); ++q) {
-    if (wanted_[q]) readings_[q][node] = readings[q];
+    if (wanted_[q]) observables_[q][node] = observables[q];
   }
 }
 
@@ -751,18 +753,18 @@ template <class L, int N>
 Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant) {
   lost_ = L(1.0) < L(0.0);
   if (settings_.approach == LaneApproach::resume) {
-    doubtful_ = locked_ = lost_;
+    unresolved_ = locked_ = lost_;
   } else {
     tabulate();
-    judge_statics();
+    assess_statics();
     const L balances = guess_speed();
     if (settings_.approach == LaneApproach::guess) {
-      doubtful_ = doubtful_ || !(balances == L(1.0));
+      unresolved_ = unresolved_ || !(balances == L(1.0));
     } else {
       // A heavy rotor is far from any orbit after the few turns simulated: they do not show which of several it
       // reaches.
       start_from_rest();
-      doubtful_ = doubtful_ || balances > L(1.0);
+      unresolved_ = unresolved_ || balances > L(1.0);
     }
     for (int n = 1; n < settings_.coarse_laps; ++n) coarse_lap<false>();
     coarse_lap<true>();
@@ -797,7 +799,7 @@ Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   if (is_wanted(Quantity::energy)) total(Integral::reactive_work) = exchanged_energy();
   seek(Quantity::current, Extreme::current);
   seek(Quantity::force, Extreme::rod_force);
-  seek(Quantity::slowness, Extreme::crank_speed_min);
+  seek(Quantity::negated_speed, Extreme::crank_speed_min);
   seek(Quantity::speed, Extreme::crank_speed_max);
   const L multiplier = settings_.multipliers ? floquet_multiplier() : L(0.0);
 
@@ -810,8 +812,8 @@ Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   error_estimate_ = error_estimate_ + L(1.5) * difference * (speed_error_ + L(2.0) * residual_);
   if (lags_) error_estimate_ = error_estimate_ + L(1.5) * (difference + L(2.0)) * lag_residual_ + lag_left_out();
   lost_ = lost_ || !(slowest_ > floor_);
-  if (settings_.approach == LaneApproach::guess) doubtful_ = doubtful_ || lost_;
-  doubtful_ = doubtful_ || (!lost_ && hardly_returns(vehicle_, largest_modulus(monodromy_), total(Integral::time)));
+  if (settings_.approach == LaneApproach::guess) unresolved_ = unresolved_ || lost_;
+  unresolved_ = unresolved_ || (!lost_ && hardly_returns(vehicle_, largest_modulus(monodromy_), total(Integral::time)));
   error_estimate_ = select<L>(lost_, L(std::numeric_limits<double>::infinity()), error_estimate_);
   return cycle_metrics(vehicle_, integrals, extremes, multiplier, ReportingOf<L>{mass, bench_torque_constant});
 }

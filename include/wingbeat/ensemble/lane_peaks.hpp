@@ -5,13 +5,13 @@
 
 namespace wingbeat {
 
-/// The course over a segment, which may differ from lane to lane: the integral of its rates' interpolant, and through
-/// the nodes that the last correction has moved since the rates were taken.
+/// The trajectory over a segment, which may differ from lane to lane: the integral of its rates' interpolant, and
+/// through the nodes that the last correction has moved since the rates were taken.
 template <class L, int N>
-void LaneOrbit<L, N>::follow(const L& segment, SegmentCourse<L, N>& course) const {
+void LaneOrbit<L, N>::follow(const L& segment, SegmentTrajectory<L, N>& trajectory) const {
   const std::size_t intervals = std::size_t(rule_.intervals);
   std::array<State, nodes_per_segment> rates, y;
-  course = {};
+  trajectory = {};
   for (State& at : y) at.fill(L(0.0));
   rates = y;
   for (int half = 0; half < 2; ++half) {
@@ -20,25 +20,25 @@ void LaneOrbit<L, N>::follow(const L& segment, SegmentCourse<L, N>& course) cons
       const Mask here = segment == L(double(half * segments_) + double(s));
       if (!any<L>(here)) continue;
       const std::size_t base = first_node(half, s);
-      course.half = select<L>(here, L(half == 0 ? 1.0 : -1.0), course.half);
-      course.u = select<L>(here, mesh.u[s], course.u);
-      course.length = select<L>(here, mesh.u[s + 1] - mesh.u[s], course.length);
-      course.force = select<L>(here, mesh.force[s], course.force);
+      trajectory.half = select<L>(here, L(half == 0 ? 1.0 : -1.0), trajectory.half);
+      trajectory.u = select<L>(here, mesh.u[s], trajectory.u);
+      trajectory.length = select<L>(here, mesh.u[s + 1] - mesh.u[s], trajectory.length);
+      trajectory.force = select<L>(here, mesh.force[s], trajectory.force);
       for (std::size_t k = 0; lags_ && k <= intervals; ++k) {
         L sum(0.0);
         for (std::size_t j = 0; j <= intervals; ++j) sum = sum + L(rule_.legendre[k][j]) * drop_[base + j];
-        course.drop[k] = select<L>(here, sum, course.drop[k]);
+        trajectory.drop[k] = select<L>(here, sum, trajectory.drop[k]);
       }
       for (std::size_t n = 0; n < N; ++n) {
         for (std::size_t j = 0; j <= intervals; ++j) {
-          y[j][n] = select<L>(here, course_[base + j][n], y[j][n]);
+          y[j][n] = select<L>(here, trajectory_[base + j][n], y[j][n]);
           rates[j][n] = select<L>(here, rates_[base + j][n], rates[j][n]);
         }
       }
     }
   }
   // Coefficients c of the rates; their integral from the start: c[k] (P[k+1] - P[k-1]) / (2 k + 1).
-  const L half_length = L(0.5) * course.length;
+  const L half_length = L(0.5) * trajectory.length;
   for (std::size_t n = 0; n < N; ++n) {
     std::array<L, nodes_per_segment> c;
     for (std::size_t k = 0; k <= intervals; ++k) {
@@ -46,7 +46,7 @@ void LaneOrbit<L, N>::follow(const L& segment, SegmentCourse<L, N>& course) cons
       for (std::size_t j = 0; j <= intervals; ++j) sum = sum + L(rule_.legendre[k][j]) * rates[j][n];
       c[k] = half_length * sum * L(1.0 / double(2 * k + 1));
     }
-    auto& to = course.legendre;
+    auto& to = trajectory.legendre;
     to[0][n] = y[0][n] + c[0] - c[1];
     for (std::size_t k = 1; k <= intervals + 1; ++k) {
       to[k][n] = c[k - 1] - (k + 1 <= intervals ? c[k + 1] : L(0.0));
@@ -55,7 +55,7 @@ void LaneOrbit<L, N>::follow(const L& segment, SegmentCourse<L, N>& course) cons
     for (std::size_t m = 1; m <= intervals; ++m) {
       L sum(0.0);
       for (std::size_t j = 0; j <= intervals; ++j) sum = sum + L(rule_.between[m][j]) * rates[j][n];
-      reached = reached + course.length * sum;
+      reached = reached + trajectory.length * sum;
       const L moved = y[m][n] - reached;
       for (std::size_t k = 0; k <= intervals; ++k) to[k][n] = to[k][n] + L(rule_.legendre[k][m]) * moved;
     }
@@ -64,53 +64,55 @@ void LaneOrbit<L, N>::follow(const L& segment, SegmentCourse<L, N>& course) cons
 
 /// A quantity, with the motion, at distance x from the start of a segment.
 template <class L, int N>
-Reading<L> LaneOrbit<L, N>::reading_inside(Quantity quantity, const SegmentCourse<L, N>& course, const L& x) const {
+Observable<L> LaneOrbit<L, N>::observable_inside(Quantity quantity, const SegmentTrajectory<L, N>& trajectory,
+                                                 const L& x) const {
   std::array<bool, quantity_count> wanted{};
   wanted[std::size_t(quantity)] = true;
-  System system = {vehicle_, geometry_, per_inductance_, course.half};
-  const L t = L(2.0) * x * inverse_of(max(course.length, L(1e-12))) - L(1.0);
+  System system = {vehicle_, geometry_, per_inductance_, trajectory.half};
+  const L t = L(2.0) * x * inverse_of(max(trajectory.length, L(1e-12))) - L(1.0);
   State y;
-  for (std::size_t n = 0; n < N; ++n) y[n] = course.legendre[0][n] + t * course.legendre[1][n];
+  for (std::size_t n = 0; n < N; ++n) y[n] = trajectory.legendre[0][n] + t * trajectory.legendre[1][n];
   L before(1.0), here = t, slope_before(0.0), slope(1.0), drop_slope(0.0);
   if (lags_) {
-    system.drop = course.drop[0] + t * course.drop[1];
-    drop_slope = course.drop[1];
+    system.drop = trajectory.drop[0] + t * trajectory.drop[1];
+    drop_slope = trajectory.drop[1];
   }
   for (std::size_t k = 1; k <= std::size_t(rule_.intervals); ++k) {
     const L next = L(double(2 * k + 1) / double(k + 1)) * t * here - L(double(k) / double(k + 1)) * before;
-    for (std::size_t n = 0; n < N; ++n) y[n] = y[n] + course.legendre[k + 1][n] * next;
+    for (std::size_t n = 0; n < N; ++n) y[n] = y[n] + trajectory.legendre[k + 1][n] * next;
     if (lags_) {
       const L next_slope = slope_before + L(double(2 * k + 1)) * here;
-      system.drop = system.drop + course.drop[k + 1] * next;
-      drop_slope = drop_slope + course.drop[k + 1] * next_slope;
+      system.drop = system.drop + trajectory.drop[k + 1] * next;
+      drop_slope = drop_slope + trajectory.drop[k + 1] * next_slope;
       slope_before = slope;
       slope = next_slope;
     }
     before = here;
     here = next;
   }
-  drop_slope = drop_slope * L(2.0) * inverse_of(max(course.length, L(1e-12)));
-  const L u = course.u + x;
-  const Motion<L> motion = system.motion(system.place(u), y, course.force);
-  const State dy = system.template rates_of<false>(motion, y, course.force).dy;
-  std::array<Reading<L>, quantity_count> readings;
-  read(system, u, y, course.force, motion, dy, drop_slope, wanted, readings);
-  return readings[std::size_t(quantity)];
+  drop_slope = drop_slope * L(2.0) * inverse_of(max(trajectory.length, L(1e-12)));
+  const L u = trajectory.u + x;
+  const Motion<L> motion = system.motion(system.place(u), y, trajectory.force);
+  const State dy = system.template rates_of<false>(motion, y, trajectory.force).dy;
+  std::array<Observable<L>, quantity_count> observables;
+  read(system, u, y, trajectory.force, motion, dy, drop_slope, wanted, observables);
+  return observables[std::size_t(quantity)];
 }
 
-/// Calls visit(bracket, mask) for each stretch of half a lap, in order: from node to node, and where the cubic through
-/// both turns twice in between, its two parts; stretches that cannot rise above `floor` in any lane are left out.
+/// Calls visit(bracket, mask) for each subinterval of half a lap, in order: from node to node, and where the cubic
+/// through both turns twice in between, its two parts; subintervals that cannot rise above `floor` in any lane are left
+/// out.
 template <class L, int N>
 template <class Visit>
-void LaneOrbit<L, N>::for_each_stretch(int half, Quantity quantity, const L& floor, const Visit& visit) const {
+void LaneOrbit<L, N>::for_each_subinterval(int half, Quantity quantity, const L& floor, const Visit& visit) const {
   const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
-  const auto& readings = readings_[std::size_t(quantity)];
+  const auto& observables = observables_[std::size_t(quantity)];
   for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
     const std::size_t base = first_node(half, s);
     const L h = mesh.u[s + 1] - mesh.u[s];
     for (std::size_t m = 1; m <= std::size_t(rule_.intervals); ++m) {
-      const Reading<L>& from = readings[m == 1 && s > 0 ? base - 1 : base + m - 1];
-      const Reading<L>& to = readings[base + m];
+      const Observable<L>& from = observables[m == 1 && s > 0 ? base - 1 : base + m - 1];
+      const Observable<L>& to = observables[base + m];
       const L x0 = L(rule_.node[m - 1]) * h, x1 = L(rule_.node[m]) * h, width = x1 - x0;
       const Mask may_rise = max(from.value, to.value) + L(0.3) * width * (abs(from.slope) + abs(to.slope)) > floor;
       if (!any<L>(may_rise)) continue;
@@ -127,10 +129,10 @@ void LaneOrbit<L, N>::for_each_stretch(int half, Quantity quantity, const L& flo
         twice = twice && discriminant > L(0.0) && middle - reach > L(0.0) && middle + reach < L(1.0);
         if (any<L>(twice)) {
           visit(b, may_rise && !twice);
-          SegmentCourse<L, N> course;
-          follow(b.segment, course);
+          SegmentTrajectory<L, N> trajectory;
+          follow(b.segment, trajectory);
           const L x = x0 + select<L>(twice, middle, L(0.5)) * width;
-          const Reading<L> at = reading_inside(quantity, course, x);
+          const Observable<L> at = observable_inside(quantity, trajectory, x);
           PeakBracket<L> first = b, second = b;
           first.x1 = second.x0 = x;
           first.v1 = second.v0 = at.value;
@@ -170,20 +172,20 @@ L LaneOrbit<L, N>::estimate_peak(PeakBracket<L>& b) {
   return t;
 }
 
-/// The maximum within a bracket: the cubic's, read on the course, and again within the bracket that this leaves. What
-/// the course errs by is added to the error of peaks.
+/// The maximum within a bracket: the cubic's, read on the trajectory, and again within the bracket that this leaves.
+/// What the trajectory errs by is added to the error of peaks.
 template <class L, int N>
 L LaneOrbit<L, N>::refine(Quantity quantity, const L& sign, PeakBracket<L> b) {
   L highest = max(b.v0, b.v1);
   const Mask inside = b.rises_and_falls > L(0.0);
   if (!any<L>(inside)) return highest;
-  SegmentCourse<L, N> course;
-  follow(b.segment, course);
+  SegmentTrajectory<L, N> trajectory;
+  follow(b.segment, trajectory);
   Mask active = inside;
   for (int n = 0; n < 8 && any<L>(active); ++n) {
     const L t = estimate_peak(b);
     const L x = b.x0 + t * (b.x1 - b.x0);
-    const Reading<L> at = reading_inside(quantity, course, x);
+    const Observable<L> at = observable_inside(quantity, trajectory, x);
     const L v = sign * at.value, d = sign * at.slope;
     const Mask rising = active && d > L(0.0), falling = active && !rising;
     b.x0 = select<L>(rising, x, b.x0);
@@ -200,11 +202,13 @@ L LaneOrbit<L, N>::refine(Quantity quantity, const L& sign, PeakBracket<L> b) {
   // The first coefficients left out, from how the last ones fall.
   const std::size_t end = std::size_t(rule_.intervals) + 1;
   const auto left_out = [&](std::size_t n, const L& scale) {
-    const auto size = [&](std::size_t k) { return abs(course.legendre[k][n]) + abs(course.legendre[k - 1][n]); };
+    const auto size = [&](std::size_t k) {
+      return abs(trajectory.legendre[k][n]) + abs(trajectory.legendre[k - 1][n]);
+    };
     const L high = size(end), low = max(size(end - 2), L(1e-300));
     return high * min(L(high * inverse_of(low)), L(1.0)) * inverse_of(scale);
   };
-  L error = L(2.0) * left_out(0, course.legendre[0][0]);
+  L error = L(2.0) * left_out(0, trajectory.legendre[0][0]);
   if constexpr (N == 2) {
     if (quantity == Quantity::current) error = max(error, L(2.0) * left_out(1, abs(highest)));
   }
@@ -212,16 +216,17 @@ L LaneOrbit<L, N>::refine(Quantity quantity, const L& sign, PeakBracket<L> b) {
   return select<L>(inside, max(highest, b.estimate), highest);
 }
 
-/// The maximum of a quantity over the lap. Of two stretches with almost the same peak both are refined.
+/// The maximum of a quantity over the lap. Of two subintervals with almost the same peak both are refined.
 template <class L, int N>
 L LaneOrbit<L, N>::peak(Quantity quantity) {
   L highest_node(-1e300);
   const std::size_t nodes = first_node(2, 0);
-  for (std::size_t n = 0; n < nodes; ++n) highest_node = max(highest_node, readings_[std::size_t(quantity)][n].value);
+  for (std::size_t n = 0; n < nodes; ++n)
+    highest_node = max(highest_node, observables_[std::size_t(quantity)][n].value);
   PeakBracket<L> best{}, other{};
   best.estimate = other.estimate = L(-1e300);
   for (int half = 0; half < 2; ++half) {
-    for_each_stretch(half, quantity, highest_node, [&](PeakBracket<L> b, const Mask& where) {
+    for_each_subinterval(half, quantity, highest_node, [&](PeakBracket<L> b, const Mask& where) {
       estimate_peak(b);
       const Mask turns = where && b.rises_and_falls > L(0.0);
       const Mask first = turns && b.estimate > best.estimate;
@@ -246,33 +251,33 @@ template <class L, int N>
 L LaneOrbit<L, N>::exchanged_energy() {
   L total(0.0);
   for (int half = 0; half < 2; ++half) {
-    const auto& readings = readings_[std::size_t(Quantity::energy)];
-    std::array<PeakBracket<L>, most_energy_extremes> extremes{};
-    std::array<L, most_energy_extremes> signs;
+    const auto& observables = observables_[std::size_t(Quantity::energy)];
+    std::array<PeakBracket<L>, max_energy_extremes> extremes{};
+    std::array<L, max_energy_extremes> signs;
     L count(0.0);
-    for_each_stretch(half, Quantity::energy, L(-1e300), [&](PeakBracket<L> b, const Mask& where) {
+    for_each_subinterval(half, Quantity::energy, L(-1e300), [&](PeakBracket<L> b, const Mask& where) {
       const L sign = sign_of(b.d0);
       const Mask turns = where && !(sign_of(b.d1) == sign);
       if (!any<L>(turns)) return;
       for (L* part : {&b.v0, &b.d0, &b.v1, &b.d1}) *part = sign * *part;
       estimate_peak(b);
-      for (std::size_t n = 0; n < most_energy_extremes; ++n) {
+      for (std::size_t n = 0; n < max_energy_extremes; ++n) {
         const Mask here = turns && count == L(double(n));
         keep(b, here, extremes[n]);
         signs[n] = select<L>(here, sign, signs[n]);
       }
       count = select<L>(turns, count + L(1.0), count);
     });
-    doubtful_ = doubtful_ || count > L(double(most_energy_extremes));
-    L before = readings[first_node(half, 0)].value;
-    for (std::size_t n = 0; n < most_energy_extremes; ++n) {
+    unresolved_ = unresolved_ || count > L(double(max_energy_extremes));
+    L before = observables[first_node(half, 0)].value;
+    for (std::size_t n = 0; n < max_energy_extremes; ++n) {
       const Mask exists = count > L(double(n));
       if (!any<L>(exists)) break;
       const L here = signs[n] * refine(Quantity::energy, signs[n], extremes[n]);
       total = select<L>(exists, total + abs(here - before), total);
       before = select<L>(exists, here, before);
     }
-    const L end = readings[first_node(half, std::size_t(segments_)) - 1].value;
+    const L end = observables[first_node(half, std::size_t(segments_)) - 1].value;
     total = total + abs(end - before);
   }
   return total;
@@ -282,7 +287,7 @@ L LaneOrbit<L, N>::exchanged_energy() {
 template <class L, int N>
 L LaneOrbit<L, N>::lift_peak(const L& highest_velocity) const {
   const auto lift_at = [&](const L& speed) { return aero_loads(vehicle_.wings, speed).lift; };
-  // Samples of lift over speed find the highest stretch; a parabola's vertex, twice, the maximum in it.
+  // Samples of lift over speed find the highest subinterval; a parabola's vertex, twice, the maximum in it.
   constexpr int samples = 12;
   L at = highest_velocity, best = lift_at(highest_velocity);
   for (int n = 1; n < samples; ++n) {

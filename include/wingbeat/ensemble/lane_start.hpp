@@ -1,4 +1,4 @@
-// From a vehicle on each lane to a first course of its lap: the part of LaneOrbit that comes before the nodes.
+// From a vehicle on each lane to a first trajectory of its lap: the part of LaneOrbit that comes before the nodes.
 #pragma once
 
 #include "wingbeat/ensemble/lane_orbit.hpp"
@@ -18,11 +18,11 @@ void LaneOrbit<L, N>::tabulate() {
 /// Marks the lanes that could jam or lock: within a margin, for the table is coarse; static_balance() has the last
 /// word.
 template <class L, int N>
-void LaneOrbit<L, N>::judge_statics() {
+void LaneOrbit<L, N>::assess_statics() {
   const Vehicle<L>& v = vehicle_;
   const L stall = stall_torque(v);
-  doubtful_ = !(stall > breakaway_torque(v));
-  locked_ = !doubtful_ && doubtful_;
+  unresolved_ = !(stall > breakaway_torque(v));
+  locked_ = !unresolved_ && unresolved_;
   // From rest, locking shows by itself, and only jams on the way are left to be told from near ones.
   const bool from_rest = settings_.approach == LaneApproach::from_rest;
   const L inertia_margin(from_rest ? 0.05 : 0.3), lever_margin(from_rest ? 0.02 : 0.1);
@@ -30,10 +30,10 @@ void LaneOrbit<L, N>::judge_statics() {
   for (const auto& half : table_) {
     for (const Place<L>& place : half) {
       const CrankKinematics<L>& k = place.kinematics;
-      doubtful_ = doubtful_ || !(least_inertia(v, k) > inertia_margin * v.motor.inertia) ||
-                  !(k.wing_lever > lever_margin * typical_lever(v.crank));
+      unresolved_ = unresolved_ || !(min_inertia(v, k) > inertia_margin * v.motor.inertia) ||
+                    !(k.wing_lever > lever_margin * typical_lever(v.crank));
       if (springs) {
-        doubtful_ = doubtful_ || !(advance_torque(v, k, place.spring_moment, L(L(0.8) * stall)) > L(0.0));
+        unresolved_ = unresolved_ || !(advance_torque(v, k, place.spring_moment, L(L(0.8) * stall)) > L(0.0));
       }
     }
   }
@@ -55,12 +55,13 @@ L LaneOrbit<L, N>::guess_speed() {
 }
 
 /// From rest at crank angle zero, in time, by the classical fourth-order method: over the lower dead centre twice,
-/// where the lap may begin. Lanes that come near standing still are doubtful, but for those that come to rest and stay.
+/// where the lap may begin. Lanes that come near standing still are unresolved, but for those that come to rest and
+/// stay.
 template <class L, int N>
 void LaneOrbit<L, N>::start_from_rest() {
   using Moving = std::array<L, N + 1>;  // crank angle, state
   const int steps_per_lap = settings_.start_up_steps;
-  constexpr int most_laps = 24;
+  constexpr int max_laps = 24;
   // The kinks leave an error of the second order, which counts most where the crank almost stands still.
   L slow_limit = L(1.92 / steps_per_lap) * no_load_;
   // An inductance that is left out here changes the speed by less than its share of the motor's time constant.
@@ -68,7 +69,7 @@ void LaneOrbit<L, N>::start_from_rest() {
   constexpr double end = 4.0 * pi - quarter;
   const L dt = L(two_pi / double(steps_per_lap)) * inverse_of(no_load_);
   if constexpr (N == 2) {  // beyond the method's stability
-    doubtful_ = doubtful_ || dt * circuit_resistance(vehicle_) * per_inductance_ > L(2.0);
+    unresolved_ = unresolved_ || dt * circuit_resistance(vehicle_) * per_inductance_ > L(2.0);
   }
   const auto rates = [&](const Moving& x) {
     const L sine = sin(x[0]), cosine = cos(x[0]);
@@ -82,7 +83,7 @@ void LaneOrbit<L, N>::start_from_rest() {
     r[0] = y[0];
     r[1] = m.crank_acceleration;
     if constexpr (N == 2) {
-      r[2] = motor_loads(vehicle_.motor, m.voltage, y[1], y[0]).voltage_reserve * per_inductance_;
+      r[2] = motor_loads(vehicle_.motor, m.voltage, y[1], y[0]).inductive_voltage * per_inductance_;
     }
     return r;
   };
@@ -96,7 +97,7 @@ void LaneOrbit<L, N>::start_from_rest() {
   y_.fill(L(0.0));
   Mask done = L(1.0) < L(0.0), started = done, slow = done, stopped = done;
   L waited(0.0);  // steps at rest, or since the crank was slow: after a few laps' worth others must decide
-  for (int n = 0; n < steps_per_lap * most_laps; ++n) {
+  for (int n = 0; n < steps_per_lap * max_laps; ++n) {
     if (all<L>(done || stopped || waited > L(2.0 * steps_per_lap))) break;
     const Moving k1 = rates(x);
     const Moving k2 = rates(moved(x, k1, L(0.5) * dt));
@@ -131,8 +132,8 @@ void LaneOrbit<L, N>::start_from_rest() {
   if constexpr (N == 2) {
     margin = min(margin, lock_margin(vehicle_, k, N_k_beta, L(vehicle_.motor.torque_constant * x[2])));
   }
-  locked_ = stopped && !doubtful_ && margin > L(0.05) * stall;
-  doubtful_ = doubtful_ || slow || !done;
+  locked_ = stopped && !unresolved_ && margin > L(0.05) * stall;
+  unresolved_ = unresolved_ || slow || !done;
 }
 
 /// Whether an explicit step of fourth order would be near its limit of stability.
@@ -258,7 +259,7 @@ void LaneOrbit<L, N>::march() {
     const System system = half_lap(half);
     build_mesh(half);
     const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
-    std::array<L, 2 * most_half_segments + 1> u, force;
+    std::array<L, 2 * max_half_segments + 1> u, force;
     std::array<Place<L>, 3> places;
     places[2] = system.place(mesh.u[0]);
     const auto moved = [](const State& from, const State& slope, const L& by) {
@@ -267,7 +268,7 @@ void LaneOrbit<L, N>::march() {
       return to;
     };
     for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
-      Stretch& stretch = stretches_[std::size_t(half * segments_) + s];
+      Subinterval& subinterval = subintervals_[std::size_t(half * segments_) + s];
       const L sign = mesh.force[s], h = mesh.u[s + 1] - mesh.u[s], half_h = L(0.5) * h;
       u[2 * s] = mesh.u[s];
       u[2 * s + 1] = mesh.u[s] + half_h;
@@ -276,21 +277,21 @@ void LaneOrbit<L, N>::march() {
       find_place(system, mesh.u[s + 1], places[s % 2 == 0 ? 0 : 2]);
       evaluate<false>(system, start, y_, sign, k1);
       force[2 * s] = k1.switches[0];
-      stretch.y = y_;
-      stretch.rates = k1.dy;
-      stretch.jacobian[0] = jacobian_at(system, start, y_, k1.dy, sign);
+      subinterval.y = y_;
+      subinterval.rates = k1.dy;
+      subinterval.jacobian[0] = jacobian_at(system, start, y_, k1.dy, sign);
       evaluate<false>(system, middle, moved(y_, k1.dy, half_h), sign, k2);
       const State inside = moved(y_, k2.dy, half_h);
       evaluate<false>(system, middle, inside, sign, k3);
       force[2 * s + 1] = k3.switches[0];
-      stretch.jacobian[1] = jacobian_at(system, middle, inside, k3.dy, sign);
+      subinterval.jacobian[1] = jacobian_at(system, middle, inside, k3.dy, sign);
       evaluate<false>(system, end, moved(y_, k3.dy, h), sign, k4);
       State next;
       for (std::size_t n = 0; n < N; ++n) {
         next[n] = y_[n] + L(1.0 / 6.0) * h * (k1.dy[n] + L(2.0) * (k2.dy[n] + k3.dy[n]) + k4.dy[n]);
       }
       if (settings_.implicit) {
-        const Mask stiff = is_stiff(stretch.jacobian[0], h);
+        const Mask stiff = is_stiff(subinterval.jacobian[0], h);
         solver::Rates<System> rates;
         const State by_implicit = implicit_step(y_, h, [&](const L& part, const State& y) {
           Place<L> place;
@@ -308,7 +309,7 @@ void LaneOrbit<L, N>::march() {
         const Matrix jacobian = jacobian_at(system, middle, between, rates.dy, sign);
         for (std::size_t row = 0; row < N; ++row) {
           for (std::size_t column = 0; column < N; ++column) {
-            L& to = stretch.jacobian[1][row][column];
+            L& to = subinterval.jacobian[1][row][column];
             to = select<L>(stiff, jacobian[row][column], to);
           }
         }
@@ -318,8 +319,8 @@ void LaneOrbit<L, N>::march() {
     u[2 * std::size_t(segments_)] = mesh.u[std::size_t(segments_)];
     evaluate<false>(system, places[segments_ % 2 == 0 ? 2 : 0], y_, mesh.force[std::size_t(segments_ - 1)], k4);
     force[2 * std::size_t(segments_)] = k4.switches[0];
-    stretches_[std::size_t((half + 1) * segments_)].y = y_;
-    stretches_[std::size_t((half + 1) * segments_)].rates = k4.dy;
+    subintervals_[std::size_t((half + 1) * segments_)].y = y_;
+    subintervals_[std::size_t((half + 1) * segments_)].rates = k4.dy;
     find_switches(half, u.data(), force.data(), 2 * segments_);
   }
 }

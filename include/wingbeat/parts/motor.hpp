@@ -64,11 +64,11 @@ inline void validate(const Motor<double>& m) {
 /// Electrical side of the motor at crank speed omega and current i.
 template <Scalar S>
 struct MotorLoads {
-  S torque;           ///< K i [N m]
-  S drag_torque;      ///< b omega [N m], opposes rotation
-  S voltage_reserve;  ///< v - R_a i - K omega [V], what is left to change the current: L_a di/dt
-  S power_copper;     ///< R_a i^2 [W]
-  S power_viscous;    ///< b omega^2 [W]
+  S torque;             ///< K i [N m]
+  S drag_torque;        ///< b omega [N m], opposes rotation
+  S inductive_voltage;  ///< v - R_a i - K omega [V], what is left to change the current: L_a di/dt
+  S power_copper;       ///< R_a i^2 [W]
+  S power_viscous;      ///< b omega^2 [W]
 };
 
 /// Loads and losses of the motor (eqs 9-11) at terminal voltage v [V], current i [A], crank speed omega [rad/s].

@@ -1,16 +1,17 @@
-/// Collocation at the Lobatto points: the tables that turn a smooth stretch of a differential equation into algebra.
+/// Collocation at the Lobatto points: the tables that turn a smooth subinterval of a differential equation into
+/// algebra.
 ///
-/// n + 1 nodes on [0, 1], both ends among them. The solution at the end of a stretch, and integrals over it, are of
+/// n + 1 nodes on [0, 1], both ends among them. The solution at the end of a subinterval, and integrals over it, are of
 /// order 2 n; between the ends the polynomial through the rates is of order n + 1. (Hairer, Wanner, "Solving Ordinary
 /// Differential Equations II", 2nd ed., Springer 1996, section IV.5: Lobatto IIIA.)
 #pragma once
 
 namespace wingbeat::solver {
 
-inline constexpr int most_collocation_intervals = 16;
+inline constexpr int max_collocation_intervals = 16;
 
 struct CollocationRule {
-  static constexpr int most = most_collocation_intervals + 1;
+  static constexpr int most = max_collocation_intervals + 1;
   int intervals;        ///< n: nodes 0 .. n
   double node[most];    ///< in [0, 1], growing
   double weight[most];  ///< of the integral over [0, 1]
@@ -20,7 +21,7 @@ struct CollocationRule {
   double legendre[most][most];  ///< [k][j]: its coefficient of P_k(2 x - 1)
 };
 
-/// The rule with an even number of intervals, 2 to most_collocation_intervals.
+/// The rule with an even number of intervals, 2 to max_collocation_intervals.
 const CollocationRule& collocation_rule(int intervals);
 
 }  // namespace wingbeat::solver

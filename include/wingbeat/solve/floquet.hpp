@@ -122,7 +122,7 @@ auto monodromy_product(const System& system, const JetSystem& jets, const Lap<Sy
   using Real = typename JetSystem::Real;
   using State = typename JetSystem::State;
   constexpr double resolved = 2.0;  // decay rate times step up to which a step's derivative is the flow's
-  constexpr int most_pieces = 4;
+  constexpr int max_pieces = 4;
 
   const auto decay = [&](const Rates<JetSystem>& rates, double h) {
     std::array<double, n * n> jacobian;
@@ -158,7 +158,7 @@ auto monodromy_product(const System& system, const JetSystem& jets, const Lap<Sy
     };
     if (quickest > resolved) {
       append_derivatives(y);
-      const int pieces = std::min(int(std::ceil(quickest / resolved)), most_pieces);
+      const int pieces = std::min(int(std::ceil(quickest / resolved)), max_pieces);
       product.append(detail::stiff_factor(system, jets, lap, step, pieces));
     } else {
       const typename JetSystem::Signs signs = signs_of<JetSystem>(step);

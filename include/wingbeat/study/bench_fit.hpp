@@ -175,7 +175,7 @@ struct Misfit {
 };
 
 /// [fit] starts at most.
-inline constexpr int most_fit_starts = 1000;
+inline constexpr int max_fit_starts = 1000;
 
 struct FitResult {
   bool converged = false;

@@ -69,6 +69,6 @@ struct EnduranceResult {
 
 /// Flies the design's battery from its charge until it is empty, at its cut-off voltage, or no longer turns the crank.
 /// Throws ParameterError for a supply that is no battery and for options out of range.
-EnduranceResult fly_to_the_end(const Design<double>& design, const EnduranceOptions& options = {});
+EnduranceResult simulate_discharge(const Design<double>& design, const EnduranceOptions& options = {});
 
 }  // namespace wingbeat

@@ -12,7 +12,7 @@ namespace wingbeat {
 /// As solve_ensemble, with the voltage of each member replaced by the one at which it flaps at its frequency [Hz];
 /// Metric::voltage holds it. Where there is none, `reached` says why, the outcome has the status of FrequencySearch and
 /// no metrics. The range is SearchRange::extrapolation: whether a cycle lies inside the domain of validity is for the
-/// caller to judge, as at a held voltage. All members of a call are searched together by batches;
+/// caller to assess, as at a held voltage. All members of a call are searched together by batches;
 /// find_voltage_for_frequency settles the rest. The members' voltages are changed. Throws as solve_ensemble does, and
 /// ParameterError unless every frequency is > 0.
 void solve_ensemble_at_frequency(std::span<EnsembleMember> members, std::span<const double> frequencies,

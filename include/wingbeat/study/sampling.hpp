@@ -33,9 +33,9 @@ class ScrambledSobol {
  public:
   /// As many samples as can be told apart.
   static constexpr std::uint64_t most = std::uint64_t(1) << 32;
-  static constexpr std::size_t most_dimensions = 100;
+  static constexpr std::size_t max_dimensions = 100;
 
-  /// Throws ParameterError for more dimensions than most_dimensions.
+  /// Throws ParameterError for more dimensions than max_dimensions.
   ScrambledSobol(std::size_t dimensions, std::uint64_t seed);
 
   /// Coordinate of a sample, between 0 and 1; index < most.

@@ -68,7 +68,7 @@ struct TransientSample {
 
 struct TransientResult {
   FlappingStatus status = FlappingStatus::undecided;
-  /// The verdict is final. False: time, laps or steps ran out first and the status is undecided; or it flaps, but laps
+  /// The decision is final. False: time, laps or steps ran out first and the status is undecided; or it flaps, but laps
   /// share no period with the supply.
   bool settled = false;
   std::string detail;  ///< one sentence with the evidence
@@ -113,7 +113,7 @@ struct TransientResult {
 /// the rod force are tracked by root finding; the equations are (1, 5-11, 21) on each smooth branch.
 TransientResult simulate_start_up(const Vehicle<double>& vehicle, const TransientOptions& options = {});
 
-/// What a vehicle does from rest, by simulate_start_up: the judge that find_steady_flapping asks in doubt.
+/// What a vehicle does from rest, by simulate_start_up: the assessment that find_steady_flapping asks for in doubt.
 StartUp start_up_in_time(double tolerance = 1e-6, TimeIntegrator integrator = TimeIntegrator::automatic);
 
 }  // namespace wingbeat

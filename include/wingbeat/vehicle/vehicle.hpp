@@ -116,7 +116,7 @@ template <Scalar S>
 struct Motion {
   CrankKinematics<S> kinematics;
   S crank_acceleration;   ///< omega' [rad/s2]
-  S voltage_reserve;      ///< v - R_a i - K omega = L_a di/dt [V]
+  S inductive_voltage;    ///< v - R_a i - K omega = L_a di/dt [V]
   S current;              ///< i [A]
   S voltage;              ///< v at the terminals [V]
   S rod_force;            ///< F [N], positive when the crank pushes the slider up
@@ -212,7 +212,7 @@ template <template <Scalar> class V, Scalar S>
   m.friction_torque = load_friction(v.friction, branch.force * m.rod_force, branch.direction) + at.load_free;
   m.motor_torque = m.rod_force * k.crank_lever + m.friction_torque;
   m.stored_moment = v.wing_count * v.wing_inertia * m.stroke_acceleration + at.spring_moment;
-  m.voltage_reserve = at.motor.voltage_reserve;
+  m.inductive_voltage = at.motor.inductive_voltage;
   return m;
 }
 

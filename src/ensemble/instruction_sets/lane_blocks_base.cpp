@@ -5,7 +5,7 @@
 namespace wingbeat {
 
 void solve_block_base(const EnsembleMember* const*, int count, const LaneSettings&, LaneResult* const* results) {
-  for (int n = 0; n < count; ++n) results[n]->verdict = LaneVerdict::doubtful;
+  for (int n = 0; n < count; ++n) results[n]->assessment = LaneAssessment::unresolved;
 }
 
 }  // namespace wingbeat

@@ -13,6 +13,6 @@ double quantile_95(const BenchFitter& fitter, int freedom);
 
 /// At the fitted parameters x [SI], from the Fisher information: result's parameters, covariance, correlation,
 /// directions, conditions, findings and degrees of freedom.
-void find_what_data_tell(const BenchFit& fit, BenchFitter& fitter, const std::vector<double>& x, FitResult& result);
+void assess_identifiability(const BenchFit& fit, BenchFitter& fitter, const std::vector<double>& x, FitResult& result);
 
 }  // namespace wingbeat

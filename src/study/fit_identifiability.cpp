@@ -1,4 +1,4 @@
-#include "study/fit_findings.hpp"
+#include "study/fit_identifiability.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -60,7 +60,7 @@ double quantile_95(const BenchFitter& fitter, int freedom) {
   return boost::math::quantile(boost::math::students_t(std::max(freedom, 3)), 0.975);
 }
 
-void find_what_data_tell(const BenchFit& fit, BenchFitter& fitter, const std::vector<double>& x, FitResult& result) {
+void assess_identifiability(const BenchFit& fit, BenchFitter& fitter, const std::vector<double>& x, FitResult& result) {
   BenchModel& bench = fitter.bench();
   bench.evaluate(x, true);
   const Eigen::Index count = Eigen::Index(fit.parameters.size());
@@ -70,21 +70,21 @@ void find_what_data_tell(const BenchFit& fit, BenchFitter& fitter, const std::ve
   const Eigen::MatrixXd all = information(fitter, bench, scales, every);
 
   // Without influence: even with all others known the bounds say more.
-  std::vector<bool> silent(std::size_t(count), false), loose(std::size_t(count), false);
+  std::vector<bool> insensitive(std::size_t(count), false), loose(std::size_t(count), false);
   for (Eigen::Index k = 0; k < count; ++k) {
     const FreeParameter& p = fit.parameters[std::size_t(k)];
     const double alone = all(k, k) > 0.0 ? scales[std::size_t(k)] / std::sqrt(all(k, k)) : infinity;
-    silent[std::size_t(k)] = !(alone < p.upper - p.lower);
+    insensitive[std::size_t(k)] = !(alone < p.upper - p.lower);
   }
-  std::vector<Eigen::Index> audible;
+  std::vector<Eigen::Index> sensitive;
   for (Eigen::Index k = 0; k < count; ++k) {
-    if (!silent[std::size_t(k)]) audible.push_back(k);
+    if (!insensitive[std::size_t(k)]) sensitive.push_back(k);
   }
-  const Eigen::Index m = Eigen::Index(audible.size());
+  const Eigen::Index m = Eigen::Index(sensitive.size());
   const auto restricted = [&](const Eigen::MatrixXd& full) {
     Eigen::MatrixXd part(m, m);
     for (Eigen::Index a = 0; a < m; ++a) {
-      for (Eigen::Index b = 0; b < m; ++b) part(a, b) = full(audible[std::size_t(a)], audible[std::size_t(b)]);
+      for (Eigen::Index b = 0; b < m; ++b) part(a, b) = full(sensitive[std::size_t(a)], sensitive[std::size_t(b)]);
     }
     return part;
   };
@@ -98,7 +98,7 @@ void find_what_data_tell(const BenchFit& fit, BenchFitter& fitter, const std::ve
       const double noise = 1e-14 * std::max(eigen.eigenvalues()[m - 1], 0.0);
       const double error = lambda > noise ? 1.0 / std::sqrt(lambda) : infinity;
       Eigen::VectorXd full = Eigen::VectorXd::Zero(count);
-      for (Eigen::Index a = 0; a < m; ++a) full[audible[std::size_t(a)]] = eigen.eigenvectors()(a, d);
+      for (Eigen::Index a = 0; a < m; ++a) full[sensitive[std::size_t(a)]] = eigen.eigenvectors()(a, d);
       result.directions.push_back({{full.data(), full.data() + count}, error});
       if (error > free_error) {
         for (Eigen::Index k = 0; k < count; ++k) {
@@ -114,7 +114,7 @@ void find_what_data_tell(const BenchFit& fit, BenchFitter& fitter, const std::ve
     }
     for (Eigen::Index a = 0; a < m; ++a) {
       for (Eigen::Index b = 0; b < m; ++b) {
-        const Eigen::Index i = audible[std::size_t(a)], j = audible[std::size_t(b)];
+        const Eigen::Index i = sensitive[std::size_t(a)], j = sensitive[std::size_t(b)];
         covariance(i, j) = inverse(a, b) * scales[std::size_t(i)] * scales[std::size_t(j)];
       }
     }
@@ -139,7 +139,7 @@ void find_what_data_tell(const BenchFit& fit, BenchFitter& fitter, const std::ve
     f.kept = x[k];
     const double range = p.upper - p.lower;
     f.at_bound = x[k] - p.lower < 1e-6 * range || p.upper - x[k] < 1e-6 * range;
-    if (silent[k]) {
+    if (insensitive[k]) {
       f.undetermined = Undetermined::without_influence;
       f.kept = p.start;
     } else if (loose[k]) {
@@ -190,7 +190,7 @@ void find_what_data_tell(const BenchFit& fit, BenchFitter& fitter, const std::ve
             variance += component * component / lambda;
           }
         }
-        const std::size_t k = std::size_t(audible[std::size_t(a)]);
+        const std::size_t k = std::size_t(sensitive[std::size_t(a)]);
         share.error_without[k] = scales[k] * std::sqrt(variance);
       }
     }
@@ -213,7 +213,7 @@ void find_what_data_tell(const BenchFit& fit, BenchFitter& fitter, const std::ve
     return keys;
   };
   std::vector<FitFinding>& findings = result.findings;
-  const auto unheard = keys_where([&](std::size_t k) { return silent[k]; });
+  const auto unheard = keys_where([&](std::size_t k) { return insensitive[k]; });
   if (!unheard.empty()) findings.push_back({.kind = Kind::without_influence, .parameters = unheard});
   findings.insert(findings.end(), free_directions.begin(), free_directions.end());
   findings.insert(findings.end(), rough_directions.begin(), rough_directions.end());

@@ -16,7 +16,7 @@ constexpr double lap_spread_settled = 1e-2;
 
 }  // namespace
 
-/// True, with the verdict, when the crank can no longer leave the stable equilibrium that it swings about or creeps
+/// True, with the decision, when the crank can no longer leave the stable equilibrium that it swings about or creeps
 /// towards: kinetic energy, spring energy above the equilibrium's and inductive energy together only fall, and are
 /// small already. With Coulomb friction, the equilibrium is where the torque no longer exceeds it: an overdamped crank
 /// creeps there without ever standing still.
@@ -51,7 +51,7 @@ bool CrankStartUp::captured() {
   return true;
 }
 
-/// With a varying supply: true, with the verdict, when the crank swings without rotating and its swings repeat.
+/// With a varying supply: true, with the decision, when the crank swings without rotating and its swings repeat.
 bool CrankStartUp::swings_repeat() {
   if (model_.supply.type == SupplyType::constant || now_.t < window_end_) return false;
   const bool same = window_laps_ == crossings_.size() && std::abs(window_low_ - last_low_) < same_swing &&
