@@ -93,7 +93,7 @@ TEST(OwnSteps, RepeatToTheBit) {
   for (std::size_t k = 0; k < first.samples.size(); ++k) EXPECT_EQ(first.samples[k].current, second.samples[k].current);
 }
 
-// Without a assess the bare core called these flapping: they have an orbit, but lock on the way to it.
+// Without an assessment of start-up the bare core called these flapping: they have an orbit, but lock on the way to it.
 TEST(OwnSteps, JudgeWhatLocksOnTheWay) {
   int corrected = 0;
   for (int n = 0; n < 15; ++n) {

@@ -49,7 +49,7 @@ struct MotorDatasheet {
   /// Relative standard deviation of a value by its name ("stall_current"), and of all others.
   std::map<std::string, double> deviations;
   double deviation = 0.05;
-  // What may be assumed where the sheet is insensitive; nothing is unless asked for here.
+  // What may be assumed where the sheet says nothing; nothing is unless asked for here.
   bool assume_steel_cylinder = false;   ///< rotor inertia of a solid steel cylinder of rotor_diameter and rotor_length
   bool assume_typical_damping = false;  ///< typical_motor_damping
 };
