@@ -67,11 +67,12 @@ struct Peer {
   std::array<double, all_states> scale;
   std::array<double, 2> guess;
 
-  explicit Peer(const Vehicle<double>& v) : vehicle(v), geometry(geometry_of(v.crank)) {
+  explicit Peer(const Vehicle<double>& v) : vehicle(v), geometry(geometry_of(v.transmission.slider_crank)) {
     const double omega = 0.6 * no_load_speed(v.motor, v.voltage);
     const double lap = two_pi / omega;
     const double stall_current = v.voltage / v.motor.armature_resistance;
-    const double stroke_velocity = v.crank.crank_radius / v.crank.hinge_offset * omega;
+    const double stroke_velocity =
+        v.transmission.slider_crank.crank_radius / v.transmission.slider_crank.hinge_offset * omega;
     scale = {omega, stall_current, lap, 0.5 * v.wings.air_density * v.wings.s2 * square(stroke_velocity) * lap,
              stall_current * lap};
     guess = {1.0, 1.0 - v.motor.torque_constant * omega / v.voltage};
@@ -293,11 +294,11 @@ std::vector<std::pair<const char*, double>> numbers_of(const Vehicle<double>& v)
           {"inertia", v.motor.inertia},
           {"damping", v.motor.viscous_damping},
           {"friction_torque", v.motor.friction_torque},
-          {"crank_radius", v.crank.crank_radius},
-          {"rod_length", v.crank.rod_length},
-          {"hinge_offset", v.crank.hinge_offset},
-          {"mid_stroke_height", v.crank.mid_stroke_height},
-          {"rod_force", v.crank.formulation == Formulation::rod_force ? 1.0 : 0.0},
+          {"crank_radius", v.transmission.slider_crank.crank_radius},
+          {"rod_length", v.transmission.slider_crank.rod_length},
+          {"hinge_offset", v.transmission.slider_crank.hinge_offset},
+          {"mid_stroke_height", v.transmission.slider_crank.mid_stroke_height},
+          {"rod_force", v.transmission.slider_crank.formulation == Formulation::rod_force ? 1.0 : 0.0},
           {"friction_radius", v.friction.radius},
           {"stiffness", v.spring.stiffness},
           {"wing_count", v.wing_count},

@@ -34,12 +34,7 @@ Range angle_range(const Vehicle<double>& v) {
 /// Rounding of a table's ends in other units.
 constexpr double angle_slack_deg = 0.1;
 
-/// Largest stroke angle to either side of a slider-crank [deg].
-double stroke_to_either_side_deg(const SliderCrank<double>& c) {
-  const double top = std::atan((c.rod_length + c.crank_radius - c.mid_stroke_height) / c.hinge_offset);
-  const double bottom = std::atan((c.rod_length - c.crank_radius - c.mid_stroke_height) / c.hinge_offset);
-  return degrees_per_radian * std::max(std::abs(top), std::abs(bottom));
-}
+double stroke_reach_deg(const Vehicle<double>& v) { return degrees_per_radian * stroke_reach(v.transmission); }
 
 /// Radius at which the speed of the wings is compared [m].
 double reference_radius(const Vehicle<double>& v) { return v.wings.s2 > 0.0 ? v.wings.s3 / v.wings.s2 : 0.0; }
@@ -68,7 +63,7 @@ std::array<S, domain_limit_count> excess_of(const Vehicle<double>& v, const Metr
   if (drive_of(v).stroke_is_fixed) {
     at(DomainLimit::stroke) = S(stroke_excess(v));
   } else {
-    at(DomainLimit::stroke) = m[Metric::stroke_amplitude] * S(degrees_per_radian / direct_stroke_max_deg) - S(1.0);
+    at(DomainLimit::stroke) = m[Metric::stroke_amplitude] * S(degrees_per_radian / other_stroke_max_deg) - S(1.0);
   }
 
   const S& P_e = m[Metric::power_electrical];
@@ -100,7 +95,8 @@ const std::array<DomainLimitInfo, domain_limit_count>& domain_limit_table() {
       {"angle_of_attack",
        "angle of attack within 0 to 90 deg, and within a table of coefficients, over the whole cycle"},
       {"stroke",
-       "stroke angle of a slider-crank up to 85 deg to either side, stroke amplitude of a direct drive to 180 deg"},
+       "stroke angle of a slider-crank up to 85 deg to either side, of another mechanism to 180 deg, stroke amplitude of "
+       "a direct drive to 180 deg"},
       {"formulation_residual", "formulation residual at most 5 % of the input power"},
       {"mechanism_efficiency", "mechanism efficiency from 0 to 1"},
       {"motor_efficiency", "motor efficiency from 0 to 1"},
@@ -111,11 +107,11 @@ const std::array<DomainLimitInfo, domain_limit_count>& domain_limit_table() {
 }
 
 double stroke_max_deg(TransmissionType transmission) {
-  return drive_of(transmission).stroke_is_fixed ? tan_law_stroke_max_deg : direct_stroke_max_deg;
+  return transmission == TransmissionType::slider_crank ? tan_law_stroke_max_deg : other_stroke_max_deg;
 }
 
 double stroke_excess(const Vehicle<double>& vehicle) {
-  return has_wings(vehicle) ? stroke_to_either_side_deg(vehicle.crank) / tan_law_stroke_max_deg - 1.0 : -1.0;
+  return has_wings(vehicle) ? stroke_reach_deg(vehicle) / stroke_max_deg(vehicle.transmission.type) - 1.0 : -1.0;
 }
 
 DomainExcess domain_excess(const Vehicle<double>& vehicle, const Metrics<double>& metrics) {
@@ -184,10 +180,10 @@ std::string describe_domain(const Vehicle<double>& v, const Metrics<double>& m) 
   }
   if (!drive_of(v).stroke_is_fixed) {
     say(DomainLimit::stroke, format("the stroke amplitude is %.4g deg (at most %.4g deg)",
-                                    degrees_per_radian * m[Metric::stroke_amplitude], direct_stroke_max_deg));
+                                    degrees_per_radian * m[Metric::stroke_amplitude], other_stroke_max_deg));
   } else {
     say(DomainLimit::stroke, format("the stroke angle reaches %.4g deg (the mechanism's law holds to %.4g deg)",
-                                    stroke_to_either_side_deg(v.crank), tan_law_stroke_max_deg));
+                                    stroke_reach_deg(v), stroke_max_deg(v.transmission.type)));
   }
   say(DomainLimit::formulation_residual,
       format("the formulation fails to conserve %.3g %% of the input power (at most %.3g %%)",
@@ -203,7 +199,10 @@ std::string describe_domain(const Vehicle<double>& v, const Metrics<double>& m) 
 }
 
 std::string residual_warning(const Vehicle<double>& v, const Metrics<double>& m) {
-  if (!drive_of(v).has_rod || v.crank.formulation != Formulation::rod_force) return {};
+  if (v.transmission.type != TransmissionType::slider_crank ||
+      v.transmission.slider_crank.formulation != Formulation::rod_force) {
+    return {};
+  }
   const double share = std::abs(m[Metric::power_residual] / m[Metric::power_electrical]);
   if (!(share > formulation_residual_warn) || !(m[Metric::power_electrical] > 0.0)) return {};
   return format("the formulation rod-force fails to conserve %.3g %% of the input power; virtual-work conserves it",

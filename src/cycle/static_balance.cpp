@@ -27,7 +27,7 @@ const UnitCircle& unit_circle() {
 }
 
 CrankKinematics<double> kinematics_at(const Vehicle<double>& v, double theta) {
-  return crank_kinematics(v.crank, std::sin(theta), std::cos(theta));
+  return crank_kinematics(v.transmission, std::sin(theta), std::cos(theta));
 }
 
 /// Golden-section minimum of f on [a, b].
@@ -86,7 +86,7 @@ StaticBalance static_balance(const Vehicle<double>& v) {
   s.breakaway_torque = breakaway_torque(v);
   s.has_wings = v.wing_inertia > 0.0;
   s.inertia_least = v.motor.inertia;
-  s.lever_least = typical_lever(v.crank);
+  s.lever_least = typical_lever(v.transmission);
   s.advance_least = s.stall_torque - s.breakaway_torque;
   if (!s.has_wings) return s;
 
@@ -94,7 +94,7 @@ StaticBalance static_balance(const Vehicle<double>& v) {
   const bool springs = v.spring.stiffness > 0.0;
   std::array<double, angle_count> inertia, lever, advance;
   for (std::size_t n = 0; n < angle_count; ++n) {
-    const CrankKinematics<double> k = crank_kinematics(v.crank, circle.sine[n], circle.cosine[n]);
+    const CrankKinematics<double> k = crank_kinematics(v.transmission, circle.sine[n], circle.cosine[n]);
     inertia[n] = min_inertia(v, k);
     lever[n] = k.wing_lever;
     if (springs) advance[n] = advance_torque(v, k, spring_moment(v, k), s.stall_torque);
@@ -102,7 +102,7 @@ StaticBalance static_balance(const Vehicle<double>& v) {
   std::tie(s.inertia_angle, s.inertia_least) = least_on_circle(
       [&](double angle) { return min_inertia(v, kinematics_at(v, angle)); }, inertia, 0.3 * v.motor.inertia);
   std::tie(s.lever_angle, s.lever_least) = least_on_circle(
-      [&](double angle) { return kinematics_at(v, angle).wing_lever; }, lever, 0.1 * typical_lever(v.crank));
+      [&](double angle) { return kinematics_at(v, angle).wing_lever; }, lever, 0.1 * typical_lever(v.transmission));
   if (springs) {
     std::tie(s.advance_angle, s.advance_least) =
         least_on_circle([&](double angle) { return advance_torque(v, angle); }, advance, 0.2 * s.stall_torque);
@@ -159,7 +159,8 @@ BalancedSpeed<double> balanced_speed(const Vehicle<double>& v) {
   std::array<LoadPlace<double>, count> places;
   if (!(v.wing_inertia > 0.0)) return balanced_speed(v, {});
   for (std::size_t n = 0; n < count; ++n) {
-    const CrankKinematics<double> k = crank_kinematics(v.crank, circle.sine[stride * n], circle.cosine[stride * n]);
+    const CrankKinematics<double> k =
+        crank_kinematics(v.transmission, circle.sine[stride * n], circle.cosine[stride * n]);
     places[n] = load_place(v, k, spring_moment(v, k));
   }
   return balanced_speed(v, places);

@@ -111,7 +111,7 @@ class EnsembleRun {
     for (std::size_t n = 0; n < members_.size(); ++n) {
       const Vehicle<double>& v = members_[n].vehicle;
       if (options_.scalar_only || !has_lanes || v.wings.coefficients.table || has_pitch_stop(v.wings) ||
-          !drive_of(v).rotates) {
+          v.transmission.type != TransmissionType::slider_crank) {
         solve_by_scalar(n);
       } else if (stall_torque(v) <= breakaway_torque(v)) {
         settle(n, FlappingStatus::stalled);
@@ -125,8 +125,8 @@ class EnsembleRun {
  private:
   static constexpr std::size_t kinds = 12;
   std::size_t kind_of(const Vehicle<double>& v) const {
-    return (v.crank.formulation == Formulation::virtual_work ? 6 : 0) + (v.spring.stiffness > 0.0 ? 3 : 0) +
-           std::size_t(current_of(v));
+    return (v.transmission.slider_crank.formulation == Formulation::virtual_work ? 6 : 0) +
+           (v.spring.stiffness > 0.0 ? 3 : 0) + std::size_t(current_of(v));
   }
 
   LaneCurrent current_of(const Vehicle<double>& v) const {

@@ -36,6 +36,7 @@ std::string message_text(const std::string& file, int line, int column, const st
 constexpr std::string_view wave_coefficients[] = {"aerodynamics.coefficients.lift", "aerodynamics.coefficients.drag"};
 
 constexpr CsvColumn chord_columns[] = {{"distance", "m"}, {"chord", "m"}};
+constexpr CsvColumn stroke_columns[] = {{"crank_angle", "rad"}, {"stroke_angle", "rad"}};
 constexpr CsvColumn discharge_columns[] = {{"charge", "1"}, {"voltage", "V"}};
 constexpr CsvColumn coefficient_columns[] = {{"alpha", "rad"}, {"cl", "1"}, {"cd", "1"}};
 
@@ -70,6 +71,9 @@ class Reader {
     });
     attempt([&] {
       if (d.wing.planform.shape == PlanformShape::tabulated) read_chords(d.wing.planform);
+    });
+    attempt([&] {
+      if (d.transmission.type == TransmissionType::tabulated) read_stroke_table(d.transmission.table);
     });
     errors_.refuse(missing_);
     check(d);
@@ -315,6 +319,19 @@ class Reader {
       battery.discharge_curve.emplace_back(row[0], row[1]);
     }
     if (battery.discharge_curve.empty()) value->origin.refuse(std::string(path), "has no rows");
+  }
+
+  void read_stroke_table(StrokeTable<double>& table) const {
+    const std::string path = "transmission.stroke_table";
+    const Value* value = document_.find(path);
+    if (!value) missing(path, "the name of a CSV file, or rows [crank angle, stroke angle]");
+    std::vector<std::pair<double, double>> rows;
+    for (const auto& row : read_table(*value, path, stroke_columns)) rows.emplace_back(row[0], row[1]);
+    try {
+      table.curve = std::make_shared<StrokeCurve>(std::move(rows));
+    } catch (const ParameterError& error) {
+      value->origin.refuse(path, error.reason());
+    }
   }
 
   void read_chords(Planform<double>& planform) const {

@@ -30,6 +30,14 @@ std::string discharge_rows(const Battery<double>& battery) {
   return rows + "\n]";
 }
 
+std::string stroke_rows(const StrokeCurve& curve) {
+  std::string rows = "[";
+  for (const auto& [theta, beta] : curve.rows()) {
+    rows += fmt::format("\n  [{}, {}],", toml_quantity(theta, "rad"), toml_quantity(beta, "rad"));
+  }
+  return rows + "\n]";
+}
+
 std::string coefficient_rows(const CoefficientTable& table) {
   std::string rows = "[";
   for (std::size_t n = 0; n < table.alpha().size(); ++n) {
@@ -74,6 +82,8 @@ std::vector<WrittenKey> written_keys(const Design<double>& design) {
     } else if (key.path == "supply.discharge_curve") {
       const bool battery = design.supply.type == SupplyType::battery;
       if (battery && !design.supply.battery.discharge_curve.empty()) write(key, discharge_rows(design.supply.battery));
+    } else if (key.path == "transmission.stroke_table") {
+      if (const auto& curve = design.transmission.table.curve) write(key, stroke_rows(*curve));
     } else if (key.path == "aerodynamics.coefficients.table") {
       if (const auto& table = design.aerodynamics.coefficients.table) write(key, coefficient_rows(*table));
     } else if (key.text) {

@@ -26,7 +26,7 @@ constexpr std::uint64_t longest_axis = 1000000;
 constexpr std::uint64_t max_designs = 1000000000000;
 constexpr std::size_t max_variants = 1000;
 /// Text keys that name or hold tables, of which no axis is made.
-constexpr std::string_view table_keys[] = {"wing.planform.file", "wing.planform.chords",
+constexpr std::string_view table_keys[] = {"wing.planform.file", "wing.planform.chords", "transmission.stroke_table",
                                            "aerodynamics.coefficients.table"};
 constexpr std::string_view own_variables[] = {"status", "recomputed", "error_estimate", "sample"};
 

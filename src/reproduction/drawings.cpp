@@ -230,7 +230,7 @@ std::vector<Sheet> mechanism_sheets(const Material& m) {
     Sheet s;
     const Design<double>& design = m.pair[springs ? 1 : 0];
     const Vehicle<double> vehicle = resolve(design);
-    const SliderCrank<double> crank = vehicle.crank;
+    const SliderCrank<double> crank = vehicle.transmission.slider_crank;
     s.id = springs ? "figure-08" : "figure-01";
     s.heading = springs ? "Figure 8. The mechanism with hinge springs" : "Figure 1. The mechanism";
     s.section = "vehicle";

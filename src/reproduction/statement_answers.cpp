@@ -49,7 +49,7 @@ class Asked {
     d.supply = {SupplyType::constant, t_.voltage.value_or(d.supply.voltage), 0.0, 1.0};
     if (!x) return d;
     if (t_.hold_stroke) {
-      const SliderCrank<double> crank = resolve(d).crank;
+      const SliderCrank<double> crank = resolve(d).transmission.slider_crank;
       d.transmission.stroke_amplitude = std::atan(crank.crank_radius / crank.hinge_offset);
       d.transmission.hinge_offset.reset();
     }

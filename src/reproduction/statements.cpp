@@ -206,9 +206,10 @@ std::string parameters_html(const Material& m) {
   row("torque constant <i>K</i>", fmt::format("{:.4g} N·m/A", v.motor.torque_constant), "Table 1");
   row("rotor inertia <i>J</i>", scientific(v.motor.inertia, 1, "kg·m²"), "Table 1");
   row("viscous damping <i>b</i>", scientific(v.motor.viscous_damping, 1, "N·m·s/rad"), "Table 1");
-  row("crank radius <i>r</i><sub>c</sub>", fmt::format("{:.4g} mm", 1e3 * v.crank.crank_radius), "Table 2");
-  row("rod length <i>l</i>", fmt::format("{:.4g} mm", 1e3 * v.crank.rod_length), "Table 2");
-  row("hinge offset <i>H</i>", fmt::format("{:.4g} mm", 1e3 * v.crank.hinge_offset), "Table 2");
+  row("crank radius <i>r</i><sub>c</sub>", fmt::format("{:.4g} mm", 1e3 * v.transmission.slider_crank.crank_radius),
+      "Table 2");
+  row("rod length <i>l</i>", fmt::format("{:.4g} mm", 1e3 * v.transmission.slider_crank.rod_length), "Table 2");
+  row("hinge offset <i>H</i>", fmt::format("{:.4g} mm", 1e3 * v.transmission.slider_crank.hinge_offset), "Table 2");
   row("inertia of one wing <i>J</i><sub>w</sub>", scientific(v.wing_inertia, 3, "kg·m²"),
       "Table 2, read as each wing's: with half of it the published effect of the springs is missed");
   row("stiffness of one hinge spring <i>k</i>", scientific(v.spring.stiffness, 3, "N·m/rad"),

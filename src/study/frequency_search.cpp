@@ -185,7 +185,7 @@ double highest_frequency(const Vehicle<double>& v, SearchRange range) {
   if (w.s2 > 0.0 && w.s3 > 0.0) {
     velocity = std::min(velocity, (domain ? flow_speed_max : extrapolation_flow_speed) * w.s2 / w.s3);
   }
-  return velocity / (4.0 * stroke_amplitude(v.crank));
+  return velocity / (4.0 * stroke_amplitude(v.transmission));
 }
 
 FrequencySearch refuse_frequency(const Vehicle<double>& vehicle, double frequency, SearchRange range) {
@@ -197,7 +197,7 @@ FrequencySearch refuse_frequency(const Vehicle<double>& vehicle, double frequenc
       "%.5g Hz cannot be reached %s: at a stroke amplitude of %.4g deg, whatever the voltage, wings that "
       "flap at more than %.4g Hz pass %s",
       frequency, domain ? "inside the domain of validity" : "in the range that is searched",
-      degrees_per_radian * stroke_amplitude(vehicle.crank), highest_frequency(vehicle, range),
+      degrees_per_radian * stroke_amplitude(vehicle.transmission), highest_frequency(vehicle, range),
       domain ? "an angle of attack of 0 deg or Mach 0.3" : "an angle of attack of -360 deg or Mach 3");
   return result;
 }

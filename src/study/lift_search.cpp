@@ -70,7 +70,8 @@ class LiftTrace {
     double slope = 0.0;
     for (int n = 0; n < 48; ++n) {
       const double theta = two_pi * n / 48.0;
-      slope = std::max(slope, std::abs(crank_kinematics(v.crank, std::sin(theta), std::cos(theta)).stroke_slope));
+      slope =
+          std::max(slope, std::abs(crank_kinematics(v.transmission, std::sin(theta), std::cos(theta)).stroke_slope));
     }
     const double omega = std::sqrt(2.0 * target_ / (v.wings.air_density * v.wings.s2 * most)) / slope;
     return unloaded_voltage(omega);
@@ -89,7 +90,7 @@ class LiftTrace {
     double most = std::max(frequency_search_span * guess, 10.0 * where_.nominal);
     const double fastest = highest_frequency(v, where_.range);
     if (std::isfinite(fastest)) most = std::max(most, 10.0 * unloaded_voltage(two_pi * fastest));
-    if (v.transmission == TransmissionType::slider_crank) {
+    if (drive_of(v).rotates) {
       const StaticBalance balance = static_balance(v);
       const double start =
           (balance.stall_torque - balance.advance_least) * circuit_resistance(v) / v.motor.torque_constant;

@@ -79,7 +79,7 @@ CycleCase cycle_of(const SpringPair& pair, const FlappingCase& which, std::optio
   options.allow_extrapolation = true;
   options.waveform_rows = rows;
   CycleCase result{which, run_design(design, options), {}};
-  const CrankGeometry<double> geometry = geometry_of(resolve(result.run.design).crank);
+  const CrankGeometry<double> geometry = geometry_of(resolve(result.run.design).transmission.slider_crank);
   for (const WaveformRow& row : result.run.cycle) {
     const auto k = crank_kinematics(geometry, std::sin(row.crank_angle), std::cos(row.crank_angle));
     result.stored_power.push_back((row.rod_force * k.wing_lever - row.aero_moment) * row.flapping_velocity);
@@ -126,7 +126,7 @@ Reproduction reproduce(const SpringPair& pair, const ReproductionOptions& option
       const FlappingCase which{formulation, springs, Condition::air};
       Design<double> design = design_of(pair, which);
       set_constant(design, options.voltage);
-      const SliderCrank<double> crank = resolve(design).crank;
+      const SliderCrank<double> crank = resolve(design).transmission.slider_crank;
       const double stroke = std::atan(crank.crank_radius / crank.hinge_offset);
 
       r.crank_fixed_hinge.curves.push_back({which, absent, {}, {}});

@@ -16,7 +16,7 @@ using detail::format;
 Motion<double> motion_of(const Vehicle<double>& vehicle, double crank_angle, double omega, double i, double v) {
   const double v_t = terminal_voltage(vehicle, v, i);
   const double s = std::sin(crank_angle), c = std::cos(crank_angle);
-  const double stroke_velocity = crank_kinematics(vehicle.crank, s, c).stroke_slope * omega;
+  const double stroke_velocity = crank_kinematics(vehicle.transmission, s, c).stroke_slope * omega;
   Branch<double> branch{sign_of(stroke_velocity), 1.0, sign_of(omega), 1.0};
   Motion<double> m = motion_at(vehicle, s, c, omega, i, v_t, branch);
   branch.pitching = sign_of(m.aero.pitch_margin);

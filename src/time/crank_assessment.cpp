@@ -155,7 +155,7 @@ void CrankStartUp::jam(double theta) {
   result_.time_to_steady = now_.t;
   const CrankKinematics<double> k = model_.kinematics(theta);
   const double degrees = *result_.jam_angle * degrees_per_radian;
-  if (k.wing_lever <= 2.0 * CrankModel::smallest_margin * model_.vehicle.crank.hinge_offset) {
+  if (k.wing_lever <= 2.0 * CrankModel::smallest_margin * typical_lever(model_.vehicle.transmission)) {
     result_.detail = format("jams at crank angle %.4f deg: the rod force loses its lever on the wings (g = %.2g m)",
                             degrees, k.wing_lever);
     return;

@@ -18,7 +18,7 @@ constexpr double stiff_decays_per_lap = 500.0;
 
 CrankModel::CrankModel(const Vehicle<double>& of, const Supply<double>& on) : vehicle(of), supply(on) {
   validate(vehicle.motor);
-  validate(vehicle.crank);
+  validate(vehicle.transmission);
   validate(vehicle.friction);
   validate(vehicle.spring);
   validate(vehicle.wings);
@@ -55,29 +55,28 @@ void CrankModel::start(double theta, double omega, double current) {
   }
   if (!(speed_scale > 0.0)) speed_scale = omega != 0.0 ? std::abs(omega) : 1.0;
   if (!(current_scale > 0.0)) current_scale = std::max(std::abs(now.i), K * speed_scale / R);
-  const double wings =
-      vehicle.wing_count * vehicle.wing_inertia * square(vehicle.crank.crank_radius / vehicle.crank.hinge_offset);
+  const double wings = vehicle.wing_count * vehicle.wing_inertia * square(typical_stroke_slope(vehicle.transmission));
   electrical_time = m.armature_inductance / R;
   mechanical_time = (m.inertia + wings) * R / (K * K + R * m.viscous_damping);
   drive_period = supply.type == SupplyType::constant ? 0.0 : 1.0 / supply.frequency;
   time_scale = two_pi / speed_scale;
-  force_scale = (m.inertia + wings) * K * current_scale * vehicle.crank.hinge_offset / vehicle.crank.crank_radius;
+  force_scale = (m.inertia + wings) * K * current_scale / typical_stroke_slope(vehicle.transmission);
   now.jammed = !wingless && uniqueness(theta) <= smallest_margin;
   fastest_decay = inductive ? std::max(1.0 / electrical_time, damping / smallest_inertia)
                             : (damping + K * K / R) / smallest_inertia;
 }
 
 Motion<double> CrankModel::motion(double t, const double* y, Branch<double>* used) const {
-  const double sin_theta = std::sin(y[0]);
-  const double cos_theta = std::cos(y[0]);
+  const CrankKinematics<double> k = kinematics(y[0]);
+  const double stroke_velocity = k.stroke_slope * y[1];
   Branch<double> branch = now.branch;
-  branch.stroke = sign_of(cos_theta * y[1]);  // B1 has the sign of cos theta as long as the rod outreaches the crank
-  const double i = current_of(t, y), v_t = terminal_voltage(vehicle, voltage(t), i);
-  Motion<double> m = motion_at(vehicle, sin_theta, cos_theta, y[1], i, v_t, branch);
-  branch.pitching = sign_of(pitch_margin(vehicle.wings, std::abs(m.stroke_velocity)));
-  if (branch.pitching < 0.0) m = motion_at(vehicle, sin_theta, cos_theta, y[1], i, v_t, branch);
+  branch.stroke = sign_of(stroke_velocity);
+  branch.pitching = sign_of(pitch_margin(vehicle.wings, std::abs(stroke_velocity)));
   if (used) *used = branch;
-  return m;
+  const double i = current_of(t, y), v_t = terminal_voltage(vehicle, voltage(t), i);
+  const Instant<double> at =
+      instant_at(vehicle, k, spring_moment(vehicle, k), y[1], i, v_t, branch.stroke, branch.direction, branch.pitching);
+  return motion_on(vehicle, at, i, v_t, branch);
 }
 
 bool CrankModel::rates(double t, const double* y, double* dy, bool quadrature) const {
@@ -129,11 +128,11 @@ double CrankModel::current_slope(double t, const double* y, const double* rates)
   return (voltage_slope - m.torque_constant * rates[1]) / R;
 }
 
-/// The smaller of the effective inertias over J, and the wing lever over H: the equations have one solution while
-/// it is positive.
+/// The smaller of the effective inertias over J, and the wing lever over its size: the equations have one solution
+/// while it is positive.
 double CrankModel::uniqueness(double theta) const {
   const CrankKinematics<double> k = kinematics(theta);
-  const double lever = k.wing_lever / vehicle.crank.hinge_offset;
+  const double lever = k.wing_lever / typical_lever(vehicle.transmission);
   if (!(lever > 0.0)) return lever;
   return std::min(lever, min_inertia(vehicle, k) / vehicle.motor.inertia);
 }
@@ -210,12 +209,12 @@ std::array<double, CrankModel::indicator_count> CrankModel::indicators(double t,
     return values;
   }
   values[jam] = std::min({1.0, jam_above - y[0], y[0] - jam_below});
-  values[force] = values[stored_moment] = values[dead_centre] = 1.0;
+  values[force] = values[stored_moment] = values[reversal] = 1.0;
   if (wingless) return values;
   const Motion<double> m = motion(t, y);
   values[force] = m.force_switch / force_scale;
   values[stored_moment] = m.stored_moment / (force_scale / vehicle.motor.inertia);
-  values[dead_centre] = std::cos(y[0]);
+  values[reversal] = m.kinematics.stroke_slope / typical_stroke_slope(vehicle.transmission);
   return values;
 }
 

@@ -27,7 +27,7 @@ class CrankModel {
     long switches = 0;                          ///< of a pwm supply so far: even ones turn on, number 0 at t = 0
   };
   /// Functions of the state whose sign changes are events.
-  enum Indicator { force, standstill, jam, stored_moment, dead_centre, indicator_count };
+  enum Indicator { force, standstill, jam, stored_moment, reversal, indicator_count };
 
   /// Throws ParameterError for numbers out of range.
   CrankModel(const Vehicle<double>& vehicle, const Supply<double>& supply);
@@ -54,7 +54,7 @@ class CrankModel {
     return inductive ? y[2] : algebraic_current(vehicle, voltage(t), y[1]);
   }
   CrankKinematics<double> kinematics(double theta) const {
-    return crank_kinematics(vehicle.crank, std::sin(theta), std::cos(theta));
+    return crank_kinematics(vehicle.transmission, std::sin(theta), std::cos(theta));
   }
   /// What acts at the unknowns y, on the branch `used`.
   Motion<double> motion(double t, const double* y, Branch<double>* used = nullptr) const;

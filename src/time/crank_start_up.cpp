@@ -10,7 +10,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 enum Root { root_force, root_standstill, root_lap, root_jam, root_plain_count };
-enum { root_stored_moment = root_plain_count, root_dead_centre, root_measuring_count };
+enum { root_stored_moment = root_plain_count, root_reversal, root_measuring_count };
 
 // A branch that takes more steps is taken as stiff whatever the estimate said.
 constexpr int stiff_steps_per_branch = 2000;
@@ -57,7 +57,7 @@ void CrankStartUp::prepare() {
   window_end_ = window_;
   window_low_ = window_high_ = now_.theta;
 
-  const double force = K * model_.current_scale / model_.vehicle.crank.crank_radius;
+  const double force = K * model_.current_scale / typical_crank_lever(model_.vehicle.transmission);
   const double power = model_.current_scale * K * model_.speed_scale + model_.current_scale * model_.current_scale * R;
   const auto natural = [&](Integral which) {
     switch (which) {
@@ -66,7 +66,7 @@ void CrankStartUp::prepare() {
       case Integral::speed_square: return square(model_.speed_scale);
       case Integral::lift:
         return model_.vehicle.wings.air_density * model_.vehicle.wings.s2 *
-                   square(model_.speed_scale * model_.vehicle.crank.crank_radius / model_.vehicle.crank.hinge_offset) +
+                   square(model_.speed_scale * typical_stroke_slope(model_.vehicle.transmission)) +
                1e-6 * force;
       case Integral::rod_force: return force;
       default: return power;
@@ -87,7 +87,7 @@ void CrankStartUp::root_values(double t, const double* y, double* values, bool m
   values[root_jam] = indicators[CrankModel::jam];
   if (!measuring) return;
   values[root_stored_moment] = indicators[CrankModel::stored_moment];
-  values[root_dead_centre] = indicators[CrankModel::dead_centre];
+  values[root_reversal] = indicators[CrankModel::reversal];
 }
 
 void CrankStartUp::tolerated(const double* y, double* errors, bool measuring) const {

@@ -19,7 +19,7 @@ const char* name_of(TransientEvent::Kind kind) {
 }
 
 TransientResult simulate_start_up(const Vehicle<double>& vehicle, const TransientOptions& options) {
-  if (vehicle.transmission == TransmissionType::direct) return detail::simulate_direct_start_up(vehicle, options);
+  if (!drive_of(vehicle).rotates) return detail::simulate_direct_start_up(vehicle, options);
   return detail::CrankStartUp(vehicle, options).run();
 }
 

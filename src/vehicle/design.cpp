@@ -18,9 +18,6 @@ void validate_direct(const Design<double>& d) {
                          "load-proportional friction follows the rod force, and a direct drive has no "
                          "rod; expected none, viscous, quadratic or constant");
   }
-  if (d.masses.rod_linear_density) {
-    throw ParameterError("transmission.rod_linear_density", "a direct drive has no rod");
-  }
   if (d.supply_resonance_ratio && d.spring.resonance_ratio) {
     throw ParameterError("supply.resonance_ratio",
                          "ties the frequency to the springs, which spring.resonance_ratio "
@@ -48,10 +45,15 @@ void validate(const Design<double>& d) {
   if (d.supply.type == SupplyType::battery) validate(d.supply.battery);
 
   const TransmissionDesign<double>& t = d.transmission;
-  const bool direct = t.type == TransmissionType::direct;
+  const bool direct = !drive_of(d).rotates;
+  const bool has_rod = t.type == TransmissionType::slider_crank || t.type == TransmissionType::four_bar;
+  if (d.masses.rod_linear_density && !has_rod) {
+    throw ParameterError("transmission.rod_linear_density",
+                         std::string("a ") + name_of(t.type) + (direct ? " drive" : " transmission") + " has no rod");
+  }
   if (direct) {
     validate_direct(d);
-  } else if (t.hinge_offset.has_value() == t.stroke_amplitude.has_value()) {
+  } else if (t.type == TransmissionType::slider_crank && t.hinge_offset.has_value() == t.stroke_amplitude.has_value()) {
     throw ParameterError("transmission.hinge_offset", "give exactly one of hinge_offset and stroke_amplitude");
   }
   if (t.stroke_amplitude && t.mid_stroke_height) {
@@ -65,7 +67,7 @@ void validate(const Design<double>& d) {
   validate(d.wing.planform);
 
   const Vehicle<double> v = resolve(d);
-  if (!direct) validate(v.crank);
+  if (!direct) validate(v.transmission);
   validate(v.spring);
   validate(v.wings);
   if (d.supply_resonance_ratio && !(v.drive_frequency > 0.0)) {

@@ -125,12 +125,12 @@ TEST(Members, CastCarriesTheVehicle) {
   Vehicle<double> v = resolve(reference_design());
   double next = 1.0;
   for_each_number(v, [&](double& x) { x = next++; });
-  v.transmission = TransmissionType::direct;
+  v.transmission.type = TransmissionType::direct;
   v.wings.coefficients.table = std::make_shared<CoefficientTable>(
       std::vector{0.0, 0.5, 1.0}, std::vector{0.0, 1.0, 0.0}, std::vector{0.1, 1.0, 2.0});
   const auto dual = cast<Jet<1>>(v);
   EXPECT_EQ(numbers_of(dual), numbers_of(v));
-  EXPECT_EQ(dual.transmission, v.transmission);
+  EXPECT_EQ(dual.transmission.type, v.transmission.type);
   EXPECT_EQ(dual.wings.coefficients.table, v.wings.coefficients.table);
 }
 

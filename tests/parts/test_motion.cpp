@@ -20,11 +20,11 @@ struct Instant {
   }
   /// The branch of stroke velocity and direction that holds; of the force, the one asked for.
   Branch<double> branch(double force_sign) const {
-    const auto k = crank_kinematics(vehicle.crank, std::sin(theta), std::cos(theta));
+    const auto k = crank_kinematics(vehicle.transmission, std::sin(theta), std::cos(theta));
     return {sign_of(k.stroke_slope * omega), force_sign, sign_of(omega), 1.0};
   }
   bool unique() const {
-    const auto k = crank_kinematics(vehicle.crank, std::sin(theta), std::cos(theta));
+    const auto k = crank_kinematics(vehicle.transmission, std::sin(theta), std::cos(theta));
     return k.wing_lever > 0.0 && effective_inertia(vehicle, k, 1.0) > 0.0 && effective_inertia(vehicle, k, -1.0) > 0.0;
   }
 };
@@ -143,7 +143,8 @@ TEST(Motion, PowerBalancesAtEveryInstant) {
     w.v[0] = m.crank_acceleration;
     if (v.motor.armature_inductance > 0.0) current.v[0] = m.inductive_voltage / v.motor.armature_inductance;
     const Vehicle<J> dual = cast<J>(v);
-    const double stored = stored_energy(dual, crank_kinematics(dual.crank, sin(theta), cos(theta)), w, current).v[0];
+    const double stored =
+        stored_energy(dual, crank_kinematics(dual.transmission, sin(theta), cos(theta)), w, current).v[0];
     // Without an inductance the state need not satisfy v = R i + K omega: its reserve does no work on the field.
     const double voltage = v.motor.armature_inductance > 0.0
                                ? at.voltage
@@ -154,7 +155,7 @@ TEST(Motion, PowerBalancesAtEveryInstant) {
                     -m.friction_torque * omega, -m.aero.moment * m.stroke_velocity, -stored, -formulation});
     EXPECT_GE(m.friction_torque * omega, 0.0);
     EXPECT_GE(m.aero.moment * m.stroke_velocity, 0.0);
-    if (v.crank.formulation == Formulation::virtual_work) {
+    if (v.transmission.slider_crank.formulation == Formulation::virtual_work) {
       EXPECT_LE(std::abs(formulation), 1e-14 * std::abs(m.rod_force * k.crank_lever * omega));
     }
     ++count;

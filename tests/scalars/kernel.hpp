@@ -20,10 +20,10 @@ inline constexpr int instant_size = motion_size + integral_count + extreme_count
 /// Motion, energies, integrands and extremes at one instant.
 template <Scalar S>
 std::array<S, instant_size> instant(const Vehicle<S>& v, const Point<S>& p) {
-  const CrankKinematics<S> k = crank_kinematics(v.crank, p.sin_theta, p.cos_theta);
+  const CrankKinematics<S> k = crank_kinematics(v.transmission, p.sin_theta, p.cos_theta);
   const Branch<S> branch{sign_of<S>(k.stroke_slope * p.omega), p.force, sign_of(p.omega), p.stored};
   const Motion<S> m = motion_at(v, p.sin_theta, p.cos_theta, p.omega, p.current, p.voltage, branch);
-  std::array<S, instant_size> out = {slider_height(v.crank, p.sin_theta, p.cos_theta),
+  std::array<S, instant_size> out = {slider_height(v.transmission.slider_crank, p.sin_theta, p.cos_theta),
                                      stroke_angle(k),
                                      k.stroke_slope,
                                      k.stroke_curve,
@@ -41,7 +41,7 @@ std::array<S, instant_size> instant(const Vehicle<S>& v, const Point<S>& p) {
                                      m.stored_moment,
                                      stored_energy(v, k, p.omega, p.current),
                                      effective_inertia(v, k, p.force),
-                                     stroke_amplitude(v.crank),
+                                     stroke_amplitude(v.transmission),
                                      no_load_speed(v),
                                      algebraic_current(v, p.voltage, p.omega),
                                      m.aero.angle_of_attack,

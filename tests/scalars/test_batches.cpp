@@ -95,9 +95,9 @@ Vehicle<double> mixed_vehicle(std::mt19937_64& random, Formulation formulation, 
     // Near a jam rounding grows without bound.
     double least = 1.0;
     for (double theta = 0.0; theta < two_pi; theta += 0.05) {
-      const auto k = crank_kinematics(v.crank, std::sin(theta), std::cos(theta));
+      const auto k = crank_kinematics(v.transmission, std::sin(theta), std::cos(theta));
       for (const double s : {1.0, -1.0}) least = std::min(least, effective_inertia(v, k, s) / v.motor.inertia);
-      if (k.wing_lever < 0.3 * v.crank.hinge_offset) least = 0.0;
+      if (k.wing_lever < 0.3 * v.transmission.slider_crank.hinge_offset) least = 0.0;
     }
     if (least > 0.5) return v;
   }

@@ -18,8 +18,8 @@ namespace {
 Vehicle<double> generic_vehicle(Formulation formulation) {
   Vehicle<double> v = resolve(reference_design());
   v.motor.friction_torque = 2e-4;
-  v.crank.mid_stroke_height = 20.7e-3;
-  v.crank.formulation = formulation;
+  v.transmission.slider_crank.mid_stroke_height = 20.7e-3;
+  v.transmission.slider_crank.formulation = formulation;
   v.friction = {1.5e-3, 3e-6, 2e-8, 1e-4};
   v.spring.stiffness = 1.1e-3;
   v.source_resistance = 1.7;
@@ -309,7 +309,7 @@ std::array<S, 8> resolved(const std::array<S, 8>& x) {
           v.motor.torque_constant,
           v.motor.inertia,
           v.motor.viscous_damping,
-          v.crank.hinge_offset,
+          v.transmission.slider_crank.hinge_offset,
           v.spring.stiffness,
           v.wings.s2,
           v.wings.s3};

@@ -28,8 +28,9 @@ EnsembleMember member_of(const Design<double>& design, Condition condition = Con
 StartUp remembered_start_up() {
   auto known = std::make_shared<std::map<std::array<double, 6>, StartUpOutcome>>();
   return [known, assess = start_up_in_time()](const Vehicle<double>& v) {
-    const std::array<double, 6> key = {v.voltage,      v.motor.inertia,   v.motor.torque_constant, v.crank.crank_radius,
-                                       v.wing_inertia, v.spring.stiffness};
+    const std::array<double, 6> key = {
+        v.voltage,      v.motor.inertia,   v.motor.torque_constant, v.transmission.slider_crank.crank_radius,
+        v.wing_inertia, v.spring.stiffness};
     const auto [at, is_new] = known->try_emplace(key);
     if (is_new) at->second = assess(v);
     return at->second;

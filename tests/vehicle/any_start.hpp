@@ -27,11 +27,12 @@ inline AnyStart any_start(unsigned seed) {
   v.motor.inertia = between(1e-9, 1e-6);
   v.motor.viscous_damping = between(1e-7, 1e-4);
   v.motor.friction_torque = chance(0.5) ? 0.0 : between(1e-6, 3e-3);
-  v.crank.crank_radius = between(2e-3, 1e-2);
-  v.crank.rod_length = v.crank.crank_radius * (1.1 + 5.0 * uniform(generator));
-  v.crank.hinge_offset = v.crank.crank_radius * between(0.3, 3.0);
-  v.crank.mid_stroke_height = v.crank.rod_length + (chance(0.3) ? 0.3 * v.crank.crank_radius : 0.0);
-  v.crank.formulation = chance(0.5) ? Formulation::rod_force : Formulation::virtual_work;
+  v.transmission.slider_crank.crank_radius = between(2e-3, 1e-2);
+  v.transmission.slider_crank.rod_length = v.transmission.slider_crank.crank_radius * (1.1 + 5.0 * uniform(generator));
+  v.transmission.slider_crank.hinge_offset = v.transmission.slider_crank.crank_radius * between(0.3, 3.0);
+  v.transmission.slider_crank.mid_stroke_height =
+      v.transmission.slider_crank.rod_length + (chance(0.3) ? 0.3 * v.transmission.slider_crank.crank_radius : 0.0);
+  v.transmission.slider_crank.formulation = chance(0.5) ? Formulation::rod_force : Formulation::virtual_work;
   v.friction = {chance(0.3) ? 0.0 : between(1e-5, 5e-3), chance(0.7) ? 0.0 : between(1e-7, 1e-4),
                 chance(0.7) ? 0.0 : between(1e-9, 1e-6), chance(0.7) ? 0.0 : between(1e-6, 1e-3)};
   v.spring.stiffness = chance(0.4) ? 0.0 : between(1e-5, 1e-1);

@@ -68,24 +68,29 @@ S typical_lever(const StrokeLaw<S>& law) {
   return law.radius;
 }
 
-/// The members of Vehicle, with a StrokeLaw for its crank.
+template <Scalar S>
+S typical_crank_lever(const StrokeLaw<S>& law) {
+  return law.radius * law.amplitude;
+}
+inline double stroke_reach(const StrokeLaw<double>& law) { return stroke_amplitude(law) + std::abs(law.mean); }
+
+/// The members of Vehicle, with a StrokeLaw for its transmission.
 template <Scalar S>
 struct StrokeLawVehicle {
   S voltage;
   Motor<S> motor;
-  StrokeLaw<S> crank;
+  StrokeLaw<S> transmission;
   Friction<S> friction;
   HingeSpring<S> spring;
   S wing_count, wing_inertia;
   BladeElement<S> wings;
   S source_resistance = S(0);
-  TransmissionType transmission = TransmissionType::slider_crank;
   S drive_frequency = S(0);
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
-    return use(of.voltage, of.motor, of.crank, of.friction, of.spring, of.wing_count, of.wing_inertia, of.wings,
-               of.source_resistance, of.transmission, of.drive_frequency);
+    return use(of.voltage, of.motor, of.transmission, of.friction, of.spring, of.wing_count, of.wing_inertia, of.wings,
+               of.source_resistance, of.drive_frequency);
   }
 };
 

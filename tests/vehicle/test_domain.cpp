@@ -68,8 +68,8 @@ TEST(Domain, TableNarrowsTheRangeAndDoesNotWidenIt) {
 TEST(Domain, StrokeOfTheTanLaw) {
   const auto with_offset = [](double offset, double mid_stroke = 20e-3) {
     Vehicle<double> v = reference_vehicle();
-    v.crank.hinge_offset = offset;
-    v.crank.mid_stroke_height = mid_stroke;
+    v.transmission.slider_crank.hinge_offset = offset;
+    v.transmission.slider_crank.mid_stroke_height = mid_stroke;
     return v;
   };
   const double at_85 = 5e-3 / std::tan(85.0 * pi / 180.0);
@@ -82,8 +82,8 @@ TEST(Domain, StrokeOfTheTanLaw) {
 
 TEST(Domain, StrokeOfADirectDrive) {
   Vehicle<double> v = reference_vehicle();
-  v.transmission = TransmissionType::direct;
-  v.crank = {};
+  v.transmission = {};
+  v.transmission.type = TransmissionType::direct;
   EXPECT_EQ(domain_with(Metric::stroke_amplitude, 100.0 / degrees_per_radian, v), "inside");
   EXPECT_EQ(domain_with(Metric::stroke_amplitude, 181.0 / degrees_per_radian, v), "stroke");
 }

@@ -92,7 +92,7 @@ TEST(Statuses, FlapsWhereStartUpFlaps) {
 
 TEST(Statuses, ACrankThatStopsWithinEachTurnIsReportedFromItsSimulatedCycle) {
   // Number 22: friction holds the crank for a moment in every turn.
-  const WideVehicle v = wide_vehicle(WideBox::crank_near_rod, 22);
+  const WideVehicle v = wide_vehicle(FarBox::crank_near_rod, 22);
   const SteadyFlapping found = orbit_of(v.design);
   ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
   ASSERT_TRUE(found.simulated);
@@ -183,12 +183,12 @@ TEST(Statuses, AMotorThatNeverStartsIsStalledEvenWhereItWouldJam) {
 TEST(Statuses, AgreeOnWideVehicles) {
   constexpr std::uint32_t of_each = 8;
   int flapping = 0, others = 0;
-  for (int box = 0; box < int(wide_box_names.size()); ++box) {
+  for (int box = 0; box < int(far_box_names.size()); ++box) {
     std::vector<EnsembleMember> members;
     std::vector<RunResult> orbits;
     std::vector<std::uint32_t> numbers;
     for (std::uint32_t n = 1000; n < 1000 + of_each; ++n) {
-      const WideVehicle v = wide_vehicle(WideBox(box), n);
+      const WideVehicle v = wide_vehicle(FarBox(box), n);
       const bool direct = v.design.transmission.type == TransmissionType::direct;
       if (v.design.supply.type == SupplyType::sine && !direct) continue;
       RunOptions options;
@@ -197,7 +197,7 @@ TEST(Statuses, AgreeOnWideVehicles) {
       options.method = Method::transient;
       const RunResult in_time = run_design(v.design, options);
       EXPECT_EQ(orbits.back().status, in_time.status)
-          << wide_box_names[std::size_t(box)] << ' ' << n << ": " << orbits.back().detail << " / " << in_time.detail;
+          << far_box_names[std::size_t(box)] << ' ' << n << ": " << orbits.back().detail << " / " << in_time.detail;
       EXPECT_NE(in_time.status, FlappingStatus::undecided) << in_time.detail;
       (in_time.status == FlappingStatus::flapping ? flapping : others) += 1;
       if (in_time.status == FlappingStatus::flapping && v.design.supply.type != SupplyType::pwm) {
@@ -209,7 +209,7 @@ TEST(Statuses, AgreeOnWideVehicles) {
     std::vector<EnsembleOutcome> outcomes(members.size());
     solve_ensemble(members, {}, start_up_in_time(), outcomes);
     for (std::size_t k = 0; k < outcomes.size(); ++k) {
-      EXPECT_EQ(outcomes[k].status, orbits[k].status) << wide_box_names[std::size_t(box)] << ' ' << numbers[k];
+      EXPECT_EQ(outcomes[k].status, orbits[k].status) << far_box_names[std::size_t(box)] << ' ' << numbers[k];
     }
   }
   EXPECT_GT(flapping, 40);
@@ -217,7 +217,7 @@ TEST(Statuses, AgreeOnWideVehicles) {
 }
 
 TEST(Statuses, DoNotDependOnTheTolerance) {
-  for (const WideBox box : {WideBox::crank_near_rod, WideBox::near_jam, WideBox::strong_springs}) {
+  for (const FarBox box : {FarBox::crank_near_rod, FarBox::near_jam, FarBox::strong_springs}) {
     for (std::uint32_t n = 2000; n < 2008; ++n) {
       const WideVehicle v = wide_vehicle(box, n);
       const FlappingStatus expected = orbit_of(v.design, 1e-6).status;

@@ -140,7 +140,7 @@ TEST(SteadyFlapping, WinglessSpeedIsTheClosedForm) {
 
 TEST(SteadyFlapping, VacuumWithoutFrictionCostsMotorLossesOnly) {
   Vehicle<double> vehicle = reference_vehicle(true);
-  vehicle.crank.formulation = Formulation::virtual_work;
+  vehicle.transmission.slider_crank.formulation = Formulation::virtual_work;
   vehicle.friction.radius = 0.0;
   vehicle.wings.air_density = 0.0;
   const SteadyFlapping found = find_steady_flapping(vehicle, {.tolerance = tightest});
@@ -155,7 +155,7 @@ TEST(SteadyFlapping, EnergyBooksCloseAndTightenWithTheTolerance) {
   for (const bool springs : {false, true}) {
     for (const Formulation formulation : {Formulation::rod_force, Formulation::virtual_work}) {
       Vehicle<double> vehicle = reference_vehicle(springs);
-      vehicle.crank.formulation = formulation;
+      vehicle.transmission.slider_crank.formulation = formulation;
       for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10, tightest}) {
         const SteadyFlapping found = find_steady_flapping(vehicle, {.tolerance = tolerance});
         const EnergyAudit audit = energy_audit(found.metrics);

@@ -135,7 +135,7 @@ INSTANTIATE_TEST_SUITE_P(Transient, KnownOrbit, testing::ValuesIn(orbits),
 
 TEST(Transient, VirtualWorkHasNoResidualPower) {
   Vehicle<double> v = reference_vehicle(true);
-  v.crank.formulation = Formulation::virtual_work;
+  v.transmission.slider_crank.formulation = Formulation::virtual_work;
   const TransientResult r = simulate_start_up(v, with_tolerance(1e-9));
   ASSERT_TRUE(r.settled && r.metrics) << r.detail;
   EXPECT_NEAR((*r.metrics)[Metric::power_residual], 0.0, 1e-14);
@@ -259,7 +259,7 @@ TEST(Transient, WithoutVoltageNothingMoves) {
 }
 
 double static_torque(const Vehicle<double>& v, double theta, double i) {
-  const CrankKinematics<double> k = crank_kinematics(v.crank, std::sin(theta), std::cos(theta));
+  const CrankKinematics<double> k = crank_kinematics(v.transmission, std::sin(theta), std::cos(theta));
   return v.motor.torque_constant * i -
          v.wing_count * v.spring.stiffness * stroke_angle(k) / k.wing_lever * k.crank_lever;
 }
@@ -271,7 +271,7 @@ TEST(Transient, LocksAgainstStrongSpringsAndFriction) {
   ASSERT_EQ(r.status, FlappingStatus::locked) << r.detail;
   EXPECT_TRUE(r.settled);
   ASSERT_TRUE(r.lock_angle && r.torque_margin);
-  const CrankKinematics<double> k = crank_kinematics(v.crank, std::sin(*r.lock_angle), std::cos(*r.lock_angle));
+  const CrankKinematics<double> k = crank_kinematics(v.transmission, std::sin(*r.lock_angle), std::cos(*r.lock_angle));
   const double F_s = v.wing_count * v.spring.stiffness * stroke_angle(k) / k.wing_lever;
   const double margin = v.friction.radius * std::abs(F_s) - std::abs(static_torque(v, *r.lock_angle, 3.0 / 9.0));
   EXPECT_GT(margin, 0.0);
@@ -313,7 +313,7 @@ TEST(Transient, JamsWhereTheRotorIsTooLight) {
   ASSERT_EQ(r.status, FlappingStatus::jammed) << r.detail;
   EXPECT_TRUE(r.settled);
   ASSERT_TRUE(r.jam_angle);
-  const CrankKinematics<double> k = crank_kinematics(v.crank, std::sin(*r.jam_angle), std::cos(*r.jam_angle));
+  const CrankKinematics<double> k = crank_kinematics(v.transmission, std::sin(*r.jam_angle), std::cos(*r.jam_angle));
   EXPECT_NEAR(effective_inertia(v, k, -1.0) / v.motor.inertia, 0.0, 1e-5);
   EXPECT_EQ(r.events.back().kind, Kind::jam);
   EXPECT_THAT(r.detail, HasSubstr("jams at crank angle"));
@@ -423,7 +423,7 @@ TEST(Transient, RunawayIsNamed) {
   Vehicle<double> v = reference_vehicle();
   v.voltage = 0.02;
   v.motor = {10.7, 0.0, 1.7e-3, 2.5e-6, 3.6e-5};
-  v.crank = {4.09e-3, 7.52e-3, 2.68e-3, 7.52e-3, Formulation::rod_force};
+  v.transmission.slider_crank = {4.09e-3, 7.52e-3, 2.68e-3, 7.52e-3, Formulation::rod_force};
   v.friction.radius = 1.7e-4;
   v.spring.stiffness = 9.6e-4;
   v.wing_inertia = 2.83e-7;

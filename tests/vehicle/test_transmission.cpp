@@ -116,7 +116,7 @@ void expect_the_orbit_not_to_know_where_angles_start() {
   EXPECT_NEAR(audit.imbalance, 0.0, 1e-9 * audit.electrical);
   EXPECT_NEAR(audit.residual, 0.0, 1e-14 * audit.electrical);
   for (double phase = 0.0; phase < two_pi; phase += 0.45) {
-    v.crank.phase = phase;
+    v.transmission.phase = phase;
     expect_same(orbit_of<N>(v, 1e-10).metrics, orbit.metrics, 2e-9);
   }
 }
@@ -132,7 +132,7 @@ TEST(StrokeLawOrbit, IsWhatTheEquationsReachInTime) {
   using State = std::array<double, 3>;
   const auto rates = [&](const State& y) -> State {
     const double s = std::sin(y[0]), c = std::cos(y[0]);
-    const double stroke = sign_of(crank_kinematics(v.crank, s, c).stroke_slope * y[1]);
+    const double stroke = sign_of(crank_kinematics(v.transmission, s, c).stroke_slope * y[1]);
     Branch<double> branch{stroke, 1.0, sign_of(y[1]), 1.0};
     Motion<double> m = motion_at(v, s, c, y[1], y[2], v.voltage, branch);
     if (m.force_switch < 0.0) {
@@ -168,8 +168,8 @@ TEST(StrokeLawOrbit, GradientAgreesWithDifferences) {
   const double tolerance = 1e-12;
   const Orbit<2> orbit = orbit_of<2>(v, tolerance);
   const auto parameters = []<class S>(StrokeLawVehicle<S>& of) {
-    return std::array{&of.crank.amplitude, &of.crank.second, &of.crank.radius, &of.spring.stiffness,
-                      &of.motor.torque_constant};
+    return std::array{&of.transmission.amplitude, &of.transmission.second, &of.transmission.radius,
+                      &of.spring.stiffness, &of.motor.torque_constant};
   };
   auto jets = cast<GradientJet>(v);
   for (int k = 0; k < gradient_parameters; ++k) {

@@ -1,4 +1,4 @@
-// Ten wide boxes of random vehicles, far from the reference and near every edge at which a vehicle ceases to flap.
+// Twelve wide boxes of random vehicles, far from the reference and near every edge at which a vehicle ceases to flap.
 #pragma once
 
 #include <array>
@@ -7,10 +7,11 @@
 #include <string_view>
 
 #include "vehicle/reference_vehicle.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
 
-enum class WideBox {
+enum class FarBox {
   crank_near_rod,    ///< rods 1.01 to 1.6 cranks long
   near_jam,          ///< light rotors under strong friction, levers near zero
   near_stall,        ///< drives about as strong as friction and springs
@@ -20,11 +21,13 @@ enum class WideBox {
   friction_laws,     ///< every law, weak and strong, no friction at all
   tables_and_stops,  ///< coefficient tables, pitch stops
   supplies,          ///< battery, pwm, sine
-  direct
+  direct,
+  four_bar,  ///< linkages of every proportion that turns, swing ratios up to 5
+  tabulated  ///< stroke laws of two harmonics as tables of 24 to 360 rows
 };
-inline constexpr std::array<std::string_view, 10> wide_box_names = {
-    "crank_near_rod", "near_jam",      "near_stall",       "inertia",  "inductance",
-    "strong_springs", "friction_laws", "tables_and_stops", "supplies", "direct"};
+inline constexpr std::array<std::string_view, 12> far_box_names = {
+    "crank_near_rod", "near_jam",         "near_stall", "inertia", "inductance", "strong_springs",
+    "friction_laws",  "tables_and_stops", "supplies",   "direct",  "four_bar",   "tabulated"};
 
 struct WideVehicle {
   Design<double> design;
@@ -32,7 +35,7 @@ struct WideVehicle {
 };
 
 /// Vehicle number n of a box: it depends on the box, n and the seed alone.
-inline WideVehicle wide_vehicle(WideBox box, std::uint32_t n, std::uint32_t seed = 12) {
+inline WideVehicle wide_vehicle(FarBox box, std::uint32_t n, std::uint32_t seed = 12) {
   std::seed_seq sequence{seed, std::uint32_t(box), n};
   std::mt19937_64 random(sequence);
   const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
@@ -73,12 +76,12 @@ inline WideVehicle wide_vehicle(WideBox box, std::uint32_t n, std::uint32_t seed
   d.aerodynamics.pitch_coefficient = chance(0.1) ? 0.0 : logarithmic(5e-4, 2e-2);
 
   switch (box) {
-    case WideBox::crank_near_rod: t.rod_length = t.crank_radius * (1.0 + logarithmic(0.01, 0.6)); break;
-    case WideBox::near_jam:
+    case FarBox::crank_near_rod: t.rod_length = t.crank_radius * (1.0 + logarithmic(0.01, 0.6)); break;
+    case FarBox::near_jam:
       d.friction = {FrictionLaw::load_proportional, t.crank_radius * logarithmic(0.1, 1.2)};
       m.inertia = logarithmic(1e-9, 3e-7);
       break;
-    case WideBox::near_stall:
+    case FarBox::near_stall:
       if (chance(0.5)) {
         d.friction = {FrictionLaw::constant, stall_of(d) * uniform(0.5, 1.05)};
         m.friction_torque = 0.0;
@@ -87,13 +90,13 @@ inline WideVehicle wide_vehicle(WideBox box, std::uint32_t n, std::uint32_t seed
       }
       if (chance(0.5)) d.spring.stiffness = logarithmic(1e-5, 1e-3);
       break;
-    case WideBox::inertia: m.inertia = chance(0.5) ? logarithmic(1e-9, 1e-7) : logarithmic(1e-6, 1e-3); break;
-    case WideBox::inductance: m.armature_inductance = m.armature_resistance * logarithmic(1e-8, 1e-4); break;
-    case WideBox::strong_springs:
+    case FarBox::inertia: m.inertia = chance(0.5) ? logarithmic(1e-9, 1e-7) : logarithmic(1e-6, 1e-3); break;
+    case FarBox::inductance: m.armature_inductance = m.armature_resistance * logarithmic(1e-8, 1e-4); break;
+    case FarBox::strong_springs:
       d.spring.stiffness = logarithmic(1e-3, 4e-2);
       if (chance(0.5)) d.supply.voltage = logarithmic(3.0, 30.0);
       break;
-    case WideBox::friction_laws:
+    case FarBox::friction_laws:
       switch (std::uniform_int_distribution<int>(0, 4)(random)) {
         case 0: d.friction = {FrictionLaw::none, 0.0}; break;
         case 1: d.friction = {FrictionLaw::viscous, logarithmic(1e-8, 1e-4)}; break;
@@ -103,7 +106,7 @@ inline WideVehicle wide_vehicle(WideBox box, std::uint32_t n, std::uint32_t seed
       }
       if (chance(0.3)) m.viscous_damping = 0.0;
       break;
-    case WideBox::tables_and_stops: {
+    case FarBox::tables_and_stops: {
       static const auto table = [] {
         std::vector<double> alpha, lift, drag;
         for (int k = -9; k <= 18; ++k) {
@@ -122,7 +125,7 @@ inline WideVehicle wide_vehicle(WideBox box, std::uint32_t n, std::uint32_t seed
       if (which > 0.3) d.aerodynamics.angle_of_attack_min = uniform(0.1, 1.4);
       break;
     }
-    case WideBox::supplies: {
+    case FarBox::supplies: {
       const double which = uniform(0.0, 1.0);
       const double voltage = d.supply.voltage;
       if (which < 0.4) {
@@ -142,7 +145,7 @@ inline WideVehicle wide_vehicle(WideBox box, std::uint32_t n, std::uint32_t seed
       }
       break;
     }
-    case WideBox::direct: {
+    case FarBox::direct: {
       d.transmission = {};
       d.transmission.type = TransmissionType::direct;
       drawn.condition = chance(0.1) ? Condition::vacuum : Condition::air;
@@ -159,6 +162,36 @@ inline WideVehicle wide_vehicle(WideBox box, std::uint32_t n, std::uint32_t seed
       d.spring = {};
       if (chance(0.9)) d.spring.resonance = d.supply.frequency * logarithmic(0.5, 2.0);
       if (chance(0.3)) d.aerodynamics.angle_of_attack_min = uniform(0.3, 1.2);
+      break;
+    }
+    case FarBox::four_bar: {
+      t.type = TransmissionType::four_bar;
+      t.hinge_offset.reset();
+      // Proportions are drawn until the crank turns and the coupler keeps its lever.
+      for (bool turns = false; !turns;) {
+        t.rocker_length = t.crank_radius * logarithmic(1.2, 6.0);
+        t.ground_length = t.crank_radius * logarithmic(1.5, 10.0);
+        t.coupler_length = t.crank_radius * logarithmic(1.5, 10.0);
+        t.swing_ratio = chance(0.5) ? 1.0 : logarithmic(1.0, 5.0);
+        try {
+          validate(transmission_of(t));
+          turns = stroke_amplitude(transmission_of(t)) < 2.0;
+        } catch (const ParameterError&) {}
+      }
+      if (chance(0.2)) t.mid_angle = centred_mid_angle(transmission_of(t).four_bar) + uniform(-0.3, 0.3);
+      break;
+    }
+    case FarBox::tabulated: {
+      t.type = TransmissionType::tabulated;
+      t.hinge_offset.reset();
+      const int rows = int(logarithmic(24.0, 361.0));
+      const double amplitude = uniform(0.3, 1.5), second = uniform(-0.15, 0.15), phase = uniform(0.0, two_pi);
+      std::vector<std::pair<double, double>> curve;
+      for (int k = 0; k < rows; ++k) {
+        const double theta = two_pi * k / rows;
+        curve.emplace_back(theta, amplitude * (std::sin(theta + phase) + second * std::sin(2.0 * (theta + phase))));
+      }
+      t.table = {std::make_shared<const StrokeCurve>(std::move(curve)), 1.0, logarithmic(3e-3, 2e-2)};
       break;
     }
   }

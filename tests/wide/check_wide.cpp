@@ -1,4 +1,4 @@
-// Batched solver, orbit search and simulation in time against each other on the ten wide boxes of
+// Batched solver, orbit search and simulation in time against each other on the wide boxes of
 // vehicle/wide_boxes.hpp.
 //   check_wide [COUNT]            vehicles of each box, 500 unless given
 //     --box NAME                  that box alone
@@ -127,6 +127,13 @@ void print_design(const WideVehicle& vehicle) {
   set("motor.torque_constant", m.torque_constant), set("motor.inertia", m.inertia);
   set("motor.viscous_damping", m.viscous_damping), set("motor.friction_torque", m.friction_torque);
   const auto& t = d.transmission;
+  if (t.type == TransmissionType::four_bar) {
+    choose("transmission.type", "four-bar");
+    set("transmission.crank_radius", t.crank_radius), set("transmission.coupler_length", t.coupler_length);
+    set("transmission.rocker_length", t.rocker_length), set("transmission.ground_length", t.ground_length);
+    set("transmission.swing_ratio", t.swing_ratio);
+    if (t.mid_angle) set("transmission.mid_angle", degrees_per_radian * *t.mid_angle);
+  }
   if (t.type == TransmissionType::slider_crank) {
     set("transmission.crank_radius", t.crank_radius), set("transmission.rod_length", t.rod_length);
     set("transmission.hinge_offset", *t.hinge_offset);
@@ -215,8 +222,8 @@ Arguments read_arguments(int argc, char** argv) {
       return value ? std::atoi(argv[++k]) : (std::fprintf(stderr, "%s needs a number\n", argv[k]), std::exit(2), 0);
     };
     if (word == "--box") {
-      for (std::size_t b = 0; value && b < wide_box_names.size(); ++b) {
-        if (wide_box_names[b] == value) a.only_box = int(b);
+      for (std::size_t b = 0; value && b < far_box_names.size(); ++b) {
+        if (far_box_names[b] == value) a.only_box = int(b);
       }
       if (a.only_box < 0) std::fprintf(stderr, "--box: none of that name\n"), std::exit(2);
       ++k;
@@ -233,7 +240,7 @@ Arguments read_arguments(int argc, char** argv) {
   return a;
 }
 
-Counts check_box(WideBox box, const Arguments& arguments) {
+Counts check_box(FarBox box, const Arguments& arguments) {
   const bool one = arguments.only_vehicle >= 0;
   const std::size_t count = one ? 1 : std::size_t(arguments.count);
   const auto number_of = [&](std::size_t n) { return std::uint32_t(one ? arguments.only_vehicle : int(n)); };
@@ -303,7 +310,7 @@ Counts check_box(WideBox box, const Arguments& arguments) {
     const bool slow = v.orbit.seconds > 0.5 || v.transient.seconds > 5.0;
     if (one || batched_differs || orbit_differs || batched_other || orbit_other || !v.transient.decided || slow) {
       std::printf("%s %u: batched %s%s, orbit %s (%.3f s), transient %s (%.2f s)\n    orbit: %s\n    transient: %s\n",
-                  std::string(wide_box_names[std::size_t(box)]).c_str(), number_of(n), v.batched.name(),
+                  std::string(far_box_names[std::size_t(box)]).c_str(), number_of(n), v.batched.name(),
                   v.batched.scalar ? " (recomputed)" : "", v.orbit.name(), v.orbit.seconds, v.transient.name(),
                   v.transient.seconds, v.orbit.detail.c_str(), v.transient.detail.c_str());
     }
@@ -336,9 +343,9 @@ int main(int argc, char** argv) {
   Counts total;
   const auto start = std::chrono::steady_clock::now();
   {
-    for (int b = 0; b < int(wide_box_names.size()); ++b) {
+    for (int b = 0; b < int(far_box_names.size()); ++b) {
       if (arguments.only_box >= 0 && b != arguments.only_box) continue;
-      rows.emplace_back(wide_box_names[std::size_t(b)], check_box(WideBox(b), arguments));
+      rows.emplace_back(far_box_names[std::size_t(b)], check_box(FarBox(b), arguments));
       add(total, rows.back().second);
     }
   }

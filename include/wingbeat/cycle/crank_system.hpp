@@ -14,10 +14,10 @@
 namespace wingbeat {
 
 /// States crank speed omega and, with inductance (N = 2), current i; independent variable crank angle from 0 to 2 pi.
-/// Valid while omega > 0. V: a Vehicle, or what has the same members with another Transmission for its `crank`.
+/// Valid while omega > 0. V: a Vehicle, or what has the same members with another transmission.
 template <Scalar S, int N, class V = Vehicle<S>>
 struct CrankSystem {
-  static_assert(Transmission<decltype(V::crank), S>);
+  static_assert(Transmission<decltype(V::transmission), S>);
   using Real = S;
   using State = std::array<S, N>;
   using Quadrature = CycleIntegrals<S>;
@@ -42,7 +42,7 @@ struct CrankSystem {
 
   CrankSystem() = default;
   CrankSystem(const V& v, const S& floor, const S& scale) : vehicle(v), speed_floor(floor), current_scale(scale) {
-    if constexpr (std::same_as<S, double>) turn_at(reversals(v.crank));
+    if constexpr (std::same_as<S, double>) turn_at(reversals(v.transmission));
   }
 
   template <Scalar T>

@@ -31,8 +31,8 @@ inline constexpr double angle_of_attack_highest_deg = 90.0;
 /// that every amplitude obeys it; at 85 deg the side load on the slider, whose friction is not modelled, is 11 rod
 /// forces.
 inline constexpr double tan_law_stroke_max_deg = 85.0;
-inline constexpr double direct_stroke_max_deg = 180.0;    ///< of the amplitude: beyond, a wing turns past its own start
-inline constexpr double formulation_residual_max = 0.05;  ///< of the input power
+inline constexpr double other_stroke_max_deg = 180.0;  ///< of any other drive: beyond, a wing turns past its own start
+inline constexpr double formulation_residual_max = 0.05;   ///< of the input power
 inline constexpr double formulation_residual_warn = 0.01;  ///< of the input power: said beside the result
 inline constexpr double efficiency_slack = 1e-4;           ///< efficiencies are as exact as the tolerance of the orbit
 /// Largest speed of the wings at the radius S_3/S_2, two thirds of a semi-ellipse's length [m/s]: Mach 0.3 at 20 degC.
@@ -61,7 +61,7 @@ DomainExcess domain_excess_slopes(const Vehicle<double>& vehicle, const Metrics<
 /// The limit `stroke`: of the stroke angle to either side, of a direct drive of the amplitude [deg].
 double stroke_max_deg(TransmissionType transmission);
 
-/// domain_excess() of the limit `stroke` of a slider-crank, which its geometry alone decides; -1 without wings.
+/// domain_excess() of the limit `stroke` of a crank, which the mechanism's geometry alone decides; -1 without wings.
 double stroke_excess(const Vehicle<double>& vehicle);
 
 /// Metrics that domain_excess() reads.

@@ -188,7 +188,7 @@ Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, cons
   // An estimate from the mean current, which says nothing where it alternates.
   if (drive.alternating) m[Metric::power_motor_reference] = S(absent);
   m[Metric::stroke_amplitude] = drive.stroke_is_fixed
-                                    ? stroke_amplitude(v.crank)
+                                    ? stroke_amplitude(v.transmission)
                                     : S(S(0.5) * (peak(Extreme::stroke_max) + peak(Extreme::stroke_min)));
   m[Metric::flapping_velocity_peak] = peak(Extreme::flapping_velocity);
   const S alpha = aero_loads(v.wings, peak(Extreme::flapping_velocity)).angle_of_attack;  // falls with |beta'|

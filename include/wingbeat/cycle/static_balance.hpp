@@ -194,7 +194,7 @@ S free_return(const V<S>& v, const S& time) {
   using std::sqrt;
   const Motor<S>& m = v.motor;
   const S R = circuit_resistance(v), L = m.armature_inductance, K = m.torque_constant;
-  const S inertia = m.inertia + S(0.5) * v.wing_count * v.wing_inertia * square(typical_stroke_slope(v.crank));
+  const S inertia = m.inertia + S(0.5) * v.wing_count * v.wing_inertia * square(typical_stroke_slope(v.transmission));
   // The slower eigenvalue of speed and current, times L/R to allow for none: s^2 L/R + s trace + determinant = 0.
   const S damping = m.viscous_damping + v.friction.damping;
   const S trace = S(1.0) + damping * L / (R * inertia), determinant = (damping + K * K / R) / inertia;

@@ -91,7 +91,7 @@ class LaneOrbit {
     current_scale_ = vehicle.voltage / circuit_resistance(vehicle);
     wanted_ = settings.wanted;
     for (const bool wanted : wanted_) reads_ = reads_ || wanted;
-    geometry_ = geometry_of(vehicle.crank);
+    geometry_ = geometry_of(vehicle.transmission.slider_crank);
     lags_ = N == 1 && settings.current == LaneCurrent::lagging;
     if (N == 2 || lags_) per_inductance_ = L(1.0) / vehicle.motor.armature_inductance;
   }

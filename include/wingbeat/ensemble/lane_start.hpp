@@ -31,7 +31,7 @@ void LaneOrbit<L, N>::assess_statics() {
     for (const Place<L>& place : half) {
       const CrankKinematics<L>& k = place.kinematics;
       unresolved_ = unresolved_ || !(min_inertia(v, k) > inertia_margin * v.motor.inertia) ||
-                    !(k.wing_lever > lever_margin * typical_lever(v.crank));
+                    !(k.wing_lever > lever_margin * typical_lever(v.transmission));
       if (springs) {
         unresolved_ = unresolved_ || !(advance_torque(v, k, place.spring_moment, L(L(0.8) * stall)) > L(0.0));
       }

@@ -23,10 +23,10 @@ inline constexpr std::pair<const char*, Formulation> names_of<Formulation>[] = {
 /// Geometry of the mechanism. The crank angle theta is measured from the horizontal and grows with rotation.
 template <Scalar S>
 struct SliderCrank {
-  S crank_radius;       ///< r_c [m], > 0, < l
-  S rod_length;         ///< l [m], > r_c
-  S hinge_offset;       ///< H, horizontal distance slider to wing hinge [m], > 0
-  S mid_stroke_height;  ///< y_0, slider height over the crank axis at stroke angle zero [m]; l unless given
+  S crank_radius = S(0);       ///< r_c [m], > 0, < l
+  S rod_length = S(0);         ///< l [m], > r_c
+  S hinge_offset = S(0);       ///< H, horizontal distance slider to wing hinge [m], > 0
+  S mid_stroke_height = S(0);  ///< y_0, slider height over the crank axis at stroke angle zero [m]; l unless given
   Formulation formulation = Formulation::rod_force;
 
   template <class Self, class Use>
@@ -121,6 +121,19 @@ S typical_stroke_slope(const SliderCrank<S>& c) {
 template <Scalar S>
 S typical_lever(const SliderCrank<S>& c) {
   return c.hinge_offset;
+}
+
+/// h at mid-stroke, r_c [m].
+template <Scalar S>
+S typical_crank_lever(const SliderCrank<S>& c) {
+  return c.crank_radius;
+}
+
+/// Largest stroke angle to either side [rad].
+inline double stroke_reach(const SliderCrank<double>& c) {
+  const double top = std::atan((c.rod_length + c.crank_radius - c.mid_stroke_height) / c.hinge_offset);
+  const double bottom = std::atan((c.rod_length - c.crank_radius - c.mid_stroke_height) / c.hinge_offset);
+  return std::fmax(std::abs(top), std::abs(bottom));
 }
 
 /// Half the peak-to-peak stroke angle [rad], between the dead centres.

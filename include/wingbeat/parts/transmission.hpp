@@ -76,14 +76,18 @@ Reversals find_reversals(const T& transmission) {
 ///   stroke_amplitude(t)                        half the peak-to-peak stroke angle [rad]
 ///   typical_stroke_slope(t)                    size of d beta / d theta over a turn [1], for scales
 ///   typical_lever(t)                           size of g [m]: beside it a lever counts as lost
+///   typical_crank_lever(t)                     size of h over a turn [m], for scales
+///   stroke_reach(t)                            of plain numbers: largest stroke angle to either side [rad]
 template <class T, class S>
 concept Transmission = requires(const T& t, const S& x) {
   { crank_kinematics(t, x, x) } -> std::same_as<CrankKinematics<S>>;
   { stroke_amplitude(t) } -> std::convertible_to<S>;
   { typical_stroke_slope(t) } -> std::convertible_to<S>;
   { typical_lever(t) } -> std::convertible_to<S>;
+  { typical_crank_lever(t) } -> std::convertible_to<S>;
 } && (!std::same_as<S, double> || requires(const T& t) {
                          { reversals(t) } -> std::same_as<Reversals>;
+                         { stroke_reach(t) } -> std::same_as<double>;
                          validate(t);
                        });
 

@@ -8,11 +8,11 @@
 
 #include "wingbeat/core/members.hpp"
 #include "wingbeat/core/names.hpp"
+#include "wingbeat/parts/any_transmission.hpp"
 #include "wingbeat/parts/blade_element.hpp"
 #include "wingbeat/parts/friction.hpp"
 #include "wingbeat/parts/motor.hpp"
 #include "wingbeat/parts/planform.hpp"
-#include "wingbeat/parts/slider_crank.hpp"
 #include "wingbeat/parts/spring.hpp"
 #include "wingbeat/parts/supply.hpp"
 
@@ -42,30 +42,29 @@ struct MotorDesign {
   }
 };
 
-enum class TransmissionType {
-  slider_crank,
-  direct  ///< the motor shaft is the wing hinge: its angle is the stroke angle
-};
-template <>
-inline constexpr std::pair<const char*, TransmissionType> names_of<TransmissionType>[] = {
-    {"slider-crank", TransmissionType::slider_crank}, {"direct", TransmissionType::direct}};
-
 /// [transmission]. Of a slider-crank exactly one of hinge offset and stroke amplitude is given; of a direct drive
-/// nothing but the type.
+/// nothing but the type; of the others what they need.
 template <Scalar S>
 struct TransmissionDesign {
-  S crank_radius = S(0);               ///< r_c [m]
+  S crank_radius = S(0);               ///< r_c [m], of a slider-crank or four-bar
   S rod_length = S(0);                 ///< l [m]
   std::optional<S> hinge_offset;       ///< H [m]
   std::optional<S> stroke_amplitude;   ///< half peak to peak [rad], 0 to pi/2; fixes H for the given crank
   std::optional<S> mid_stroke_height;  ///< y_0 [m]; l unless given
   Formulation formulation = Formulation::rod_force;
   TransmissionType type = TransmissionType::slider_crank;
+  S coupler_length = S(0);          ///< four-bar: l [m]
+  S rocker_length = S(0);           ///< four-bar: p [m]
+  S ground_length = S(0);           ///< four-bar: d [m]
+  S swing_ratio = S(1);             ///< four-bar: n_s [1]
+  std::optional<S> mid_angle = {};  ///< four-bar: phi_mid [rad]; the middle of the rocker's swing unless given
+  StrokeTable<S> table = {};        ///< tabulated
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
     return use(of.crank_radius, of.rod_length, of.hinge_offset, of.stroke_amplitude, of.mid_stroke_height,
-               of.formulation, of.type);
+               of.formulation, of.type, of.coupler_length, of.rocker_length, of.ground_length, of.swing_ratio,
+               of.mid_angle, of.table);
   }
 };
 
@@ -131,7 +130,7 @@ template <Scalar S>
 struct ItemMasses {
   std::optional<S> supply;              ///< battery with its leads [kg], >= 0
   std::optional<S> motor;               ///< motor with its gearbox [kg], >= 0
-  std::optional<S> rod_linear_density;  ///< the rod's mass over its length [kg/m], >= 0
+  std::optional<S> rod_linear_density;  ///< mass of rod or coupler over its length [kg/m], >= 0
   std::optional<S> spring;              ///< one hinge spring [kg], >= 0; one for each wing
 
   template <class Self, class Use>
@@ -168,17 +167,24 @@ bool has_springs(const Design<S>& design) {
   return design.spring.stiffness || design.spring.resonance || design.spring.resonance_ratio;
 }
 
+/// Length of the rod, of a four-bar the coupler [m]; 0 where there is none.
+template <Scalar S>
+S rod_length(const TransmissionDesign<S>& t) {
+  if (t.type == TransmissionType::slider_crank) return t.rod_length;
+  return t.type == TransmissionType::four_bar ? t.coupler_length : S(0.0);
+}
+
 /// Mass of the whole vehicle [kg]: vehicle.mass and every mass stated for itself; empty where vehicle.mass is not
 /// known.
 template <Scalar S>
 std::optional<S> total_mass(const Design<S>& design) {
   if (!design.mass) return std::nullopt;
   const ItemMasses<S>& items = design.masses;
-  const bool rod = design.transmission.type == TransmissionType::slider_crank;
+  const TransmissionDesign<S>& t = design.transmission;
   S mass = *design.mass;
   if (items.supply) mass = mass + *items.supply;
   if (items.motor) mass = mass + *items.motor;
-  if (items.rod_linear_density && rod) mass = mass + *items.rod_linear_density * design.transmission.rod_length;
+  if (items.rod_linear_density) mass = mass + *items.rod_linear_density * rod_length(t);
   if (items.spring && has_springs(design)) mass = mass + design.wing.count * *items.spring;
   return mass;
 }

@@ -25,10 +25,11 @@ constexpr Drive drive_of(TransmissionType transmission) {
           .stroke_is_fixed = crank};
 }
 
-/// Of a vehicle.
+/// Of a vehicle. A transmission that is none of the types turns a crank.
 template <class V>
 constexpr Drive drive_of(const V& vehicle) {
-  return drive_of(vehicle.transmission);
+  if constexpr (requires { vehicle.transmission.type; }) return drive_of(vehicle.transmission.type);
+  return drive_of(TransmissionType::slider_crank);
 }
 inline Drive drive_of(const Design<double>& design) { return drive_of(design.transmission.type); }
 

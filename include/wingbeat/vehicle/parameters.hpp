@@ -46,8 +46,9 @@ inline constexpr ParameterRange acute{"> 0, < pi/2", "must lie between 0 and pi/
 inline constexpr ParameterRange zero_to_acute{">= 0, < pi/2", "must be >= 0 and < pi/2", 0.0, pi / 2.0, false, true};
 inline constexpr ParameterRange count{
     "whole number >= 1", "must be a whole number >= 1", 1.0, endless, false, false, true};
-// The rod is longer than the crank radius: validate(SliderCrank) compares them.
-inline constexpr ParameterRange crank_radius{"> 0, < rod_length", "must be > 0", 0.0, endless, true};
+// validate() of the transmission compares it with the other links.
+inline constexpr ParameterRange crank_radius{"> 0, < rod_length, < every other link", "must be > 0", 0.0, endless,
+                                             true};
 inline constexpr ParameterRange rod_length{"> crank_radius", "must be longer than the crank radius", 0.0, endless,
                                            true};
 
@@ -281,6 +282,9 @@ std::span<const Parameter<S>> parameter_table() {
   using Pwm = SupplyIs<SupplyType::pwm>;
   using OnBattery = SupplyIs<SupplyType::battery>;
   using Crank = TransmissionIs<TransmissionType::slider_crank>;
+  using FourBarOnly = TransmissionIs<TransmissionType::four_bar>;
+  using Linkage = TransmissionIs<TransmissionType::slider_crank, TransmissionType::four_bar>;
+  using StrokeTableOnly = TransmissionIs<TransmissionType::tabulated>;
   using Direct = TransmissionIs<TransmissionType::direct>;
   using Outline = ShapeIs<semi_ellipse, rectangle>;
   using FromRoot = ShapeIs<semi_ellipse, rectangle, tabulated>;
@@ -390,8 +394,8 @@ std::span<const Parameter<S>> parameter_table() {
 
       choice<S, TransmissionChoice>(
           "kind of mechanism between motor and wings; direct: the motor shaft is the wing hinge"),
-      number<S, Crank>({"transmission.crank_radius", "m", range::crank_radius, "required", "r_c, crank radius"},
-                       [](auto& d) -> auto& { return d.transmission.crank_radius; }),
+      number<S, Linkage>({"transmission.crank_radius", "m", range::crank_radius, "required", "r_c, crank radius"},
+                         [](auto& d) -> auto& { return d.transmission.crank_radius; }),
       number<S, Crank>({"transmission.rod_length", "m", range::rod_length, "required", "l, rod length"},
                        [](auto& d) -> auto& { return d.transmission.rod_length; }),
       alternative<S, Crank>({"transmission.hinge_offset",
@@ -413,8 +417,37 @@ std::span<const Parameter<S>> parameter_table() {
                         "y_0, slider height over the crank axis at stroke angle zero"},
                        [](auto& d) -> auto& { return d.transmission.mid_stroke_height; }),
       number<S, Weighed>({"transmission.rod_linear_density", "kg/m", range::not_negative, "none: in vehicle.mass",
-                          "mass of the rod over its length: rod_length times this, in addition to vehicle.mass"},
+                          "mass of the rod or coupler over its length: that length times this, in addition to "
+                          "vehicle.mass"},
                          [](auto& d) -> auto& { return d.masses.rod_linear_density; }),
+      number<S, FourBarOnly>(
+          {"transmission.coupler_length", "m", range::positive, "required", "l, from crank pin to rocker pin"},
+          [](auto& d) -> auto& { return d.transmission.coupler_length; }),
+      number<S, FourBarOnly>(
+          {"transmission.rocker_length", "m", range::positive, "required", "p, from rocker axis to rocker pin"},
+          [](auto& d) -> auto& { return d.transmission.rocker_length; }),
+      number<S, FourBarOnly>(
+          {"transmission.ground_length", "m", range::positive, "required", "d, from crank axis to rocker axis"},
+          [](auto& d) -> auto& { return d.transmission.ground_length; }),
+      number<S, FourBarOnly>({"transmission.swing_ratio", "1", range::positive, "1",
+                              "n_s, turning angle of the wings over that of the rocker: sector gear or string"},
+                             [](auto& d) -> auto& { return d.transmission.swing_ratio; }),
+      number<S, FourBarOnly>({"transmission.mid_angle", "rad", range::any, "middle of the rocker's swing",
+                              "phi_mid, angle between rocker and the line from crank axis to rocker axis, produced, at "
+                              "stroke angle zero"},
+                             [](auto& d) -> auto& { return d.transmission.mid_angle; }),
+      table<S, StrokeTableOnly>({"transmission.stroke_table",
+                                 "",
+                                 {"name of a CSV file, or four or more rows within a turn, crank angles growing"},
+                                 "required",
+                                 "rows [crank angle, stroke angle], periodic spline of degree five, see below"}),
+      number<S, StrokeTableOnly>(
+          {"transmission.stroke_scale", "1", range::positive, "1", "multiplies the stroke angles of the table"},
+          [](auto& d) -> auto& { return d.transmission.table.scale; }),
+      number<S, StrokeTableOnly>({"transmission.reference_radius", "m", range::positive, "required",
+                                  "r_ref, radius at which the wings' moment is taken up; load-proportional friction "
+                                  "acts on M_w / r_ref"},
+                                 [](auto& d) -> auto& { return d.transmission.table.reference_radius; }),
       choice<S, FormulationChoice, Crank>(
           "how the rod force turns the wings: the paper's eq (1), or conserving power exactly"),
 

@@ -4,10 +4,10 @@
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/members.hpp"
 #include "wingbeat/core/scalar.hpp"
+#include "wingbeat/parts/any_transmission.hpp"
 #include "wingbeat/parts/blade_element.hpp"
 #include "wingbeat/parts/friction.hpp"
 #include "wingbeat/parts/motor.hpp"
-#include "wingbeat/parts/slider_crank.hpp"
 #include "wingbeat/parts/spring.hpp"
 #include "wingbeat/vehicle/design.hpp"
 #include "wingbeat/vehicle/drive.hpp"
@@ -17,27 +17,48 @@ namespace wingbeat {
 inline constexpr double standard_gravity = 9.80665;  ///< [m/s2], CGPM 1901
 
 /// The constants of one vehicle in one condition, all referred to the output shaft. The equations of motion below and
-/// CrankSystem take any template V of the same members whose `crank` is a Transmission.
+/// CrankSystem take any template V of the same members whose `transmission` satisfies the concept Transmission.
 template <Scalar S>
 struct Vehicle {
   S voltage;  ///< v that steady flapping sees [V], at the motor terminals where there is no source resistance
   Motor<S> motor;
-  SliderCrank<S> crank;  ///< of a slider-crank
+  AnyTransmission<S> transmission;
   Friction<S> friction;
   HingeSpring<S> spring;
   S wing_count;    ///< N_w
   S wing_inertia;  ///< J_w of one wing [kg m2]; 0 when wingless
   BladeElement<S> wings;
   S source_resistance = S(0);  ///< R_i inside the supply [ohm], >= 0: the terminals see v - R_i i
-  TransmissionType transmission = TransmissionType::slider_crank;
-  S drive_frequency = S(0);  ///< of a sine supply, whose amplitude is `voltage` [Hz]; else 0
+  S drive_frequency = S(0);    ///< of a sine supply, whose amplitude is `voltage` [Hz]; else 0
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
-    return use(of.voltage, of.motor, of.crank, of.friction, of.spring, of.wing_count, of.wing_inertia, of.wings,
-               of.source_resistance, of.transmission, of.drive_frequency);
+    return use(of.voltage, of.motor, of.transmission, of.friction, of.spring, of.wing_count, of.wing_inertia, of.wings,
+               of.source_resistance, of.drive_frequency);
   }
 };
+
+/// The transmission that a design describes.
+template <Scalar S>
+AnyTransmission<S> transmission_of(const TransmissionDesign<S>& t) {
+  AnyTransmission<S> of{};
+  of.type = t.type;
+  switch (t.type) {
+    case TransmissionType::slider_crank: {
+      const S H = t.hinge_offset ? *t.hinge_offset : hinge_offset_for<S>(*t.stroke_amplitude, t.crank_radius);
+      const S y_0 = t.mid_stroke_height ? *t.mid_stroke_height : t.rod_length;
+      of.slider_crank = {t.crank_radius, t.rod_length, H, y_0, t.formulation};
+      break;
+    }
+    case TransmissionType::four_bar:
+      of.four_bar = {t.crank_radius, t.coupler_length, t.rocker_length, t.ground_length, t.swing_ratio};
+      of.four_bar.mid_angle = t.mid_angle ? *t.mid_angle : centred_mid_angle(of.four_bar);
+      break;
+    case TransmissionType::tabulated: of.tabulated = t.table; break;
+    case TransmissionType::direct: break;
+  }
+  return of;
+}
 
 /// The vehicle that a design describes, in a condition. Does not check ranges: validate(design) does.
 template <Scalar S>
@@ -49,17 +70,8 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
   v.motor = m.gear_ratio ? at_output_shaft(GearMotor<S>{*m.gear_ratio, m.constants, m.gear_inertia, m.gear_damping})
                          : m.constants;
 
-  const TransmissionDesign<S>& t = design.transmission;
-  const bool direct = t.type == TransmissionType::direct;
-  v.transmission = t.type;
-  v.crank = {};
-  if (!direct) {
-    v.crank.crank_radius = t.crank_radius;
-    v.crank.rod_length = t.rod_length;
-    v.crank.hinge_offset = t.hinge_offset ? *t.hinge_offset : hinge_offset_for<S>(*t.stroke_amplitude, t.crank_radius);
-    v.crank.mid_stroke_height = t.mid_stroke_height ? *t.mid_stroke_height : t.rod_length;
-    v.crank.formulation = t.formulation;
-  }
+  const bool direct = design.transmission.type == TransmissionType::direct;
+  v.transmission = transmission_of(design.transmission);
 
   const S& coefficient = design.friction.coefficient;
   switch (design.friction.law) {
@@ -228,7 +240,7 @@ CrankKinematics<S> direct_kinematics() {
 template <template <Scalar> class V, Scalar S>
 [[gnu::always_inline]] inline Motion<S> motion_at(const V<S>& v, const S& sin_theta, const S& cos_theta, const S& omega,
                                                   const S& i, const S& v_t, const Branch<S>& branch) {
-  const CrankKinematics<S> k = crank_kinematics(v.crank, sin_theta, cos_theta);
+  const CrankKinematics<S> k = crank_kinematics(v.transmission, sin_theta, cos_theta);
   const S N_k_beta = spring_moment(v, k);
   const Instant<S> at = instant_at(v, k, N_k_beta, omega, i, v_t, branch.stroke, branch.direction, branch.pitching);
   return motion_on(v, at, i, v_t, branch);

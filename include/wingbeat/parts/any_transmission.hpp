@@ -1,0 +1,102 @@
+// The transmissions that a vehicle can have, one at a time. A further one is a part that satisfies the concept of
+// transmission.hpp, a name, a member and a case here.
+#pragma once
+
+#include <utility>
+
+#include "wingbeat/core/members.hpp"
+#include "wingbeat/core/names.hpp"
+#include "wingbeat/core/scalar.hpp"
+#include "wingbeat/parts/four_bar.hpp"
+#include "wingbeat/parts/slider_crank.hpp"
+#include "wingbeat/parts/stroke_table.hpp"
+#include "wingbeat/parts/transmission.hpp"
+
+namespace wingbeat {
+
+enum class TransmissionType {
+  slider_crank,
+  four_bar,
+  tabulated,
+  direct  ///< the motor shaft is the wing hinge: its angle is the stroke angle
+};
+template <>
+inline constexpr std::pair<const char*, TransmissionType> names_of<TransmissionType>[] = {
+    {"slider-crank", TransmissionType::slider_crank},
+    {"four-bar", TransmissionType::four_bar},
+    {"tabulated", TransmissionType::tabulated},
+    {"direct", TransmissionType::direct}};
+
+/// One of the transmissions, by its type; the members of the others are unused. Of a direct drive there is none: its
+/// kinematics are direct_kinematics().
+template <Scalar S>
+struct AnyTransmission {
+  TransmissionType type = TransmissionType::slider_crank;
+  SliderCrank<S> slider_crank = {};
+  FourBar<S> four_bar = {};
+  StrokeTable<S> tabulated = {};
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.type, of.slider_crank, of.four_bar, of.tabulated);
+  }
+};
+
+/// Calls use(transmission) with the one that it is.
+template <Scalar S, class Use>
+constexpr auto visit(const AnyTransmission<S>& t, const Use& use) {
+  switch (t.type) {
+    case TransmissionType::four_bar: return use(t.four_bar);
+    case TransmissionType::tabulated: return use(t.tabulated);
+    case TransmissionType::slider_crank:
+    case TransmissionType::direct: break;
+  }
+  return use(t.slider_crank);
+}
+
+namespace detail {
+
+template <Scalar S>
+[[gnu::noinline, gnu::cold]] CrankKinematics<S> kinematics_by_type(const AnyTransmission<S>& t, const S& sin_theta,
+                                                                   const S& cos_theta) {
+  return visit(t, [&](const auto& of_type) { return crank_kinematics(of_type, sin_theta, cos_theta); });
+}
+
+}  // namespace detail
+
+// The slider-crank is inlined into the equations of motion, all others share one call: code grows by the sum of
+// transmissions and scalars.
+template <Scalar S>
+[[gnu::always_inline]] inline CrankKinematics<S> crank_kinematics(const AnyTransmission<S>& t, const S& sin_theta,
+                                                                  const S& cos_theta) {
+  if (t.type == TransmissionType::slider_crank) return crank_kinematics(t.slider_crank, sin_theta, cos_theta);
+  return detail::kinematics_by_type(t, sin_theta, cos_theta);
+}
+
+template <Scalar S>
+S stroke_amplitude(const AnyTransmission<S>& t) {
+  return visit(t, [](const auto& of_type) { return stroke_amplitude(of_type); });
+}
+template <Scalar S>
+S typical_stroke_slope(const AnyTransmission<S>& t) {
+  return visit(t, [](const auto& of_type) { return typical_stroke_slope(of_type); });
+}
+template <Scalar S>
+S typical_lever(const AnyTransmission<S>& t) {
+  return visit(t, [](const auto& of_type) { return typical_lever(of_type); });
+}
+template <Scalar S>
+S typical_crank_lever(const AnyTransmission<S>& t) {
+  return visit(t, [](const auto& of_type) { return typical_crank_lever(of_type); });
+}
+inline Reversals reversals(const AnyTransmission<double>& t) {
+  return visit(t, [](const auto& of_type) { return reversals(of_type); });
+}
+inline double stroke_reach(const AnyTransmission<double>& t) {
+  return visit(t, [](const auto& of_type) { return stroke_reach(of_type); });
+}
+inline void validate(const AnyTransmission<double>& t) {
+  visit(t, [](const auto& of_type) { validate(of_type); });
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,135 @@
+// Four-bar linkage: a crank drives a rocker through a coupler, the rocker swings the wings, itself or through a gear
+// pair or string; model.md section 12.
+#pragma once
+
+#include <cmath>
+
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/core/members.hpp"
+#include "wingbeat/core/scalar.hpp"
+#include "wingbeat/parts/transmission.hpp"
+
+namespace wingbeat {
+
+/// Crank axis at the origin, rocker axis at d on the x axis: d + p e^(i phi) = r_c e^(i theta) + l e^(i chi), the
+/// rocker pointing to y > 0. Stroke angle beta = n_s (phi - phi_mid). The crank angle theta is measured from the line
+/// of the two axes and grows with rotation.
+template <Scalar S>
+struct FourBar {
+  S crank_radius = S(0);    ///< r_c [m], > 0, the shortest link
+  S coupler_length = S(0);  ///< l [m], > 0
+  S rocker_length = S(0);   ///< p [m], > 0
+  S ground_length = S(0);   ///< d, crank axis to rocker axis [m], > 0
+  S swing_ratio = S(1);     ///< n_s, turning angle of the wings over that of the rocker [1], > 0
+  S mid_angle = S(0);       ///< phi_mid, rocker angle at stroke angle zero [rad]
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.crank_radius, of.coupler_length, of.rocker_length, of.ground_length, of.swing_ratio, of.mid_angle);
+  }
+};
+
+/// Bounds of the transmission angle between coupler and rocker [deg]: beyond them the coupler has no lever.
+inline constexpr double transmission_angle_min_deg = 5.0;
+
+/// Refuses what has no crank that turns (Grashof), and a transmission angle beyond its bounds.
+void validate(const FourBar<double>& f);
+
+/// Kinematics at a crank angle given by its sine and cosine. The internal force F is the coupler's, g = p sin(mu) / n_s
+/// its lever on the wings at the transmission angle mu, h = r_c sin(theta - chi) its lever on the crank: h = g B1.
+template <Scalar S>
+CrankKinematics<S> crank_kinematics(const FourBar<S>& f, const S& sin_theta, const S& cos_theta) {
+  using std::atan;
+  const S r_c = f.crank_radius, l = f.coupler_length, p = f.rocker_length, n_s = f.swing_ratio;
+  // From the rocker's axis to the crank pin, and the triangle of that diagonal, rocker and coupler.
+  const S w_x = r_c * cos_theta - f.ground_length, w_y = r_c * sin_theta;
+  const S diagonal2 = square(w_x) + square(w_y);
+  const S along = (diagonal2 + square(p) - square(l)) / (S(2.0) * p);
+  // Heron's form, exact where rocker and ground are long.
+  const S product = (square(S(p + l)) - diagonal2) * (diagonal2 - square(S(p - l)));
+  const S across = root_of(product).value / (S(2.0) * p);
+  const S per_diagonal2 = inverse_of(diagonal2);
+  const S cos_phi = (w_x * along + w_y * across) * per_diagonal2;
+  const S sin_phi = (w_y * along - w_x * across) * per_diagonal2;
+  // Coupler from crank pin to rocker pin, l e^(i chi).
+  const S u_x = p * cos_phi - w_x, u_y = p * sin_phi - w_y;
+
+  // Loop closure: phi' = N / Q, both l times a lever.
+  const S N = r_c * (sin_theta * u_x - cos_theta * u_y);
+  const S Q = p * (sin_phi * u_x - cos_phi * u_y);
+  const S per_Q = inverse_of(Q);
+  const S slope = N * per_Q;
+  const S du_x = r_c * sin_theta - p * slope * sin_phi, du_y = p * slope * cos_phi - r_c * cos_theta;
+  const S dN = r_c * (cos_theta * u_x + sin_theta * u_y + sin_theta * du_x - cos_theta * du_y);
+  const S dQ = p * (slope * (cos_phi * u_x + sin_phi * u_y) + sin_phi * du_x - cos_phi * du_y);
+  const S per_l = inverse_of(l);
+
+  CrankKinematics<S> k;
+  k.stroke_offset = n_s * (S(0.5 * pi) - atan(S(cos_phi * inverse_of(sin_phi))) - f.mid_angle);
+  k.tan_stroke = S(0.0);
+  k.stroke_slope = n_s * slope;
+  k.stroke_curve = n_s * (dN - slope * dQ) * per_Q;
+  k.wing_lever = Q * per_l / n_s;
+  k.crank_lever = N * per_l;
+  return k;
+}
+
+/// The rocker's angles phi [rad] where its swing ends, with crank and coupler stretched out and folded over.
+template <Scalar S>
+struct RockerEnds {
+  S stretched, folded;
+};
+
+template <Scalar S>
+RockerEnds<S> rocker_ends(const FourBar<S>& f) {
+  using std::atan;
+  const S d = f.ground_length, p = f.rocker_length;
+  // pi less the angle at the rocker's axis of the triangle with the side `reach` opposite.
+  const auto at = [&](const S& reach) {
+    const S cosine = (square(d) + square(p) - square(reach)) / (S(2.0) * d * p);
+    return S(S(pi) - S(2.0) * atan(root_of(S((S(1.0) - cosine) / (S(1.0) + cosine))).value));
+  };
+  return {at(S(f.coupler_length + f.crank_radius)), at(S(f.coupler_length - f.crank_radius))};
+}
+
+/// phi_mid [rad] that centres the stroke at zero.
+template <Scalar S>
+S centred_mid_angle(const FourBar<S>& f) {
+  const RockerEnds<S> ends = rocker_ends(f);
+  return S(0.5) * (ends.stretched + ends.folded);
+}
+
+Reversals reversals(const FourBar<double>& f);
+
+/// Half the peak-to-peak stroke angle [rad].
+template <Scalar S>
+S stroke_amplitude(const FourBar<S>& f) {
+  const RockerEnds<S> ends = rocker_ends(f);
+  return S(0.5) * f.swing_ratio * (ends.folded - ends.stretched);
+}
+
+/// Largest stroke angle to either side [rad].
+inline double stroke_reach(const FourBar<double>& f) {
+  const RockerEnds<double> ends = rocker_ends(f);
+  return f.swing_ratio * std::fmax(std::abs(ends.folded - f.mid_angle), std::abs(ends.stretched - f.mid_angle));
+}
+
+/// n_s r_c / p, B1 where crank and rocker are perpendicular to the coupler [1].
+template <Scalar S>
+S typical_stroke_slope(const FourBar<S>& f) {
+  return f.swing_ratio * f.crank_radius / f.rocker_length;
+}
+
+/// g where rocker and coupler are perpendicular [m].
+template <Scalar S>
+S typical_lever(const FourBar<S>& f) {
+  return f.rocker_length / f.swing_ratio;
+}
+
+/// h where crank and coupler are perpendicular [m].
+template <Scalar S>
+S typical_crank_lever(const FourBar<S>& f) {
+  return f.crank_radius;
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,118 @@
+// Any transmission by its measured or computed stroke law beta(theta): a table; model.md section 12.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/core/members.hpp"
+#include "wingbeat/core/scalar.hpp"
+#include "wingbeat/parts/transmission.hpp"
+
+namespace wingbeat {
+
+/// Stroke angle against crank angle over a turn as a periodic spline of degree five with four continuous derivatives. A
+/// cubic one would do for the kinematics, but its third derivative jumps at the rows, where the rod force, which holds
+/// the second, would then have corners.
+class StrokeCurve {
+ public:
+  /// Rows (crank angle, stroke angle) [rad], crank angles strictly growing within less than 2 pi; at least four. Throws
+  /// ParameterError naming the row.
+  explicit StrokeCurve(std::vector<std::pair<double, double>> rows);
+
+  struct Piece {
+    double x0;                 ///< where it begins, as position()
+    std::array<double, 6> of;  ///< coefficients of 1, t ... t^5 [rad], t = position - x0
+  };
+  /// A crank angle [rad] of any turn, counted from the first row: 0 to 2 pi.
+  double position(double theta) const { return wrap_angle(theta - rows_.front().first); }
+  [[gnu::pure]] const Piece& piece(double position) const;
+
+  const std::vector<std::pair<double, double>>& rows() const { return rows_; }
+  double high() const { return high_; }  ///< [rad]
+  double low() const { return low_; }    ///< [rad]
+  /// Where the stroke velocity changes sign.
+  const Reversals& reversals() const { return reversals_; }
+
+ private:
+  std::vector<std::pair<double, double>> rows_;
+  std::vector<Piece> pieces_;
+  double high_ = 0.0, low_ = 0.0;
+  Reversals reversals_;
+};
+
+/// beta = scale times the curve. Friction acts on the reaction to the wings' moment at the radius r_ref: g = r_ref, h =
+/// r_ref B1, which conserves power.
+template <Scalar S>
+struct StrokeTable {
+  using Curve = std::conditional_t<ScalarTraits<S>::reads_tables, std::shared_ptr<const StrokeCurve>, std::nullptr_t>;
+
+  Curve curve = nullptr;
+  S scale = S(1);             ///< multiplies the table's stroke angles [1], > 0
+  S reference_radius = S(0);  ///< r_ref [m], > 0
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.curve, of.scale, of.reference_radius);
+  }
+};
+
+void validate(const StrokeTable<double>& t);
+
+template <Scalar S>
+CrankKinematics<S> crank_kinematics(const StrokeTable<S>& t, const S& sin_theta, const S& cos_theta) {
+  CrankKinematics<S> k{S(0.0), S(0.0), S(0.0), S(0.0), t.reference_radius, S(0.0)};
+  if constexpr (ScalarTraits<S>::reads_tables) {
+    const double s = value_of(sin_theta), c = value_of(cos_theta);
+    const double position = t.curve->position(std::atan2(s, c));
+    const StrokeCurve::Piece& p = t.curve->piece(position);
+    // The first derivative of the angle is that of its sine and cosine.
+    const S x = S(position - p.x0) + (sin_theta - S(s)) * S(c) - (cos_theta - S(c)) * S(s);
+    S beta(p.of[5]), slope(0.0), half_curve(0.0);  // by Horner's scheme
+    for (std::size_t n = 5; n-- > 0;) {
+      half_curve = half_curve * x + slope;
+      slope = slope * x + beta;
+      beta = beta * x + S(p.of[n]);
+    }
+    k.stroke_offset = t.scale * beta;
+    k.stroke_slope = t.scale * slope;
+    k.stroke_curve = t.scale * S(2.0) * half_curve;
+    k.crank_lever = t.reference_radius * k.stroke_slope;
+  }
+  return k;
+}
+
+inline Reversals reversals(const StrokeTable<double>& t) { return t.curve->reversals(); }
+
+/// Half the peak-to-peak stroke angle [rad].
+template <Scalar S>
+S stroke_amplitude(const StrokeTable<S>& t) {
+  if constexpr (ScalarTraits<S>::reads_tables) return S(0.5) * t.scale * S(t.curve->high() - t.curve->low());
+  return t.scale;
+}
+
+/// Largest stroke angle to either side [rad].
+inline double stroke_reach(const StrokeTable<double>& t) {
+  return t.scale * std::fmax(std::abs(t.curve->high()), std::abs(t.curve->low()));
+}
+
+/// The amplitude: d beta / d theta of a sine of that amplitude [1].
+template <Scalar S>
+S typical_stroke_slope(const StrokeTable<S>& t) {
+  return stroke_amplitude(t);
+}
+template <Scalar S>
+S typical_lever(const StrokeTable<S>& t) {
+  return t.reference_radius;
+}
+template <Scalar S>
+S typical_crank_lever(const StrokeTable<S>& t) {
+  return t.reference_radius * stroke_amplitude(t);
+}
+
+}  // namespace wingbeat

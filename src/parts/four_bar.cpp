@@ -1,0 +1,47 @@
+#include "wingbeat/parts/four_bar.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "wingbeat/core/status.hpp"
+
+namespace wingbeat {
+
+void validate(const FourBar<double>& f) {
+  const double r_c = f.crank_radius, l = f.coupler_length, p = f.rocker_length, d = f.ground_length;
+  require(r_c > 0.0, "transmission.crank_radius", "must be > 0", "m", r_c);
+  require(l > 0.0, "transmission.coupler_length", "must be > 0", "m", l);
+  require(p > 0.0, "transmission.rocker_length", "must be > 0", "m", p);
+  require(d > 0.0, "transmission.ground_length", "must be > 0", "m", d);
+  require(f.swing_ratio > 0.0, "transmission.swing_ratio", "must be > 0", "1", f.swing_ratio);
+  require(std::isfinite(f.mid_angle), "transmission.mid_angle", "must be finite", "rad", f.mid_angle);
+
+  std::array<double, 4> link = {r_c, l, p, d};
+  std::sort(link.begin(), link.end());
+  require(r_c < link[1], "transmission.crank_radius", "must be the shortest link, or the crank cannot turn (Grashof)",
+          "m", r_c);
+  require(r_c + link[3] < link[1] + link[2], "transmission.crank_radius",
+          "with the longest link must be shorter than the other two links together, or the crank cannot turn (Grashof)",
+          "m", r_c);
+  // The transmission angle is extreme with the crank on the line of the axes.
+  for (const double diagonal : {d - r_c, d + r_c}) {
+    const double cosine = (square(p) + square(l) - square(diagonal)) / (2.0 * p * l);
+    const double mu = degrees_per_radian * std::acos(std::clamp(cosine, -1.0, 1.0));
+    require(mu >= transmission_angle_min_deg && mu <= 180.0 - transmission_angle_min_deg, "transmission.coupler_length",
+            "must keep the transmission angle between coupler and rocker within 5 to 175", "deg", mu);
+  }
+}
+
+Reversals reversals(const FourBar<double>& f) {
+  const RockerEnds<double> ends = rocker_ends(f);
+  const auto direction_of_pin = [&](double phi) {
+    return std::atan2(f.rocker_length * std::sin(phi), f.ground_length + f.rocker_length * std::cos(phi));
+  };
+  // Stretched out the crank points to the rocker's pin, folded over away from it; both pins have y > 0.
+  Reversals r{{direction_of_pin(ends.stretched), direction_of_pin(ends.folded) + pi}, 2, 1.0};
+  const double before = 0.5 * r.angle[0];
+  r.first_sign = sign_of(crank_kinematics(f, std::sin(before), std::cos(before)).stroke_slope);
+  return r;
+}
+
+}  // namespace wingbeat
