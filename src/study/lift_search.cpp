@@ -89,7 +89,7 @@ class LiftTrace {
     double most = std::max(frequency_search_span * guess, 10.0 * where_.nominal);
     const double fastest = highest_frequency(v, where_.range);
     if (std::isfinite(fastest)) most = std::max(most, 10.0 * unloaded_voltage(two_pi * fastest));
-    if (v.transmission == TransmissionType::slider_crank) {
+    if (drive_of(v).rotates) {
       const StaticBalance balance = static_balance(v);
       const double start =
           (balance.stall_torque - balance.advance_least) * circuit_resistance(v) / v.motor.torque_constant;
