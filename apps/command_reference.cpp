@@ -38,7 +38,7 @@ int show(const Arguments& a, std::string (*text)(const std::string&), std::strin
 
 struct NewArguments {
   std::string file = "vehicle.toml";
-  std::string transmission = "slider-crank";
+  std::string transmission = name_of(TransmissionType{});
 };
 
 int write_new(const NewArguments& a) {
@@ -105,7 +105,9 @@ void add_new(CLI::App& program, Action& action) {
       ->add_option("file", a->file,
                    "NAME or NAME.toml (default vehicle.toml), never overwritten; - for standard output")
       ->type_name("FILE");
-  command->add_option("--transmission", a->transmission, "slider-crank (default) or direct")->type_name("TYPE");
+  std::string types(listed_names<TransmissionType>());
+  types.insert(types.find(a->transmission) + a->transmission.size(), " (default)");
+  command->add_option("--transmission", a->transmission, types)->type_name("TYPE");
   command->footer("Example:\n  wingbeat new flapper.toml");
   command->callback([a, &action] { action = [a] { return write_new(*a); }; });
 }

@@ -210,7 +210,7 @@ class Reader {
     const std::string_view path = "transmission.formulation";
     if (document_.find(path)) {
       transmission.formulation = choice<Formulation>(path);
-    } else if (transmission.type == TransmissionType::slider_crank && !is_unread("transmission.type")) {
+    } else if (has_place(*find_parameter<double>(path))) {
       missing(path,
               "rod-force or virtual-work: virtual-work conserves power and is the choice for a new vehicle, "
               "rod-force is equation (1) of the 2022 paper as printed");
@@ -269,7 +269,7 @@ class Reader {
     if (known_to_be_wrong(other)) return;
     const std::string one_like_it =
         one.unit.empty() ? fmt::format("the {}", one.range.text) : quantity_example(one.unit);
-    // Alternatives of a direct drive alone are not offered to others.
+    // Alternatives of another drive are not offered.
     missing(one.path, has_place(*second) ? fmt::format("{}, or {} instead", one_like_it, leaf_of(other)) : one_like_it);
   }
 

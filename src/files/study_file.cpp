@@ -506,11 +506,7 @@ class StudyReader : public detail::StudySections {
     };
     const bool frequency = held_frequency_ || frequency_axis_;
     for (const SweepVariant& v : sweep_->variants) {
-      const bool direct = v.design.transmission.type == TransmissionType::direct;
-      if (v.design.supply.type == SupplyType::sine && !direct) {
-        refuse(at("supply.type"), "supply.type",
-               "a sine supply gives no steady flapping in crank angle; expected constant or pwm");
-      }
+      if (swings_a_crank(v.design)) refuse(at("supply.type"), "supply.type", no_swinging_crank);
       if (frequency && v.design.supply.type == SupplyType::battery) {
         refuse(at("supply.type"), "supply.type", no_held_frequency);
       }

@@ -24,6 +24,7 @@
 #include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/vehicle/drive.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat::detail {
@@ -392,11 +393,10 @@ class StudySections {
 
   /// The frequency held, if any. A vehicle whose supply cannot hold one, or that has no steady flapping, is refused.
   std::optional<double> read_frequency(const Design<double>& design) const {
-    const bool direct = design.transmission.type == TransmissionType::direct;
-    if (design.supply.type == SupplyType::sine && !direct) {
+    if (swings_a_crank(design)) {
       const auto given = set_.find("supply.type");
       refuse(given == set_.end() ? need(*study_, "study", "vehicle", "") : *given->second, "supply.type",
-             "a sine supply gives no steady flapping in crank angle; expected constant or pwm");
+             no_swinging_crank);
     }
     if (!held_frequency_) return std::nullopt;
     if (design.supply.type == SupplyType::battery) refuse(*held_frequency_, "study.hold.frequency", no_held_frequency);
@@ -419,9 +419,9 @@ class StudySections {
     }
     const bool voltage = key == "supply.voltage" || key == "supply.duty" || key == "supply.amplitude";
     if (voltage && held_voltage_) refuse(node, where, "study.hold holds the voltage already");
-    // A direct drive takes its frequency from the supply, a crank from the voltage.
-    const bool direct = design.transmission.type == TransmissionType::direct;
-    const bool sets_frequency = direct ? key == "supply.frequency" || key == "supply.resonance_ratio" : voltage;
+    const bool sets_frequency = drive_of(design).voltage_sets_frequency
+                                    ? voltage
+                                    : key == "supply.frequency" || key == "supply.resonance_ratio";
     if (sets_frequency && held_frequency_) {
       refuse(node, where, fmt::format("{} has no effect where the frequency is held", key));
     }
@@ -438,6 +438,13 @@ class StudySections {
 
   static constexpr const char* no_held_frequency =
       "the charge of a battery gives its voltage, so none can be found for a frequency";
+
+  /// A sine on what has to turn.
+  static bool swings_a_crank(const Design<double>& design) {
+    return design.supply.type == SupplyType::sine && !drive_of(design).alternating;
+  }
+  static constexpr const char* no_swinging_crank =
+      "a sine supply gives no steady flapping in crank angle; expected constant or pwm";
 
   std::string name_;
   TomlNode root_;

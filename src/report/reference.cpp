@@ -13,6 +13,7 @@
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/report/report.hpp"
+#include "wingbeat/vehicle/drive.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
@@ -55,52 +56,36 @@ std::string choices_of(std::string_view only_with) {
 
 /// What a new vehicle states, by key. All else it may state is offered as a comment.
 using Statement = std::pair<std::string_view, std::string_view>;
-constexpr Statement every_vehicle[] = {{"vehicle.mass", "3.34 g"},
-                                       {"motor.armature_resistance", "9 ohm"},
-                                       {"motor.armature_inductance", "29 mH"},
-                                       {"motor.torque_constant", "10 mN m/A"},
-                                       {"motor.inertia", "1.5e-7 kg m2"},
-                                       {"motor.viscous_damping", "3.6e-6 N m s/rad"},
-                                       {"wing.count", "2"},
-                                       {"wing.inertia", "7.2e-8 kg m2"},
-                                       {"wing.planform.shape", name_of(PlanformShape::semi_ellipse)},
-                                       {"wing.planform.length", "63 mm"},
-                                       {"wing.planform.root_chord", "25 mm"},
-                                       {"aerodynamics.air_density", "1.225 kg/m3"},
-                                       {"aerodynamics.pitch_coefficient", "5 ms"},
-                                       {"aerodynamics.coefficients", "translational-2022"}};
-constexpr Statement with_crank[] = {{"supply.type", name_of(SupplyType::constant)},
-                                    {"supply.voltage", "3 V"},
-                                    {"transmission.type", name_of(TransmissionType::slider_crank)},
-                                    {"transmission.formulation", name_of(Formulation::virtual_work)},
-                                    {"transmission.crank_radius", "5 mm"},
-                                    {"transmission.rod_length", "20 mm"},
-                                    {"transmission.hinge_offset", "6 mm"},
-                                    {"friction.type", name_of(FrictionLaw::load_proportional)},
-                                    {"friction.radius", "2.5 mm"}};
-constexpr Statement directly_driven[] = {{"supply.type", name_of(SupplyType::sine)},
-                                         {"supply.amplitude", "3 V"},
-                                         {"supply.frequency", "22 Hz"},
-                                         {"transmission.type", name_of(TransmissionType::direct)},
-                                         {"friction.type", name_of(FrictionLaw::none)},
-                                         {"spring.resonance", "22 Hz"}};
-
-std::vector<Statement> statements_of(TransmissionType transmission) {
-  std::vector<Statement> all(std::begin(every_vehicle), std::end(every_vehicle));
-  const bool direct = transmission == TransmissionType::direct;
-  const std::span<const Statement> own = direct ? std::span<const Statement>(directly_driven) : with_crank;
-  all.insert(all.end(), own.begin(), own.end());
-  return all;
-}
 
 const std::string_view* stated(std::span<const Statement> statements, std::string_view path) {
   const auto found = std::find_if(statements.begin(), statements.end(), [&](const auto& s) { return s.first == path; });
   return found == statements.end() ? nullptr : &found->second;
 }
 
-/// "5 mm" as `"5 mm"`, 2 as it is.
+bool has_place(const ParameterText& key, std::span<const Statement> statements) {
+  if (key.only_with.empty()) return true;
+  const Requirement requirement = requirement_of(key.only_with);
+  const std::string_view* choice = stated(statements, requirement.path);
+  return choice && requirement.allows(*choice);
+}
+
+/// The examples of the table, on a supply and with a friction that suit the drive.
+std::vector<Statement> statements_of(TransmissionType transmission) {
+  const Drive drive = drive_of(transmission);
+  std::vector<Statement> all = {
+      {"transmission.type", name_of(transmission)},
+      {"supply.type", name_of(drive.alternating ? SupplyType::sine : SupplyType::constant)},
+      {"friction.type", name_of(drive.has_rod ? FrictionLaw::load_proportional : FrictionLaw::none)}};
+  if (!drive.rotates) all.push_back({"spring.resonance", "22 Hz"});  // what swings does so on springs
+  for (const auto& key : parameter_table<double>()) {
+    if (!key.example.empty() && has_place(key, all)) all.push_back({key.path, key.example});
+  }
+  return all;
+}
+
+/// "5 mm" as `"5 mm"`, 2 and rows of a table as they are.
 std::string toml_value(const ParameterText& key, std::string_view value) {
-  return key.unit == "1" ? std::string(value) : fmt::format("\"{}\"", value);
+  return key.unit == "1" || value.starts_with('[') ? std::string(value) : fmt::format("\"{}\"", value);
 }
 
 /// A value to put in for a key that a new vehicle does not state: the example of its unit.
@@ -117,13 +102,6 @@ std::string commented(const std::string& comment) {
   std::string lines = "# ";
   for (const char c : wrapped(comment, 116, 0)) lines += c == '\n' ? std::string("\n#   ") : std::string(1, c);
   return lines + "\n";
-}
-
-bool has_place(const ParameterText& key, std::span<const Statement> statements) {
-  if (key.only_with.empty()) return true;
-  const Requirement requirement = requirement_of(key.only_with);
-  const std::string_view* choice = stated(statements, requirement.path);
-  return choice && requirement.allows(*choice);
 }
 
 std::string comment_on(const ParameterText& key, bool is_stated, std::span<const Statement> statements) {

@@ -2,11 +2,23 @@
 
 #include <cmath>
 
+#include "wingbeat/vehicle/drive.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
 namespace {
+
+void validate_slider_crank(const Design<double>& d) {
+  const TransmissionDesign<double>& t = d.transmission;
+  if (t.hinge_offset.has_value() == t.stroke_amplitude.has_value()) {
+    throw ParameterError("transmission.hinge_offset", "give exactly one of hinge_offset and stroke_amplitude");
+  }
+  if (t.stroke_amplitude && t.mid_stroke_height) {
+    throw ParameterError("transmission.stroke_amplitude",
+                         "cannot be combined with mid_stroke_height; give hinge_offset instead");
+  }
+}
 
 /// What a direct drive needs and cannot have.
 void validate_direct(const Design<double>& d) {
@@ -44,30 +56,28 @@ void validate(const Design<double>& d) {
   }
   if (d.supply.type == SupplyType::battery) validate(d.supply.battery);
 
-  const TransmissionDesign<double>& t = d.transmission;
-  const bool direct = !drive_of(d).rotates;
-  const bool has_rod = t.type == TransmissionType::slider_crank || t.type == TransmissionType::four_bar;
+  const TransmissionType type = d.transmission.type;
+  const bool has_rod = type == TransmissionType::slider_crank || type == TransmissionType::four_bar;
   if (d.masses.rod_linear_density && !has_rod) {
-    throw ParameterError("transmission.rod_linear_density",
-                         std::string("a ") + name_of(t.type) + (direct ? " drive" : " transmission") + " has no rod");
+    throw ParameterError(
+        "transmission.rod_linear_density",
+        std::string("a ") + name_of(type) + (drive_of(d).rotates ? " transmission" : " drive") + " has no rod");
   }
-  if (direct) {
-    validate_direct(d);
-  } else if (t.type == TransmissionType::slider_crank && t.hinge_offset.has_value() == t.stroke_amplitude.has_value()) {
-    throw ParameterError("transmission.hinge_offset", "give exactly one of hinge_offset and stroke_amplitude");
-  }
-  if (t.stroke_amplitude && t.mid_stroke_height) {
-    throw ParameterError("transmission.stroke_amplitude",
-                         "cannot be combined with mid_stroke_height; give hinge_offset instead");
+  switch (type) {
+    case TransmissionType::slider_crank: validate_slider_crank(d); break;
+    case TransmissionType::direct: validate_direct(d); break;
+    case TransmissionType::four_bar:
+    case TransmissionType::tabulated: break;
   }
   if (int(d.spring.stiffness.has_value()) + d.spring.resonance.has_value() + d.spring.resonance_ratio.has_value() > 1) {
-    throw ParameterError("spring.stiffness", direct ? "give one of stiffness, resonance and resonance_ratio"
-                                                    : "give one of stiffness and resonance, not both");
+    throw ParameterError("spring.stiffness", drive_of(d).alternating
+                                                 ? "give one of stiffness, resonance and resonance_ratio"
+                                                 : "give one of stiffness and resonance, not both");
   }
   validate(d.wing.planform);
 
   const Vehicle<double> v = resolve(d);
-  if (!direct) validate(v.transmission);
+  if (drive_of(d).rotates) validate(v.transmission);
   validate(v.spring);
   validate(v.wings);
   if (d.supply_resonance_ratio && !(v.drive_frequency > 0.0)) {

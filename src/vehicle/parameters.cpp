@@ -4,7 +4,11 @@
 #include <numeric>
 #include <vector>
 
+#include "vehicle/parameter_rows.hpp"
+
 namespace wingbeat {
+
+template std::span<const Parameter<double>> parameter_table<double>();
 
 namespace {
 

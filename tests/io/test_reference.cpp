@@ -38,5 +38,14 @@ TEST(Reference, KnowsEveryUnit) {
   }
 }
 
+TEST(Reference, ANewVehicleOfEveryTransmissionIsComplete) {
+  for (const auto& [name, transmission] : names_of<TransmissionType>) {
+    const Design<double> d = parse_design(starting_vehicle(transmission, "new"), name);
+    EXPECT_EQ(d.transmission.type, transmission);
+    EXPECT_NO_THROW(validate(d)) << name;
+    EXPECT_EQ(d.motor.constants.inertia, 1.5e-7) << name;
+  }
+}
+
 }  // namespace
 }  // namespace wingbeat

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "wingbeat/core/jet.hpp"
+#include "wingbeat/cycle/orbit_gradient.hpp"
 
 namespace wingbeat {
 namespace {
@@ -153,8 +153,8 @@ TEST(Parameters, AlternativesReplaceEachOther) {
 }
 
 TEST(Parameters, JetsCarryDerivatives) {
-  Design<Jet<2>> d{};
-  set_parameter(d, "motor.inertia", Jet<2>(1.5e-7, 1));
+  Design<GradientJet> d{};
+  set_parameter(d, "motor.inertia", GradientJet(1.5e-7, 1));
   EXPECT_EQ(d.motor.constants.inertia.a, 1.5e-7);
   EXPECT_EQ(d.motor.constants.inertia.v[1], 1.0);
 }

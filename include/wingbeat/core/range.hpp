@@ -1,0 +1,46 @@
+// What a number may be: bounds that are checked, and their words for messages and references.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+#include "wingbeat/core/math.hpp"
+
+namespace wingbeat {
+
+/// What a parameter may be: of a number the bounds [SI], of a choice or a text the words alone.
+struct ParameterRange {
+  std::string_view text;      ///< "> 0", "none, viscous or constant"
+  const char* expected = "";  ///< "must be > 0", for messages
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+  bool above_lower = false;  ///< the lower bound itself is not allowed
+  bool below_upper = false;  ///< nor the upper one
+  bool whole = false;        ///< whole numbers only
+
+  bool holds(double x) const {
+    return (above_lower ? x > lower : x >= lower) && (below_upper ? x < upper : x <= upper) &&
+           (!whole || x == std::floor(x));
+  }
+};
+
+namespace range {
+
+inline constexpr double endless = std::numeric_limits<double>::infinity();
+inline constexpr ParameterRange any{"any", "must be finite"};
+inline constexpr ParameterRange positive{"> 0", "must be > 0", 0.0, endless, true};
+inline constexpr ParameterRange not_negative{">= 0", "must be >= 0", 0.0};
+inline constexpr ParameterRange zero_to_one{"0 to 1", "must lie between 0 and 1", 0.0, 1.0};
+inline constexpr ParameterRange acute{"> 0, < pi/2", "must lie between 0 and pi/2", 0.0, pi / 2.0, true, true};
+inline constexpr ParameterRange zero_to_acute{">= 0, < pi/2", "must be >= 0 and < pi/2", 0.0, pi / 2.0, false, true};
+inline constexpr ParameterRange count{
+    "whole number >= 1", "must be a whole number >= 1", 1.0, endless, false, false, true};
+// validate() of a transmission compares its links.
+inline constexpr ParameterRange crank_radius{"> 0, < every other link", "must be > 0", 0.0, endless, true};
+inline constexpr ParameterRange rod_length{"> crank_radius", "must be longer than the crank radius", 0.0, endless,
+                                           true};
+
+}  // namespace range
+
+}  // namespace wingbeat

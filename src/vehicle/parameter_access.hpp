@@ -1,0 +1,194 @@
+// What rows of the parameter table are made of: where a parameter belongs, and access to it on any scalar.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "wingbeat/core/names.hpp"
+#include "wingbeat/vehicle/design.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
+
+namespace wingbeat::detail {
+
+// Where a parameter has a place: its text for `only_with`, and whether it holds for a design.
+
+struct Everywhere {
+  static constexpr std::string_view text = {};
+  static constexpr bool holds(const auto&) { return true; }
+};
+
+/// Where a choice has one of these values.
+template <class Choice, auto... values>
+struct WhereChosen {
+  static constexpr ShortText words = [] {
+    ShortText t;
+    t.add(Choice::key);
+    const char* before = " = ";
+    ((t.add(before).add(name_of(values)), before = "|"), ...);
+    return t;
+  }();
+  static constexpr std::string_view text = words;
+  static constexpr bool holds(const auto& d) { return ((Choice::of(d) == values) || ...); }
+};
+
+struct SupplyChoice {
+  static constexpr std::string_view key = "supply.type";
+  static constexpr SupplyType of(const auto& d) { return d.supply.type; }
+};
+struct TransmissionChoice {
+  static constexpr std::string_view key = "transmission.type";
+  static constexpr TransmissionType of(const auto& d) { return d.transmission.type; }
+};
+struct FrictionChoice {
+  static constexpr std::string_view key = "friction.type";
+  static constexpr FrictionLaw of(const auto& d) { return d.friction.law; }
+};
+struct ShapeChoice {
+  static constexpr std::string_view key = "wing.planform.shape";
+  static constexpr PlanformShape of(const auto& d) { return d.wing.planform.shape; }
+};
+struct FormulationChoice {
+  static constexpr std::string_view key = "transmission.formulation";
+  static constexpr Formulation of(const auto& d) { return d.transmission.formulation; }
+};
+template <SupplyType... types>
+using SupplyIs = WhereChosen<SupplyChoice, types...>;
+template <TransmissionType... types>
+using TransmissionIs = WhereChosen<TransmissionChoice, types...>;
+template <PlanformShape... shapes>
+using ShapeIs = WhereChosen<ShapeChoice, shapes...>;
+
+struct Geared {
+  static constexpr std::string_view text = "motor.gear_ratio";
+  static constexpr bool holds(const auto& d) { return d.motor.gear_ratio.has_value(); }
+};
+struct Weighed {
+  static constexpr std::string_view text = "vehicle.mass";
+  static constexpr bool holds(const auto& d) { return d.mass.has_value(); }
+};
+struct WeighedSprings : Weighed {
+  static constexpr bool holds(const auto& d) { return Weighed::holds(d) && has_springs(d); }
+};
+
+template <class Where>
+constexpr ParameterText placed(ParameterText text) {
+  text.only_with = Where::text;
+  return text;
+}
+
+/// A number at `access(design)`. Access is a captureless lambda here and below.
+template <Scalar S, class Where = Everywhere, class Access>
+constexpr Parameter<S> number(const ParameterText& text, Access) {
+  return {placed<Where>(text),
+          [](Design<S>& d, const S& x) {
+            if (!Where::holds(d)) return false;
+            Access{}(d) = x;
+            return true;
+          },
+          [](const Design<S>& d) -> std::optional<S> {
+            if (!Where::holds(d)) return std::nullopt;
+            return Access{}(d);
+          }};
+}
+
+/// One of several optional numbers that exclude each other.
+template <Scalar S, class Where = Everywhere, class Access, class... Others>
+constexpr Parameter<S> alternative(const ParameterText& text, Access, Others...) {
+  return {placed<Where>(text),
+          [](Design<S>& d, const S& x) {
+            if (!Where::holds(d)) return false;
+            (Others{}(d).reset(), ...);
+            Access{}(d) = x;
+            return true;
+          },
+          [](const Design<S>& d) -> std::optional<S> { return Access{}(d); }};
+}
+
+/// A plain number that an optional one replaces.
+template <Scalar S, class Where = Everywhere, class Access, class Other>
+constexpr Parameter<S> replaceable(const ParameterText& text, Access, Other) {
+  return {placed<Where>(text),
+          [](Design<S>& d, const S& x) {
+            if (!Where::holds(d)) return false;
+            Access{}(d) = x;
+            Other{}(d).reset();
+            return true;
+          },
+          [](const Design<S>& d) -> std::optional<S> {
+            if (!Where::holds(d) || Other{}(d)) return std::nullopt;
+            return Access{}(d);
+          }};
+}
+
+/// A battery's voltage at any charge, in place of its discharge curve.
+template <Scalar S>
+constexpr Parameter<S> battery_voltage(const ParameterText& text) {
+  using Where = SupplyIs<SupplyType::battery>;
+  return {placed<Where>(text),
+          [](Design<S>& d, const S& x) {
+            if (!Where::holds(d)) return false;
+            d.supply.battery.cell_voltage = x;
+            d.supply.battery.discharge_curve.clear();
+            return true;
+          },
+          [](const Design<S>& d) -> std::optional<S> {
+            if (!Where::holds(d) || !d.supply.battery.discharge_curve.empty()) return std::nullopt;
+            return d.supply.battery.cell_voltage;
+          }};
+}
+
+/// The coefficient of a friction law; setting it chooses the law.
+template <Scalar S, FrictionLaw law>
+constexpr Parameter<S> friction_number(const ParameterText& text) {
+  using Where = WhereChosen<FrictionChoice, law>;
+  return {placed<Where>(text),
+          [](Design<S>& d, const S& x) {
+            d.friction.law = law;
+            d.friction.coefficient = x;
+            return true;
+          },
+          [](const Design<S>& d) -> std::optional<S> {
+            if (!Where::holds(d)) return std::nullopt;
+            return d.friction.coefficient;
+          }};
+}
+
+/// A number of the force coefficients; setting it makes a named set the vehicle's own.
+template <Scalar S, class Access>
+constexpr Parameter<S> wave_number(const ParameterText& text, Access) {
+  return {text,
+          [](Design<S>& d, const S& x) {
+            if (d.aerodynamics.coefficients.table) return false;
+            d.aerodynamics.coefficients_name = "custom";
+            Access{}(d.aerodynamics.coefficients) = x;
+            return true;
+          },
+          [](const Design<S>& d) -> std::optional<S> {
+            if (d.aerodynamics.coefficients.table) return std::nullopt;
+            return Access{}(d.aerodynamics.coefficients);
+          }};
+}
+
+template <Scalar S, class Where = Everywhere>
+constexpr Parameter<S> text(const ParameterText& text, std::string (*read)(const Design<S>&)) {
+  return {placed<Where>(text), nullptr, nullptr, read};
+}
+
+/// A value of an enumeration, by name; its range is the list of names.
+template <Scalar S, class Choice, class Where = Everywhere>
+constexpr Parameter<S> choice(std::string_view meaning, std::string_view example = {}) {
+  using E = decltype(Choice::of(std::declval<const Design<S>&>()));
+  return text<S, Where>(
+      {Choice::key, "", {wingbeat::listed_names<E>()}, "required", meaning, {}, example},
+      [](const Design<S>& d) { return Where::holds(d) ? std::string(name_of(Choice::of(d))) : std::string(); });
+}
+
+/// A table, which is not written as one value.
+template <Scalar S, class Where = Everywhere>
+constexpr Parameter<S> table(const ParameterText& words) {
+  return text<S, Where>(words, [](const Design<S>&) { return std::string(); });
+}
+
+}  // namespace wingbeat::detail

@@ -1,0 +1,423 @@
+// The rows of the parameter table, in the order of the reference. Whoever needs the table of a scalar S instantiates
+// parameter_table<S>() in one source file: double in parameters.cpp, the dual numbers of gradients in src/cycle/.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "vehicle/parameter_access.hpp"
+
+namespace wingbeat {
+
+template <Scalar S>
+std::span<const Parameter<S>> parameter_table() {
+  using D = Design<S>;
+  using detail::alternative, detail::battery_voltage, detail::choice, detail::friction_number, detail::number,
+      detail::replaceable, detail::table, detail::text, detail::wave_number;
+  using detail::FormulationChoice, detail::FrictionChoice, detail::Geared, detail::ShapeChoice, detail::ShapeIs,
+      detail::SupplyChoice, detail::SupplyIs, detail::TransmissionChoice, detail::TransmissionIs, detail::Weighed,
+      detail::WeighedSprings;
+  using enum PlanformShape;
+  using Powered = SupplyIs<SupplyType::constant, SupplyType::pwm>;
+  using Sine = SupplyIs<SupplyType::sine>;
+  using Periodic = SupplyIs<SupplyType::sine, SupplyType::pwm>;
+  using Pwm = SupplyIs<SupplyType::pwm>;
+  using OnBattery = SupplyIs<SupplyType::battery>;
+  using Crank = TransmissionIs<TransmissionType::slider_crank>;
+  using Linkage = TransmissionIs<TransmissionType::slider_crank, TransmissionType::four_bar>;
+  using Bars = TransmissionIs<TransmissionType::four_bar>;
+  using StrokeLaw = TransmissionIs<TransmissionType::tabulated>;
+  using Direct = TransmissionIs<TransmissionType::direct>;
+  using Outline = ShapeIs<semi_ellipse, rectangle>;
+  using FromRoot = ShapeIs<semi_ellipse, rectangle, tabulated>;
+  using Tabulated = ShapeIs<tabulated>;
+  using Moments = ShapeIs<moments>;
+  constexpr auto hinge_offset = [](auto& d) -> auto& { return d.transmission.hinge_offset; };
+  constexpr auto stroke_amplitude = [](auto& d) -> auto& { return d.transmission.stroke_amplitude; };
+  constexpr auto stiffness = [](auto& d) -> auto& { return d.spring.stiffness; };
+  constexpr auto resonance = [](auto& d) -> auto& { return d.spring.resonance; };
+  constexpr auto spring_ratio = [](auto& d) -> auto& { return d.spring.resonance_ratio; };
+  constexpr auto drive_ratio = [](auto& d) -> auto& { return d.supply_resonance_ratio; };
+  constexpr auto wing_resonance = [](auto& d) -> auto& { return d.wing.resonance; };
+  constexpr auto chord_ratio = [](auto& d) -> auto& { return d.wing.planform.chord_ratio; };
+
+  static constexpr Parameter<S> parameters[] = {
+      text<S>({"vehicle.name", "", {"any text"}, "no name", "name of the vehicle, for reports"},
+              [](const D& d) { return d.name; }),
+      number<S>({"vehicle.mass",
+                 "kg",
+                 range::positive,
+                 "unknown",
+                 "mass of the vehicle but for the masses stated for themselves (motor.mass, supply.mass, "
+                 "spring.mass, transmission.rod_linear_density); enables lift_to_weight",
+                 {},
+                 "3.34 g"},
+                [](auto& d) -> auto& { return d.mass; }),
+
+      choice<S, SupplyChoice>("what feeds the motor terminals"),
+      number<S, Powered>({"supply.voltage",
+                          "V",
+                          range::not_negative,
+                          "required",
+                          "v, terminal voltage; pwm: while switched on",
+                          {},
+                          "3 V"},
+                         [](auto& d) -> auto& { return d.supply.voltage; }),
+      number<S, Sine>({"supply.amplitude", "V", range::not_negative, "required", "amplitude of the sine", {}, "3 V"},
+                      [](auto& d) -> auto& { return d.supply.voltage; }),
+      replaceable<S, Periodic>(
+          {"supply.frequency",
+           "Hz",
+           range::positive,
+           "required",
+           "drive frequency (sine) or switching frequency (pwm)",
+           {"resonance_ratio"},
+           "22 Hz"},
+          [](auto& d) -> auto& { return d.supply.frequency; }, drive_ratio),
+      alternative<S, Direct>({"supply.resonance_ratio",
+                              "1",
+                              range::positive,
+                              "required",
+                              "drive frequency over the frequency at which rotor and wings resonate on the springs; 1 "
+                              "drives a direct drive at resonance",
+                              {"frequency"}},
+                             drive_ratio),
+      number<S, Pwm>({"supply.duty", "1", range::zero_to_one, "required", "fraction of a period switched on"},
+                     [](auto& d) -> auto& { return d.supply.duty; }),
+      number<S, OnBattery>({"supply.cells", "1", range::count, "1", "cells in series"},
+                           [](auto& d) -> auto& { return d.supply.battery.cells; }),
+      battery_voltage<S>({"supply.cell_voltage",
+                          "V",
+                          range::positive,
+                          "required",
+                          "E, open-circuit voltage of one cell at any charge",
+                          {"discharge_curve"}}),
+      table<S, OnBattery>({"supply.discharge_curve",
+                           "",
+                           {"name of a CSV file, or rows from charge 0 to 1, voltages not falling"},
+                           "required",
+                           "open-circuit voltage of one cell: rows [state of charge, voltage], monotone cubics, see "
+                           "below",
+                           {"cell_voltage"}}),
+      number<S, OnBattery>({"supply.internal_resistance", "ohm", range::not_negative, "required",
+                            "R_i of one cell: the terminals see E - R_i i, times cells"},
+                           [](auto& d) -> auto& { return d.supply.battery.internal_resistance; }),
+      number<S, OnBattery>({"supply.capacity", "C", range::positive, "required", "charge that a full cell holds"},
+                           [](auto& d) -> auto& { return d.supply.battery.capacity; }),
+      number<S, OnBattery>({"supply.charge", "1", range::zero_to_one, "1",
+                            "state of charge: where a run computes, where a flight starts"},
+                           [](auto& d) -> auto& { return d.supply.battery.charge; }),
+      number<S, OnBattery>({"supply.cutoff_voltage", "V", range::not_negative, "none",
+                            "mean terminal voltage of one cell at which a flight ends"},
+                           [](auto& d) -> auto& { return d.supply.battery.cutoff_voltage; }),
+      number<S, Weighed>({"supply.mass", "kg", range::not_negative, "none: in vehicle.mass",
+                          "mass of the battery, in addition to vehicle.mass"},
+                         [](auto& d) -> auto& { return d.masses.supply; }),
+
+      number<S>({"motor.gear_ratio", "1", range::positive, "none: constants at the output shaft",
+                 "n, motor turns per output turn; given, the motor constants below are the motor shaft's"},
+                [](auto& d) -> auto& { return d.motor.gear_ratio; }),
+      number<S, Geared>({"motor.gear_inertia", "kg m2", range::not_negative, "0 kg m2",
+                         "J_G, inertia of the gearbox at the output shaft"},
+                        [](auto& d) -> auto& { return d.motor.gear_inertia; }),
+      number<S, Geared>({"motor.gear_damping", "N m s/rad", range::not_negative, "0 N m s/rad",
+                         "b_G, viscous damping of the gearbox at the output shaft"},
+                        [](auto& d) -> auto& { return d.motor.gear_damping; }),
+      number<S>(
+          {"motor.armature_resistance", "ohm", range::positive, "required", "R_a, armature resistance", {}, "9 ohm"},
+          [](auto& d) -> auto& { return d.motor.constants.armature_resistance; }),
+      number<S>({"motor.armature_inductance",
+                 "H",
+                 range::not_negative,
+                 "required",
+                 "L_a, armature inductance; 0 makes the current algebraic",
+                 {},
+                 "29 mH"},
+                [](auto& d) -> auto& { return d.motor.constants.armature_inductance; }),
+      number<S>({"motor.torque_constant",
+                 "N m/A",
+                 range::positive,
+                 "required",
+                 "K at the output shaft; K_b at the motor shaft with gear_ratio",
+                 {},
+                 "10 mN m/A"},
+                [](auto& d) -> auto& { return d.motor.constants.torque_constant; }),
+      number<S>({"motor.inertia",
+                 "kg m2",
+                 range::positive,
+                 "required",
+                 "J, rotor and gearbox at the output shaft; J_m of the rotor with gear_ratio",
+                 {},
+                 "1.5e-7 kg m2"},
+                [](auto& d) -> auto& { return d.motor.constants.inertia; }),
+      number<S>({"motor.viscous_damping",
+                 "N m s/rad",
+                 range::not_negative,
+                 "required",
+                 "b, motor and gearbox at the output shaft; b_m of the motor with gear_ratio",
+                 {},
+                 "3.6e-6 N m s/rad"},
+                [](auto& d) -> auto& { return d.motor.constants.viscous_damping; }),
+      number<S>({"motor.friction_torque", "N m", range::not_negative, "0 N m",
+                 "constant friction torque of the motor itself, at the motor shaft with gear_ratio; "
+                 "adds to every friction law"},
+                [](auto& d) -> auto& { return d.motor.constants.friction_torque; }),
+      number<S, Weighed>({"motor.mass", "kg", range::not_negative, "none: in vehicle.mass",
+                          "mass of the motor with its gearbox, in addition to vehicle.mass"},
+                         [](auto& d) -> auto& { return d.masses.motor; }),
+
+      choice<S, TransmissionChoice>(
+          "kind of mechanism between motor and wings; direct: the motor shaft is the wing hinge"),
+      number<S, Linkage>(
+          {"transmission.crank_radius", "m", range::crank_radius, "required", "r_c, crank radius", {}, "5 mm"},
+          [](auto& d) -> auto& { return d.transmission.crank_radius; }),
+      number<S, Crank>({"transmission.rod_length", "m", range::rod_length, "required", "l, rod length", {}, "20 mm"},
+                       [](auto& d) -> auto& { return d.transmission.rod_length; }),
+      alternative<S, Crank>({"transmission.hinge_offset",
+                             "m",
+                             range::positive,
+                             "required",
+                             "H, horizontal distance from slider to wing hinge",
+                             {"stroke_amplitude"},
+                             "6 mm"},
+                            hinge_offset, stroke_amplitude),
+      alternative<S, Crank>({"transmission.stroke_amplitude",
+                             "rad",
+                             range::acute,
+                             "required",
+                             "half the peak-to-peak stroke angle; fixes H = r_c / tan(stroke_amplitude); "
+                             "not with mid_stroke_height",
+                             {"hinge_offset"}},
+                            stroke_amplitude, hinge_offset),
+      number<S, Crank>({"transmission.mid_stroke_height", "m", range::any, "rod_length",
+                        "y_0, slider height over the crank axis at stroke angle zero"},
+                       [](auto& d) -> auto& { return d.transmission.mid_stroke_height; }),
+      number<S, Weighed>({"transmission.rod_linear_density", "kg/m", range::not_negative, "none: in vehicle.mass",
+                          "mass of the rod or coupler over its length: that length times this, in addition to "
+                          "vehicle.mass"},
+                         [](auto& d) -> auto& { return d.masses.rod_linear_density; }),
+      number<S, Bars>({"transmission.coupler_length",
+                       "m",
+                       range::positive,
+                       "required",
+                       "l, from crank pin to rocker pin",
+                       {},
+                       "20 mm"},
+                      [](auto& d) -> auto& { return d.transmission.coupler_length; }),
+      number<S, Bars>({"transmission.rocker_length",
+                       "m",
+                       range::positive,
+                       "required",
+                       "p, from rocker axis to rocker pin",
+                       {},
+                       "7.5 mm"},
+                      [](auto& d) -> auto& { return d.transmission.rocker_length; }),
+      number<S, Bars>({"transmission.ground_length",
+                       "m",
+                       range::positive,
+                       "required",
+                       "d, from crank axis to rocker axis",
+                       {},
+                       "20.5 mm"},
+                      [](auto& d) -> auto& { return d.transmission.ground_length; }),
+      number<S, Bars>({"transmission.swing_ratio", "1", range::positive, "1",
+                       "n_s, turning angle of the wings over that of the rocker: sector gear or string"},
+                      [](auto& d) -> auto& { return d.transmission.swing_ratio; }),
+      number<S, Bars>(
+          {"transmission.mid_angle", "rad", range::any, "middle of the rocker's swing",
+           "phi_mid, angle of the rocker from the direction crank axis to rocker axis at stroke angle zero"},
+          [](auto& d) -> auto& { return d.transmission.mid_angle; }),
+      table<S, StrokeLaw>({"transmission.stroke_table",
+                           "",
+                           {"name of a CSV file, or four or more rows within a turn, crank angles growing"},
+                           "required",
+                           "rows [crank angle, stroke angle], periodic spline of degree five, see below",
+                           {},
+                           "[[0, 0], [0.8, 0.5], [1.6, 0.7], [2.4, 0.47], [3.2, -0.04], [4.0, -0.53], [4.8, -0.69], "
+                           "[5.6, -0.44]]"}),
+      number<S, StrokeLaw>(
+          {"transmission.stroke_scale", "1", range::positive, "1", "multiplies the stroke angles of the table"},
+          [](auto& d) -> auto& { return d.transmission.table.scale; }),
+      number<S, StrokeLaw>({"transmission.reference_radius",
+                            "m",
+                            range::positive,
+                            "required",
+                            "r_ref, radius at which the wings' moment is taken up: load-proportional friction acts on "
+                            "that moment over r_ref",
+                            {},
+                            "6 mm"},
+                           [](auto& d) -> auto& { return d.transmission.table.reference_radius; }),
+      choice<S, FormulationChoice, Crank>(
+          "how the rod force turns the wings: the paper's eq (1), or conserving power exactly",
+          name_of(Formulation::virtual_work)),
+
+      choice<S, FrictionChoice>(
+          "law of the transmission's friction torque T_f on the crank or shaft; load-proportional needs a rod"),
+      friction_number<S, FrictionLaw::load_proportional>({"friction.radius",
+                                                          "m",
+                                                          range::not_negative,
+                                                          "required",
+                                                          "mu r_e, effective friction radius: T_f = mu r_e abs(F)",
+                                                          {},
+                                                          "2.5 mm"}),
+      friction_number<S, FrictionLaw::viscous>(
+          {"friction.damping", "N m s/rad", range::not_negative, "required", "b_f: T_f = b_f omega"}),
+      friction_number<S, FrictionLaw::quadratic>(
+          {"friction.coefficient", "N m s2/rad2", range::not_negative, "required", "c_f: T_f = c_f omega abs(omega)"}),
+      friction_number<S, FrictionLaw::constant>(
+          {"friction.torque", "N m", range::not_negative, "required", "T_c: T_f = T_c sign(omega)"}),
+
+      alternative<S>({"spring.stiffness",
+                      "N m/rad",
+                      range::not_negative,
+                      "required",
+                      "k, stiffness of one hinge spring, at rest at stroke angle zero",
+                      {"resonance", "resonance_ratio"}},
+                     stiffness, resonance, spring_ratio),
+      alternative<S>(
+          {"spring.resonance",
+           "Hz",
+           range::not_negative,
+           "required",
+           "f_s, resonance of one wing on its spring, k = J_w (2 pi f_s)^2; direct drive: of rotor and wings "
+           "on all springs, N_w k = (J + N_w J_w) (2 pi f_s)^2",
+           {"stiffness", "resonance_ratio"}},
+          resonance, stiffness, spring_ratio),
+      alternative<S, Direct>({"spring.resonance_ratio",
+                              "1",
+                              range::positive,
+                              "required",
+                              "frequency at which rotor and wings resonate on the springs, over the drive frequency; 1 "
+                              "tunes the springs to the supply",
+                              {"stiffness", "resonance"}},
+                             spring_ratio, stiffness, resonance),
+      number<S, WeighedSprings>({"spring.mass", "kg", range::not_negative, "none: in vehicle.mass",
+                                 "mass of one hinge spring, in addition to vehicle.mass; one for each wing"},
+                                [](auto& d) -> auto& { return d.masses.spring; }),
+
+      number<S>({"wing.count", "1", range::count, "2", "N_w, number of wings", {}, "2"},
+                [](auto& d) -> auto& { return d.wing.count; }),
+      replaceable<S>(
+          {"wing.inertia",
+           "kg m2",
+           range::positive,
+           "required",
+           "J_w, inertia of one wing about its hinge",
+           {"resonance"},
+           "7.2e-8 kg m2"},
+          [](auto& d) -> auto& { return d.wing.inertia; }, wing_resonance),
+      alternative<S, Direct>(
+          {"wing.resonance",
+           "Hz",
+           range::positive,
+           "required",
+           "frequency at which rotor and wings resonate on springs of a given stiffness: the inertia "
+           "follows, J + N_w J_w = N_w k / (2 pi f)^2",
+           {"inertia"}},
+          wing_resonance),
+      choice<S, ShapeChoice>("how the wing's outline is given", name_of(semi_ellipse)),
+      number<S, Outline>({"wing.planform.length", "m", range::positive, "required", "R, wing root to tip", {}, "63 mm"},
+                         [](auto& d) -> auto& { return d.wing.planform.length; }),
+      replaceable<S, Outline>(
+          {"wing.planform.root_chord",
+           "m",
+           range::positive,
+           "required",
+           "c_0, chord at the root",
+           {"chord_ratio"},
+           "25 mm"},
+          [](auto& d) -> auto& { return d.wing.planform.root_chord; }, chord_ratio),
+      alternative<S, Outline>({"wing.planform.chord_ratio",
+                               "1",
+                               range::positive,
+                               "required",
+                               "c_0 / R, chord at the root over the length: it follows when the length changes",
+                               {"root_chord"}},
+                              chord_ratio),
+      number<S, FromRoot>(
+          {"wing.planform.hub_offset", "m", range::not_negative, "0 m", "distance from the hinge to the wing root"},
+          [](auto& d) -> auto& { return d.wing.planform.hub_offset; }),
+      table<S, Tabulated>({"wing.planform.file",
+                           "",
+                           {"name of a CSV file"},
+                           "required",
+                           "chord table: columns distance (from the root) and chord, see below",
+                           {"chords"}}),
+      table<S, Tabulated>({"wing.planform.chords",
+                           "",
+                           {"two or more rows, distances growing, chords >= 0"},
+                           "required",
+                           "chord table in place: rows [distance from the root, chord], linear between",
+                           {"file"}}),
+      number<S, Moments>(
+          {"wing.planform.s2", "m4", range::not_negative, "required", "S_2 = N_w integral c r^2 dr of all wings"},
+          [](auto& d) -> auto& { return d.wing.planform.s2; }),
+      number<S, Moments>(
+          {"wing.planform.s3", "m5", range::not_negative, "required", "S_3 = N_w integral c r^3 dr of all wings"},
+          [](auto& d) -> auto& { return d.wing.planform.s3; }),
+
+      number<S>(
+          {"aerodynamics.air_density", "kg/m3", range::not_negative, "required", "rho, air density", {}, "1.225 kg/m3"},
+          [](auto& d) -> auto& { return d.aerodynamics.air_density; }),
+      number<S>({"aerodynamics.pitch_coefficient",
+                 "s",
+                 range::not_negative,
+                 "required",
+                 "C_alpha, passive pitching: alpha = pi/2 - C_alpha abs(beta')",
+                 {},
+                 "5 ms"},
+                [](auto& d) -> auto& { return d.aerodynamics.pitch_coefficient; }),
+      number<S>({"aerodynamics.angle_of_attack_min", "rad", range::zero_to_acute, "none",
+                 "stop of the passive pitching: alpha falls no lower"},
+                [](auto& d) -> auto& { return d.aerodynamics.angle_of_attack_min; }),
+      text<S>({"aerodynamics.coefficients",
+               "",
+               {"translational-2022, or a table of the keys below"},
+               "translational-2022",
+               "lift and drag coefficient against angle of attack, eqs (12, 13)",
+               {},
+               "translational-2022"},
+              [](const D& d) {
+                const std::string& name = d.aerodynamics.coefficients_name;
+                return name == "custom" || d.aerodynamics.coefficients.table ? std::string() : name;
+              }),
+      wave_number<S>({"aerodynamics.coefficients.lift.offset", "1", range::any,
+                      "required unless coefficients is a name", "A of C_L = A + B sin(C alpha + D)"},
+                     [](auto& c) -> auto& { return c.lift.offset; }),
+      wave_number<S>({"aerodynamics.coefficients.lift.amplitude", "1", range::any,
+                      "required unless coefficients is a name", "B of C_L = A + B sin(C alpha + D)"},
+                     [](auto& c) -> auto& { return c.lift.amplitude; }),
+      wave_number<S>({"aerodynamics.coefficients.lift.rate", "1", range::any, "required unless coefficients is a name",
+                      "C of C_L = A + B sin(C alpha + D)"},
+                     [](auto& c) -> auto& { return c.lift.rate; }),
+      wave_number<S>({"aerodynamics.coefficients.lift.phase", "rad", range::any,
+                      "required unless coefficients is a name", "D of C_L = A + B sin(C alpha + D)"},
+                     [](auto& c) -> auto& { return c.lift.phase; }),
+      wave_number<S>({"aerodynamics.coefficients.drag.offset", "1", range::any,
+                      "required unless coefficients is a name", "A of C_D = A + B cos(C alpha + D)"},
+                     [](auto& c) -> auto& { return c.drag.offset; }),
+      wave_number<S>({"aerodynamics.coefficients.drag.amplitude", "1", range::any,
+                      "required unless coefficients is a name", "B of C_D = A + B cos(C alpha + D)"},
+                     [](auto& c) -> auto& { return c.drag.amplitude; }),
+      wave_number<S>({"aerodynamics.coefficients.drag.rate", "1", range::any, "required unless coefficients is a name",
+                      "C of C_D = A + B cos(C alpha + D)"},
+                     [](auto& c) -> auto& { return c.drag.rate; }),
+      wave_number<S>({"aerodynamics.coefficients.drag.phase", "rad", range::any,
+                      "required unless coefficients is a name", "D of C_D = A + B cos(C alpha + D)"},
+                     [](auto& c) -> auto& { return c.drag.phase; }),
+      table<S>({"aerodynamics.coefficients.table",
+                "",
+                {"name of a CSV file, or three or more rows, angles growing"},
+                "none",
+                "instead of lift and drag: rows [angle of attack, C_L, C_D], natural cubic splines, see below",
+                {"lift", "drag"}}),
+
+      number<S>({"bench.torque_constant", "N m/A", range::positive, "none",
+                 "K_ref of a test bench, eq (17); enables power_motor_reference_w"},
+                [](auto& d) -> auto& { return d.bench_torque_constant; }),
+  };
+  return parameters;
+}
+
+}  // namespace wingbeat
