@@ -62,6 +62,18 @@ TEST(Accuracy, OrbitsKeepTheToleranceInWideBoxes) {
   }
 }
 
+// A stored moment that dips below zero and back between two stages of a step: the reactive power was 14 times the
+// tolerance off.
+TEST(Accuracy, ShortDipsOfASwitchAreSeen) {
+  std::mt19937_64 random(1);
+  Vehicle<double> vehicle;
+  for (int n = 0; n <= 424; ++n) vehicle = next_vehicle(WideBox::strong_springs, random);
+  const SteadyFlapping found = find_steady_flapping(vehicle),
+                       exact = find_steady_flapping(vehicle, {.tolerance = 1e-12});
+  ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+  EXPECT_LE(metrics_apart(found.metrics, exact.metrics), 1e-6);
+}
+
 TEST(Accuracy, HeavyRotorsKeepTheTolerance) {
   // A lap that closes to the tolerance leaves 1 / (1 - multiplier) = 500 times as much in the orbit.
   Vehicle<double> vehicle = reference_vehicle();

@@ -365,29 +365,63 @@ class LapDriver {
 
   /// Looks for a switch that changes sign and back within a step; if there is one, shortens the step to end in between.
   bool crossed_twice(double& step, StepResult<System>& result, Rates<System>& last, std::size_t ended_on) {
-    bool suspected = false;
+    if (step < 4.0 * position_tolerance_) return false;
+    bool seen = false;
     for (std::size_t k = 0; k < located_; ++k) {
-      suspected = suspected || (k != ended_on && result.lowest[k] < -1e-6 * switch_scale_[k]);
+      seen = seen || (k != ended_on && result.lowest[k] < -1e-6 * switch_scale_[k]);
     }
-    if (!suspected || step < 4.0 * position_tolerance_) return false;
-    for (const double t : {0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875, 0.9375}) {
-      const State y = hermite<System>(y_, first_.dy, result.y, last.dy, step, t);
-      const Rates<System> inside = system_.template rates<false>(x_ + t * step, y, signs_);
-      for (std::size_t k = 0; k < located_; ++k) {
-        if (k == ended_on || inside.switches[k] * signs_[k] >= -1e-6 * switch_scale_[k]) continue;
-        const double shorter = t * step;
-        const StepResult<System> again =
-            take_step<quadratures>(options_.method, system_, x_, y_, shorter, signs_, first_);
-        if (!again.admissible) return false;
-        const Rates<System> at = system_.template rates<quadratures>(x_ + shorter, again.y, signs_);
-        if (at.switches[k] * signs_[k] >= 0.0) continue;
-        step = shorter;
-        result = again;
-        last = at;
-        return true;
+    if (seen) {
+      for (const double t : {0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875, 0.9375}) {
+        if (ends_between(t, step, result, last, ended_on)) return true;
       }
+      return false;
+    }
+    // A short dip may lie between two stages: none sees more than that the switch comes near zero.
+    for (std::size_t k = 0; k < located_; ++k) {
+      const double ends = std::min(first_.switches[k] * signs_[k], last.switches[k] * signs_[k]);
+      const bool comes_near = result.lowest[k] < std::min(0.05 * switch_scale_[k], 0.8 * ends);
+      if (k == ended_on || !comes_near) continue;
+      if (ends_between(lowest_within(k, step, result, last), step, result, last, ended_on)) return true;
     }
     return false;
+  }
+
+  /// If some switch has the wrong sign at the part t of a step, and at the end of a step that ends there, takes that.
+  bool ends_between(double t, double& step, StepResult<System>& result, Rates<System>& last, std::size_t ended_on) {
+    const State y = hermite<System>(y_, first_.dy, result.y, last.dy, step, t);
+    const Rates<System> inside = system_.template rates<false>(x_ + t * step, y, signs_);
+    for (std::size_t k = 0; k < located_; ++k) {
+      if (k == ended_on || inside.switches[k] * signs_[k] >= -1e-6 * switch_scale_[k]) continue;
+      const double shorter = t * step;
+      const StepResult<System> again =
+          take_step<quadratures>(options_.method, system_, x_, y_, shorter, signs_, first_);
+      if (!again.admissible) return false;
+      const Rates<System> at = system_.template rates<quadratures>(x_ + shorter, again.y, signs_);
+      if (at.switches[k] * signs_[k] >= 0.0) continue;
+      step = shorter;
+      result = again;
+      last = at;
+      return true;
+    }
+    return false;
+  }
+
+  /// Part of a step at which switch k is lowest, or low enough to count, by golden sections.
+  double lowest_within(std::size_t k, double step, const StepResult<System>& result, const Rates<System>& last) {
+    constexpr double golden = 0.6180339887498949;
+    const auto value = [&](double t) {
+      const State y = hermite<System>(y_, first_.dy, result.y, last.dy, step, t);
+      return system_.template rates<false>(x_ + t * step, y, signs_).switches[k] * signs_[k];
+    };
+    double a = 0.0, b = 1.0, t1 = 1.0 - golden, t2 = golden, f1 = value(t1), f2 = value(t2);
+    while (b - a > 1e-3 && std::min(f1, f2) >= -1e-6 * switch_scale_[k]) {
+      if (f1 < f2) {
+        b = t2, t2 = t1, f2 = f1, t1 = b - golden * (b - a), f1 = value(t1);
+      } else {
+        a = t1, t1 = t2, f1 = f2, t2 = a + golden * (b - a), f2 = value(t2);
+      }
+    }
+    return f1 < f2 ? t1 : t2;
   }
 
   /// Shortens the step to end where switch k changes sign; false if that is at its very start.
