@@ -19,21 +19,15 @@ constexpr Integral quadratures[] = {Integral::current,         Integral::current
                                     Integral::rod_force};
 constexpr int quadrature_count = int(std::size(quadratures));
 
-/// Largest deviation of a metric of `m` from that of `other`, relative to it, or to what its errors are a part of where
-/// it may vanish: the angle of attack to 90 degrees, the residual power to the input, the mean lift to a thousandth of
-/// its peak, the mean current of a direct drive, which alternates, to its peak.
+/// Largest deviation of a metric of `m` from that of `other` beside its error_scale(). A metric that is absent counts
+/// as equal.
 inline double metrics_apart(const Metrics<double>& m, const Metrics<double>& other) {
   double largest = 0.0;
   for (int n = 0; n < metric_count; ++n) {
     const Metric which = Metric(n);
     // The last one repeats the mean lift.
     if (which == Metric::floquet_multiplier_max || which == Metric::lift_to_weight) continue;
-    double size = std::abs(other[which]);
-    if (which == Metric::angle_of_attack_min) size = std::max(size, 90.0);
-    if (which == Metric::power_residual) size = std::max(size, std::abs(other[Metric::power_electrical]));
-    if (which == Metric::lift_mean) size = std::max(size, 1e-3 * other[Metric::lift_peak]);
-    if (which == Metric::current_mean && std::isnan(other[Metric::rod_force_mean])) size = other[Metric::current_peak];
-    const double off = std::abs(m[which] - other[which]);
+    const double off = std::abs(m[which] - other[which]), size = error_scale(other, which);
     if (off > largest * size) largest = off / size;
   }
   return largest;
