@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "time/model_problem.hpp"
+
 namespace wingbeat::detail {
 namespace {
 
@@ -90,20 +92,11 @@ void CrankStartUp::root_values(double t, const double* y, double* values, bool m
   values[root_dead_centre] = indicators[CrankModel::dead_centre];
 }
 
-void CrankStartUp::tolerated(const double* y, double* errors, bool measuring) const {
-  model_.tolerated(relative_tolerance_, y, errors);
-  if (!measuring) return;
-  for (int k = 0; k < quadrature_count; ++k) {
-    errors[model_.coupled + k] = relative_tolerance_ * (std::abs(y[model_.coupled + k]) + 0.01 * quadrature_scale_[k]);
-  }
-}
-
 std::unique_ptr<Integrator> CrankStartUp::integrator(bool measuring) {
-  IntegratorProblem p;
-  p.size = model_.coupled + (measuring ? quadrature_count : 0);
-  p.coupled = model_.coupled;
-  p.roots = measuring ? int(root_measuring_count) : int(root_plain_count);
+  IntegratorProblem p = measuring ? problem_with_quadratures(model_, relative_tolerance_, quadrature_scale_)
+                                  : problem_of(model_, relative_tolerance_);
   p.stiff = stiff_;
+  p.roots = measuring ? int(root_measuring_count) : int(root_plain_count);
   p.rates = [this, measuring](double t, const double* y, double* dy) {
     ++result_.rate_evaluations;
     return model_.rates(t, y, dy, measuring);
@@ -111,9 +104,6 @@ std::unique_ptr<Integrator> CrankStartUp::integrator(bool measuring) {
   p.root_functions = [this, measuring](double t, const double* y, double* values) {
     root_values(t, y, values, measuring);
   };
-  p.tolerated = [this, measuring](const double* y, double* errors) { tolerated(y, errors, measuring); };
-  p.longest_step = 0.25 * model_.time_scale;
-  p.typical = {0.1, model_.speed_scale, model_.current_scale};
   return make_integrator(options_.integrator, std::move(p));
 }
 

@@ -27,7 +27,6 @@ class CrankStartUp {
 
   // What the integrator asks for.
   void root_values(double t, const double* y, double* values, bool measuring);
-  void tolerated(const double* y, double* errors, bool measuring) const;
   std::unique_ptr<Integrator> integrator(bool measuring);
 
   // The course of events.
