@@ -34,6 +34,7 @@ class CrankStartUp {
   void slide();
   void stand();
   bool stick(double low, double high);
+  double standing_current(double at) const;
   void relax(double until);
   void step_taken(Integrator& steps, double from);
   void track_inrush(Integrator& steps, double from);
