@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "wingbeat/core/root.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
 
 namespace wingbeat {
@@ -43,12 +44,8 @@ DirectBalance direct_balance(const Vehicle<double>& v) {
   for (int n = 0; n < speeds && fastest > 0.0; ++n) {
     const double low = high * ratio, at_low = surplus(low);
     if (at_low >= 0.0 && at_high < 0.0) {
-      double a = low, b = high;
-      for (int k = 0; k < 60; ++k) {
-        const double mid = 0.5 * (a + b);
-        (surplus(mid) >= 0.0 ? a : b) = mid;
-      }
-      const Complex speed = K * V / (electrical * impedance(a));
+      const double equal = bisect([&](double speed) { return surplus(speed) >= 0.0; }, low, high).before;
+      const Complex speed = K * V / (electrical * impedance(equal));
       balance.responses.insert(balance.responses.begin(), {speed / (j * w), speed, (V - K * speed) / electrical});
     }
     high = low;

@@ -1,5 +1,8 @@
 #include "wingbeat/cycle/metrics.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace wingbeat {
 
 const std::array<MetricInfo, metric_count>& metric_table() {
@@ -43,6 +46,20 @@ int metric_index(std::string_view key) {
     if (key == table[std::size_t(m)].key) return m;
   }
   return metric_count;
+}
+
+double error_scale(const Metrics<double>& metrics, Metric which) {
+  const double size = std::abs(metrics[which]);
+  switch (which) {
+    case Metric::angle_of_attack_min: return std::max(size, 90.0);
+    case Metric::power_residual: return std::max(size, std::abs(metrics[Metric::power_electrical]));
+    case Metric::lift_mean: return std::max(size, 1e-3 * metrics[Metric::lift_peak]);
+    case Metric::lift_to_weight:
+      return std::max(size, 1e-3 * metrics[Metric::lift_peak] * std::abs(metrics[which] / metrics[Metric::lift_mean]));
+    case Metric::current_mean:
+      return std::isnan(metrics[Metric::rod_force_mean]) ? std::max(size, metrics[Metric::current_peak]) : size;
+    default: return size;
+  }
 }
 
 }  // namespace wingbeat

@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "wingbeat/core/minimise.hpp"
+#include "wingbeat/core/root.hpp"
+
 namespace wingbeat {
 namespace {
 
@@ -30,21 +33,6 @@ CrankKinematics<double> kinematics_at(const Vehicle<double>& v, double theta) {
   return crank_kinematics(v.transmission, std::sin(theta), std::cos(theta));
 }
 
-/// Golden-section minimum of f on [a, b].
-template <class F>
-std::pair<double, double> minimise(const F& f, double a, double b) {
-  constexpr double golden = 0.6180339887498949;
-  double x1 = b - golden * (b - a), x2 = a + golden * (b - a), f1 = f(x1), f2 = f(x2);
-  while (b - a > 1e-9) {
-    if (f1 < f2) {
-      b = x2, x2 = x1, f2 = f1, x1 = b - golden * (b - a), f1 = f(x1);
-    } else {
-      a = x1, x1 = x2, f1 = f2, x2 = a + golden * (b - a), f2 = f(x2);
-    }
-  }
-  return f1 < f2 ? std::pair{x1, f1} : std::pair{x2, f2};
-}
-
 /// Least value over the circle from samples, refined around the least sample where `refine` says it matters.
 template <class F>
 std::pair<double, double> least_on_circle(const F& f, const std::array<double, angle_count>& samples, double refine) {
@@ -52,20 +40,8 @@ std::pair<double, double> least_on_circle(const F& f, const std::array<double, a
   const double angle = unit_circle().angle[n];
   if (samples[n] > refine) return {angle, samples[n]};
   const double step = two_pi / angle_count;
-  const auto refined = minimise(f, angle - step, angle + step);
-  return refined.second < samples[n] ? std::pair{wrap_angle(refined.first), refined.second}
-                                     : std::pair{angle, samples[n]};
-}
-
-/// Zero of f between a and b, f(a) and f(b) of different sign.
-template <class F>
-double bisect(const F& f, double a, double b) {
-  const bool positive = f(a) > 0.0;
-  for (int n = 0; n < 60; ++n) {
-    const double mid = 0.5 * (a + b);
-    (f(mid) > 0.0) == positive ? a = mid : b = mid;
-  }
-  return 0.5 * (a + b);
+  const Minimum refined = minimise(f, angle - step, angle + step, 1e-9);
+  return refined.value < samples[n] ? std::pair{wrap_angle(refined.at), refined.value} : std::pair{angle, samples[n]};
 }
 
 }  // namespace
@@ -129,18 +105,18 @@ std::vector<LockInterval> lock_intervals(const Vehicle<double>& v) {
       // sign.
       const auto net = [&](double x) { return advance_torque(v, x); };
       if ((net(before) > 0.0) != (net(angle) > 0.0)) {
-        const double edge = bisect(net, before, angle);
+        const double edge = sign_change(net, before, angle);
         if (margin(edge) > -1e-9 * stall_torque(v)) {
           found.push_back({edge, edge, wrap_angle(edge), std::max(0.0, margin(edge))});
         }
       }
     } else if (!is_open && at >= 0.0) {
-      open = {bisect(margin, before, angle), angle, angle, at};
+      open = {sign_change(margin, before, angle), angle, angle, at};
       is_open = true;
     } else if (is_open && at >= 0.0) {
       if (at > open.margin) open.angle = angle, open.margin = at;
     } else if (is_open) {
-      open.to = bisect(margin, before, angle);
+      open.to = sign_change(margin, before, angle);
       if (open.from >= two_pi) open.from -= two_pi, open.to -= two_pi;
       open.angle = wrap_angle(open.angle);
       found.push_back(open);

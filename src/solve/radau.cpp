@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "wingbeat/core/root.hpp"
 #include "wingbeat/solve/implicit_step.hpp"
 
 namespace wingbeat::solver {
@@ -33,14 +34,9 @@ RadauTableau make_tableau() {
   int found = 0;
   constexpr int samples = 1000;
   for (int n = 0; n < samples && found < s - 1; ++n) {
-    long double a = (long double)(n) / samples, b = (long double)(n + 1) / samples;
+    const long double a = (long double)(n) / samples, b = (long double)(n + 1) / samples;
     if (n + 1 == samples || (node_function(a) > 0) == (node_function(b) > 0)) continue;
-    const bool positive = node_function(a) > 0;
-    for (int k = 0; k < 80; ++k) {
-      const long double mid = 0.5L * (a + b);
-      ((node_function(mid) > 0) == positive ? a : b) = mid;
-    }
-    c[found++] = 0.5L * (a + b);
+    c[found++] = sign_change(node_function, a, b);
   }
   c[s - 1] = 1.0L;
 

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "wingbeat/core/math.hpp"
+#include "wingbeat/core/root.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/study/run.hpp"
 
@@ -123,16 +124,6 @@ class Flight {
     return charges;
   }
 
-  /// The lowest charge at which `holds`, which it does at `above` and not at `below`.
-  template <class Holds>
-  double edge(double above, double below, const Holds& holds) const {
-    while (true) {
-      const double middle = 0.5 * (above + below);
-      if (!(middle < above && middle > below)) return above;
-      (holds(middle) ? above : below) = middle;
-    }
-  }
-
   double last_charge() {
     const std::vector<double> charges = grid(0.0);
     for (std::size_t n = 0; n < charges.size(); ++n) {
@@ -142,14 +133,9 @@ class Flight {
         result_.end = EnduranceEnd::cutoff;
         return charges[0];
       }
-      double below = charges[n];
-      const double last = edge(charges[n - 1], below, [&](double c) {
-        const bool flying = flies(c);
-        if (!flying) below = c;
-        return flying;
-      });
-      result_.end = at(below).flaps ? EnduranceEnd::cutoff : EnduranceEnd::stops;
-      return last;
+      const auto edge = bisect([&](double c) { return flies(c); }, charges[n - 1], charges[n]);
+      result_.end = at(edge.after).flaps ? EnduranceEnd::cutoff : EnduranceEnd::stops;
+      return edge.before;
     }
     result_.end = EnduranceEnd::empty;
     return 0.0;
@@ -170,7 +156,7 @@ class Flight {
     for (std::size_t n = 1; n < charges.size(); ++n) {
       if (hovers(charges[n])) continue;
       result_.hover = Hover::lost;
-      return edge(charges[n - 1], charges[n], hovers);
+      return bisect(hovers, charges[n - 1], charges[n]).before;
     }
     return std::nullopt;
   }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "study/voltage_trials.hpp"
+
 namespace wingbeat {
 namespace {
 
@@ -25,10 +27,7 @@ struct Search {
 };
 
 Search begin(const Vehicle<double>& v, std::size_t member, double frequency) {
-  const Motor<double>& m = v.motor;
-  const double omega = two_pi * frequency;
-  const double unloaded = m.torque_constant * omega +
-                          circuit_resistance(v) * (m.viscous_damping * omega + m.friction_torque) / m.torque_constant;
+  const double unloaded = detail::unloaded_voltage(v, two_pi * frequency, v.motor.friction_torque);
   Search s;
   s.member = member;
   s.target = frequency;

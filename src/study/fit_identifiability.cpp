@@ -2,11 +2,12 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <functional>
 #include <limits>
+
+#include "wingbeat/study/distribution.hpp"
 
 namespace wingbeat {
 namespace {
@@ -56,7 +57,7 @@ FitFinding direction_finding(FitFinding::Kind kind, const std::vector<FreeParame
 }  // namespace
 
 double quantile_95(const BenchFitter& fitter, int freedom) {
-  if (!fitter.has_estimates()) return boost::math::quantile(boost::math::normal(), 0.975);
+  if (!fitter.has_estimates()) return normal_quantile(0.975);
   return boost::math::quantile(boost::math::students_t(std::max(freedom, 3)), 0.975);
 }
 

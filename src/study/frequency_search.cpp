@@ -206,9 +206,7 @@ FrequencySearch find_voltage_for_frequency(const Vehicle<double>& vehicle, doubl
                                            const SteadyOptions& options, const StartUp& start_up, SearchRange range) {
   require(frequency > 0.0 && std::isfinite(frequency), "frequency", "must be > 0 and finite", "Hz", frequency);
   if (frequency > highest_frequency(vehicle, range)) return refuse_frequency(vehicle, frequency, range);
-  const Motor<double>& m = vehicle.motor;
-  const double K = m.torque_constant, omega = two_pi * frequency;
-  const double unloaded = K * omega + circuit_resistance(vehicle) * (m.viscous_damping * omega + m.friction_torque) / K;
+  const double unloaded = detail::unloaded_voltage(vehicle, two_pi * frequency, vehicle.motor.friction_torque);
   return Search(VoltageTrials(vehicle, options, start_up, range, false), frequency).run(unloaded);
 }
 

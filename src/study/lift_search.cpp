@@ -5,6 +5,7 @@
 #include <string>
 
 #include "study/voltage_trials.hpp"
+#include "wingbeat/core/root.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
 
@@ -25,6 +26,8 @@ constexpr double max_table_step_deg = 10.0;
 constexpr double max_misfit = 0.02;
 /// Intervals narrower than this, in ln v, are edges or jumps.
 constexpr double narrowest = 1e-5;
+/// To which a cubic's zero is found, as a share of its interval.
+constexpr double cubic_width = 0x1p-50;
 
 double log_width(const VoltageTrial& a, const VoltageTrial& b) { return std::log(b.voltage / a.voltage); }
 
@@ -74,14 +77,7 @@ class LiftTrace {
           std::max(slope, std::abs(crank_kinematics(v.transmission, std::sin(theta), std::cos(theta)).stroke_slope));
     }
     const double omega = std::sqrt(2.0 * target_ / (v.wings.air_density * v.wings.s2 * most)) / slope;
-    return unloaded_voltage(omega);
-  }
-
-  /// Turns the motor without load [V].
-  double unloaded_voltage(double omega) const {
-    const Vehicle<double>& v = trials_.vehicle();
-    const double K = v.motor.torque_constant;
-    return K * omega + circuit_resistance(v) * (v.motor.viscous_damping * omega + breakaway_torque(v)) / K;
+    return detail::unloaded_voltage(v, omega, breakaway_torque(v));
   }
 
   /// Well above what any lift in the range takes, and what starts the crank from any angle.
@@ -89,7 +85,9 @@ class LiftTrace {
     const Vehicle<double>& v = trials_.vehicle();
     double most = std::max(frequency_search_span * guess, 10.0 * where_.nominal);
     const double fastest = highest_frequency(v, where_.range);
-    if (std::isfinite(fastest)) most = std::max(most, 10.0 * unloaded_voltage(two_pi * fastest));
+    if (std::isfinite(fastest)) {
+      most = std::max(most, 10.0 * detail::unloaded_voltage(v, two_pi * fastest, breakaway_torque(v)));
+    }
     if (drive_of(v).rotates) {
       const StaticBalance balance = static_balance(v);
       const double start =
@@ -197,7 +195,7 @@ class LiftTrace {
     VoltageTrial s = a;
     for (int n = 0; n < 30; ++n) {
       const Hermite lift = cubic(a, b);
-      double t = detail::zero_between([&](double x) { return lift.slope(x); });
+      double t = sign_change([&](double x) { return lift.slope(x); }, 0.0, 1.0, cubic_width);
       if (n % 4 == 3) t = 0.5;
       s = between(a, b, std::clamp(t, 1e-3, 1.0 - 1e-3));
       if (!s.flaps) break;
@@ -239,7 +237,7 @@ class LiftTrace {
         return std::nullopt;
       }
       const Hermite lift = cubic(a, b);
-      double x = detail::zero_between([&](double s) { return lift.value(s) - target_; });
+      double x = sign_change([&](double s) { return lift.value(s) - target_; }, 0.0, 1.0, cubic_width);
       if (n % 4 == 3) x = 0.5;
       x = std::clamp(x, 1e-6, 1.0 - 1e-6);
       double v = a.voltage * std::exp(x * width);

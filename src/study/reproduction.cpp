@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "wingbeat/core/root.hpp"
 #include "wingbeat/study/ensemble_frequency.hpp"
 #include "wingbeat/study/trend.hpp"
 
@@ -207,12 +208,10 @@ CalibratedLaw calibrate_friction(Design<double> design, FrictionLaw law, double 
     high *= 2.0;
   }
   // What does not flap counts as too slow, so a plain bisection it is.
-  while (high - low > 1e-10 * high) {
-    const double mid = 0.5 * (low + high);
-    (flapping_at(mid) > frequency ? low : high) = mid;
-  }
-  result.coefficient = low;
-  result.frequency = flapping_at(low);
+  const auto too_fast = [&](double coefficient) { return flapping_at(coefficient) > frequency; };
+  const auto narrow = [](const Bracket<double>& b) { return b.after - b.before <= 1e-10 * b.after; };
+  result.coefficient = bisect(too_fast, low, high, narrow).before;
+  result.frequency = flapping_at(result.coefficient);
   result.calibrated = std::abs(result.frequency / frequency - 1.0) < 1e-8;
   return result;
 }

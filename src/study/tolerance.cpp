@@ -224,7 +224,7 @@ Sweep tolerance_sweep(const ToleranceStudy& study) {
 
 Probability probability_of(std::uint64_t count, std::uint64_t of) {
   // Wilson, JASA 22, 1927.
-  constexpr double z = 1.959963984540054;
+  static const double z = normal_quantile(0.975);
   const double n = double(of), p = double(count) / n;
   const double middle = p + z * z / (2.0 * n), half = z * std::sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n));
   const double scale = 1.0 / (1.0 + z * z / n);

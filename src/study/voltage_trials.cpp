@@ -62,6 +62,11 @@ VoltageTrial VoltageTrials::at(double voltage) {
   return trial;
 }
 
+double unloaded_voltage(const Vehicle<double>& v, double omega, double friction_torque) {
+  const double K = v.motor.torque_constant;
+  return K * omega + circuit_resistance(v) * (v.motor.viscous_damping * omega + friction_torque) / K;
+}
+
 std::string describe_below(const VoltageTrial& below) {
   return format("; below, it is %s (%s)", name_of(below.status), below.detail.c_str());
 }

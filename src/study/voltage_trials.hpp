@@ -54,6 +54,9 @@ class VoltageTrials {
   int count_ = 0;
 };
 
+/// Turns the motor at omega [rad/s] against constant friction [N m] and its own damping alone [V].
+double unloaded_voltage(const Vehicle<double>& vehicle, double omega, double friction_torque);
+
 /// "; below, it is locked (rests at ...)".
 std::string describe_below(const VoltageTrial& below);
 
@@ -67,17 +70,5 @@ struct Hermite {
     return d0 + t * (2.0 * (3.0 * (y1 - y0) - 2.0 * d0 - d1) + t * 3.0 * (2.0 * (y0 - y1) + d0 + d1));
   }
 };
-
-/// A zero of f between 0 and 1, where f changes sign.
-template <class F>
-double zero_between(const F& f) {
-  double a = 0.0, b = 1.0;
-  const bool positive = f(a) > 0.0;
-  for (int n = 0; n < 50; ++n) {
-    const double mid = 0.5 * (a + b);
-    (f(mid) > 0.0) == positive ? a = mid : b = mid;
-  }
-  return 0.5 * (a + b);
-}
 
 }  // namespace wingbeat::detail

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "time/transient_tools.hpp"
+#include "wingbeat/core/minimise.hpp"
+#include "wingbeat/core/root.hpp"
 
 namespace wingbeat::detail {
 namespace {
@@ -146,22 +148,19 @@ void CrankModel::find_jams() {
   double margin[count];
   for (int k = 0; k < count; ++k) margin[k] = uniqueness(now.theta + k * spacing);
   const auto at = [&](int k) { return margin[((k % count) + count) % count]; };
-  const auto bisect = [&](double free, double jammed) {
-    for (int k = 0; k < 60; ++k) {
-      const double mid = 0.5 * (free + jammed);
-      (uniqueness(mid) > smallest_margin ? free : jammed) = mid;
-    }
-    return jammed;
-  };
+  const auto unique = [&](double theta) { return uniqueness(theta) > smallest_margin; };
   const auto first = [&](int direction) {
     for (int k = 0; k <= count; ++k) {
       const double here = now.theta + direction * k * spacing;
-      if (at(direction * k) <= smallest_margin) return k == 0 ? here : bisect(here - direction * spacing, here);
+      if (at(direction * k) <= smallest_margin) {
+        return k == 0 ? here : bisect(unique, here - direction * spacing, here).after;
+      }
       // A narrow window of jam may hide between two samples.
       const double before = at(direction * (k - 1)), after = at(direction * (k + 1));
       if (at(direction * k) <= std::min(before, after) && at(direction * k) < 0.2) {
-        const auto [where, least] = maximum([&](double x) { return -uniqueness(x); }, here - spacing, here + spacing);
-        if (-least <= smallest_margin) return bisect(here - direction * spacing, where);
+        const Minimum least =
+            minimise([&](double x) { return uniqueness(x); }, here - spacing, here + spacing, 2e-7 * spacing);
+        if (least.value <= smallest_margin) return bisect(unique, here - direction * spacing, least.at).after;
       }
     }
     return direction * infinity;

@@ -4,10 +4,11 @@
 #include <cmath>
 #include <utility>
 
+#include "time/model_problem.hpp"
+#include "wingbeat/core/root.hpp"
+
 namespace wingbeat::detail {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 enum Root { root_force, root_standstill, root_lap, root_jam, root_plain_count };
 enum { root_stored_moment = root_plain_count, root_reversal, root_measuring_count };
@@ -90,20 +91,11 @@ void CrankStartUp::root_values(double t, const double* y, double* values, bool m
   values[root_reversal] = indicators[CrankModel::reversal];
 }
 
-void CrankStartUp::tolerated(const double* y, double* errors, bool measuring) const {
-  model_.tolerated(relative_tolerance_, y, errors);
-  if (!measuring) return;
-  for (int k = 0; k < quadrature_count; ++k) {
-    errors[model_.coupled + k] = relative_tolerance_ * (std::abs(y[model_.coupled + k]) + 0.01 * quadrature_scale_[k]);
-  }
-}
-
 std::unique_ptr<Integrator> CrankStartUp::integrator(bool measuring) {
-  IntegratorProblem p;
-  p.size = model_.coupled + (measuring ? quadrature_count : 0);
-  p.coupled = model_.coupled;
-  p.roots = measuring ? int(root_measuring_count) : int(root_plain_count);
+  IntegratorProblem p = measuring ? problem_with_quadratures(model_, relative_tolerance_, quadrature_scale_)
+                                  : problem_of(model_, relative_tolerance_);
   p.stiff = stiff_;
+  p.roots = measuring ? int(root_measuring_count) : int(root_plain_count);
   p.rates = [this, measuring](double t, const double* y, double* dy) {
     ++result_.rate_evaluations;
     return model_.rates(t, y, dy, measuring);
@@ -111,9 +103,6 @@ std::unique_ptr<Integrator> CrankStartUp::integrator(bool measuring) {
   p.root_functions = [this, measuring](double t, const double* y, double* values) {
     root_values(t, y, values, measuring);
   };
-  p.tolerated = [this, measuring](const double* y, double* errors) { tolerated(y, errors, measuring); };
-  p.longest_step = 0.25 * model_.time_scale;
-  p.typical = {0.1, model_.speed_scale, model_.current_scale};
   return make_integrator(options_.integrator, std::move(p));
 }
 
@@ -210,19 +199,15 @@ bool CrankStartUp::stick(double low, double high) {
         rest(now_.theta, true);
         return false;
       }
-      const double before_t = now_.t, before_i = now_.i;
-      relax(std::min(end_time_, now_.t + period / 64.0));
-      if (inside(now_.i)) continue;
-      double a = before_t, b = now_.t;
-      for (int k = 0; k < 60; ++k) {
-        const double mid = 0.5 * (a + b);
-        now_.t = before_t;
-        now_.i = before_i;
-        relax(mid);
-        (inside(now_.i) ? a : b) = mid;
+      const double piece_end = std::min(end_time_, now_.t + period / 64.0);
+      const auto held_at = [&](double t) { return inside(standing_current(t)); };
+      if (held_at(piece_end)) {
+        relax(piece_end);
+        continue;
       }
+      relax(bisect(held_at, now_.t, piece_end).after);
       now_.branch.direction = now_.i > high ? 1.0 : -1.0;
-      if (!inside(now_.i)) now_.i = now_.i > high ? high : low;
+      now_.i = now_.i > high ? high : low;
       return true;
     }
     const double limit = now_.switched_voltage / R;
@@ -243,20 +228,22 @@ bool CrankStartUp::stick(double low, double high) {
   return false;
 }
 
-/// Lets the current of the standing motor run on to the time `until`, before any switching of the supply.
-void CrankStartUp::relax(double until) {
-  const Motor<double>& m = model_.vehicle.motor;
+/// Of the motor that stands since now_ [A], before any switching of the supply.
+double CrankStartUp::standing_current(double at) const {
   const double R = circuit_resistance(model_.vehicle);
-  const double tau = m.armature_inductance / R;
-  const double start = now_.t, i_0 = now_.i, span = until - start;
+  const double tau = model_.vehicle.motor.armature_inductance / R;
   const auto forced = [&](double t) {
     if (model_.supply.type != SupplyType::sine) return now_.switched_voltage / R;
     const double angular = two_pi * model_.supply.frequency, lag = std::atan(angular * tau);
     return model_.supply.voltage / R * std::cos(lag) * std::sin(angular * t - lag);
   };
-  const auto current = [&](double t) {
-    return model_.inductive ? forced(t) + (i_0 - forced(start)) * std::exp(-(t - start) / tau) : forced(t);
-  };
+  return model_.inductive ? forced(at) + (now_.i - forced(now_.t)) * std::exp(-(at - now_.t) / tau) : forced(at);
+}
+
+/// Lets the current of the standing motor run on to the time `until`, before any switching of the supply.
+void CrankStartUp::relax(double until) {
+  const double start = now_.t, i_0 = now_.i, span = until - start;
+  const auto current = [&](double t) { return standing_current(t); };
   if (measuring_ && span > 0.0) {
     const double force = std::abs(model_.static_force(model_.kinematics(now_.theta)));
     double charge = 0.0, heat = 0.0, work = 0.0;
@@ -269,7 +256,8 @@ void CrankStartUp::relax(double until) {
         work += weight * span * current(t) * terminal_voltage(model_.vehicle, model_.voltage(t), current(t));
       }
     } else {
-      const double limit = forced(start);
+      const double R = circuit_resistance(model_.vehicle), tau = model_.vehicle.motor.armature_inductance / R;
+      const double limit = now_.switched_voltage / R;
       const double d = model_.inductive ? i_0 - limit : 0.0;
       const double a = model_.inductive ? -tau * std::expm1(-span / tau) : 0.0;
       const double b = model_.inductive ? -0.5 * tau * std::expm1(-2.0 * span / tau) : 0.0;
@@ -431,12 +419,10 @@ void CrankStartUp::track_inrush(Integrator& steps, double from) {
   };
   recorder_.note_current(now_.t, now_.i);
   if (now_.i < 0.9 * result_.inrush_current || slope(now_.t) >= 0.0 || slope(from) <= 0.0) return;
-  double a = from, b = now_.t;
-  for (int k = 0; k < 50 && b - a > 1e-9 * (now_.t - from); ++k) {
-    const double mid = 0.5 * (a + b);
-    (slope(mid) > 0.0 ? a : b) = mid;
-  }
-  recorder_.note_current(a, model_.current_of(a, steps.dense(a)));
+  const auto rises = [&](double t) { return slope(t) > 0.0; };
+  const auto narrow = [&](const Bracket<double>& b) { return b.after - b.before <= 1e-9 * (now_.t - from); };
+  const double top = bisect(rises, from, now_.t, narrow).before;
+  recorder_.note_current(top, model_.current_of(top, steps.dense(top)));
 }
 
 /// Raises the extremes of the lap to what they reach within the last step, on the integrator's own interpolant.

@@ -27,7 +27,6 @@ class CrankStartUp {
 
   // What the integrator asks for.
   void root_values(double t, const double* y, double* values, bool measuring);
-  void tolerated(const double* y, double* errors, bool measuring) const;
   std::unique_ptr<Integrator> integrator(bool measuring);
 
   // The course of events.
@@ -35,6 +34,7 @@ class CrankStartUp {
   void slide();
   void stand();
   bool stick(double low, double high);
+  double standing_current(double at) const;
   void relax(double until);
   void step_taken(Integrator& steps, double from);
   void track_inrush(Integrator& steps, double from);

@@ -8,6 +8,7 @@
 
 #include "time/direct_model.hpp"
 #include "time/integrator.hpp"
+#include "time/model_problem.hpp"
 #include "time/recorder.hpp"
 #include "time/transient_tools.hpp"
 
@@ -105,11 +106,10 @@ void DirectStartUp::root_values(double t, const double* y, double* values, bool 
 }
 
 std::unique_ptr<Integrator> DirectStartUp::integrator(bool measuring) {
-  IntegratorProblem p;
-  p.size = model_.coupled + (measuring ? quadrature_count : 0);
-  p.coupled = model_.coupled;
-  p.roots = measuring ? int(DirectModel::indicator_count) : 1;
+  IntegratorProblem p = measuring ? problem_with_quadratures(model_, relative_tolerance_, quadrature_scale_)
+                                  : problem_of(model_, relative_tolerance_);
   p.stiff = stiff_;
+  p.roots = measuring ? int(DirectModel::indicator_count) : 1;
   p.rates = [this, measuring](double t, const double* y, double* dy) {
     ++result_.rate_evaluations;
     return model_.rates(t, y, dy, measuring);
@@ -117,15 +117,7 @@ std::unique_ptr<Integrator> DirectStartUp::integrator(bool measuring) {
   p.root_functions = [this, measuring](double t, const double* y, double* values) {
     root_values(t, y, values, measuring);
   };
-  p.tolerated = [this, measuring](const double* y, double* errors) {
-    model_.tolerated(relative_tolerance_, y, errors);
-    for (int k = 0; measuring && k < quadrature_count; ++k) {
-      errors[model_.coupled + k] =
-          relative_tolerance_ * (std::abs(y[model_.coupled + k]) + 0.01 * quadrature_scale_[k]);
-    }
-  };
   p.longest_step = 0.25 * model_.period;
-  p.typical = {model_.stroke_scale, model_.speed_scale, model_.current_scale};
   return make_integrator(options_.integrator, std::move(p));
 }
 

@@ -6,6 +6,7 @@
 
 #include "time/integrator.hpp"
 #include "time/transient_tools.hpp"
+#include "wingbeat/core/root.hpp"
 #include "wingbeat/solve/explicit_step.hpp"
 #include "wingbeat/solve/implicit_step.hpp"
 
@@ -239,23 +240,8 @@ class OwnIntegrator : public Integrator {
       if (!(sign * fb < 0.0)) return std::numeric_limits<double>::infinity();
     }
     if (sign * fa < 0.0) a = 0.0, fa = sign * std::numeric_limits<double>::min();
-    // Secants, halved where one end stays (Illinois); the far end is kept beyond the change.
     const double resolved = 4e-16 * (std::abs(from_) + h);
-    double weight_a = fa, weight_b = fb;
-    bool was_after = false;
-    for (int iteration = 0; iteration < 100 && b - a > resolved; ++iteration) {
-      double s = b - weight_b * (b - a) / (weight_b - weight_a);
-      if (!(s > a + 0.5 * resolved)) s = a + 0.5 * resolved;
-      if (!(s < b - 0.5 * resolved)) s = b - 0.5 * resolved;
-      if (iteration % 8 == 7) s = 0.5 * (a + b);
-      const double f = value(s);
-      const bool after = sign * f < 0.0;
-      (after ? b : a) = s;
-      (after ? weight_b : weight_a) = f == 0.0 ? sign * std::numeric_limits<double>::min() : f;
-      if (iteration > 0 && after == was_after) (after ? weight_a : weight_b) *= 0.5;
-      was_after = after;
-    }
-    return b;
+    return find_zero([&](double s) { return sign * value(s); }, a, sign * fa, b, sign * fb, resolved).after;
   }
   void note_roots() {
     for (std::size_t k = 0; k < signs_.size(); ++k) found_[k] = changes(k, signs_[k], later_[k]);

@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <concepts>
 #include <cstddef>
-#include <utility>
 
-#include "time/integrator.hpp"
+#include "time/model_problem.hpp"
 
 namespace wingbeat::detail {
 
@@ -22,6 +21,7 @@ concept TimeModel = std::copyable<typename M::State> &&
                       fixed.unknowns(y);
                       m.set(t, at);
                       { fixed.rates(t, at, y, false) } -> std::same_as<bool>;
+                      { M::indicator_count } -> std::convertible_to<std::size_t>;
                       { fixed.indicators(t, at)[k] } -> std::convertible_to<double>;
                       { fixed.directions()[k] } -> std::convertible_to<int>;  // which sign changes of them count
                       m.handle(k);                                            // one of them has changed its sign
@@ -40,7 +40,6 @@ enum class StepOutcome { reached, ended, failed };
 /// `tolerance`: admissible relative error of a step. failed: the integrator could not go on, or events without end.
 template <TimeModel Model>
 StepOutcome step_to(Model& model, double until, double tolerance, TimeIntegrator which = TimeIntegrator::own_steps) {
-  constexpr std::size_t indicators = std::tuple_size_v<decltype(model.indicators(0.0, nullptr))>;
   constexpr int max_pieces = 1000000;
   for (int piece = 0; model.now.t < until; ++piece) {
     if (model.ended()) return StepOutcome::ended;
@@ -52,20 +51,7 @@ StepOutcome step_to(Model& model, double until, double tolerance, TimeIntegrator
       continue;
     }
     model.begin_piece();
-    IntegratorProblem p;
-    p.size = p.coupled = model.coupled;
-    p.roots = int(indicators);
-    p.stiff = model.stiff();
-    p.rates = [&](double t, const double* y, double* dy) { return model.rates(t, y, dy, false); };
-    p.root_functions = [&](double t, const double* y, double* values) {
-      const auto at = model.indicators(t, y);
-      std::copy(at.begin(), at.end(), values);
-    };
-    p.tolerated = [&](const double* y, double* errors) { model.tolerated(tolerance, y, errors); };
-    p.longest_step = model.longest_step();
-    const auto typical = model.typical();
-    p.typical.assign(typical.begin(), typical.end());
-    const auto steps = make_integrator(which, std::move(p));
+    const auto steps = make_integrator(which, problem_of(model, tolerance));
     model.unknowns(steps->state());
     auto directions = model.directions();
     if (!steps->restart(model.now.t, directions.data(), std::min(model.longest_step(), stop - model.now.t), stop)) {
@@ -76,7 +62,7 @@ StepOutcome step_to(Model& model, double until, double tolerance, TimeIntegrator
       if (outcome == Integrator::Outcome::failed) return StepOutcome::failed;
       model.set(steps->time(), steps->state());
       goes_on = outcome == Integrator::Outcome::step && !model.branch_lost();
-      for (std::size_t k = 0; k < indicators; ++k) {
+      for (std::size_t k = 0; k < Model::indicator_count; ++k) {
         if (outcome == Integrator::Outcome::root && steps->found(int(k))) model.handle(k);
       }
       if (outcome == Integrator::Outcome::stop && stop == switching) model.switch_supply();

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <utility>
 
+#include "wingbeat/core/minimise.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 
@@ -19,74 +19,18 @@ constexpr Integral quadratures[] = {Integral::current,         Integral::current
                                     Integral::rod_force};
 constexpr int quadrature_count = int(std::size(quadratures));
 
-/// Largest deviation of a metric of `m` from that of `other`, relative to it, or to what its errors are a part of where
-/// it may vanish: the angle of attack to 90 degrees, the residual power to the input, the mean lift to a thousandth of
-/// its peak, the mean current of a direct drive, which alternates, to its peak.
+/// Largest deviation of a metric of `m` from that of `other` beside its error_scale(). A metric that is absent counts
+/// as equal.
 inline double metrics_apart(const Metrics<double>& m, const Metrics<double>& other) {
   double largest = 0.0;
   for (int n = 0; n < metric_count; ++n) {
     const Metric which = Metric(n);
     // The last one repeats the mean lift.
     if (which == Metric::floquet_multiplier_max || which == Metric::lift_to_weight) continue;
-    double size = std::abs(other[which]);
-    if (which == Metric::angle_of_attack_min) size = std::max(size, 90.0);
-    if (which == Metric::power_residual) size = std::max(size, std::abs(other[Metric::power_electrical]));
-    if (which == Metric::lift_mean) size = std::max(size, 1e-3 * other[Metric::lift_peak]);
-    if (which == Metric::current_mean && std::isnan(other[Metric::rod_force_mean])) size = other[Metric::current_peak];
-    const double off = std::abs(m[which] - other[which]);
+    const double off = std::abs(m[which] - other[which]), size = error_scale(other, which);
     if (off > largest * size) largest = off / size;
   }
   return largest;
-}
-
-/// Argument in [a, b] at which f is largest, by parabolas safeguarded with golden sections (Brent 1973).
-template <class F>
-std::pair<double, double> maximum(const F& f, double a, double b) {
-  constexpr double golden = 0.3819660112501051;
-  double x = a + golden * (b - a), w = x, v = x;
-  double fx = -f(x), fw = fx, fv = fx;
-  double d = 0.0, e = 0.0;
-  const double resolved = 1e-7 * (b - a);
-  for (int k = 0; k < 60; ++k) {
-    const double mid = 0.5 * (a + b);
-    const double tol = resolved + 1e-16 * std::abs(x);
-    if (std::abs(x - mid) <= 2.0 * tol - 0.5 * (b - a)) break;
-    bool parabola = false;
-    if (std::abs(e) > tol) {
-      const double r = (x - w) * (fx - fv);
-      double q = (x - v) * (fx - fw);
-      double p = (x - v) * q - (x - w) * r;
-      q = 2.0 * (q - r);
-      if (q > 0.0) p = -p;
-      q = std::abs(q);
-      const double before = e;
-      e = d;
-      if (std::abs(p) < std::abs(0.5 * q * before) && p > q * (a - x) && p < q * (b - x)) {
-        d = p / q;
-        const double u = x + d;
-        if (u - a < 2.0 * tol || b - u < 2.0 * tol) d = x < mid ? tol : -tol;
-        parabola = true;
-      }
-    }
-    if (!parabola) {
-      e = x < mid ? b - x : a - x;
-      d = golden * e;
-    }
-    const double u = std::abs(d) >= tol ? x + d : x + (d > 0.0 ? tol : -tol);
-    const double fu = -f(u);
-    if (fu <= fx) {
-      (u < x ? b : a) = x;
-      v = w, fv = fw, w = x, fw = fx, x = u, fx = fu;
-    } else {
-      (u < x ? a : b) = u;
-      if (fu <= fw || w == x) {
-        v = w, fv = fw, w = u, fw = fu;
-      } else if (fu <= fv || v == x || v == w) {
-        v = u, fv = fu;
-      }
-    }
-  }
-  return {x, -fx};
 }
 
 /// Raises extremes to what they reach between the times `from` and `to`, candidates(t) being the values there.
@@ -111,9 +55,9 @@ void raise_extremes(const Candidates& candidates, double from, double to, CycleE
     const double vertex = 0.5 * (a - c) / bend;  // in spacings from the middle
     const double height = b - 0.125 * square(a - c) / bend;
     if (std::abs(vertex) > 1.5 || height < best - 0.1 * std::abs(bend)) continue;
-    const auto value = [&](double t) { return candidates(t)[e]; };
-    const double centre = from + middle * spacing;
-    best = std::max(best, maximum(value, centre - spacing, std::min(centre + spacing, to)).second);
+    const double centre = from + middle * spacing, left = centre - spacing, right = std::min(centre + spacing, to);
+    const auto value = [&](double t) { return -candidates(t)[e]; };
+    best = std::max(best, -minimise(value, left, right, 1e-7 * (right - left)).value);
   }
 }
 

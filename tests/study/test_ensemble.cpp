@@ -8,6 +8,7 @@
 #include <map>
 #include <random>
 
+#include "vehicle/known_orbits.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "wingbeat/study/run.hpp"
 
@@ -274,15 +275,7 @@ TEST(Ensemble, InstructionSetsAgree) {
 }
 
 TEST(Ensemble, ReproducesKnownOrbits) {
-  // data/published/orbits2022.json
-  struct Known {
-    bool springs;
-    double frequency, power_electrical, lift_mean, rod_force_mean, rod_force_peak;
-  };
-  const Known orbits[] = {
-      {false, 21.952226143327449, 0.54023365078787118, 0.0087391846723811966, 0.26513989876954032, 0.45536141663819993},
-      {true, 23.430706596318597, 0.50926842859058386, 0.011644327876553516, 0.1851194883045969, 0.38663637234591627}};
-  for (const Known& known : orbits) {
+  for (const KnownOrbit& known : known_orbits) {
     for (const InstructionSet isa : available()) {
       for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
         EnsembleOptions options;

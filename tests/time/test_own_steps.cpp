@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "time/free_decay.hpp"
+#include "vehicle/known_orbits.hpp"
 #include "vehicle/reference_vehicle.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/time/transient.hpp"
@@ -16,40 +18,29 @@ TransientResult by_own_steps(const Vehicle<double>& vehicle, TransientOptions op
 }
 
 TEST(OwnSteps, ReachTheKnownOrbits) {
-  // The frequencies and lifts of tests/vehicle/test_transient.cpp.
-  for (const double tolerance : {1e-4, 1e-6, 1e-9}) {
-    TransientOptions options;
-    options.tolerance = tolerance;
-    const TransientResult plain = by_own_steps(reference_vehicle(), options);
-    ASSERT_TRUE(plain.settled && plain.metrics) << plain.detail;
-    EXPECT_NEAR((*plain.metrics)[Metric::frequency] / 21.952226143327449, 1.0, tolerance);
-    EXPECT_NEAR((*plain.metrics)[Metric::lift_mean] / 0.0087391846723811966, 1.0, tolerance);
-    const TransientResult springs = by_own_steps(reference_vehicle(true), options);
-    ASSERT_TRUE(springs.settled && springs.metrics) << springs.detail;
-    EXPECT_NEAR((*springs.metrics)[Metric::frequency] / 23.430706596318597, 1.0, tolerance);
-    EXPECT_NEAR((*springs.metrics)[Metric::rod_force_peak] / 0.38663637234591627, 1.0, tolerance);
+  for (const KnownOrbit& orbit : known_orbits) {
+    for (const double tolerance : {1e-4, 1e-6, 1e-9}) {
+      TransientOptions options;
+      options.tolerance = tolerance;
+      const TransientResult r = by_own_steps(reference_vehicle(orbit.springs), options);
+      ASSERT_TRUE(r.settled && r.metrics) << r.detail;
+      EXPECT_NEAR((*r.metrics)[Metric::frequency] / orbit.frequency, 1.0, tolerance);
+      EXPECT_NEAR((*r.metrics)[Metric::lift_mean] / orbit.lift_mean, 1.0, tolerance);
+      EXPECT_NEAR((*r.metrics)[Metric::rod_force_peak] / orbit.rod_force_peak, 1.0, tolerance);
+    }
   }
 }
 
 TEST(OwnSteps, FollowAFreeDecay) {
-  // J omega' = -T_c - (K^2 / R_a) omega: tests/vehicle/test_transient.cpp.
-  Vehicle<double> v = wingless_vehicle();
-  v.voltage = 0.0;
-  v.friction.radius = 0.0;
-  v.friction.torque = 2e-4;
-  v.motor.viscous_damping = 0.0;
-  v.motor.armature_inductance = 0.0;
   for (const double omega_0 : {400.0, -400.0}) {
+    const FreeDecay exact(omega_0);
     TransientOptions options;
     options.tolerance = 1e-10;
     options.crank_speed = omega_0;
-    const TransientResult r = by_own_steps(v, options);
-    const double c = square(v.motor.torque_constant) / v.motor.armature_resistance, J = v.motor.inertia, T_c = 2e-4;
-    const double t = J / c * std::log1p(c * std::abs(omega_0) / T_c);
-    const double angle = (J * std::abs(omega_0) - T_c * t) / c;
+    const TransientResult r = by_own_steps(exact.vehicle, options);
     EXPECT_EQ(r.status, FlappingStatus::stalled) << r.detail;
-    EXPECT_NEAR(r.end_time / t, 1.0, 1e-9);
-    EXPECT_NEAR(r.end_crank_angle / std::copysign(angle, omega_0), 1.0, 1e-9);
+    EXPECT_NEAR(r.end_time / exact.end_time, 1.0, 1e-9);
+    EXPECT_NEAR(r.end_crank_angle / exact.end_crank_angle, 1.0, 1e-9);
   }
 }
 

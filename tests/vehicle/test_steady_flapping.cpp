@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "vehicle/known_orbits.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "vehicle/reference_vehicle.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
@@ -33,32 +34,6 @@ double largest_deviation(const Metrics<double>& a, const Metrics<double>& b, std
   }
   return largest;
 }
-
-struct KnownOrbit {
-  bool springs;
-  double crank_speed, current, frequency, power_electrical, lift_mean, rod_force_mean, rod_force_peak;
-  double kinks[2];
-};
-
-// data/published/orbits2022.json, good to 14 digits.
-const KnownOrbit known_orbits[] = {{false,
-                                    178.90084085877027,
-                                    0.15316164053388573,
-                                    21.952226143327449,
-                                    0.54023365078787118,
-                                    0.0087391846723811966,
-                                    0.26513989876954032,
-                                    0.45536141663819993,
-                                    {0.751467892605991, 3.63210320230321}},
-                                   {true,
-                                    170.18923875426399,
-                                    0.16199813776982407,
-                                    23.430706596318597,
-                                    0.50926842859058386,
-                                    0.011644327876553516,
-                                    0.1851194883045969,
-                                    0.38663637234591627,
-                                    {two_pi - 1.34160883181093, 1.31688933007742}}};
 
 TEST(SteadyFlapping, ReproducesKnownOrbitsToTheToleranceAskedFor) {
   for (const KnownOrbit& known : known_orbits) {

@@ -1,11 +1,14 @@
 #include "wingbeat/time/transient.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "time/free_decay.hpp"
 #include "vehicle/any_start.hpp"
+#include "vehicle/known_orbits.hpp"
 #include "vehicle/reference_vehicle.hpp"
 
 namespace wingbeat {
@@ -31,39 +34,10 @@ double audit_residual(const Metrics<double>& m) {
          1.0;
 }
 
-struct Orbit {
-  bool springs;
-  double speed_lower, current_lower;  // at the lower dead centre, theta = -90 degrees
-  double frequency, power, lift, force_mean, force_peak, kinks[2];
-};
+class KnownOrbits : public testing::TestWithParam<KnownOrbit> {};
 
-// Steady flapping of the reference vehicle, computed in extended precision with located changes of the force's sign and
-// confirmed by an independent integrator to 4e-14.
-const Orbit orbits[] = {
-    {false,
-     178.90084085877027,
-     0.15316164053388573,
-     21.952226143327449,
-     0.54023365078787118,
-     0.0087391846723811966,
-     0.26513989876954032,
-     0.45536141663819993,
-     {0.751467892605991, 3.63210320230321}},
-    {true,
-     170.18923875426399,
-     0.16199813776982407,
-     23.430706596318597,
-     0.50926842859058386,
-     0.011644327876553516,
-     0.1851194883045969,
-     0.38663637234591627,
-     {two_pi - 1.34160883181093, 1.31688933007742}},
-};
-
-class KnownOrbit : public testing::TestWithParam<Orbit> {};
-
-TEST_P(KnownOrbit, IsReachedFromRest) {
-  const Orbit& orbit = GetParam();
+TEST_P(KnownOrbits, IsReachedFromRest) {
+  const KnownOrbit& orbit = GetParam();
   TransientOptions options = with_tolerance(1e-9);
   options.record = true;
   const TransientResult r = simulate_start_up(reference_vehicle(orbit.springs), options);
@@ -72,10 +46,10 @@ TEST_P(KnownOrbit, IsReachedFromRest) {
   ASSERT_TRUE(r.metrics);
   const Metrics<double>& m = *r.metrics;
   expect_relative(m[Metric::frequency], orbit.frequency, 1e-9, "frequency");
-  expect_relative(m[Metric::power_electrical], orbit.power, 1e-9, "electrical power");
-  expect_relative(m[Metric::lift_mean], orbit.lift, 1e-9, "lift");
-  expect_relative(m[Metric::rod_force_mean], orbit.force_mean, 1e-9, "rod force, mean");
-  expect_relative(m[Metric::rod_force_peak], orbit.force_peak, 1e-9, "rod force, peak");
+  expect_relative(m[Metric::power_electrical], orbit.power_electrical, 1e-9, "electrical power");
+  expect_relative(m[Metric::lift_mean], orbit.lift_mean, 1e-9, "lift");
+  expect_relative(m[Metric::rod_force_mean], orbit.rod_force_mean, 1e-9, "rod force, mean");
+  expect_relative(m[Metric::rod_force_peak], orbit.rod_force_peak, 1e-9, "rod force, peak");
   EXPECT_TRUE(std::isnan(m[Metric::floquet_multiplier_max]));
 
   // A step of the measured lap ends at each dead centre.
@@ -89,8 +63,8 @@ TEST_P(KnownOrbit, IsReachedFromRest) {
     }
   }
   EXPECT_LT(nearest, 1e-11);
-  expect_relative(lower.crank_speed, orbit.speed_lower, 1e-8, "speed at the lower dead centre");
-  expect_relative(lower.current, orbit.current_lower, 1e-8, "current at the lower dead centre");
+  expect_relative(lower.crank_speed, orbit.crank_speed, 1e-8, "speed at the lower dead centre");
+  expect_relative(lower.current, orbit.current, 1e-8, "current at the lower dead centre");
 
   int kinks = 0;
   for (const TransientEvent& e : r.events) {
@@ -102,22 +76,22 @@ TEST_P(KnownOrbit, IsReachedFromRest) {
   EXPECT_EQ(kinks, 2);
 }
 
-TEST_P(KnownOrbit, ErrorsStayBelowTheToleranceAskedFor) {
-  const Orbit& orbit = GetParam();
+TEST_P(KnownOrbits, ErrorsStayBelowTheToleranceAskedFor) {
+  const KnownOrbit& orbit = GetParam();
   for (const double tolerance : {1e-3, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10}) {
     const TransientResult r = simulate_start_up(reference_vehicle(orbit.springs), with_tolerance(tolerance));
     ASSERT_TRUE(r.settled && r.metrics) << r.detail;
     const Metrics<double>& m = *r.metrics;
     expect_relative(m[Metric::frequency], orbit.frequency, tolerance, "frequency");
-    expect_relative(m[Metric::power_electrical], orbit.power, tolerance, "electrical power");
-    expect_relative(m[Metric::lift_mean], orbit.lift, tolerance, "lift");
-    expect_relative(m[Metric::rod_force_mean], orbit.force_mean, tolerance, "rod force, mean");
-    expect_relative(m[Metric::rod_force_peak], orbit.force_peak, tolerance, "rod force, peak");
+    expect_relative(m[Metric::power_electrical], orbit.power_electrical, tolerance, "electrical power");
+    expect_relative(m[Metric::lift_mean], orbit.lift_mean, tolerance, "lift");
+    expect_relative(m[Metric::rod_force_mean], orbit.rod_force_mean, tolerance, "rod force, mean");
+    expect_relative(m[Metric::rod_force_peak], orbit.rod_force_peak, tolerance, "rod force, peak");
     EXPECT_NEAR(audit_residual(m), 0.0, tolerance);
   }
 }
 
-TEST_P(KnownOrbit, IsItsOwnContinuation) {
+TEST_P(KnownOrbits, IsItsOwnContinuation) {
   const Vehicle<double> v = reference_vehicle(GetParam().springs);
   const TransientResult first = simulate_start_up(v, with_tolerance(1e-9));
   TransientOptions options = with_tolerance(1e-9);
@@ -130,7 +104,7 @@ TEST_P(KnownOrbit, IsItsOwnContinuation) {
   expect_relative(again.current, first.current, 2e-9, "current");
 }
 
-INSTANTIATE_TEST_SUITE_P(Transient, KnownOrbit, testing::ValuesIn(orbits),
+INSTANTIATE_TEST_SUITE_P(Transient, KnownOrbits, testing::ValuesIn(known_orbits),
                          [](const auto& orbit) { return orbit.param.springs ? "Springs" : "NoSprings"; });
 
 TEST(Transient, VirtualWorkHasNoResidualPower) {
@@ -326,25 +300,15 @@ TEST(Transient, JamsWhereTheRotorIsTooLight) {
 }
 
 TEST(Transient, FreeDecayAgainstConstantFriction) {
-  // J omega' = -T_c - (K^2 / R_a) omega without voltage and inductance:
-  // t = (J/c) ln(1 + c omega_0 / T_c), angle = (J omega_0 - T_c t) / c with c = K^2 / R_a.
-  Vehicle<double> v = wingless_vehicle();
-  v.voltage = 0.0;
-  v.friction.radius = 0.0;
-  v.friction.torque = 2e-4;
-  v.motor.viscous_damping = 0.0;
-  v.motor.armature_inductance = 0.0;
   for (const double omega_0 : {400.0, -400.0}) {
+    const FreeDecay exact(omega_0);
     TransientOptions options = with_tolerance(1e-10);
     options.crank_speed = omega_0;
-    const TransientResult r = simulate_start_up(v, options);
-    const double c = square(v.motor.torque_constant) / v.motor.armature_resistance, J = v.motor.inertia, T_c = 2e-4;
-    const double t = J / c * std::log1p(c * std::abs(omega_0) / T_c);
-    const double angle = (J * std::abs(omega_0) - T_c * t) / c;
+    const TransientResult r = simulate_start_up(exact.vehicle, options);
     EXPECT_EQ(r.status, FlappingStatus::stalled) << r.detail;
     EXPECT_TRUE(r.settled);
-    EXPECT_NEAR(r.end_time / t, 1.0, 1e-9);
-    EXPECT_NEAR(r.end_crank_angle / std::copysign(angle, omega_0), 1.0, 1e-9);
+    EXPECT_NEAR(r.end_time / exact.end_time, 1.0, 1e-9);
+    EXPECT_NEAR(r.end_crank_angle / exact.end_crank_angle, 1.0, 1e-9);
   }
 }
 
@@ -390,6 +354,36 @@ TEST(Transient, SineOnACrankEndsHonestly) {
     EXPECT_TRUE(std::isfinite(r.end_crank_angle));
     EXPECT_LE(r.steps, 1000001);
   }
+}
+
+TEST(Transient, ASineBreaksTheCrankAwayBetweenTwoLooks) {
+  // A stuck crank is looked at 64 times a period; the moment in between is found, and no sample lies about what
+  // follows.
+  Vehicle<double> v = reference_vehicle();
+  v.motor.armature_inductance = 0.0;
+  v.friction.torque = 0.4 * stall_torque(v);
+  const double frequency = 5.0, amplitude = 3.0;
+  TransientOptions options;
+  options.supply = Supply<double>{SupplyType::sine, amplitude, frequency, 1.0};
+  options.record = true;
+  options.record_interval = 1e-4;
+  options.max_time = 0.05;
+  const TransientResult r = simulate_start_up(v, options);
+  const auto breakaway =
+      std::find_if(r.events.begin(), r.events.end(), [](const TransientEvent& e) { return e.kind == Kind::breakaway; });
+  ASSERT_NE(breakaway, r.events.end());
+  // Without springs and inductance K v(t) / R_a = T_c.
+  EXPECT_NEAR(breakaway->time, std::asin(0.4) / (two_pi * frequency), 1e-12);
+  int moving = 0;
+  for (const TransientSample& s : r.samples) {
+    if (s.time < breakaway->time) {
+      EXPECT_EQ(s.crank_speed, 0.0);
+    } else if (s.time < breakaway->time + 1.0 / (64.0 * frequency)) {
+      EXPECT_GT(s.crank_speed, 0.0) << s.time;
+      ++moving;
+    }
+  }
+  EXPECT_GE(moving, 30);
 }
 
 TEST(Transient, BudgetsEndUnsettled) {

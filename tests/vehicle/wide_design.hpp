@@ -69,31 +69,17 @@ inline Design<double> wide_design(WideBox box, std::mt19937_64& random) {
   return d;
 }
 
-/// How far `m` is from `exact`: the largest deviation of a metric from it, relative to the metric, or to what its
-/// errors are a part of where it may vanish: the angle of attack to 90 degrees, the residual power to the input, the
-/// mean lift to a thousandth of its peak, the mean current of a direct drive, which alternates, to its peak. Without
-/// the Floquet multiplier.
+/// How far `m` is from `exact`: the largest deviation of a metric beside its error_scale(), the Floquet multiplier left
+/// out; infinite where a metric is absent from one of them.
 inline double metrics_apart(const Metrics<double>& m, const Metrics<double>& exact, int* where = nullptr) {
   double largest = 0.0;
-  const auto floor_of = [&](Metric k) {
-    switch (k) {
-      case Metric::angle_of_attack_min: return 90.0;
-      case Metric::current_mean: return std::isnan(exact[Metric::rod_force_mean]) ? exact[Metric::current_peak] : 0.0;
-      case Metric::power_residual: return std::abs(exact[Metric::power_electrical]);
-      case Metric::lift_mean: return 1e-3 * exact[Metric::lift_peak];
-      case Metric::lift_to_weight:
-        return 1e-3 * exact[Metric::lift_peak] * std::abs(exact[Metric::lift_to_weight] / exact[Metric::lift_mean]);
-      default: return 0.0;
-    }
-  };
   for (int k = 0; k < metric_count; ++k) {
     if (Metric(k) == Metric::floquet_multiplier_max) continue;
-    const double a = m.values[std::size_t(k)], b = exact.values[std::size_t(k)];
-    if (std::isnan(a) && std::isnan(b)) continue;
-    const double scale = std::max(std::abs(b), floor_of(Metric(k)));
-    if (a == b) continue;
-    const double off = std::abs(a - b) / scale;
-    if (!(off <= largest)) {
+    const double a = m[Metric(k)], b = exact[Metric(k)];
+    if (a == b || (std::isnan(a) && std::isnan(b))) continue;
+    const bool comparable = std::isfinite(a) && std::isfinite(b);
+    const double off = comparable ? std::abs(a - b) / error_scale(exact, Metric(k)) : HUGE_VAL;
+    if (off > largest) {
       largest = off;
       if (where) *where = k;
     }

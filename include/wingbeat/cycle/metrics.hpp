@@ -71,6 +71,11 @@ struct Metrics {
   const S& operator[](Metric m) const { return values[std::size_t(m)]; }
 };
 
+/// What a metric's errors are a part of: its magnitude, or more where it may vanish. The angle of attack to 90 degrees,
+/// the residual power to the input, the mean lift and its ratio to the weight to a thousandth of the peak lift, the
+/// mean current of a direct drive, which alternates, to its peak. Not a number for a metric that is absent.
+double error_scale(const Metrics<double>& metrics, Metric which);
+
 /// Quantities integrated over the TIME of a cycle.
 enum class Integral {
   time,             ///< dt: the period [s]

@@ -8,6 +8,7 @@
 #include <cstddef>
 
 #include "wingbeat/core/math.hpp"
+#include "wingbeat/core/root.hpp"
 #include "wingbeat/core/scalar.hpp"
 
 namespace wingbeat {
@@ -56,12 +57,8 @@ Reversals find_reversals(const T& transmission) {
   for (int n = 1; n <= grid && found.count < Reversals::most; ++n) {
     const double here = n < grid ? two_pi * n / grid : two_pi - start;
     if (sign_of(slope(here)) != sign) {
-      double low = before, high = here;
-      for (int k = 0; k < 60; ++k) {
-        const double middle = 0.5 * (low + high);
-        (sign_of(slope(middle)) == sign ? low : high) = middle;
-      }
-      found.angle[found.count++] = high;
+      found.angle[found.count++] =
+          bisect([&](double theta) { return sign_of(slope(theta)) == sign; }, before, here).after;
       sign = -sign;
     }
     before = here;

@@ -1,0 +1,145 @@
+// Boost.odeint and CVODE on the equations.
+#pragma once
+
+#include <cvode/cvode.h>
+#include <nvector/nvector_serial.h>
+#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+#include <algorithm>
+#include <array>
+#include <boost/numeric/odeint.hpp>
+#include <cmath>
+
+#include "peers/equations.hpp"
+
+namespace wingbeat::peers {
+
+// Boost.odeint, Dormand and Prince.
+template <std::size_t N>
+struct Dopri5 {
+  using State = std::array<double, N>;
+  const Peer& peer;
+  double tolerance;
+  double step = 0.1;
+
+  void integrate(double* u, double from, double to) {
+    namespace odeint = boost::numeric::odeint;
+    State state;
+    std::copy_n(u, N, state.begin());
+    auto stepper = odeint::make_controlled(tolerance, tolerance, odeint::runge_kutta_dopri5<State>());
+    const auto rates = [&](const State& x, State& dx, double theta) { peer.rates<N>(theta, x.data(), dx.data()); };
+    // As odeint::integrate_adaptive, but the step found is kept for the next lap, and a step to where the crank would
+    // turn back (which odeint accepts if its error is no number) is taken again in quarters.
+    double theta = from;
+    while (to - theta > 1e-12) {
+      const State before = state;
+      const double theta_before = theta;
+      double h = std::min(step, to - theta);
+      const bool cut = h < step;
+      if (stepper.try_step(rates, state, theta, h) != odeint::success) {
+        step = h;
+      } else if (!(state[0] > 0.0)) {
+        state = before;
+        theta = theta_before;
+        step = 0.25 * std::min(step, to - theta);
+        if (step < 1e-9) break;
+        stepper.reset();
+      } else if (!cut) {
+        step = h;
+      }
+    }
+    if (to - theta > 1e-12) state[0] = absent;
+    std::copy_n(state.begin(), N, u);
+  }
+};
+
+inline Steady by_odeint(const Peer& peer, double tolerance, std::array<double, 2>* start = nullptr) {
+  Dopri5<2> plain{peer, std::max(coarse, tolerance)};
+  Dopri5<all_states> measured{peer, tolerance};
+  const auto lap = [](auto& method, double* u) {
+    method.integrate(u, lap_start, lap_start + two_pi);
+    return std::isfinite(u[0]) && u[0] > 0.0;
+  };
+  return flap(
+      peer, tolerance < coarse, [&](int, double* u) { return lap(plain, u); },
+      [&](int, double* u) { return lap(measured, u); }, start);
+}
+
+// CVODE: Adams with functional iteration.
+template <std::size_t N>
+class Adams {
+ public:
+  Adams() {
+    SUNContext_Create(nullptr, &context_);
+    y_ = N_VNew_Serial(sunindextype(N), context_);
+    N_VConst(1.0, y_);
+    memory_ = CVodeCreate(CV_ADAMS, context_);
+    nonlinear_ = SUNNonlinSol_FixedPoint(y_, 0, context_);
+    CVodeInit(memory_, &rates, 0.0, y_);
+    CVodeSetNonlinearSolver(memory_, nonlinear_);
+    CVodeSetUserData(memory_, this);
+    CVodeSetErrHandlerFn(memory_, [](int, const char*, const char*, char*, void*) {}, nullptr);
+    CVodeSetMaxNumSteps(memory_, 100000);
+  }
+  Adams(const Adams&) = delete;
+  Adams& operator=(const Adams&) = delete;
+  ~Adams() {
+    CVodeFree(&memory_);
+    SUNNonlinSolFree(nonlinear_);
+    N_VDestroy(y_);
+    SUNContext_Free(&context_);
+  }
+
+  void begin(const Peer& peer, const double* u, double tolerance) {
+    peer_ = &peer;
+    std::copy_n(u, N, N_VGetArrayPointer(y_));
+    CVodeReInit(memory_, lap_start, y_);
+    CVodeSStolerances(memory_, tolerance, tolerance);
+    begun_ = theta_ = lap_start;
+    last_.fill(0.0);
+  }
+
+  // Goes on to the next lap's start without a restart, which would fall back to first order; quadratures by difference.
+  bool lap(double* u) {
+    begun_ += two_pi;
+    if (CVode(memory_, begun_, y_, &theta_, CV_NORMAL) < 0) return false;
+    const double* y = N_VGetArrayPointer(y_);
+    for (std::size_t n = 0; n < N; ++n) {
+      u[n] = n < 2 ? y[n] : y[n] - last_[n];
+      last_[n] = y[n];
+    }
+    return u[0] > 0.0;
+  }
+
+ private:
+  static int rates(realtype theta, N_Vector y, N_Vector dy, void* self) {
+    const double* u = N_VGetArrayPointer(y);
+    if (!(u[0] > 0.0)) return 1;
+    static_cast<Adams*>(self)->peer_->template rates<N>(theta, u, N_VGetArrayPointer(dy));
+    return 0;
+  }
+
+  const Peer* peer_ = nullptr;
+  SUNContext context_ = nullptr;
+  N_Vector y_ = nullptr;
+  void* memory_ = nullptr;
+  SUNNonlinearSolver nonlinear_ = nullptr;
+  double begun_ = 0.0, theta_ = 0.0;
+  std::array<double, N> last_{};
+};
+
+inline Steady by_cvode(Adams<2>& plain, Adams<all_states>& measured, const Peer& peer, double tolerance) {
+  bool fine = false;
+  return flap(
+      peer, tolerance < coarse,
+      [&](int laps, double* u) {
+        if (laps == 0) plain.begin(peer, u, coarse);
+        return plain.lap(u);
+      },
+      [&](int, double* u) {
+        if (!fine) measured.begin(peer, u, tolerance);
+        fine = true;
+        return measured.lap(u);
+      });
+}
+
+}  // namespace wingbeat::peers

@@ -1,0 +1,86 @@
+#include "study/local_search.hpp"
+
+#include <nlopt.hpp>
+
+namespace wingbeat::detail {
+namespace {
+
+/// What NLopt's functions are handed: the last evaluation, which serves objective and constraints.
+struct Memory {
+  const OptimiseProblem& problem;
+  LocalSearch& search;
+  Vector last;
+  OptimiseProblem::Evaluation evaluation;
+  double scale;
+  int walls = 0;
+
+  const OptimiseProblem::Evaluation& at(const double* u) {
+    const Eigen::Map<const Vector> x(u, problem.size());
+    if (last.size() == 0 || last != x) {
+      last = x;
+      evaluation = problem.evaluate(x);
+      ++search.evaluations;
+      if (!evaluation.flaps) ++walls;
+      const bool good = evaluation.flaps && evaluation.violation() <= feasible_to;
+      if (good && (!search.feasible || evaluation.objective < search.objective)) {
+        search.feasible = true;
+        search.objective = evaluation.objective;
+        search.end = last;
+      }
+    }
+    return evaluation;
+  }
+};
+
+double objective_of(unsigned n, const double* u, double* gradient, void* data) {
+  Memory& memory = *static_cast<Memory*>(data);
+  const OptimiseProblem::Evaluation& e = memory.at(u);
+  if (gradient) Eigen::Map<Vector>(gradient, n) = e.gradient / memory.scale;
+  return e.objective / memory.scale;
+}
+
+void constraints_of(unsigned m, double* values, unsigned n, const double* u, double* gradient, void* data) {
+  Memory& memory = *static_cast<Memory*>(data);
+  const OptimiseProblem::Evaluation& e = memory.at(u);
+  Eigen::Map<Vector>(values, m) = e.constraints;
+  if (!gradient) return;
+  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(gradient, m, n) = e.jacobian;
+}
+
+}  // namespace
+
+void LocalSearch::run(const OptimiseProblem& problem, const Vector& start) {
+  Memory memory{problem, *this, {}, {}, 1.0};
+  std::vector<double> u(start.data(), start.data() + start.size());
+  const OptimiseProblem::Evaluation& first = memory.at(u.data());
+  if (!first.flaps) return;
+  began = first.objective;
+  memory.scale = std::max(std::abs(first.objective), 1e-300);
+  // A search that runs into designs that do not flap may end there; from its best point it then starts anew.
+  for (const nlopt::algorithm algorithm : {nlopt::LD_SLSQP, nlopt::LD_SLSQP, nlopt::LD_CCSAQ}) {
+    nlopt::opt solver(algorithm, unsigned(problem.size()));
+    solver.set_lower_bounds(0.0);
+    solver.set_upper_bounds(1.0);
+    solver.set_min_objective(&objective_of, &memory);
+    const unsigned constraints = unsigned(problem.constraints());
+    if (constraints > 0) {
+      solver.add_inequality_mconstraint(&constraints_of, &memory, std::vector<double>(constraints, 1e-9));
+    }
+    solver.set_xtol_abs(1e-8);
+    solver.set_ftol_rel(1e-10);
+    solver.set_maxeval(algorithm == nlopt::LD_CCSAQ ? 200 : 100);
+    double value = 0.0;
+    bool converged = false;
+    try {
+      converged = int(solver.optimize(u, value)) > 0 && solver.last_optimize_result() != nlopt::MAXEVAL_REACHED;
+    } catch (const std::exception&) {
+      // What was reached until then counts.
+    }
+    if (memory.walls == 0 && (converged || !feasible)) break;
+    memory.walls = 0;
+    if (feasible) u.assign(end.data(), end.data() + end.size());
+    else u.assign(start.data(), start.data() + start.size());
+  }
+}
+
+}  // namespace wingbeat::detail

@@ -1,0 +1,92 @@
+#include "study/motor_data.hpp"
+
+#include <algorithm>
+
+#include "wingbeat/core/status.hpp"
+#include "wingbeat/core/text.hpp"
+
+namespace wingbeat::detail {
+namespace {
+
+void check_range(const char* key, const char* unit, const std::optional<double>& x, bool zero_allowed = false) {
+  if (x) require(zero_allowed ? *x >= 0.0 : *x > 0.0, key, zero_allowed ? "must be >= 0" : "must be > 0", unit, *x);
+}
+
+}  // namespace
+
+void validate(const MotorDatasheet& s) {
+  check_range("voltage", "V", s.voltage);
+  check_range("no_load_speed", "rad/s", s.no_load_speed);
+  check_range("no_load_current", "A", s.no_load_current);
+  check_range("stall_torque", "N m", s.stall_torque);
+  check_range("stall_current", "A", s.stall_current);
+  check_range("resistance", "ohm", s.resistance);
+  check_range("torque_constant", "N m/A", s.torque_constant);
+  check_range("speed_constant", "rad/s/V", s.speed_constant);
+  check_range("friction_torque", "N m", s.friction_torque);
+  check_range("viscous_damping", "N m s/rad", s.viscous_damping);
+  check_range("inductance", "H", s.inductance, true);
+  check_range("rotor_inertia", "kg m2", s.rotor_inertia);
+  check_range("mechanical_time_constant", "s", s.mechanical_time_constant);
+  check_range("rotor_diameter", "m", s.rotor_diameter);
+  check_range("rotor_length", "m", s.rotor_length);
+  require(s.gear_ratio > 0.0, "gear_ratio", "must be > 0", "1", s.gear_ratio);
+  if (s.gear_efficiency) {
+    require(*s.gear_efficiency > 0.0 && *s.gear_efficiency <= 1.0, "gear_efficiency", "must be > 0 and <= 1", "1",
+            *s.gear_efficiency);
+  }
+  require(s.deviation > 0.0 && s.deviation < 1.0, "deviation", "must lie between 0 and 1", "1", s.deviation);
+  const bool needs_voltage = s.no_load_speed || s.no_load_current || s.stall_torque || s.stall_current ||
+                             std::any_of(s.points.begin(), s.points.end(), [](const auto& p) { return !p.voltage; });
+  if (needs_voltage && !s.voltage) {
+    throw ParameterError("voltage", "missing: no-load, stall and performance values hold at one voltage");
+  }
+  if (s.assume_steel_cylinder && !(s.rotor_diameter && s.rotor_length)) {
+    throw ParameterError("fallback.inertia", "a solid steel cylinder needs rotor_diameter and rotor_length");
+  }
+  for (const MotorPoint& p : s.points) {
+    if (!p.torque && !p.current) throw ParameterError("point", "needs a torque or a current");
+    if (p.torque.has_value() + p.speed.has_value() + p.current.has_value() + p.efficiency.has_value() < 2) {
+      throw ParameterError("point", "says nothing: give two or more of torque, speed, current, efficiency");
+    }
+  }
+}
+
+double deviation_in(const MotorDatasheet& s, const std::string& name) {
+  const auto own = s.deviations.find(name);
+  return own == s.deviations.end() ? s.deviation : own->second;
+}
+
+std::vector<Datum> data_of(const MotorDatasheet& s) {
+  std::vector<Datum> data;
+  const auto deviation_of = [&](const std::string& name) { return deviation_in(s, name); };
+  const auto add = [&](const char* name, DatumKind kind, const std::optional<double>& value) {
+    if (value) data.push_back({name, kind, *value, deviation_of(name), s.voltage.value_or(0.0)});
+  };
+  add("resistance", DatumKind::resistance, s.resistance);
+  add("torque_constant", DatumKind::torque_constant, s.torque_constant);
+  add("speed_constant", DatumKind::speed_constant, s.speed_constant);
+  add("no_load_speed", DatumKind::no_load_speed, s.no_load_speed);
+  add("no_load_current", DatumKind::no_load_current, s.no_load_current);
+  add("stall_torque", DatumKind::stall_torque, s.stall_torque);
+  add("stall_current", DatumKind::stall_current, s.stall_current);
+  add("friction_torque", DatumKind::friction_torque, s.friction_torque);
+  add("viscous_damping", DatumKind::viscous_damping, s.viscous_damping);
+  int number = 0;
+  for (const MotorPoint& p : s.points) {
+    ++number;
+    const double v = p.voltage.value_or(s.voltage.value_or(0.0));
+    const bool by_torque = p.torque.has_value();
+    const double load = by_torque ? *p.torque : *p.current;
+    const auto of_point = [&](const char* what, DatumKind kind, const std::optional<double>& value) {
+      if (!value) return;
+      data.push_back({format("point %d %s", number, what), kind, *value, deviation_of("point"), v, load, by_torque});
+    };
+    of_point("speed", DatumKind::point_speed, p.speed);
+    if (by_torque) of_point("current", DatumKind::point_current, p.current);
+    of_point("efficiency", DatumKind::point_efficiency, p.efficiency);
+  }
+  return data;
+}
+
+}  // namespace wingbeat::detail

@@ -1,0 +1,74 @@
+#include "study/optimise_problem.hpp"
+
+#include <span>
+
+namespace wingbeat::detail {
+namespace {
+
+/// Limits of the domain are kept by so much more, as a share: an optimum at one is inside at looser tolerances too.
+constexpr double domain_margin = 1e-5;
+
+}  // namespace
+
+Design<double> OptimiseProblem::found(const Vector& u, const DesignPoint& point) const {
+  Design<double> d = design(u);
+  if (study_.options.frequency && !set_drive_frequency(d, *study_.options.frequency)) {
+    const double duty = d.supply.type == SupplyType::pwm ? d.supply.duty : 1.0;
+    d.supply.voltage = point.metrics[Metric::voltage] / duty;
+  }
+  return d;
+}
+
+OptimiseProblem::Evaluation OptimiseProblem::evaluate(const Vector& u, bool gradients) const {
+  Evaluation e;
+  std::span<const DesignParameter> wanted;
+  if (gradients) wanted = parameters_;
+  e.point = design_point(design(u), study_.options, wanted, start_up_);
+  const Eigen::Index m = constraints();
+  e.gradient = Vector::Zero(size());
+  e.constraints = Vector::Constant(m, 1.0);
+  e.jacobian = Eigen::MatrixXd::Zero(m, size());
+  if (e.point.status != SweepStatus::flapping) return e;
+  const auto row = [&](Metric metric, double factor) {
+    Vector g = Vector::Zero(size());
+    if (!gradients) return g;
+    for (Eigen::Index k = 0; k < size(); ++k) {
+      g[k] = factor * e.point.gradients[std::size_t(k)][std::size_t(metric)] * slope(k, u[k]);
+    }
+    return g;
+  };
+  const double sign = study_.maximise ? -1.0 : 1.0;
+  e.objective = sign * e.point.metrics[study_.objective];
+  e.gradient = row(study_.objective, sign);
+  const Eigen::Index own = Eigen::Index(study_.constraints.size());
+  for (Eigen::Index c = 0; c < own; ++c) {
+    const MetricConstraint& limit = study_.constraints[std::size_t(c)];
+    const double factor = (limit.at_least ? -1.0 : 1.0) / (limit.limit == 0.0 ? 1.0 : std::abs(limit.limit));
+    e.constraints[c] = factor * (e.point.metrics[limit.metric] - limit.limit);
+    e.jacobian.row(c) = row(limit.metric, factor).transpose();
+  }
+  for (Eigen::Index c = own; c < m; ++c) {
+    const std::size_t limit = std::size_t(c - own);
+    e.constraints[c] = e.point.domain_excess[limit] + domain_margin;
+    if (!gradients) continue;
+    const bool by_geometry = limit == std::size_t(DomainLimit::stroke) && drive_of(study_.design).stroke_is_fixed;
+    for (Eigen::Index k = 0; k < size(); ++k) {
+      e.jacobian(c, k) =
+          by_geometry ? stroke_slope(u, k) : e.point.domain_slopes[std::size_t(k)][limit] * slope(k, u[k]);
+    }
+  }
+  e.flaps = std::isfinite(e.objective) && e.constraints.allFinite() && e.gradient.allFinite() && e.jacobian.allFinite();
+  if (!e.flaps) e.objective = HUGE_VAL;
+  return e;
+}
+
+double OptimiseProblem::stroke_slope(const Vector& u, Eigen::Index k) const {
+  constexpr double step = 1e-5;
+  Vector up = u, down = u;
+  up[k] = std::min(1.0, u[k] + step);
+  down[k] = std::max(0.0, u[k] - step);
+  const auto excess = [&](const Vector& at) { return stroke_excess(resolve(design(at), study_.options.condition)); };
+  return (excess(up) - excess(down)) / (up[k] - down[k]);
+}
+
+}  // namespace wingbeat::detail

@@ -1,0 +1,49 @@
+// The equations of a model in time (CrankModel, DirectModel) as an integrator takes them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "time/integrator.hpp"
+#include "time/transient_tools.hpp"
+
+namespace wingbeat::detail {
+
+/// The model's unknowns, all its indicators being roots. `relative`: admissible error of a step. Model and tolerance
+/// are referred to and may change between steps.
+template <class Model>
+IntegratorProblem problem_of(const Model& model, const double& relative) {
+  IntegratorProblem p;
+  p.size = p.coupled = model.coupled;
+  p.roots = int(Model::indicator_count);
+  p.stiff = model.stiff();
+  p.rates = [&](double t, const double* y, double* dy) { return model.rates(t, y, dy, false); };
+  p.root_functions = [&](double t, const double* y, double* values) {
+    const auto at = model.indicators(t, y);
+    std::copy(at.begin(), at.end(), values);
+  };
+  p.tolerated = [&](const double* y, double* errors) { model.tolerated(relative, y, errors); };
+  p.longest_step = model.longest_step();
+  const auto typical = model.typical();
+  p.typical.assign(typical.begin(), typical.end());
+  return p;
+}
+
+/// The same with `quadratures` behind the unknowns, which are of the sizes `scale`.
+template <class Model>
+IntegratorProblem problem_with_quadratures(const Model& model, const double& relative,
+                                           const double (&scale)[quadrature_count]) {
+  IntegratorProblem p = problem_of(model, relative);
+  p.size += quadrature_count;
+  p.rates = [&](double t, const double* y, double* dy) { return model.rates(t, y, dy, true); };
+  p.tolerated = [&](const double* y, double* errors) {
+    model.tolerated(relative, y, errors);
+    for (int k = model.coupled; k < model.coupled + quadrature_count; ++k) {
+      errors[k] = relative * (std::abs(y[k]) + 0.01 * scale[k - model.coupled]);
+    }
+  };
+  return p;
+}
+
+}  // namespace wingbeat::detail
