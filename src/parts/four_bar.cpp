@@ -14,8 +14,7 @@ void validate(const FourBar<double>& f) {
   require(p > 0.0, "transmission.rocker_length", "must be > 0", "m", p);
   require(d > 0.0, "transmission.ground_length", "must be > 0", "m", d);
   require(f.swing_ratio > 0.0, "transmission.swing_ratio", "must be > 0", "1", f.swing_ratio);
-  require(std::isfinite(f.mid_angle), "transmission.mid_angle", "must be finite", "rad", f.mid_angle);
-
+  // Grashof's condition first: without it the rocker's swing, and the middle of it, do not exist.
   std::array<double, 4> link = {r_c, l, p, d};
   std::sort(link.begin(), link.end());
   require(r_c < link[1], "transmission.crank_radius", "must be the shortest link, or the crank cannot turn (Grashof)",
@@ -30,6 +29,7 @@ void validate(const FourBar<double>& f) {
     require(mu >= transmission_angle_min_deg && mu <= 180.0 - transmission_angle_min_deg, "transmission.coupler_length",
             "must keep the transmission angle between coupler and rocker within 5 to 175", "deg", mu);
   }
+  require(std::isfinite(f.mid_angle), "transmission.mid_angle", "must be finite", "rad", f.mid_angle);
 }
 
 Reversals reversals(const FourBar<double>& f) {
