@@ -1,11 +1,15 @@
 #include "wingbeat/files/optimise_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "files/csv_cells.hpp"
+#include "files/motor_catalogue.hpp"
 #include "files/study_sections.hpp"
+#include "wingbeat/files/input_file.hpp"
+#include "wingbeat/files/units.hpp"
 
 namespace wingbeat {
 namespace {
@@ -82,7 +86,7 @@ class OptimiseReader : public detail::StudySections {
 
   void read_objective(OptimiseStudy& study, const Design<double>& design) {
     const TomlNode& node = need(root_, "", "objective", "a section [objective] with minimise or maximise");
-    if (node.kind != Kind::table) wrong(node, "objective", "a section [objective]");
+    section(node, "objective");
     known_keys(node, "objective", {"minimise", "maximise", "starts", "seed", "screen"});
     const TomlNode *low = node.find("minimise"), *high = node.find("maximise");
     if (bool(low) == bool(high)) refuse(node, "objective", "give one of minimise and maximise");
@@ -130,7 +134,7 @@ class OptimiseReader : public detail::StudySections {
     const TomlNode* search = root_.find("search");
     EvolutionOptions& evolution = file.evolution;
     if (search) {
-      if (search->kind != Kind::table) wrong(*search, "search", "a section [search]");
+      section(*search, "search");
       known_keys(*search, "search", {"method", "population", "generations", "screen", "seed", "designs"});
       if (const TomlNode* method = search->find("method")) {
         evolution.method = one_of<EvolutionMethod>(*method, "search.method");
@@ -288,7 +292,7 @@ class OptimiseReader : public detail::StudySections {
   // ---- [motors]
 
   void read_motors(const TomlNode& node, OptimiseFile& file) {
-    if (node.kind != Kind::table) wrong(node, "motors", "a section [motors]");
+    section(node, "motors");
     known_keys(node, "motors", {"catalogue", "gear_ratio", "mass_without"});
     const TomlNode& name = need(node, "motors", "catalogue", "the name of a CSV file");
     const fs::path path = folder_ / text_of(name, "motors.catalogue", "the name of a CSV file");
@@ -306,120 +310,12 @@ class OptimiseReader : public detail::StudySections {
                "the motor already");
       }
     }
-    read_catalogue(path.string(), read_text_file(path), gear, rest, file);
+    file.motors = detail::parse_motor_catalogue(read_text_file(path), path.string(), gear, rest, file.study.design);
     if (std::none_of(file.motors.begin(), file.motors.end(), [](const auto& m) { return m.refused.empty(); })) {
       std::string reason = file.motors.empty() ? "holds no motors" : "holds no motor that can be tried";
       if (!file.motors.empty()) reason += fmt::format(": {}: {}", file.motors[0].model, file.motors[0].refused);
       refuse(name, "motors.catalogue", reason);
     }
-  }
-
-  static std::vector<std::string> cells_of(std::string_view line) {
-    std::vector<std::string> cells(1);
-    bool quoted = false;
-    for (const char c : line) {
-      if (c == '"') quoted = !quoted;
-      else if (c == ',' && !quoted) cells.emplace_back();
-      else if (c != '\r') cells.back() += c;
-    }
-    return cells;
-  }
-
-  void read_catalogue(const std::string& name, std::string_view text, double gear, std::optional<double> rest,
-                      OptimiseFile& file) {
-    std::vector<std::string> header;
-    int line_number = 0;
-    const auto refuse_there = [&](const std::string& key, const std::string& message) {
-      throw InputError(name, line_number, 1, key, message);
-    };
-    for (std::string_view line; next_line(text, line, line_number);) {
-      if (is_blank_or_comment(line)) continue;
-      const std::vector<std::string> cells = cells_of(line);
-      if (header.empty()) {
-        header = cells;
-        for (const char* needed : {"model", "gear_ratio", "resistance_ohm", "torque_constant_Nm_per_A",
-                                   "rotor_inertia_kgm2", "inductance_H"}) {
-          if (std::find(header.begin(), header.end(), needed) == header.end()) {
-            refuse_there(needed, "missing; expected a column of that name");
-          }
-        }
-        continue;
-      }
-      if (cells.size() != header.size()) {
-        refuse_there("", fmt::format("expected {} cells, got {}", header.size(), cells.size()));
-      }
-      const auto cell = [&](std::string_view column) -> std::string {
-        const auto found = std::find(header.begin(), header.end(), column);
-        return found == header.end() ? "" : cells[std::size_t(found - header.begin())];
-      };
-      const auto number = [&](std::string_view column) -> std::optional<double> {
-        const std::string content = cell(column);
-        if (content.find_first_not_of(" \t") == std::string::npos) return std::nullopt;
-        try {
-          return parse_quantity(content, "1");
-        } catch (const UnitError&) {
-          refuse_there(std::string(column), fmt::format("expected a number, got {}", in_quotes(content)));
-        }
-        return std::nullopt;
-      };
-      file.motors.push_back(candidate(cell("model"), number, gear, rest, file.study.design));
-    }
-  }
-
-  /// A row as a vehicle, or what it lacks.
-  template <class Number>
-  static MotorCandidate candidate(const std::string& model, const Number& number, double gear,
-                                  std::optional<double> rest, const Design<double>& design) {
-    MotorCandidate motor{one_line(model), "", {}, design};
-    const auto resistance = number("resistance_ohm"), constant = number("torque_constant_Nm_per_A");
-    const auto inertia = number("rotor_inertia_kgm2"), inductance = number("inductance_H");
-    const auto mass = number("mass_kg");
-    std::string lacks;
-    const auto need_value = [&](const std::optional<double>& x, const char* what) {
-      if (!x) lacks += fmt::format("{}{}", lacks.empty() ? "" : ", ", what);
-    };
-    need_value(resistance, "armature resistance");
-    need_value(constant, "torque constant");
-    need_value(inertia, "rotor inertia");
-    need_value(inductance, "inductance");
-    const bool weighed = rest || design.masses.motor;
-    if (weighed) need_value(mass, "mass");
-    if (!lacks.empty()) {
-      motor.refused = "incomplete, no " + lacks;
-      return motor;
-    }
-    auto& c = motor.design.motor.constants;
-    c.armature_resistance = *resistance;
-    c.torque_constant = *constant;
-    c.inertia = *inertia;
-    c.armature_inductance = *inductance;
-    c.friction_torque = number("friction_torque_Nm").value_or(0.0);
-    const auto no_load_current = number("no_load_current_A"), no_load_speed = number("no_load_speed_rad_s");
-    if (const auto damping = number("viscous_friction_Nms")) {
-      c.viscous_damping = *damping;
-    } else if (no_load_current && no_load_speed) {
-      // At no load the motor's torque covers its own friction alone.
-      const double rest_of_torque = *constant * *no_load_current - c.friction_torque;
-      c.viscous_damping = std::max(0.0, rest_of_torque) / *no_load_speed;
-      motor.derived.push_back(fmt::format("b = {:.2g} N m s/rad from the no-load current", c.viscous_damping));
-    } else {
-      motor.refused = "incomplete, neither viscous friction nor no-load current and speed";
-      return motor;
-    }
-    // A gearmotor's sheet states its output shaft; a bare motor gets the study's gearbox.
-    const double own = number("gear_ratio").value_or(1.0);
-    if (own == 1.0) motor.design.motor.gear_ratio = gear;
-    else motor.design.motor.gear_ratio.reset();
-    motor.design.motor.gear_inertia = 0.0;
-    motor.design.motor.gear_damping = 0.0;
-    if (rest) motor.design.mass = *rest;
-    if (weighed) motor.design.masses.motor = *mass;
-    try {
-      validate(motor.design);
-    } catch (const ParameterError& error) {
-      motor.refused = error.what();
-    }
-    return motor;
   }
 
   fs::path folder_;
@@ -428,78 +324,8 @@ class OptimiseReader : public detail::StudySections {
 
 }  // namespace
 
-std::vector<MotorTrial> trials_of(const OptimiseFile& file) {
-  std::size_t combinations = 1;
-  for (const DiscreteParameter& p : file.choices) combinations *= p.values.size();
-  std::vector<MotorTrial> trials;
-  const auto add = [&](const MotorCandidate* motor) {
-    for (std::size_t n = 0; n < combinations; ++n) {
-      std::vector<double> values(file.choices.size());
-      std::size_t rest = n;
-      for (std::size_t k = values.size(); k-- > 0;) {
-        values[k] = file.choices[k].values[rest % file.choices[k].values.size()];
-        rest /= file.choices[k].values.size();
-      }
-      trials.push_back({motor, std::move(values), {}});
-      if (trials.back().refused()) return;
-    }
-  };
-  for (const MotorCandidate& motor : file.motors) add(&motor);
-  if (file.motors.empty()) add(nullptr);
-  return trials;
-}
-
-OptimiseStudy trial_study(const OptimiseFile& file, const MotorTrial& trial) {
-  OptimiseStudy study = file.study;
-  if (trial.motor) study.design = trial.motor->design;
-  for (std::size_t k = 0; k < file.choices.size(); ++k) file.choices[k].parameter.set(study.design, trial.choices[k]);
-  return study;
-}
-
-std::string name_of(const OptimiseFile& file, const MotorTrial& trial) {
-  std::string name = trial.motor ? trial.motor->model : "";
-  if (trial.refused()) return name;
-  for (std::size_t k = 0; k < file.choices.size(); ++k) {
-    const DesignParameter& p = file.choices[k].parameter;
-    name += fmt::format("{}{} {:.6g}{}", name.empty() ? "" : ", ", p.key, trial.choices[k],
-                        p.unit == "1" ? "" : " " + p.unit);
-  }
-  return name;
-}
-
-ParetoStudy pareto_study(const OptimiseFile& file) {
-  ParetoStudy study;
-  for (const MotorCandidate& motor : file.motors) {
-    if (motor.refused.empty()) study.vehicles.push_back({motor.model, motor.design});
-  }
-  if (study.vehicles.empty()) study.vehicles.push_back({"", file.study.design});
-  study.condition = file.study.options.condition;
-  study.frequency = file.study.options.frequency;
-  study.tolerance = file.study.options.tolerance;
-  study.objectives = file.objectives;
-  study.parameters = file.study.parameters;
-  study.choices = file.choices;
-  study.constraints = file.study.constraints;
-  study.allow_extrapolation = file.study.allow_extrapolation;
-  study.evolution = file.evolution;
-  study.screen = file.study.screen;
-  study.designs = file.designs;
-  return study;
-}
-
 OptimiseFile read_optimise_study(const fs::path& file, std::span<const std::string> overrides) {
   return OptimiseReader(file, read_text_file(file), overrides).read();
-}
-
-const MotorTrial* best_trial(const OptimiseFile& file, std::span<const MotorTrial> trials) {
-  const double sign = file.study.maximise ? -1.0 : 1.0;
-  const MotorTrial* best = nullptr;
-  for (const MotorTrial& t : trials) {
-    if (t.refused() || t.result.outcome != OptimiseResult::Outcome::found) continue;
-    const auto value = [&](const MotorTrial& of) { return sign * of.result.point.metrics[file.study.objective]; };
-    if (!best || value(t) < value(*best)) best = &t;
-  }
-  return best;
 }
 
 }  // namespace wingbeat

@@ -1,7 +1,6 @@
 #include "wingbeat/files/published.hpp"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "files/toml_reader.hpp"
 #include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/units.hpp"
@@ -40,66 +40,52 @@ constexpr std::pair<const char*, PublishedTrend::Kind> kinds[] = {
 constexpr std::pair<const char*, PublishedTrend::Bound> bounds[] = {{"below", PublishedTrend::Bound::below},
                                                                     {"above", PublishedTrend::Bound::above}};
 
-class Reader {
+using Kind = TomlNode::Kind;
+
+class Reader : TomlReader {
  public:
   Reader(std::string_view text, std::string_view name,
          const std::function<Design<double>(const std::string&)>& design_named)
-      : text_(text), name_(name), design_named_(design_named) {}
+      : TomlReader(std::string(name)), root_(parse_toml_tree(text, name)), design_named_(design_named) {}
 
   PublishedFile read() {
-    toml::table root;
-    try {
-      root = toml::parse(text_, name_);
-    } catch (const toml::parse_error& e) {
-      throw InputError(name_, int(e.source().begin.line), int(e.source().begin.column), "",
-                       fmt::format("not TOML: {}", e.description()));
-    }
     PublishedFile file;
-    known_keys(root, {"title", "source", "tolerance", "designs", "value", "trend"});
-    file.title = text_at(root, "title");
-    file.source = text_at(root, "source");
-    if (root.contains("tolerance")) file.tolerance = tolerance_at(root, file);
-    const toml::table* designs = need(root, "designs", "a table of vehicle files").as_table();
-    if (!designs) refuse(*root.get("designs"), "designs", "expected a table of vehicle files");
-    for (const auto& [key, node] : *designs) {
-      const std::string name(key.str());
+    known_keys(root_, {"title", "source", "tolerance", "designs", "value", "trend"});
+    file.title = text_at(root_, "title");
+    file.source = text_at(root_, "source");
+    if (has(root_, "tolerance")) file.tolerance = tolerance_at(root_, file);
+    const TomlNode& designs = need(root_, "designs", "a table of vehicle files");
+    if (designs.kind != Kind::table) refuse(designs, "designs", "expected a table of vehicle files");
+    for (const auto& [name, node] : designs.members) {
       file.designs[name] = design_named_(text_of(node, "designs." + name));
     }
-    const toml::array* values = need(root, "value", "[[value]] tables").as_array();
-    if (!values) refuse(*root.get("value"), "value", "expected [[value]] tables");
-    for (const toml::node& node : *values) {
-      if (!node.is_table()) refuse(node, "value", "expected [[value]] tables");
-      file.values.push_back(read_value(*node.as_table(), file));
+    for (const TomlNode& value : tables_of(need(root_, "value", "[[value]] tables"), "value")) {
+      file.values.push_back(read_value(value, file));
     }
-    if (const toml::node* node = root.get("trend")) {
-      const toml::array* trends = node->as_array();
-      if (!trends) refuse(*node, "trend", "expected [[trend]] tables");
-      for (const toml::node& trend : *trends) {
-        if (!trend.is_table()) refuse(trend, "trend", "expected [[trend]] tables");
-        file.trends.push_back(read_trend(*trend.as_table(), file));
-      }
+    if (const TomlNode* trends = root_.find("trend")) {
+      for (const TomlNode& trend : tables_of(*trends, "trend")) file.trends.push_back(read_trend(trend, file));
     }
     return file;
   }
 
  private:
-  PublishedValue read_value(const toml::table& t, const PublishedFile& file) {
+  PublishedValue read_value(const TomlNode& t, const PublishedFile& file) {
     known_keys(t, {"voltage", "frequency", "metric", "design", "ratio", "published", "tolerance", "where", "basis"});
     PublishedValue v{};
-    if (t.contains("voltage") == t.contains("frequency")) refuse(t, "value", "give one of voltage and frequency");
-    if (t.contains("voltage")) v.voltage = quantity_at(t, "voltage", "V");
-    if (t.contains("frequency")) v.frequency = quantity_at(t, "frequency", "Hz");
+    if (has(t, "voltage") == has(t, "frequency")) refuse(t, "value", "give one of voltage and frequency");
+    if (has(t, "voltage")) v.voltage = quantity_at(t, "voltage", "V");
+    if (has(t, "frequency")) v.frequency = quantity_at(t, "frequency", "Hz");
     v.metric = metric_at(t);
     std::tie(v.design, v.relative_to) = designs_at(t, file);
     std::tie(v.published, v.published_text) =
         published_at(t, "published", v.relative_to ? "1" : metric_info(v.metric).unit);
     v.tolerance = tolerance_at(t, file);
-    if (t.contains("where")) v.where = text_at(t, "where");
-    if (t.contains("basis")) v.basis = choice_at(t, "basis", names_of<Basis>);
+    if (has(t, "where")) v.where = text_at(t, "where");
+    if (has(t, "basis")) v.basis = choice_at(t, "basis", names_of<Basis>);
     return v;
   }
 
-  PublishedTrend read_trend(const toml::table& t, const PublishedFile& file) {
+  PublishedTrend read_trend(const TomlNode& t, const PublishedFile& file) {
     using Kind = PublishedTrend::Kind;
     PublishedTrend trend{};
     trend.kind = choice_at(t, "kind", kinds);
@@ -108,9 +94,9 @@ class Reader {
     trend.basis = choice_at(t, "basis", names_of<Basis>);
     for (const auto& [key, text] :
          {std::pair("reason", &trend.reason), std::pair("note", &trend.note), std::pair("erratum", &trend.erratum)}) {
-      if (t.contains(key)) *text = text_at(t, key);
+      if (has(t, key)) *text = text_at(t, key);
     }
-    if (t.contains("restates")) trend.restates = flag_at(t, "restates");
+    if (has(t, "restates")) trend.restates = flag_at(t, "restates");
     std::vector<std::string_view> keys{"kind", "statement", "where", "basis", "reason", "note", "erratum", "restates"};
     const auto also = [&](std::initializer_list<std::string_view> more) { keys.insert(keys.end(), more); };
     const auto is = [&](std::initializer_list<Kind> any) {
@@ -119,7 +105,7 @@ class Reader {
     if (trend.kind == Kind::best_friction_law) {
       also({"published_law"});
       known_keys(t, keys);
-      if (t.contains("published_law")) trend.published_law = choice_at(t, "published_law", names_of<FrictionLaw>);
+      if (has(t, "published_law")) trend.published_law = choice_at(t, "published_law", names_of<FrictionLaw>);
       trend.unit = std::string("1");  // a literal draws a false warning of GCC 12
       return trend;
     }
@@ -138,34 +124,34 @@ class Reader {
     std::string unit = "Hz";
     if (along || at_point || is({Kind::best_range, Kind::saturates})) {
       also({"over", "hold_stroke"});
-      if (t.contains("over")) {
+      if (has(t, "over")) {
         trend.over = text_at(t, "over");
         try {
           unit = design_parameter(trend.over).unit;
         } catch (const ParameterError& e) {
-          refuse(*t.get("over"), "over", e.what());
+          refuse(*t.find("over"), "over", e.what());
         }
         if (!along) {
           also({"at"});
           trend.at = quantity_at(t, "at", unit.c_str());
         }
       }
-      if (t.contains("hold_stroke")) trend.hold_stroke = flag_at(t, "hold_stroke");
+      if (has(t, "hold_stroke")) trend.hold_stroke = flag_at(t, "hold_stroke");
     }
     if (along || is({Kind::best_range, Kind::between, Kind::saturates})) {
       also({"from", "to"});
       const std::string ranged = along || trend.kind == Kind::saturates ? unit : "Hz";
       trend.from = quantity_at(t, "from", ranged.c_str());
       trend.to = quantity_at(t, "to", ranged.c_str());
-      if (!(trend.to > trend.from)) refuse(*t.get("to"), "to", "must be above from");
+      if (!(trend.to > trend.from)) refuse(*t.find("to"), "to", "must be above from");
     }
     const bool held = is({Kind::power_balance, Kind::steadier});
     if (at_point) {
-      if (t.contains("voltage") == t.contains("frequency")) refuse(t, "trend", "give one of voltage and frequency");
+      if (has(t, "voltage") == has(t, "frequency")) refuse(t, "trend", "give one of voltage and frequency");
       also({"voltage", "frequency"});
-      if (t.contains("voltage")) trend.voltage = quantity_at(t, "voltage", "V");
+      if (has(t, "voltage")) trend.voltage = quantity_at(t, "voltage", "V");
     }
-    if (held || t.contains("frequency")) {
+    if (held || has(t, "frequency")) {
       if (held) also({"frequency"});
       trend.frequency = quantity_at(t, "frequency", "Hz");
     }
@@ -182,11 +168,11 @@ class Reader {
                                                                         : "1";
     if (trend.kind == Kind::best_range) {
       also({"published", "tolerance"});
-      const toml::node& node = need(t, "published", "two frequencies");
-      const toml::array* range = node.as_array();
-      if (!range || range->size() != 2) refuse(node, "published", "expected two frequencies");
-      const auto [low, low_text] = published_of(*range->get(0), "published", "Hz");
-      const auto [high, high_text] = published_of(*range->get(1), "published", "Hz");
+      const TomlNode& node = need(t, "published", "two frequencies");
+      if (node.kind != TomlNode::Kind::array || node.items.size() != 2)
+        refuse(node, "published", "expected two frequencies");
+      const auto [low, low_text] = published_of(node.items[0], "published", "Hz");
+      const auto [high, high_text] = published_of(node.items[1], "published", "Hz");
       if (!(high > low)) refuse(node, "published", "the second frequency must be above the first");
       trend.published = low;
       trend.published_end = high;
@@ -194,15 +180,15 @@ class Reader {
       trend.tolerance = tolerance_at(t, file);
     } else if (!is({Kind::between, Kind::steadier, Kind::saturates, Kind::initial_guesses})) {
       also({"published", "tolerance", "bound"});
-      if (t.contains("published")) {
+      if (has(t, "published")) {
         std::tie(trend.published, trend.published_text) = published_at(t, "published", trend.unit.c_str());
-        if (t.contains("bound")) {
+        if (has(t, "bound")) {
           trend.bound = choice_at(t, "bound", bounds);
           trend.published_text = fmt::format("{} {}", text_at(t, "bound"), trend.published_text);
         } else {
           trend.tolerance = tolerance_at(t, file);
         }
-      } else if (t.contains("tolerance") || t.contains("bound")) {
+      } else if (has(t, "tolerance") || has(t, "bound")) {
         refuse(t, "published", "missing: tolerance and bound belong to it");
       }
     }
@@ -210,111 +196,107 @@ class Reader {
     return trend;
   }
 
-  Metric metric_at(const toml::table& t) const {
+  Metric metric_at(const TomlNode& t) const {
     const std::string metric = text_at(t, "metric");
     const int index = metric_index(metric);
     if (index == metric_count) {
-      refuse(*t.get("metric"), "metric", fmt::format("{} is no metric of wingbeat run --json", in_quotes(metric)));
+      refuse(*t.find("metric"), "metric", fmt::format("{} is no metric of wingbeat run --json", in_quotes(metric)));
     }
     return Metric(index);
   }
 
-  std::pair<std::string, std::optional<std::string>> designs_at(const toml::table& t, const PublishedFile& file) const {
-    if (t.contains("design") == t.contains("ratio")) refuse(t, "value", "give one of design and ratio");
-    if (t.contains("design")) return {design_in(*t.get("design"), "design", file), std::nullopt};
-    const toml::array* pair = t.get("ratio")->as_array();
-    if (!pair || pair->size() != 2) refuse(*t.get("ratio"), "ratio", "expected two names of designs");
-    return {design_in(*pair->get(0), "ratio", file), design_in(*pair->get(1), "ratio", file)};
+  std::pair<std::string, std::optional<std::string>> designs_at(const TomlNode& t, const PublishedFile& file) const {
+    if (has(t, "design") == has(t, "ratio")) refuse(t, "value", "give one of design and ratio");
+    if (has(t, "design")) return {design_in(*t.find("design"), "design", file), std::nullopt};
+    const TomlNode& pair = *t.find("ratio");
+    if (pair.kind != Kind::array || pair.items.size() != 2) refuse(pair, "ratio", "expected two names of designs");
+    return {design_in(pair.items[0], "ratio", file), design_in(pair.items[1], "ratio", file)};
   }
 
   template <class Name, class E, std::size_t N>
-  E choice_at(const toml::table& t, const char* key, const std::pair<Name, E> (&choices)[N]) const {
+  E choice_at(const TomlNode& t, const char* key, const std::pair<Name, E> (&choices)[N]) const {
     const std::string text = text_at(t, key);
     std::string names;
     for (const auto& [name, value] : choices) {
       if (text == name) return value;
       names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
     }
-    refuse(*t.get(key), key, fmt::format("must be one of {}, got {}", names, in_quotes(text)));
+    refuse(*t.find(key), key, fmt::format("must be one of {}, got {}", names, in_quotes(text)));
   }
 
-  [[noreturn]] void refuse(const toml::node& node, const std::string& key, const std::string& message) const {
-    throw InputError(name_, int(node.source().begin.line), int(node.source().begin.column), key, message);
-  }
-  void known_keys(const toml::table& t, const std::vector<std::string_view>& keys) const {
-    for (const auto& [key, node] : t) {
-      if (std::find(keys.begin(), keys.end(), key.str()) == keys.end()) {
-        refuse(node, std::string(key.str()), fmt::format("unknown key; known here: {}", fmt::join(keys, ", ")));
-      }
+  static bool has(const TomlNode& t, std::string_view key) { return t.find(key) != nullptr; }
+  void known_keys(const TomlNode& t, const std::vector<std::string_view>& keys) const {
+    for (const auto& [key, node] : t.members) {
+      if (std::find(keys.begin(), keys.end(), key) == keys.end()) unknown(node, key, "", keys);
     }
   }
-  const toml::node& need(const toml::table& t, std::string_view key, std::string_view expected) const {
-    const toml::node* node = t.get(key);
+  const TomlNode& need(const TomlNode& t, std::string_view key, std::string_view expected) const {
+    const TomlNode* node = t.find(key);
     if (!node) refuse(t, std::string(key), fmt::format("missing: expected {}", expected));
     return *node;
   }
-  std::string text_of(const toml::node& node, const std::string& key) const {
-    const auto text = node.value_exact<std::string>();
-    if (!text) refuse(node, key, "expected a text");
-    return *text;
+  std::span<const TomlNode> tables_of(const TomlNode& node, const std::string& key) const {
+    const std::string expected = fmt::format("expected [[{}]] tables", key);
+    if (node.kind != Kind::array) refuse(node, key, expected);
+    for (const TomlNode& item : node.items) {
+      if (item.kind != Kind::table) refuse(item, key, expected);
+    }
+    return node.items;
   }
-  std::string text_at(const toml::table& t, std::string_view key) const {
+  std::string text_of(const TomlNode& node, const std::string& key) const {
+    if (node.kind != Kind::text) refuse(node, key, "expected a text");
+    return node.text;
+  }
+  std::string text_at(const TomlNode& t, std::string_view key) const {
     return text_of(need(t, key, "a text"), std::string(key));
   }
-  double number_at(const toml::table& t, std::string_view key) const {
-    const toml::node& node = need(t, key, "a number");
-    const auto number = node.value<double>();
-    if (!node.is_number() || !number || !std::isfinite(*number)) refuse(node, std::string(key), "expected a number");
-    return *number;
+  double number_at(const TomlNode& t, std::string_view key) const {
+    const TomlNode& node = need(t, key, "a number");
+    if (node.kind != Kind::number || !std::isfinite(node.number)) refuse(node, std::string(key), "expected a number");
+    return node.number;
   }
-  bool flag_at(const toml::table& t, const char* key) const {
-    const auto flag = t.get(key)->value_exact<bool>();
-    if (!flag) refuse(*t.get(key), key, "expected true or false");
-    return *flag;
+  bool flag_at(const TomlNode& t, const char* key) const {
+    const TomlNode& flag = *t.find(key);
+    if (flag.kind != Kind::boolean) refuse(flag, key, "expected true or false");
+    return flag.number != 0.0;
   }
   /// A quantity in `unit`, either a number of SI units or a text, and how it is written.
-  std::pair<double, std::string> published_of(const toml::node& node, const std::string& key, const char* unit) const {
-    if (const auto text = node.value_exact<std::string>()) {
-      try {
-        return {parse_quantity(*text, unit), *text};
-      } catch (const UnitError& e) {
-        refuse(node, key, e.what());
-      }
+  std::pair<double, std::string> published_of(const TomlNode& node, const std::string& key, const char* unit) const {
+    if (node.kind == Kind::text) return {quantity(node, key, unit), node.text};
+    if (node.kind != Kind::number || !std::isfinite(node.number)) {
+      refuse(node, key, "expected a number or a quantity");
     }
-    const auto number = node.value<double>();
-    if (!node.is_number() || !number || !std::isfinite(*number)) refuse(node, key, "expected a number or a quantity");
     const std::string_view of = unit;
-    return {*number, of == "1" ? fmt::format("{:g}", *number) : fmt::format("{:g} {}", *number, of)};
+    return {node.number, of == "1" ? fmt::format("{:g}", node.number) : fmt::format("{:g} {}", node.number, of)};
   }
-  std::pair<double, std::string> published_at(const toml::table& t, const std::string& key, const char* unit) const {
-    const toml::node& node = need(t, key, "a number or a quantity");
+  std::pair<double, std::string> published_at(const TomlNode& t, const std::string& key, const char* unit) const {
+    const TomlNode& node = need(t, key, "a number or a quantity");
     const auto read = published_of(node, key, unit);
-    if (read.first == 0.0 && !t.contains("bound")) refuse(node, key, "0 allows no relative deviation");
+    if (read.first == 0.0 && !has(t, "bound")) refuse(node, key, "0 allows no relative deviation");
     return read;
   }
-  double tolerance_at(const toml::table& t, const PublishedFile& file) const {
-    if (!t.contains("tolerance")) {
+  double tolerance_at(const TomlNode& t, const PublishedFile& file) const {
+    if (!has(t, "tolerance")) {
       if (!std::isfinite(file.tolerance)) refuse(t, "tolerance", "missing here, and the file states none for all");
       return file.tolerance;
     }
     const double tolerance = number_at(t, "tolerance");
-    if (!(tolerance > 0.0)) refuse(*t.get("tolerance"), "tolerance", "must be > 0");
+    if (!(tolerance > 0.0)) refuse(*t.find("tolerance"), "tolerance", "must be > 0");
     return tolerance;
   }
-  double quantity_at(const toml::table& t, const std::string& key, const char* unit) const {
-    const toml::node& node = need(t, key, quantity_example(unit));
+  double quantity_at(const TomlNode& t, const std::string& key, const char* unit) const {
+    const TomlNode& node = need(t, key, quantity_example(unit));
     const double x = published_of(node, key, unit).first;
     if (!(x > 0.0)) refuse(node, key, "must be > 0");
     return x;
   }
-  std::string design_in(const toml::node& node, const char* key, const PublishedFile& file) const {
+  std::string design_in(const TomlNode& node, const char* key, const PublishedFile& file) const {
     const std::string name = text_of(node, key);
     if (!file.designs.contains(name)) refuse(node, key, fmt::format("{} is not among [designs]", in_quotes(name)));
     return name;
   }
 
-  std::string_view text_;
-  std::string name_;
+  TomlNode root_;
   const std::function<Design<double>(const std::string&)>& design_named_;
 };
 

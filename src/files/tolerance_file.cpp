@@ -1,17 +1,21 @@
 #include "wingbeat/files/tolerance_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "files/study_sections.hpp"
 #include "wingbeat/files/design_parameter.hpp"
+#include "wingbeat/files/input_file.hpp"
+#include "wingbeat/files/units.hpp"
 
 namespace wingbeat {
 namespace {
 
 namespace fs = std::filesystem;
-using detail::Kind;
+using detail::Kind, detail::reason_of;
 
 class ToleranceReader : public detail::StudySections {
  public:
@@ -55,7 +59,7 @@ class ToleranceReader : public detail::StudySections {
     ToleranceStudy& study = *study_result_;
     const TomlNode* node = root_.find("samples");
     if (!node) return;
-    if (node->kind != Kind::table) wrong(*node, "samples", "a section [samples]");
+    section(*node, "samples");
     known_keys(*node, "samples", {"method", "count", "seed", "indices", "resamples"});
     if (const TomlNode* method = node->find("method")) {
       study.method = one_of<ToleranceMethod>(*method, "samples.method");
@@ -65,8 +69,7 @@ class ToleranceReader : public detail::StudySections {
       study.seed = whole_number(*seed, "samples.seed", 0, std::uint64_t(1) << 53);
     }
     if (const TomlNode* indices = node->find("indices")) {
-      if (indices->kind != Kind::boolean) wrong(*indices, "samples.indices", "true or false");
-      study.indices = indices->number != 0.0;
+      study.indices = boolean(*indices, "samples.indices");
     }
     if (const TomlNode* n = node->find("resamples")) {
       study.resamples = int(whole_number(*n, "samples.resamples", 2, 100000));
@@ -210,12 +213,12 @@ class ToleranceReader : public detail::StudySections {
 
   void add_key(const TomlNode& node, const std::string& where, const std::string& key) {
     if (!used_.insert(key).second) refuse(node, where, fmt::format("{} is given already", key));
-    places_[key] = detail::place_of(node);
+    places_[key] = place_of(node);
   }
 
   /// The parameters of a fit with their covariance, as `wingbeat fit -o` writes them.
   void read_fit(const TomlNode& node) {
-    if (node.kind != Kind::table) wrong(node, "fit", "a section [fit]");
+    section(node, "fit");
     known_keys(node, "fit", {"covariance"});
     const TomlNode& name = need(node, "fit", "covariance", "the .covariance.toml of a fit");
     const fs::path path = folder_ / text_of(name, "fit.covariance", "the .covariance.toml of a fit");
@@ -304,7 +307,7 @@ class ToleranceReader : public detail::StudySections {
   fs::path folder_;
   std::set<std::string> used_;
   std::vector<std::pair<std::size_t, const TomlNode*>> correlated_;  ///< parameter and what it says
-  std::map<std::string, detail::Place, std::less<>> places_;
+  std::map<std::string, Place, std::less<>> places_;
   ToleranceStudy* study_result_ = nullptr;
 };
 

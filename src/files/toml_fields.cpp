@@ -12,14 +12,14 @@
 namespace wingbeat {
 
 TomlFields::TomlFields(std::string file, std::string path, const TomlNode& table)
-    : file_(std::move(file)), path_(std::move(path)), table_(table) {}
+    : reader_(std::move(file)), path_(std::move(path)), table_(table) {}
 
 std::string TomlFields::name_of(std::string_view key) const {
   return path_.empty() ? std::string(key) : key.empty() ? path_ : fmt::format("{}.{}", path_, key);
 }
 
 void TomlFields::refuse(const TomlNode& node, std::string_view key, const std::string& message) const {
-  throw InputError(file_, node.line, node.column, name_of(key), message);
+  reader_.refuse(node, name_of(key), message);
 }
 
 const TomlNode& TomlFields::at(std::string_view key) const {
@@ -32,11 +32,7 @@ void TomlFields::known_keys(std::span<const std::string_view> keys) const {
   for (const auto& [key, node] : table_.members) {
     if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
     const std::string_view near = nearest_name(key, keys);
-    errors.attempt([&, &k = key, &n = node] {
-      refuse(n, one_line(k),
-             near.empty() ? fmt::format("unknown key; known here: {}", fmt::join(keys, ", "))
-                          : fmt::format("unknown key; did you mean {}?", near));
-    });
+    errors.attempt([&, &k = key, &n = node] { reader_.unknown(n, name_of(one_line(k)), near, keys); });
   }
   errors.refuse();
 }
@@ -44,7 +40,7 @@ void TomlFields::known_keys(std::span<const std::string_view> keys) const {
 std::optional<std::string> TomlFields::text(std::string_view key) const {
   const TomlNode* node = table_.find(key);
   if (!node) return std::nullopt;
-  if (node->kind != TomlNode::Kind::text) refuse(*node, key, fmt::format("expected a text, got {}", kind_of(*node)));
+  if (node->kind != TomlNode::Kind::text) reader_.wrong(*node, name_of(key), "a text");
   return node->text;
 }
 
@@ -57,18 +53,8 @@ std::string TomlFields::needed_text(std::string_view key, std::string_view expec
 std::optional<double> TomlFields::quantity(std::string_view key, std::string_view unit) const {
   const TomlNode* node = table_.find(key);
   if (!node) return std::nullopt;
-  double x = 0.0;
-  if (node->kind == TomlNode::Kind::number) {
-    x = node->number;
-  } else if (node->kind == TomlNode::Kind::text) {
-    try {
-      x = parse_quantity(node->text, unit);
-    } catch (const UnitError& error) {
-      refuse(*node, key, error.what());
-    }
-  } else {
-    refuse(*node, key, fmt::format("expected {}, got {}", quantity_example(unit), kind_of(*node)));
-  }
+  const bool number = node->kind == TomlNode::Kind::number;
+  const double x = number ? node->number : reader_.quantity(*node, name_of(key), unit);
   if (!std::isfinite(x)) refuse(*node, key, "must be finite");
   return x;
 }
@@ -81,11 +67,7 @@ double TomlFields::needed_quantity(std::string_view key, std::string_view unit) 
 
 std::optional<bool> TomlFields::boolean(std::string_view key) const {
   const TomlNode* node = table_.find(key);
-  if (!node) return std::nullopt;
-  if (node->kind != TomlNode::Kind::boolean) {
-    refuse(*node, key, fmt::format("expected true or false, got {}", kind_of(*node)));
-  }
-  return node->number != 0.0;
+  return node ? std::optional(reader_.boolean(*node, name_of(key))) : std::nullopt;
 }
 
 std::optional<int> TomlFields::count(std::string_view key, int least) const {
@@ -93,7 +75,7 @@ std::optional<int> TomlFields::count(std::string_view key, int least) const {
   if (!node) return std::nullopt;
   const bool whole = node->kind == TomlNode::Kind::number && node->whole;
   if (!whole || node->number < least || node->number > 1e9) {
-    refuse(*node, key, fmt::format("expected a whole number >= {}, got {}", least, kind_of(*node)));
+    reader_.wrong(*node, name_of(key), fmt::format("a whole number >= {}", least));
   }
   return int(node->number);
 }
@@ -113,23 +95,15 @@ std::string TomlFields::choice(std::string_view key, std::span<const std::string
 std::optional<TomlFields> TomlFields::table(std::string_view key) const {
   const TomlNode* node = table_.find(key);
   if (!node) return std::nullopt;
-  if (node->kind != TomlNode::Kind::table) {
-    refuse(*node, key, fmt::format("expected a section [{}], got {}", name_of(key), kind_of(*node)));
-  }
-  return TomlFields(file_, name_of(key), *node);
+  return TomlFields(file(), name_of(key), reader_.section(*node, name_of(key)));
 }
 
 std::vector<TomlFields> TomlFields::tables(std::string_view key) const {
   std::vector<TomlFields> result;
   const TomlNode* node = table_.find(key);
   if (!node) return result;
-  const auto wrong = [&](const TomlNode& at) {
-    refuse(at, key, fmt::format("expected [[{}]] sections, got {}", name_of(key), kind_of(at)));
-  };
-  if (node->kind != TomlNode::Kind::array) wrong(*node);
-  for (const TomlNode& item : node->items) {
-    if (item.kind != TomlNode::Kind::table) wrong(item);
-    result.emplace_back(file_, fmt::format("{}[{}]", name_of(key), result.size() + 1), item);
+  for (const TomlNode& item : reader_.sections(*node, name_of(key))) {
+    result.emplace_back(file(), fmt::format("{}[{}]", name_of(key), result.size() + 1), item);
   }
   return result;
 }

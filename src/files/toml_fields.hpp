@@ -7,12 +7,12 @@
 #include <string_view>
 #include <vector>
 
-#include "files/toml_document.hpp"
+#include "files/toml_reader.hpp"
 #include "wingbeat/core/names.hpp"
 
 namespace wingbeat {
 
-/// A table of a TOML file under its dotted name.
+/// A table of a TOML file under its dotted name, read key by key.
 class TomlFields {
  public:
   /// The node must be a table.
@@ -49,11 +49,12 @@ class TomlFields {
   std::vector<TomlFields> tables(std::string_view key) const;
 
   const TomlNode& node() const { return table_; }
-  const std::string& file() const { return file_; }
+  const std::string& file() const { return reader_.file(); }
   std::string name_of(std::string_view key) const;
 
  private:
-  std::string file_, path_;
+  TomlReader reader_;
+  std::string path_;
   const TomlNode& table_;
 };
 

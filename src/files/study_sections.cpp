@@ -1,0 +1,330 @@
+#include "files/study_sections.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "wingbeat/files/input_file.hpp"
+#include "wingbeat/files/units.hpp"
+#include "wingbeat/vehicle/drive.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
+
+namespace wingbeat::detail {
+namespace {
+
+std::string within(std::string_view section, std::string_view key) {
+  const std::string shown = one_line(key);
+  return section.empty() ? shown : fmt::format("{}.{}", section, shown);
+}
+
+std::vector<std::string_view> with(std::initializer_list<std::string_view> common,
+                                   std::initializer_list<std::string_view> own) {
+  std::vector<std::string_view> all(common);
+  all.insert(all.end(), own);
+  return all;
+}
+
+}  // namespace
+
+std::string toml_text(const TomlNode& node) {
+  std::string text;
+  switch (node.kind) {
+    case Kind::text:
+      text = "\"";
+      for (const char c : node.text) {
+        if (c == '"' || c == '\\') text += '\\';
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) text += fmt::format("\\u{:04X}", int(c));
+        else text += c;
+      }
+      return text + "\"";
+    case Kind::number: return node.whole ? fmt::format("{:.0f}", node.number) : fmt::format("{:#}", node.number);
+    case Kind::boolean: return node.number != 0.0 ? "true" : "false";
+    case Kind::array:
+      for (const TomlNode& item : node.items) text += (text.empty() ? "" : ", ") + toml_text(item);
+      return "[" + text + "]";
+    case Kind::table:
+      for (const auto& [key, value] : node.members) {
+        text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", key, toml_text(value));
+      }
+      return "{" + text + "}";
+    case Kind::other: break;
+  }
+  return "1970-01-01";
+}
+
+StudySections::StudySections(std::string name, std::string_view text, std::span<const std::string> overrides,
+                             std::initializer_list<std::string_view> sections,
+                             std::initializer_list<std::string_view> keys)
+    : TomlReader(std::move(name)),
+      root_(parse_toml_tree(text, file())),
+      overrides_(overrides.begin(), overrides.end()) {
+  known_keys(root_, "", with({"study", "set"}, sections));
+  attempt([&] {
+    study_ = &need(root_, "", "study", "a section [study] with the name of a vehicle file");
+    section(*study_, "study");
+    known_keys(*study_, "study",
+               with({"vehicle", "title", "tolerance", "metrics", "hold", "allow_extrapolation"}, keys));
+  });
+  if (!study_ || study_->kind != Kind::table) finish();
+  attempt([&] { read_hold(); });
+  attempt([&] { check_overrides(); });
+}
+
+std::string StudySections::vehicle_file() const {
+  const TomlNode& node = need(*study_, "study", "vehicle", "the name of a vehicle file");
+  return text_of(node, "study.vehicle", "the name of a vehicle file");
+}
+
+void StudySections::refuse_file(const char* section, const char* key, const std::string& message) const {
+  const TomlNode* node = root_.find(section)->find(key);
+  refuse(*node, fmt::format("{}.{}", section, key), message);
+}
+
+std::string StudySections::vehicle_text(const std::filesystem::path& vehicle) const {
+  const Design<double> alone = read_design(vehicle, overrides_);  // its own errors come first, at its own lines
+  std::vector<std::string> overrides;
+  std::vector<std::pair<Place, std::string>> origins;
+  const auto set = [&](const std::string& key, const TomlNode& value, const std::string& shown) {
+    overrides.push_back(fmt::format("{}={}", key, toml_text(value)));
+    origins.emplace_back(place_of(value), shown);
+  };
+  for (const auto& [key, value] : set_) set(key, *value, "set." + key);
+  const char* voltage = alone.supply.type == SupplyType::sine ? "supply.amplitude" : "supply.voltage";
+  if (held_voltage_) set(voltage, *held_voltage_, "study.hold.voltage");
+  const std::size_t own = overrides.size();
+  overrides.insert(overrides.end(), overrides_.begin(), overrides_.end());
+  try {
+    return write_design(read_design(vehicle, overrides));
+  } catch (const InputError& error) {
+    InputErrors errors;
+    const auto add = [&](const InputError& e) {
+      for (std::size_t k = 0; k < own; ++k) {
+        if (e.file() != "--set " + one_line(overrides[k], 120)) continue;
+        const auto& [place, key] = origins[k];
+        return errors.add(InputError(file(), place.line, place.column, key, reason_of(e)));
+      }
+      errors.add(e);
+    };
+    add(error);
+    for (const InputError& other : error.others()) add(other);
+    errors.refuse();
+    throw;
+  }
+}
+
+void StudySections::known_keys(const TomlNode& table, const std::string& section,
+                               std::initializer_list<std::string_view> known) const {
+  known_keys(table, section, std::span<const std::string_view>(known.begin(), known.size()));
+}
+
+void StudySections::known_keys(const TomlNode& table, const std::string& section,
+                               std::span<const std::string_view> names) const {
+  for (const auto& [key, node] : table.members) {
+    if (std::find(names.begin(), names.end(), key) != names.end()) continue;
+    const std::string_view near = nearest_name(key, names);
+    if (!near.empty()) spoiled_.insert({&table, std::string(near)});
+    attempt([&, &k = key, &n = node] {
+      unknown(n, within(section, k), near.empty() ? std::string() : within(section, near), names);
+    });
+  }
+}
+
+const TomlNode& StudySections::need(const TomlNode& table, const std::string& section, std::string_view key,
+                                    std::string_view expected) const {
+  const TomlNode* node = table.find(key);
+  if (!node) {
+    if (spoiled_.contains({&table, std::string(key)})) finish();  // misspelt, which is told already
+    const Place p = table.line > 0 ? place_of(table) : Place{1, 1};
+    refuse(p, within(section, key), fmt::format("missing; expected {}", expected));
+  }
+  return *node;
+}
+
+std::span<const TomlNode> StudySections::sections_of(const std::string& name) const {
+  const TomlNode* list = root_.find(name);
+  return list ? sections(*list, name) : std::span<const TomlNode>{};
+}
+
+std::string reason_of(const InputError& error) {
+  const std::string text = error.what();
+  std::string prefix = error.file();
+  if (error.line() > 0) prefix += fmt::format(":{}:{}", error.line(), error.column());
+  return text.substr(std::min(text.size(), prefix.size() + 2));
+}
+
+// ---- --set
+
+/// The override of the command line that gives a key, or holds or lies within a table given; null where there is none.
+const std::string* StudySections::override_of(std::string_view key) const {
+  const auto within_other = [](std::string_view path, std::string_view above) {
+    return path.starts_with(above) && (path.size() == above.size() || path[above.size()] == '.');
+  };
+  for (const std::string& assignment : overrides_) {
+    std::string_view path = std::string_view(assignment).substr(0, assignment.find('='));
+    while (path.ends_with(' ')) path.remove_suffix(1);
+    if (within_other(key, path) || within_other(path, key)) return &assignment;
+  }
+  return nullptr;
+}
+
+void StudySections::no_override_of(std::string_view key, const std::string& reason) const {
+  const std::string* assignment = override_of(key);
+  if (assignment) throw InputError("--set " + one_line(*assignment, 120), 0, 0, std::string(key), reason);
+}
+
+void StudySections::check_overrides() const {
+  for (const char* key : {"supply.voltage", "supply.amplitude"}) {
+    if (held_voltage_) no_override_of(key, "has no effect: study.hold holds the voltage");
+  }
+  if (held_frequency_) no_override_of("supply.voltage", "has no effect: study.hold holds the frequency");
+}
+
+// ---- [study] and [set]
+
+void StudySections::read_hold() {
+  if (const TomlNode* set = root_.find("set")) {
+    if (set->kind != Kind::table) wrong(*set, "set", "a section [set] of vehicle-file keys");
+    flatten(*set, "");
+  }
+  const TomlNode* hold = study_->find("hold");
+  if (!hold) return;
+  if (hold->kind != Kind::table) wrong(*hold, "study.hold", "{ voltage = \"3 V\" } or { frequency = \"22 Hz\" }");
+  known_keys(*hold, "study.hold", {"voltage", "frequency"});
+  held_voltage_ = hold->find("voltage");
+  held_frequency_ = hold->find("frequency");
+  if (bool(held_voltage_) == bool(held_frequency_)) {
+    refuse(*hold, "study.hold", "give one of voltage and frequency");
+  }
+  if (held_voltage_ && !(quantity(*held_voltage_, "study.hold.voltage", "V") >= 0.0)) {
+    refuse(*held_voltage_, "study.hold.voltage", "must be >= 0 V");
+  }
+  for (const char* key : {"supply.voltage", "supply.amplitude"}) {
+    const bool held = held_voltage_ || std::string_view(key) == "supply.voltage";
+    if (held && set_.contains(key)) refuse(*hold, "study.hold", fmt::format("[set] gives {} already", key));
+  }
+}
+
+void StudySections::flatten(const TomlNode& table, const std::string& path) {
+  for (const auto& [key, node] : table.members) {
+    const std::string full = path.empty() ? key : path + "." + key;
+    const bool known = find_parameter<double>(full) != nullptr;
+    const bool has_place = attempt([&, &n = node] {
+      if (!known && !is_section(full)) refuse(n, "set." + one_line(full), unknown_key_message(full));
+    });
+    if (!has_place) continue;
+    if (!known && node.kind == Kind::table && full != "wing.planform" && full != "aerodynamics.coefficients") {
+      flatten(node, full);
+    } else {
+      set_.emplace(full, &node);
+    }
+  }
+}
+
+void StudySections::read_tolerance(EnsembleOptions& options) const {
+  const TomlNode* node = study_->find("tolerance");
+  if (!node) return;
+  const bool fits = node->kind == Kind::number && node->number >= 1e-12 && node->number <= 1e-2;
+  if (!fits) wrong(*node, "study.tolerance", "a number from 1e-12 to 1e-2");
+  options.tolerance = node->number;
+}
+
+void StudySections::read_metrics(EnsembleOptions& options) const {
+  const TomlNode* node = study_->find("metrics");
+  if (!node) return;
+  if (node->kind != Kind::array || node->items.empty()) {
+    wrong(*node, "study.metrics", "an array of names such as [\"frequency_hz\", \"lift_mean_n\"]");
+  }
+  options.metrics.reset();
+  for (const TomlNode& item : node->items) {
+    if (item.kind != Kind::text) wrong(item, "study.metrics", "the name of a metric");
+    const std::size_t index = std::size_t(metric_called(item, "study.metrics", item.text));
+    if (options.metrics[index]) {
+      refuse(item, "study.metrics", fmt::format("{} is given twice", in_quotes(item.text)));
+    }
+    options.metrics.set(index);
+  }
+}
+
+std::string StudySections::read_title() const {
+  const TomlNode* title = study_->find("title");
+  return title ? text_of(*title, "study.title", "a text") : "";
+}
+
+Design<double> StudySections::read_vehicle(const std::filesystem::path& folder) const {
+  const std::filesystem::path vehicle = find_vehicle(folder, vehicle_file());
+  if (!std::filesystem::exists(vehicle)) {
+    refuse_file("study", "vehicle", fmt::format("there is no file {}", vehicle.string()));
+  }
+  return parse_design(vehicle_text(vehicle), "the vehicle with [set]");
+}
+
+Metric StudySections::metric_called(const TomlNode& node, const std::string& where, const std::string& name) const {
+  const int index = metric_index(name);
+  if (index != metric_count) return Metric(index);
+  std::vector<std::string_view> names;
+  for (const MetricInfo& metric : metric_table()) names.push_back(metric.key);
+  const std::string_view near = nearest_name(name, names);
+  refuse(node, where,
+         near.empty() ? fmt::format("{} is no metric; the metrics are {}", in_quotes(name), fmt::join(names, ", "))
+                      : fmt::format("{} is no metric; did you mean {}?", in_quotes(name), near));
+}
+
+bool StudySections::read_allow_extrapolation() const {
+  const TomlNode* node = study_->find("allow_extrapolation");
+  return node && boolean(*node, "study.allow_extrapolation");
+}
+
+Condition StudySections::read_condition() const {
+  const TomlNode* node = study_->find("condition");
+  if (!node) return Condition::air;
+  return one_of<Condition>(*node, "study.condition");
+}
+
+bool swings_a_crank(const Design<double>& design) {
+  return design.supply.type == SupplyType::sine && !drive_of(design).alternating;
+}
+
+std::optional<double> StudySections::read_frequency(const Design<double>& design) const {
+  if (swings_a_crank(design)) {
+    const auto given = set_.find("supply.type");
+    refuse(given == set_.end() ? need(*study_, "study", "vehicle", "") : *given->second, "supply.type",
+           no_swinging_crank);
+  }
+  if (!held_frequency_) return std::nullopt;
+  if (design.supply.type == SupplyType::battery) refuse(*held_frequency_, "study.hold.frequency", no_held_frequency);
+  const double f = quantity(*held_frequency_, "study.hold.frequency", "Hz");
+  if (!(f > 0.0)) refuse(*held_frequency_, "study.hold.frequency", "must be > 0 Hz");
+  return f;
+}
+
+DesignParameter StudySections::parameter_named(const TomlNode& node, const std::string& where,
+                                               const Design<double>& design) const {
+  const std::string key = text_of(node, where, "a vehicle-file key");
+  DesignParameter parameter;
+  try {
+    parameter = design_parameter(key);
+  } catch (const ParameterError& error) {
+    refuse(node, where, fmt::format("{}: {}", one_line(key), error.reason()));
+  }
+  if (key == "wing.count" || key == "supply.cells") {
+    refuse(node, where, fmt::format("{} is a whole number and has no derivative", key));
+  }
+  const bool voltage = key == "supply.voltage" || key == "supply.duty" || key == "supply.amplitude";
+  if (voltage && held_voltage_) refuse(node, where, "study.hold holds the voltage already");
+  const bool sets_frequency =
+      drive_of(design).voltage_sets_frequency ? voltage : key == "supply.frequency" || key == "supply.resonance_ratio";
+  if (sets_frequency && held_frequency_) {
+    refuse(node, where, fmt::format("{} has no effect where the frequency is held", key));
+  }
+  if (!parameter.value(design)) {
+    const std::string_view only_with = find_parameter<double>(key)->only_with;
+    Design<double> trial = design;
+    const bool has_place = parameter.set(trial, 1.0);
+    refuse(node, where,
+           has_place ? fmt::format("{} is not in the vehicle; give it in [set] first", key)
+                     : fmt::format("{}: only with {}", key, only_with));
+  }
+  return parameter;
+}
+
+}  // namespace wingbeat::detail
