@@ -10,8 +10,6 @@
 namespace wingbeat::detail {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 enum Root { root_force, root_standstill, root_lap, root_jam, root_plain_count };
 enum { root_stored_moment = root_plain_count, root_dead_centre, root_measuring_count };
 
