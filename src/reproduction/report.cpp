@@ -200,7 +200,8 @@ so that they do not depend on the number of points drawn. The commands below run
 <h3>One point of figures 4 to 13</h3>
 <pre>build/release/wingbeat run data/designs/friction2022.toml --frequency "22 Hz" --condition vacuum
 build/release/wingbeat run data/designs/friction2022-springs.toml --frequency "22 Hz"
-build/release/wingbeat run data/designs/friction2022.toml --frequency "22 Hz" --set transmission.formulation=virtual-work</pre>
+build/release/wingbeat run data/designs/friction2022.toml --frequency "22 Hz" )"
+      R"(--set transmission.formulation=virtual-work</pre>
 <h3>The cycles of figures 14 to 19</h3>
 <pre>build/release/wingbeat run data/designs/friction2022-springs.toml --frequency "22 Hz" --waveforms cycle.csv
 build/release/wingbeat run data/designs/friction2022-springs.toml --voltage "3 V" --plot cycle.svg</pre>
@@ -211,7 +212,8 @@ build/release/wingbeat sweep data/studies/trend-voltage.toml -o voltage.nc</pre>
 <h3>The published values alone</h3>
 <pre>build/release/wingbeat compare data/published/friction2022.toml</pre>
 <h3>A friction law</h3>
-<pre>build/release/wingbeat run data/designs/friction2022-springs.toml --frequency "22 Hz" --set friction.type=constant )";
+<pre>build/release/wingbeat run data/designs/friction2022-springs.toml --frequency "22 Hz" )"
+      R"(--set friction.type=constant )";
   const LawPrediction* constant = law_of(a, FrictionLaw::constant, 0);
   fmt::format_to(out, "--set friction.torque=\"{:.6g} N m\"</pre>\n", constant ? constant->law.coefficient : 7e-4);
   html +=
