@@ -47,19 +47,21 @@ std::vector<std::vector<double>> parse_csv(std::string_view text, const std::str
 
     if (headings.empty()) {
       for (const CsvCell& cell : cells) {
-        const std::size_t stop = std::min(cell.text.find_first_of("_[( "), cell.text.size());
-        const std::string_view name = cell.text.substr(0, stop);
-        std::string unit(cell.text.substr(stop));
+        const auto known = std::find_if(columns.begin(), columns.end(), [&](const CsvColumn& c) {
+          const std::size_t end = c.name.size();
+          return cell.text.starts_with(c.name) &&
+                 (cell.text.size() == end || std::string_view("_[( ").find(cell.text[end]) != std::string_view::npos);
+        });
+        if (known == columns.end()) {
+          refuse(cell, fmt::format("unknown column {}; expected a header such as {}", in_quotes(cell.text), header));
+        }
+        const std::string_view name = known->name;
+        std::string unit(cell.text.substr(name.size()));
         std::replace(unit.begin(), unit.end(), '_', ' ');
         unit = trimmed(unit);
         const bool bracketed = unit.size() >= 2 && ((unit.front() == '[' && unit.back() == ']') ||
                                                     (unit.front() == '(' && unit.back() == ')'));
         if (bracketed) unit = trimmed(unit.substr(1, unit.size() - 2));
-        const auto known =
-            std::find_if(columns.begin(), columns.end(), [&](const CsvColumn& c) { return c.name == name; });
-        if (known == columns.end()) {
-          refuse(cell, fmt::format("unknown column {}; expected a header such as {}", in_quotes(cell.text), header));
-        }
         const std::size_t index = std::size_t(known - columns.begin());
         if (std::any_of(headings.begin(), headings.end(), [&](const Heading& h) { return h.index == index; })) {
           refuse(cell, fmt::format("column {} is given twice", in_quotes(name)));
