@@ -380,7 +380,7 @@ TEST(DesignErrors, WrongType) {
   EXPECT_EQ(refusal(with("\"constant\"", "\"steady\"")),
             "v.toml:4:1: supply.type: expected constant, sine, pwm or battery, got \"steady\"");
   EXPECT_EQ(refusal(with("\"slider-crank\"", "\"geared\"")),
-            "v.toml:13:1: transmission.type: expected slider-crank or direct, got \"geared\"");
+            "v.toml:13:1: transmission.type: expected slider-crank, four-bar, tabulated or direct, got \"geared\"");
 }
 
 TEST(DesignErrors, WrongDimensionOrUnit) {

@@ -20,6 +20,8 @@ Vehicle<double> generic_vehicle(Formulation formulation) {
   v.motor.friction_torque = 2e-4;
   v.transmission.slider_crank.mid_stroke_height = 20.7e-3;
   v.transmission.slider_crank.formulation = formulation;
+  v.transmission.four_bar = {5e-3, 20e-3, 8e-3, 20.5e-3, 1.6, 1.8};
+  v.transmission.tabulated.reference_radius = 7e-3;
   v.friction = {1.5e-3, 3e-6, 2e-8, 1e-4};
   v.spring.stiffness = 1.1e-3;
   v.source_resistance = 1.7;
@@ -104,6 +106,19 @@ TEST(Jets, InstantAgreesWithDifferencesInEveryParameter) {
     for (const double theta : {0.3, 1.1, 2.6, 4.0, 5.9}) {
       const Inputs<double> at{generic_vehicle(formulation), theta, 140.0, 0.13};
       for (const double force : {1.0, -1.0}) expect_derivatives(InstantOf{force}, at, 1e-8, residual_at, motor_work_at);
+    }
+  }
+}
+
+TEST(Jets, OtherTransmissionsAgreeWithDifferences) {
+  std::vector<std::pair<double, double>> rows;
+  for (int n = 0; n < 40; ++n) rows.emplace_back(0.05 + 0.157 * n, 0.6 * std::sin(0.157 * n));
+  for (const TransmissionType type : {TransmissionType::four_bar, TransmissionType::tabulated}) {
+    for (const double theta : {0.3, 2.6, 4.0}) {
+      Inputs<double> at{generic_vehicle(Formulation::virtual_work), theta, 140.0, 0.13};
+      at.vehicle.transmission.type = type;
+      at.vehicle.transmission.tabulated.curve = std::make_shared<const StrokeCurve>(rows);
+      for (const double force : {1.0, -1.0}) expect_derivatives(InstantOf{force}, at, 1e-7, residual_at, motor_work_at);
     }
   }
 }
