@@ -5,10 +5,9 @@
 namespace wingbeat {
 
 void validate(const Battery<double>& b) {
-  require(b.cells >= 1.0 && b.cells == std::floor(b.cells), "supply.cells", "must be a whole number >= 1", "1",
-          b.cells);
+  require(battery_key::cells, b.cells);
   if (b.discharge_curve.empty()) {
-    require(b.cell_voltage > 0.0, "supply.cell_voltage", "must be > 0", "V", b.cell_voltage);
+    require(battery_key::cell_voltage, b.cell_voltage);
   } else {
     const auto refuse = [](const std::string& reason) { throw ParameterError("supply.discharge_curve", reason); };
     const auto& curve = b.discharge_curve;
@@ -30,12 +29,10 @@ void validate(const Battery<double>& b) {
       refuse("the states of charge must run from 0 to 1");
     }
   }
-  require(b.internal_resistance >= 0.0, "supply.internal_resistance", "must be >= 0", "ohm", b.internal_resistance);
-  require(b.capacity > 0.0, "supply.capacity", "must be > 0", "C", b.capacity);
-  require(b.charge >= 0.0 && b.charge <= 1.0, "supply.charge", "must lie between 0 and 1", "1", b.charge);
-  if (b.cutoff_voltage) {
-    require(*b.cutoff_voltage >= 0.0, "supply.cutoff_voltage", "must be >= 0", "V", *b.cutoff_voltage);
-  }
+  require(battery_key::internal_resistance, b.internal_resistance);
+  require(battery_key::capacity, b.capacity);
+  require(battery_key::charge, b.charge);
+  if (b.cutoff_voltage) require(battery_key::cutoff_voltage, *b.cutoff_voltage);
 }
 
 namespace detail {

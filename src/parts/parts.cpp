@@ -17,13 +17,17 @@ void require(bool condition, const char* key, const char* expected, const char* 
   if (!condition || !std::isfinite(value)) throw ParameterError(key, range_message(expected, unit, value));
 }
 
+void require(const ParameterKey& key, double value) {
+  require(key.range.holds(value), key.path, key.range.expected, key.unit, value);
+}
+
 void validate(const Planform<double>& p) {
   if (p.shape == PlanformShape::moments) {
-    require(p.s2 >= 0.0, "wing.planform.s2", "must be >= 0", "m4", p.s2);
-    require(p.s3 >= 0.0, "wing.planform.s3", "must be >= 0", "m5", p.s3);
+    require(planform_key::s2, p.s2);
+    require(planform_key::s3, p.s3);
     return;
   }
-  require(p.hub_offset >= 0.0, "wing.planform.hub_offset", "must be >= 0", "m", p.hub_offset);
+  require(planform_key::hub_offset, p.hub_offset);
   if (p.shape == PlanformShape::tabulated) {
     if (p.chord_table.size() < 2) {
       throw ParameterError("wing.planform.file", "the chord table needs at least two rows");
@@ -40,23 +44,19 @@ void validate(const Planform<double>& p) {
     }
     return;
   }
-  require(p.length > 0.0, "wing.planform.length", "must be > 0", "m", p.length);
-  if (p.chord_ratio) {
-    require(*p.chord_ratio > 0.0, "wing.planform.chord_ratio", "must be > 0", "1", *p.chord_ratio);
-  } else {
-    require(p.root_chord > 0.0, "wing.planform.root_chord", "must be > 0", "m", p.root_chord);
-  }
+  require(planform_key::length, p.length);
+  if (p.chord_ratio) require(planform_key::chord_ratio, *p.chord_ratio);
+  else require(planform_key::root_chord, p.root_chord);
 }
 
 void validate(const BladeElement<double>& w) {
-  require(w.air_density >= 0.0, "aerodynamics.air_density", "must be >= 0", "kg/m3", w.air_density);
-  require(w.pitch_coefficient >= 0.0, "aerodynamics.pitch_coefficient", "must be >= 0", "s", w.pitch_coefficient);
+  require(aerodynamics_key::air_density, w.air_density);
+  require(aerodynamics_key::pitch_coefficient, w.pitch_coefficient);
   if (w.angle_of_attack_min != -std::numeric_limits<double>::infinity()) {
-    require(w.angle_of_attack_min >= 0.0 && w.angle_of_attack_min < pi / 2.0, "aerodynamics.angle_of_attack_min",
-            "must be >= 0 and < pi/2", "rad", w.angle_of_attack_min);
+    require(aerodynamics_key::angle_of_attack_min, w.angle_of_attack_min);
   }
-  require(w.s2 >= 0.0, "wing.planform.s2", "must be >= 0", "m4", w.s2);
-  require(w.s3 >= 0.0, "wing.planform.s3", "must be >= 0", "m5", w.s3);
+  require(planform_key::s2, w.s2);
+  require(planform_key::s3, w.s3);
 }
 
 namespace {

@@ -1,6 +1,7 @@
 // What rows of the parameter table are made of: where a parameter belongs, and access to it on any scalar.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -71,6 +72,12 @@ struct Weighed {
 struct WeighedSprings : Weighed {
   static constexpr bool holds(const auto& d) { return Weighed::holds(d) && has_springs(d); }
 };
+
+/// The text of a number that a part knows.
+constexpr ParameterText row(const ParameterKey& key, std::string_view fallback, std::string_view meaning,
+                            std::array<std::string_view, 2> alternatives = {}, std::string_view example = {}) {
+  return {key.path, key.unit, key.range, fallback, meaning, alternatives, example};
+}
 
 template <class Where>
 constexpr ParameterText placed(ParameterText text) {

@@ -43,4 +43,14 @@ inline constexpr ParameterRange rod_length{"> crank_radius", "must be longer tha
 
 }  // namespace range
 
+/// A number as vehicle files and messages name it.
+struct ParameterKey {
+  const char* path;  ///< "motor.torque_constant"
+  const char* unit;  ///< SI unit, "1" for a plain number
+  ParameterRange range;
+};
+
+/// Throws ParameterError unless the value [SI] is finite and in its range.
+void require(const ParameterKey& key, double value);
+
 }  // namespace wingbeat

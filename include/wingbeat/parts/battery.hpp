@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "wingbeat/core/range.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/core/status.hpp"
 
@@ -33,6 +34,16 @@ struct Battery {
                of.cutoff_voltage);
   }
 };
+
+/// Keys, units and ranges; the table of parameters has them from here.
+namespace battery_key {
+inline constexpr ParameterKey cells{"supply.cells", "1", range::count};
+inline constexpr ParameterKey cell_voltage{"supply.cell_voltage", "V", range::positive};
+inline constexpr ParameterKey internal_resistance{"supply.internal_resistance", "ohm", range::not_negative};
+inline constexpr ParameterKey capacity{"supply.capacity", "C", range::positive};
+inline constexpr ParameterKey charge{"supply.charge", "1", range::zero_to_one};
+inline constexpr ParameterKey cutoff_voltage{"supply.cutoff_voltage", "V", range::not_negative};
+}  // namespace battery_key
 
 /// Throws ParameterError for the first parameter out of its range.
 void validate(const Battery<double>& battery);

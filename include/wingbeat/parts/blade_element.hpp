@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "wingbeat/core/math.hpp"
+#include "wingbeat/core/range.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/core/status.hpp"
 
@@ -89,6 +90,13 @@ struct BladeElement {
     return use(of.air_density, of.pitch_coefficient, of.s2, of.s3, of.coefficients, of.angle_of_attack_min);
   }
 };
+
+/// Keys, units and ranges; the table of parameters has them from here.
+namespace aerodynamics_key {
+inline constexpr ParameterKey air_density{"aerodynamics.air_density", "kg/m3", range::not_negative};
+inline constexpr ParameterKey pitch_coefficient{"aerodynamics.pitch_coefficient", "s", range::not_negative};
+inline constexpr ParameterKey angle_of_attack_min{"aerodynamics.angle_of_attack_min", "rad", range::zero_to_acute};
+}  // namespace aerodynamics_key
 
 void validate(const BladeElement<double>& wings);
 

@@ -3,6 +3,7 @@
 
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/names.hpp"
+#include "wingbeat/core/range.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/core/status.hpp"
 
@@ -31,11 +32,19 @@ struct Friction {
   }
 };
 
+/// Keys, units and ranges; the table of parameters has them from here.
+namespace friction_key {
+inline constexpr ParameterKey radius{"friction.radius", "m", range::not_negative};
+inline constexpr ParameterKey damping{"friction.damping", "N m s/rad", range::not_negative};
+inline constexpr ParameterKey quadratic{"friction.coefficient", "N m s2/rad2", range::not_negative};
+inline constexpr ParameterKey torque{"friction.torque", "N m", range::not_negative};
+}  // namespace friction_key
+
 inline void validate(const Friction<double>& f) {
-  require(f.radius >= 0.0, "friction.radius", "must be >= 0", "m", f.radius);
-  require(f.damping >= 0.0, "friction.damping", "must be >= 0", "N m s/rad", f.damping);
-  require(f.quadratic >= 0.0, "friction.coefficient", "must be >= 0", "N m s2/rad2", f.quadratic);
-  require(f.torque >= 0.0, "friction.torque", "must be >= 0", "N m", f.torque);
+  require(friction_key::radius, f.radius);
+  require(friction_key::damping, f.damping);
+  require(friction_key::quadratic, f.quadratic);
+  require(friction_key::torque, f.torque);
 }
 
 /// The part of the friction torque [N m] that does not depend on the rod force, at crank speed omega turning in

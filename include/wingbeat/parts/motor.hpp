@@ -1,6 +1,7 @@
 // DC motor, its constants referred to the output (crank) shaft; model.md sections 1 and 2, eqs (9-11).
 #pragma once
 
+#include "wingbeat/core/range.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/core/status.hpp"
 
@@ -51,14 +52,24 @@ Motor<S> at_output_shaft(const GearMotor<S>& geared) {
           n * m.friction_torque};
 }
 
+/// Keys, units and ranges; the table of parameters has them from here.
+namespace motor_key {
+inline constexpr ParameterKey armature_resistance{"motor.armature_resistance", "ohm", range::positive};
+inline constexpr ParameterKey armature_inductance{"motor.armature_inductance", "H", range::not_negative};
+inline constexpr ParameterKey torque_constant{"motor.torque_constant", "N m/A", range::positive};
+inline constexpr ParameterKey inertia{"motor.inertia", "kg m2", range::positive};
+inline constexpr ParameterKey viscous_damping{"motor.viscous_damping", "N m s/rad", range::not_negative};
+inline constexpr ParameterKey friction_torque{"motor.friction_torque", "N m", range::not_negative};
+}  // namespace motor_key
+
 /// Throws ParameterError unless every constant lies in its physical range.
 inline void validate(const Motor<double>& m) {
-  require(m.armature_resistance > 0.0, "motor.armature_resistance", "must be > 0", "ohm", m.armature_resistance);
-  require(m.armature_inductance >= 0.0, "motor.armature_inductance", "must be >= 0", "H", m.armature_inductance);
-  require(m.torque_constant > 0.0, "motor.torque_constant", "must be > 0", "N m/A", m.torque_constant);
-  require(m.inertia > 0.0, "motor.inertia", "must be > 0", "kg m2", m.inertia);
-  require(m.viscous_damping >= 0.0, "motor.viscous_damping", "must be >= 0", "N m s/rad", m.viscous_damping);
-  require(m.friction_torque >= 0.0, "motor.friction_torque", "must be >= 0", "N m", m.friction_torque);
+  require(motor_key::armature_resistance, m.armature_resistance);
+  require(motor_key::armature_inductance, m.armature_inductance);
+  require(motor_key::torque_constant, m.torque_constant);
+  require(motor_key::inertia, m.inertia);
+  require(motor_key::viscous_damping, m.viscous_damping);
+  require(motor_key::friction_torque, m.friction_torque);
 }
 
 /// Electrical side of the motor at crank speed omega and current i.

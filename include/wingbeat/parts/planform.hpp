@@ -8,6 +8,7 @@
 
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/names.hpp"
+#include "wingbeat/core/range.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/core/status.hpp"
 
@@ -46,6 +47,16 @@ struct ChordMoments {
   S s2;
   S s3;
 };
+
+/// Keys, units and ranges; the table of parameters has them from here.
+namespace planform_key {
+inline constexpr ParameterKey length{"wing.planform.length", "m", range::positive};
+inline constexpr ParameterKey root_chord{"wing.planform.root_chord", "m", range::positive};
+inline constexpr ParameterKey chord_ratio{"wing.planform.chord_ratio", "1", range::positive};
+inline constexpr ParameterKey hub_offset{"wing.planform.hub_offset", "m", range::not_negative};
+inline constexpr ParameterKey s2{"wing.planform.s2", "m4", range::not_negative};
+inline constexpr ParameterKey s3{"wing.planform.s3", "m5", range::not_negative};
+}  // namespace planform_key
 
 void validate(const Planform<double>& planform);
 

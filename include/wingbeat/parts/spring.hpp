@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "wingbeat/core/math.hpp"
+#include "wingbeat/core/range.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/core/status.hpp"
 
@@ -19,9 +20,12 @@ struct HingeSpring {
   }
 };
 
-inline void validate(const HingeSpring<double>& s) {
-  require(s.stiffness >= 0.0, "spring.stiffness", "must be >= 0", "N m/rad", s.stiffness);
-}
+/// Keys, units and ranges; the table of parameters has them from here.
+namespace spring_key {
+inline constexpr ParameterKey stiffness{"spring.stiffness", "N m/rad", range::not_negative};
+}  // namespace spring_key
+
+inline void validate(const HingeSpring<double>& s) { require(spring_key::stiffness, s.stiffness); }
 
 template <Scalar S>
 struct SpringLoads {

@@ -5,6 +5,7 @@
 
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/names.hpp"
+#include "wingbeat/core/range.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/parts/battery.hpp"
@@ -32,16 +33,19 @@ struct Supply {
   }
 };
 
+/// Keys, units and ranges; the table of parameters has them from here.
+namespace supply_key {
+inline constexpr ParameterKey voltage{"supply.voltage", "V", range::not_negative};
+inline constexpr ParameterKey amplitude{"supply.amplitude", "V", range::not_negative};
+inline constexpr ParameterKey frequency{"supply.frequency", "Hz", range::positive};
+inline constexpr ParameterKey duty{"supply.duty", "1", range::zero_to_one};
+}  // namespace supply_key
+
 inline void validate(const Supply<double>& s) {
   if (s.type == SupplyType::battery) return validate(s.battery);
-  require(s.voltage >= 0.0, s.type == SupplyType::sine ? "supply.amplitude" : "supply.voltage", "must be >= 0", "V",
-          s.voltage);
-  if (s.type != SupplyType::constant) {
-    require(s.frequency > 0.0, "supply.frequency", "must be > 0", "Hz", s.frequency);
-  }
-  if (s.type == SupplyType::pwm) {
-    require(s.duty >= 0.0 && s.duty <= 1.0, "supply.duty", "must lie between 0 and 1", "1", s.duty);
-  }
+  require(s.type == SupplyType::sine ? supply_key::amplitude : supply_key::voltage, s.voltage);
+  if (s.type != SupplyType::constant) require(supply_key::frequency, s.frequency);
+  if (s.type == SupplyType::pwm) require(supply_key::duty, s.duty);
 }
 
 /// The constant voltage [V] that steady flapping sees: v itself, the mean over a switching period for pwm, the
