@@ -51,7 +51,7 @@ struct Lanes {
   Lanes(const Lanes& x) {
     for (int n = 0; n < K; ++n) part[n] = x.part[n];
   }
-  Lanes& operator=(const Lanes& x) {
+  Lanes& operator=(const Lanes& x) {  // NOLINT(bugprone-unhandled-self-assignment): numbers
     for (int n = 0; n < K; ++n) part[n] = x.part[n];
     return *this;
   }
