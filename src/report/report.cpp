@@ -91,8 +91,8 @@ void power_group(Table& table, const Metrics<double>& m) {
   power("  viscous loss of the motor", a.viscous, "b omega^2");
   power("  friction", a.friction, "T_f omega");
   power("  aerodynamic", a.aerodynamic, "M_aero beta'");
-  power("  lost by the formulation", a.residual, "F (h omega - g beta')");
-  table.line("  imbalance of these books", readable(a.imbalance, "W"),
+  power("  formulation residual", a.residual, "F (h omega - g beta')");
+  table.line("  energy-balance error", readable(a.imbalance, "W"),
              fmt::format("{:>9.0e}   input minus the above", std::abs(a.imbalance / a.electrical)));
   power("motor output", m[Metric::power_motor], "T_m omega");
   if (std::isfinite(m[Metric::power_motor_reference])) {

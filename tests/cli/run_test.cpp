@@ -89,7 +89,7 @@ TEST_F(Run, TableNamesStatusMetricsAndBooks) {
   EXPECT_THAT(o.err, IsEmpty());
   for (const char* part :
        {"slider-crank flapper", "flapping: steady flapping at 21.", "Operating point", "copper loss",
-        "imbalance of these books", "mean lift", "mN", "stroke amplitude", "deg", "Floquet", "laps, closed to"}) {
+        "energy-balance error", "mean lift", "mN", "stroke amplitude", "deg", "Floquet", "laps, closed to"}) {
     EXPECT_THAT(o.out, HasSubstr(part));
   }
   std::istringstream lines(o.out);

@@ -1,4 +1,4 @@
-// The energy books of a cycle: where the supply's power goes, and whether the account closes; model.md section 4.
+// The energy balance of a cycle: where the supply's power goes, and what is left over; model.md section 4.
 #pragma once
 
 #include "wingbeat/cycle/metrics.hpp"
