@@ -1,4 +1,4 @@
-// The orbit solver on vehicles: known orbits, closed forms, energy books, ways of not flapping.
+// The orbit solver on vehicles: known orbits, closed forms, energy balance, ways of not flapping.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
