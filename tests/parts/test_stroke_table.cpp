@@ -68,7 +68,7 @@ TEST(StrokeTable, HasFourContinuousDerivativesAtEveryRow) {
     EXPECT_NEAR(stroke_angle(at(t, theta)), 1.5 * beta, 1e-14);
     // Differences to either side tell derivatives three and four; a jump would not fall with the step.
     const double h = 1e-3;
-    const auto curve = [&](double by) { return at(t, theta + by).stroke_curve; };
+    const auto curve = [&t, here = theta](double by) { return at(t, here + by).stroke_curve; };
     EXPECT_NEAR(curve(-1e-12), curve(1e-12), 1e-10);
     const double left = (curve(0.0) - curve(-h)) / h, right = (curve(h) - curve(0.0)) / h;
     EXPECT_NEAR(left, right, 5.0 * h);
