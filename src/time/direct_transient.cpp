@@ -18,9 +18,10 @@ namespace {
 using Kind = TransientEvent::Kind;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-constexpr int sticking_pieces = 512;    // of a period: how often a stuck shaft is looked at
-constexpr int creep_periods = 8;        // of ever shorter slips in one direction, that end at rest
-constexpr int contraction_periods = 4;  // over which the contraction is taken: complex multipliers make it uneven
+constexpr int sticking_pieces = 512;     // of a period: how often a stuck shaft is looked at
+constexpr int creep_periods = 8;         // of ever shorter slips in one direction, that end at rest
+constexpr double nearly_settled = 1e-4;  // off the orbit, where the steps allowed end before the tolerance is reached
+constexpr int contraction_periods = 4;   // over which the contraction is taken: complex multipliers make it uneven
 
 class DirectStartUp {
  public:
@@ -38,6 +39,7 @@ class DirectStartUp {
   WaveformRow row(double t, const double* y) const;
   void add_variation();
   void period_done();
+  void settle(double closure, double change, const std::string& more);
   bool rests_for_good();
   bool creeps_to_rest();
   void begin_measuring();
@@ -59,6 +61,8 @@ class DirectStartUp {
   std::unique_ptr<Integrator> plain_, with_quadratures_;
 
   bool measuring_ = false;
+  double last_off_ = infinity;                   ///< how far the last period was from the orbit, relative
+  double last_apart_ = infinity;                 ///< that, or how far the last metrics were from those before them
   std::optional<Metrics<double>> last_metrics_;  ///< of the period before, found with the relative tolerance
   double measured_with_ = 0.0;
   int periods_at_tightest_ = 0;
@@ -291,6 +295,24 @@ bool DirectStartUp::creeps_to_rest() {
   return true;
 }
 
+/// The decision that it flaps, with the metrics taken: how far periods are from the orbit, and from each other.
+void DirectStartUp::settle(double closure, double change, const std::string& more) {
+  done_ = true;
+  result_.closure = closure;
+  result_.settled = true;
+  result_.status = FlappingStatus::flapping;
+  std::size_t first = swings_.size();
+  while (first > 0 && std::abs(swings_[first - 1] / swings_.back() - 1.0) <= 1e-2) --first;
+  result_.time_to_steady = double(first) * model_.period;
+  result_.crank_speed = now_.y[1];
+  result_.current = model_.current_of(now_.t, now_.y);
+  result_.stroke_angle = now_.y[0];
+  result_.detail = format(
+      "flaps steadily at the supply's %.6g Hz from %.4g s on; after %d periods they repeat to "
+      "%.1g%s",
+      model_.vehicle.drive_frequency, result_.time_to_steady, result_.laps, change, more.c_str());
+}
+
 void DirectStartUp::period_done() {
   ++result_.laps;
   event(Kind::revolution);
@@ -318,29 +340,19 @@ void DirectStartUp::period_done() {
   const double noise = 100.0 * relative_tolerance_;
   const double off = rate < 1.0 ? change / (1.0 - rate) : infinity;
   const bool close = off < 0.1 * options_.tolerance;
+  last_off_ = change / (1.0 - std::min(rate, 0.999));  // no rate can be told once rounding is what is left
   if (measuring_) {
     // The metrics of a period of looser steps tell how far its own steps leave them off.
     const std::optional<Metrics<double>> before = std::exchange(last_metrics_, std::nullopt);
     take_metrics();
     const bool tightest = relative_tolerance_ <= tightest_;
-    const bool agree = before && (tightest || relative_tolerance_ < 0.2 * measured_with_) &&
-                       metrics_apart(*before, *result_.metrics) < 0.3 * options_.tolerance;
+    const double apart = before ? metrics_apart(*before, *result_.metrics) : infinity;
+    last_apart_ = std::max(last_off_, apart);
+    const bool agree =
+        before && (tightest || relative_tolerance_ < 0.2 * measured_with_) && apart < 0.3 * options_.tolerance;
     periods_at_tightest_ += tightest && change < 10.0 * noise;
     if (((close || change < noise) && agree) || periods_at_tightest_ > 40) {
-      done_ = true;
-      result_.closure = std::min(off, change / (1.0 - std::min(rate, 0.999)));
-      result_.settled = true;
-      result_.status = FlappingStatus::flapping;
-      std::size_t first = swings_.size();
-      while (first > 0 && std::abs(swings_[first - 1] / swings_.back() - 1.0) <= 1e-2) --first;
-      result_.time_to_steady = double(first) * model_.period;
-      result_.crank_speed = now_.y[1];
-      result_.current = model_.current_of(now_.t, now_.y);
-      result_.stroke_angle = now_.y[0];
-      result_.detail = format(
-          "flaps steadily at the supply's %.6g Hz from %.4g s on; after %d periods they repeat to "
-          "%.1g",
-          model_.vehicle.drive_frequency, result_.time_to_steady, result_.laps, change);
+      settle(std::min(off, change / (1.0 - std::min(rate, 0.999))), change, "");
       return;
     }
     last_metrics_ = std::exchange(result_.metrics, std::nullopt);
@@ -348,8 +360,10 @@ void DirectStartUp::period_done() {
     if (close || change < noise) relative_tolerance_ = std::max(tightest_, relative_tolerance_ / 10.0);
   }
   if (rate < 1.0 && off < 1e-2) {
-    // What a period's errors leave behind adds up over 1 / (1 - rate) periods.
-    relative_tolerance_ = std::min(relative_tolerance_, std::max(tightest_, 3e-3 * options_.tolerance * (1.0 - rate)));
+    // What a period's errors leave behind adds up over 1 / (1 - rate) periods; it need not be less than what is to
+    // fade.
+    const double left = std::max(3e-3 * options_.tolerance, 1e-2 * off);
+    relative_tolerance_ = std::min(relative_tolerance_, std::max(tightest_, left * (1.0 - rate)));
   }
   if (close || change < noise || measuring_) begin_measuring();
   if (result_.laps >= options_.max_laps) {
@@ -359,7 +373,13 @@ void DirectStartUp::period_done() {
 
 bool DirectStartUp::out_of_budget() {
   ++result_.steps;
-  if (result_.steps > options_.max_steps) {
+  if (result_.steps > options_.max_steps && last_metrics_ && last_off_ < nearly_settled) {
+    // That it flaps is beyond doubt, its metrics are as good as the steps allowed make them.
+    result_.metrics = last_metrics_;
+    settle(last_off_, changes_.back(),
+           format(", metrics to about %.1g: the %ld integration steps allowed are used up", last_apart_,
+                  options_.max_steps));
+  } else if (result_.steps > options_.max_steps) {
     give_up(format("no decision within %ld integration steps", options_.max_steps));
   } else if (options_.cancel && result_.steps % 512 == 0 && options_.cancel()) {
     give_up("cancelled");
