@@ -84,7 +84,7 @@ void plot_cycle(std::span<const WaveformRow> rows, const std::string& title, Plo
              vermillion_dashed);
 
   panel(2, rod ? "rod force (N)" : "current (mA)");
-  figure.key_entry(left, key_height, blue_solid, rod ? "rod force, positive as it pushes the slider up" : "current");
+  figure.key_entry(left, key_height, blue_solid, rod ? "rod force, positive as it raises the stroke angle" : "current");
   figure.add("plot $cycle using 1:5 with lines {}\n", blue_solid);
 
   panel(3, power_in_watt ? "power (W)" : "power (mW)");
