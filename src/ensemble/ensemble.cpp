@@ -53,7 +53,7 @@ Plan plan_for(const EnsembleOptions& options) {
   s.multipliers = wanted(Metric::floquet_multiplier_max);
 
   // Where benchmarks/benchmark_ensemble is fastest at 1e-6. The order of the means is twice the number of intervals,
-  // that of peaks little more than it; a sweep gains about two digits.
+  // that of peaks little more than it; an iteration gains about two digits.
   const double digits = -std::log10(options.tolerance);
   const bool peaks = std::any_of(s.wanted.begin(), s.wanted.end(), [](bool on) { return on; });
   const auto even = [](double x) {
@@ -63,7 +63,7 @@ Plan plan_for(const EnsembleOptions& options) {
   s.velocity_aside = options.domain && !velocity;
   s.segments = digits > 5.0 ? 8 : 6;
   s.intervals = even(peaks ? 1.6 * (digits - 2.8) : digits - 1.5);
-  s.sweeps = std::max(2, int(std::ceil((digits - 1.4) / 1.7)));
+  s.newton_iterations = std::max(2, int(std::ceil((digits - 1.4) / 1.7)));
   s.coarse_laps = 2;
   s.peak_tolerance = 0.5 * options.tolerance;
 
@@ -71,14 +71,14 @@ Plan plan_for(const EnsembleOptions& options) {
   finer.approach = LaneApproach::resume;
   finer.implicit = true;
   for (LaneSettings& again : plan.again) {
-    ++finer.sweeps;
+    ++finer.newton_iterations;
     finer.segments = std::min(finer.segments + 2, max_half_segments);
     again = finer;
     finer.intervals = std::min(finer.intervals + 2, solver::max_collocation_intervals);
   }
   plan.from_rest = s;
   plan.from_rest.approach = LaneApproach::from_rest;
-  plan.from_rest.sweeps += 1;
+  plan.from_rest.newton_iterations += 1;
   plan.from_rest.segments = max_half_segments;
   plan.from_rest.implicit = true;
   plan.from_rest_finely = plan.from_rest;

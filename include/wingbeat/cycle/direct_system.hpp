@@ -94,7 +94,7 @@ struct DirectSystem {
   }
 
   /// Switch k is crossed: a shaft that comes to rest is held, or turns back.
-  void cross(std::size_t k, const S& phi, State& y, Signs& signs) const {
+  void event_transition(std::size_t k, const S& phi, State& y, Signs& signs) const {
     if (!jumps(k)) {
       signs[k] = -signs[k];
     } else if (k == velocity) {
@@ -109,7 +109,7 @@ struct DirectSystem {
   /// A solution next to a recorded one that came to rest at phi: at its own rest, a little earlier or later, the rates
   /// change as recorded.
   template <bool quadratures>
-  void carry_over(const S& phi, State& y, const Signs& from, const Signs& to, Quadrature* totals) const {
+  void reset_map(const S& phi, State& y, const Signs& from, const Signs& to, Quadrature* totals) const {
     if (!sticks) return;
     const bool stuck = value_of(to[slip]) < 0.0;
     const bool came_to_rest =

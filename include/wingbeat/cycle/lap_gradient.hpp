@@ -46,7 +46,7 @@ class LapGradient {
     starts_.reserve(lap_.steps.size());
     for (std::size_t at = 0; at < lap_.steps.size(); ++at) {
       const auto& step = lap_.steps[at];
-      solver::carry_over<true>(jets_, lap_.steps, at, y, &totals_);
+      solver::reset_map<true>(jets_, lap_.steps, at, y, &totals_);
       starts_.push_back(y);
       const auto signs = solver::signs_of<Jets>(step);
       const auto first = jets_.template rates<true>(J(step.x), y, signs);

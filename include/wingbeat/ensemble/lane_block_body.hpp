@@ -6,6 +6,7 @@
 #include "wingbeat/ensemble/lane_blocks.hpp"
 #include "wingbeat/ensemble/lane_lag.hpp"
 #include "wingbeat/ensemble/lane_multiplier.hpp"
+#include "wingbeat/ensemble/lane_newton.hpp"
 #include "wingbeat/ensemble/lane_orbit.hpp"
 #include "wingbeat/ensemble/lane_peaks.hpp"
 #include "wingbeat/ensemble/lane_start.hpp"

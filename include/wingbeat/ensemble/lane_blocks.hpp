@@ -61,7 +61,7 @@ struct LaneSettings {
   bool implicit = false;  ///< where explicit steps would be unstable, laps before the collocation take implicit ones
   int segments = 6;       ///< of half a lap
   int intervals = 6;      ///< between the nodes of a segment, even
-  int sweeps = 2;         ///< Newton's steps before the last
+  int newton_iterations = 2;     ///< before the last
   double peak_tolerance = 5e-7;  ///< a peak is settled when the cubic at its top promises less, relative
   std::array<bool, quantity_count> wanted{};
   bool velocity_aside = false;  ///< the peak velocity is wanted for the domain alone: no metric, no part in the error

@@ -9,7 +9,7 @@ namespace wingbeat {
 /// The inductance's voltage at the nodes from the trajectory of the current that it leaves, twice: an iteration gains
 /// the ratio of its time constant to that of the trajectory.
 template <class L, int N>
-void LaneOrbit<L, N>::let_current_lag() {
+void LaneOrbit<L, N>::lag_current() {
   if constexpr (N == 1) {
     const std::size_t intervals = std::size_t(rule_.intervals), nodes = first_node(2, 0);
     const L inductance = vehicle_.motor.armature_inductance;

@@ -37,7 +37,8 @@ L LaneOrbit<L, N>::floquet_multiplier() {
             jacobian[m][row][column] = (above.dy[row] - below.dy[row]) * per_both;
         }
         if (m == 0) {
-          // What sweep() corrects by grows with the square of the distance, its derivative with the distance.
+          // What newton_iteration() corrects by grows with the square of the distance, its derivative with the
+          // distance.
           const L& off = off_[std::size_t(half * segments_) + s];
           if (any<L>(!(off == L(0.0)))) {
             for (std::size_t row = 0; row < N; ++row) {
@@ -55,7 +56,7 @@ L LaneOrbit<L, N>::floquet_multiplier() {
         path[m] = path[m - 1];
         append(step_[base + m], path[m]);
       }
-      for (int repeat = 0; repeat < settings_.sweeps + 2; ++repeat) {
+      for (int repeat = 0; repeat < settings_.newton_iterations + 2; ++repeat) {
         std::array<Matrix, nodes_per_segment> rates;
         for (std::size_t m = 0; m <= intervals; ++m) {
           rates[m] = path[m];

@@ -132,7 +132,7 @@ auto monodromy_product(const System& system, const JetSystem& jets, const Lap<Sy
   const auto start_of = [&](std::size_t k) {
     State y;
     for (std::size_t j = 0; j < n; ++j) y[j] = Real(lap.steps[k].y[j], int(j));
-    carry_over<false>(jets, lap.steps, k, y, nullptr);
+    reset_map<false>(jets, lap.steps, k, y, nullptr);
     return y;
   };
   const auto rates_at_start = [&](std::size_t k, const State& y) {

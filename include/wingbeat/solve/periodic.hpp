@@ -70,7 +70,7 @@ double merge_lap(const System& system, Lap<System>& lap, double tolerance, doubl
   for (std::size_t n = 0; n < lap.steps.size() && apart > tolerance; ++n) {
     Step<System>& step = lap.steps[n];
     typename System::Quadrature gained{};
-    carry_over<true>(system, lap.steps, n, y, &gained);
+    reset_map<true>(system, lap.steps, n, y, &gained);
     if (n > 0) {
       for (std::size_t q = 0; q < gained.size(); ++q) lap.steps[n - 1].dq[q] += gained[q];
     }

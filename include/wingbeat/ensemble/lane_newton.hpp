@@ -1,0 +1,339 @@
+// Newton's method along the lap on SIMD lanes: the part of LaneOrbit that places nodes on the segments and makes the
+// trajectory satisfy the equations there.
+#pragma once
+
+#include "wingbeat/ensemble/lane_orbit.hpp"
+
+namespace wingbeat {
+
+/// Nodes on segments that end at the switches as march() left them, with its trajectory and derivatives interpolated
+/// there.
+template <class L, int N>
+void LaneOrbit<L, N>::place_nodes() {
+  for (std::size_t row = 0; row < N; ++row) {
+    for (std::size_t column = 0; column < N; ++column) monodromy_[row][column] = L(row == column ? 1.0 : 0.0);
+  }
+  for (int half = 0; half < 2; ++half) {
+    const System system = half_lap(half);
+    const HalfMesh<L> before = mesh_[std::size_t(half)];
+    build_mesh(half);
+    const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+    for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
+      const Subinterval& from = subintervals_[std::size_t(half * segments_) + s];
+      const Subinterval& to = subintervals_[std::size_t(half * segments_) + s + 1];
+      const std::size_t base = first_node(half, s);
+      const L u = mesh.u[s], h = mesh.u[s + 1] - u, h_before = before.u[s + 1] - before.u[s];
+      const L shift = u - before.u[s], stretched = h - h_before;
+      const L per_h_before = inverse_of(max(h_before, L(1e-12)));
+      State c1, c2, c3;
+      for (std::size_t n = 0; n < N; ++n) {
+        const L rise = to.y[n] - from.y[n], d0 = h_before * from.rates[n], d1 = h_before * to.rates[n];
+        c1[n] = d0;
+        c2[n] = L(3.0) * rise - L(2.0) * d0 - d1;
+        c3[n] = d0 + d1 - L(2.0) * rise;
+      }
+      // The derivatives by the parabola through start, middle and end; across a switch they jump, and a straight line
+      // goes on from the middle.
+      const bool last = s + 1 == std::size_t(segments_);
+      const Mask smooth = (last ? L(-1.0) : before.force[s] * before.force[s + 1]) > L(0.0);
+      Matrix linear, bend;
+      for (std::size_t row = 0; row < N; ++row) {
+        for (std::size_t column = 0; column < N; ++column) {
+          const L rise = L(2.0) * (from.jacobian[1][row][column] - from.jacobian[0][row][column]);
+          linear[row][column] = rise;
+          bend[row][column] =
+              select<L>(smooth, L(2.0) * (to.jacobian[0][row][column] - from.jacobian[0][row][column] - rise), L(0.0));
+        }
+      }
+      for (std::size_t m = 0; m <= std::size_t(rule_.intervals); ++m) {
+        const double x = rule_.node[m];
+        if (m > 0 || s == 0) places_[base + m] = system.place(u + L(x) * h);
+        const L moved = (shift + L(x) * stretched) * per_h_before;
+        for (std::size_t n = 0; n < N; ++n) {
+          trajectory_[base + m][n] = from.y[n] + L(x) * (c1[n] + L(x) * (c2[n] + L(x) * c3[n])) +
+                                     moved * (c1[n] + L(2.0 * x) * c2[n] + L(3.0 * x * x) * c3[n]);
+        }
+        if (m == 0) continue;
+        const double width = x - rule_.node[m - 1], t = x - 0.5 * width;
+        Matrix jacobian;
+        for (std::size_t row = 0; row < N; ++row) {
+          for (std::size_t column = 0; column < N; ++column) {
+            jacobian[row][column] =
+                from.jacobian[0][row][column] + L(t) * (linear[row][column] + L(t - 0.5) * bend[row][column]);
+          }
+        }
+        propagator(jacobian, L(width) * h, step_[base + m]);
+        append(step_[base + m], monodromy_);
+      }
+    }
+  }
+}
+
+/// What the nodes of a segment would each move by if the node before stood still: its rates' integral says so. `end` is
+/// what the node before the segment, and afterwards its last one, moves by if the lap's start stands still.
+template <class L, int N>
+void LaneOrbit<L, N>::propose(std::size_t base, const L& h, State& end) {
+  const std::size_t intervals = std::size_t(rule_.intervals);
+  for (std::size_t n = 0; n < N; ++n) end[n] = end[n] + correction_[base][n];
+  for (std::size_t m = 1; m <= intervals; ++m) {
+    State sum;
+    sum.fill(L(0.0));
+    for (std::size_t j = 0; j <= intervals; ++j) {
+      const L weight(rule_.between[m][j]);
+      for (std::size_t n = 0; n < N; ++n) sum[n] = sum[n] + weight * rates_[base + j][n];
+    }
+    for (std::size_t n = 0; n < N; ++n) sum[n] = h * sum[n] - (trajectory_[base + m][n] - trajectory_[base + m - 1][n]);
+    // (1 - z)^-1 = (1 + step) / 2
+    const Matrix& step = step_[base + m];
+    const State before = end;
+    for (std::size_t n = 0; n < N; ++n) {
+      L along = step[n][0] * sum[0], onward = step[n][0] * before[0];
+      if constexpr (N == 2) {
+        along = along + step[n][1] * sum[1];
+        onward = onward + step[n][1] * before[1];
+      }
+      correction_[base + m][n] = L(0.5) * (sum[n] + along);
+      end[n] = onward + correction_[base + m][n];
+    }
+  }
+}
+
+/// Newton's step from the proposed corrections, along the lap, which is to end where it started; `end` as propose()
+/// leaves it.
+template <class L, int N>
+void LaneOrbit<L, N>::correct(State end) {
+  const std::size_t per_segment = std::size_t(rule_.intervals + 1), nodes = first_node(2, 0);
+  State by;
+  for (std::size_t n = 0; n < N; ++n) by[n] = end[n] + trajectory_[nodes - 1][n] - trajectory_[0][n];
+  close_lap(by);
+  L sum(0.0);
+  slowest_ = trajectory_[0][0];
+  const L per_speed = inverse_of(slowest_), per_current = inverse_of(current_scale_);
+  for (std::size_t base = 0; base < nodes; base += per_segment) {
+    for (std::size_t m = 0; m < per_segment; ++m) {
+      const std::size_t node = base + m;
+      if (m == 0) {
+        for (std::size_t n = 0; n < N; ++n) by[n] = by[n] + correction_[node][n];
+      } else {
+        const Matrix& step = step_[node];
+        const State before = by;
+        for (std::size_t n = 0; n < N; ++n) {
+          by[n] = step[n][0] * before[0] + correction_[node][n];
+          if constexpr (N == 2) by[n] = by[n] + step[n][1] * before[1];
+        }
+      }
+      sum = sum + abs(by[0]) * per_speed;
+      if constexpr (N == 2) sum = sum + abs(by[1]) * per_current;
+      for (std::size_t n = 0; n < N; ++n) trajectory_[node][n] = trajectory_[node][n] + by[n];
+      slowest_ = min(slowest_, trajectory_[node][0]);
+    }
+  }
+  residual_ = sum * L(1.0 / double(nodes));
+  y_ = trajectory_[0];
+}
+
+/// The equations at all nodes, and the corrections that follow; the last iteration takes integrals and observables,
+/// too.
+///
+/// Where a node stands off the sign change it was meant for by d, the wrong branch has held, or will hold, over d. The
+/// difference of the branches grows linearly from zero there, so that half of d times the difference at the node is the
+/// error left behind, up to O(d^3).
+template <class L, int N>
+template <bool last>
+void LaneOrbit<L, N>::newton_iteration() {
+  const std::size_t intervals = std::size_t(rule_.intervals);
+  solver::Rates<System> rates;
+  State end;
+  end.fill(L(0.0));
+  correction_[0] = end;
+  L overlooked(0.0), highest(0.0);
+  std::array<std::array<L, nodes_per_segment>, 4> controlled;
+  typename System::Quadrature integrands_before;
+  if (lags_) lag_current();
+  if constexpr (last) {
+    integrals_.fill(L(0.0));
+    high_.fill(L(0.0));
+    low_.fill(L(0.0));
+    switch_offset_ = layer_ = L(0.0);
+  }
+  for (int half = 0; half < 2; ++half) {
+    System system = half_lap(half);
+    const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+    L h_before(0.0);
+    for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
+      const std::size_t base = first_node(half, s);
+      const L sign = mesh.force[s], h = mesh.u[s + 1] - mesh.u[s];
+      for (std::size_t m = 0; m <= intervals; ++m) {
+        if (lags_) system.drop = drop_[base + m];
+        if constexpr (last) {
+          visit_node(system, base + m, sign, rates);
+          const L weight = L(rule_.weight[m]) * h;
+          for (std::size_t q = 0; q < integrals_.size(); ++q) integrals_[q] = integrals_[q] + weight * rates.dq[q];
+          for (std::size_t c = 0; c < controlled.size(); ++c)
+            controlled[c][m] = rates.dq[System::controlled_integrals[c]];
+          highest = max(highest, abs(rates.switches[0]));
+          if (m > 0 && m < intervals) overlooked = max(overlooked, -(rates.switches[0] * sign));
+        } else {
+          evaluate<false>(system, place_of(base + m), trajectory_[base + m], sign, rates);
+        }
+        rates_[base + m] = rates.dy;
+        force_[base + m] = rates.switches[0];
+        if (m > 0) continue;
+        if constexpr (last) off_[std::size_t(half * segments_) + s] = L(0.0);
+        if (half == 0 && s == 0) continue;
+        // From the end of the segment before to the start of this one.
+        State& jump = correction_[base];
+        for (std::size_t n = 0; n < N; ++n) jump[n] = trajectory_[base - 1][n] - trajectory_[base][n];
+        if (s == 0) continue;
+        const Mask switches = mesh.force[s - 1] * sign < L(0.0);
+        if (!any<L>(switches)) continue;
+        L slope(0.0);
+        for (std::size_t j = 0; j <= intervals; ++j)
+          slope = slope + L(rule_.slope[intervals][j]) * force_[base - 1 - intervals + j];
+        const L off = min(max(force_[base - 1] * h_before * inverse_of(slope), -h), h);
+        const L half_off = select<L>(switches, L(0.5) * off, L(0.0));
+        for (std::size_t n = 0; n < N; ++n) jump[n] = jump[n] - half_off * (rates_[base - 1][n] - rates_[base][n]);
+        if (lags_) {
+          const solver::Rates<System> by = relaxation(system, base, sign);
+          for (std::size_t n = 0; n < N; ++n) jump[n] = jump[n] + select<L>(switches, by.dy[n], L(0.0));
+          if constexpr (last) {
+            for (std::size_t q = 0; q < integrals_.size(); ++q) {
+              integrals_[q] = integrals_[q] + select<L>(switches, by.dq[q], L(0.0));
+            }
+            layer_ = max(layer_, select<L>(switches, abs(by.dy[0]) * inverse_of(trajectory_[base][0]), L(0.0)));
+          }
+        }
+        if constexpr (last) {
+          for (std::size_t q = 0; q < integrals_.size(); ++q) {
+            integrals_[q] = integrals_[q] - half_off * (integrands_before[q] - rates.dq[q]);
+          }
+          off_[std::size_t(half * segments_) + s] = L(2.0) * half_off;
+          switch_offset_ = max(switch_offset_, L(2.0) * abs(half_off));
+        }
+      }
+      h_before = h;
+      propose(base, h, end);
+      if constexpr (last) {
+        integrands_before = rates.dq;
+        add_tails(controlled, base, h);
+        if (wanted_[std::size_t(Quantity::force)]) {
+          const L per_h = inverse_of(max(h, L(1e-12)));
+          auto& observables = observables_[std::size_t(Quantity::force)];
+          for (std::size_t m = 0; m <= intervals; ++m) {
+            L slope(0.0);
+            for (std::size_t j = 0; j <= intervals; ++j)
+              slope = slope + L(rule_.slope[m][j]) * observables[base + j].value;
+            observables[base + m].slope = slope * per_h;
+          }
+        }
+      }
+    }
+    if constexpr (last) {
+      std::array<L, 2 * max_half_segments + 1> u, force;
+      for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
+        const std::size_t base = first_node(half, s);
+        u[2 * s] = mesh.u[s];
+        force[2 * s] = force_[base];
+        u[2 * s + 1] = L(0.5) * (mesh.u[s] + mesh.u[s + 1]);
+        force[2 * s + 1] = force_[base + intervals / 2];
+      }
+      u[2 * std::size_t(segments_)] = mesh.u[std::size_t(segments_)];
+      force[2 * std::size_t(segments_)] = force_[first_node(half, std::size_t(segments_)) - 1];
+      switch_offset_ = max(switch_offset_, find_switches(half, u.data(), force.data(), 2 * segments_));
+    }
+  }
+  correct(end);
+  if constexpr (last) {
+    overlooked_ = overlooked * inverse_of(max(highest, L(1e-300)));
+    // The coefficients fall geometrically, and the sums over the nodes see none below the 2 n-th.
+    step_error_ = speed_error_ = L(0.0);
+    for (std::size_t c = 0; c < high_.size(); ++c) {
+      const L scale =
+          c == 0 ? L(1.0) : inverse_of(max(abs(integrals_[System::controlled_integrals[c - 1]]), L(1e-300)));
+      const L ratio = high_[c] * inverse_of(max(low_[c], L(1e-300)));
+      L error = high_[c] * scale;
+      for (std::size_t k = 0; k < intervals / 2; ++k) error = error * ratio;
+      step_error_ = max(step_error_, error);
+      if (c < 2) speed_error_ = max(speed_error_, error);
+    }
+  }
+}
+
+/// Adds the last coefficients of a segment's rates of speed and integrals.
+template <class L, int N>
+void LaneOrbit<L, N>::add_tails(const std::array<std::array<L, nodes_per_segment>, 4>& controlled, std::size_t base,
+                                const L& h) {
+  const std::size_t n = std::size_t(rule_.intervals);
+  const L per_omega = inverse_of(trajectory_[base][0]);
+  for (std::size_t c = 0; c < high_.size(); ++c) {
+    L tail[4] = {L(0.0), L(0.0), L(0.0), L(0.0)};
+    for (std::size_t j = 0; j <= n; ++j) {
+      const L value = c == 0 ? rates_[base + j][0] * per_omega : controlled[c - 1][j];
+      for (std::size_t k = 0; k < 4; ++k) tail[k] = tail[k] + L(k <= n ? rule_.legendre[n - k][j] : 0.0) * value;
+    }
+    high_[c] = high_[c] + h * (abs(tail[0]) + abs(tail[1]));
+    low_[c] = low_[c] + h * (abs(tail[2]) + abs(tail[3]));
+  }
+}
+
+/// The observables wanted at a state, with the motion there.
+template <class L, int N>
+void LaneOrbit<L, N>::read(const System& system, const L& u, const State& y, const L& force, const Motion<L>& m,
+                           const State& dy, const L& drop_slope, const std::array<bool, quantity_count>& wanted,
+                           std::array<Observable<L>, quantity_count>& out) const {
+  const auto is_wanted = [&](Quantity q) { return wanted[std::size_t(q)]; };
+  const auto at = [&](Quantity q) -> Observable<L>& { return out[std::size_t(q)]; };
+  if (is_wanted(Quantity::velocity)) {
+    at(Quantity::velocity) = {system.half * m.stroke_velocity, system.half * m.stroke_acceleration * inverse_of(y[0])};
+  }
+  if (is_wanted(Quantity::speed)) at(Quantity::speed) = {y[0], dy[0]};
+  if (is_wanted(Quantity::negated_speed)) at(Quantity::negated_speed) = {-y[0], -dy[0]};
+  if (is_wanted(Quantity::current)) {
+    if constexpr (N == 2) {
+      at(Quantity::current) = {y[1], dy[1]};
+    } else {
+      const L per_resistance = inverse_of(circuit_resistance(vehicle_));
+      at(Quantity::current) = {m.current, lags_ ? system.drop * per_inductance_ * inverse_of(y[0])
+                                                : -(vehicle_.motor.torque_constant * dy[0] * per_resistance)};
+    }
+  }
+  if (is_wanted(Quantity::energy)) {
+    const L energy = wing_energy(vehicle_, m.kinematics, m.stroke_velocity);
+    // At the dead centres the slope is zero but for rounding; its sign is that of the moment there.
+    const L rising = sign_of(L(system.half * m.stored_moment));
+    const L steepness = max(abs(L(m.stored_moment * m.kinematics.stroke_slope)), L(1e-30));
+    at(Quantity::energy) = {energy, rising * steepness};
+  }
+  if (is_wanted(Quantity::force)) {
+    // The slope along the solution by central differences.
+    constexpr double by = 1e-4;
+    L ahead[2];
+    for (int side = 0; side < 2; ++side) {
+      const L move(side == 0 ? -by : by);
+      State moved;
+      for (std::size_t n = 0; n < N; ++n) moved[n] = y[n] + move * dy[n];
+      System there = system;
+      if (lags_) there.drop = system.drop + move * drop_slope;
+      ahead[side] = there.motion(there.place(u + move), moved, force).rod_force;
+    }
+    at(Quantity::force) = {force * m.rod_force, force * (ahead[1] - ahead[0]) * L(0.5 / by)};
+  }
+}
+
+/// Rates and observables at a node.
+template <class L, int N>
+void LaneOrbit<L, N>::visit_node(const System& system, std::size_t node, const L& force, solver::Rates<System>& rates) {
+  const Motion<L> motion = system.motion(place_of(node), trajectory_[node], force);
+  rates = system.template rates_of<true>(motion, trajectory_[node], force);
+  if (!reads_) return;
+  std::array<bool, quantity_count> wanted = wanted_;
+  wanted[std::size_t(Quantity::force)] = false;
+  std::array<Observable<L>, quantity_count> observables;
+  read(system, L(0.0), trajectory_[node], force, motion, rates.dy, L(0.0), wanted, observables);
+  observables[std::size_t(Quantity::force)].value = force * motion.rod_force;
+  for (std::size_t q = 0; q < std::size_t(quantity_count); ++q) {
+    if (wanted_[q]) observables_[q][node] = observables[q];
+  }
+}
+
+}  // namespace wingbeat

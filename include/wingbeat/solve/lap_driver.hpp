@@ -1,0 +1,482 @@
+// Steps of a lap from branch to branch: their size, and the search for the switches that end branches (lap.hpp).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+#include <vector>
+
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/core/minimise.hpp"
+#include "wingbeat/solve/lap_record.hpp"
+
+namespace wingbeat::solver {
+namespace detail {
+
+/// Cubic Hermite state inside a step from its end values and slopes, at the fraction t of the step h.
+template <class System>
+typename System::State hermite(const typename System::State& y0, const typename System::State& dy0,
+                               const typename System::State& y1, const typename System::State& dy1, double h,
+                               double t) {
+  typename System::State y;
+  const double s = 1.0 - t;
+  for (std::size_t n = 0; n < y.size(); ++n) {
+    y[n] = s * s * (1.0 + 2.0 * t) * y0[n] + t * t * (3.0 - 2.0 * t) * y1[n] + h * t * s * (s * dy0[n] - t * dy1[n]);
+  }
+  return y;
+}
+
+template <class State>
+bool is_finite(const State& y) {
+  return std::all_of(y.begin(), y.end(), [](double value) { return std::isfinite(value); });
+}
+
+/// Error of a step relative to the tolerance; `integral_scale` holds the size of each integral over the whole lap.
+template <bool quadratures, class System>
+double scaled_error(const System& system, const StepResult<System>& step, double tolerance,
+                    const typename System::Quadrature& integral_scale) {
+  const typename System::State scale = system.error_scale(step.y);
+  double sum3 = 0.0, sum5 = 0.0;
+  for (std::size_t n = 0; n < scale.size(); ++n) {
+    const double per = 1.0 / (tolerance * scale[n]);
+    sum3 += step.error3[n] * step.error3[n] * per * per;
+    sum5 += step.error5[n] * step.error5[n] * per * per;
+  }
+  // Hairer's combination of both embedded formulas, of order 8 in the step (radau has one, error5, alone).
+  const double denominator = sum5 + 0.01 * sum3;
+  double error = denominator > 0.0 ? sum5 / std::sqrt(denominator * double(scale.size())) : 0.0;
+  if constexpr (quadratures) {
+    for (const std::size_t q : System::controlled_integrals) {
+      if (!(integral_scale[q] > 0.0)) continue;
+      const double per = 1.0 / (tolerance * integral_scale[q]);
+      const double fifth = std::abs(step.integral_error5[q]) * per, third = std::abs(step.integral_error3[q]) * per;
+      const double denominator_q = std::hypot(fifth, 0.1 * third);
+      if (denominator_q > 0.0) error = std::max(error, fifth * fifth / denominator_q);
+    }
+  }
+  return error;
+}
+
+/// |h lambda| of the fastest decay, from two states at the end of a step and the rates there; 0 where the states are as
+/// good as equal. Hairer's test of stiffness in DOP853.
+template <class System>
+double step_times_decay(const System& system, const StepResult<System>& step, const typename System::State& slope,
+                        double h) {
+  const typename System::State scale = system.error_scale(step.y);
+  double apart = 0.0, change = 0.0;
+  for (std::size_t n = 0; n < scale.size(); ++n) {
+    const double y = (step.y[n] - step.last_stage[n]) / scale[n], dy = (slope[n] - step.last_slope[n]) / scale[n];
+    apart += y * y;
+    change += dy * dy;
+  }
+  return apart > 1e-24 ? h * std::sqrt(change / apart) : 0.0;
+}
+
+/// Position tolerance of a switch: an error e in its position costs about e^2 times the change of slope there.
+inline double switch_tolerance(double tolerance) { return 0.4 * std::sqrt(tolerance); }
+
+/// Drives one lap; see run_lap.
+template <bool quadratures, class System>
+class LapDriver {
+ public:
+  using State = typename System::State;
+  using Signs = typename System::Signs;
+  static constexpr double largest_decay = 6.0;  ///< |h lambda| within which the explicit pair is stable
+  static constexpr std::size_t switch_count = std::tuple_size_v<typename System::Switches>;
+
+  LapDriver(const System& system, const LapOptions& options, Lap<System>& lap)
+      : system_(system),
+        options_(options),
+        lap_(lap),
+        located_(std::min(switch_count, std::size_t(options.switches))),
+        position_tolerance_(switch_tolerance(options.tolerance)),
+        error_exponent_(options.method == Method::explicit_pair ? -1.0 / dop853::order
+                                                                : -1.0 / (RadauTableau::stages + 1)) {}
+
+  void run(const State& start) {
+    begin(start);
+    const double period = system_.period();
+    double h = lap_.largest_step > 0.0 ? lap_.largest_step : options_.first_step * period / two_pi;
+    lap_.largest_step = 0.0;
+    // A step must not jump over the shape of what is integrated along.
+    const double longest = quadratures ? period / 12.0 : period;
+    while (x_ < period) {
+      if (int(lap_.steps.size()) >= options_.max_steps) return stop(LapStatus::too_many_steps);
+      if (h < 1e-12 * period) return stop(LapStatus::barrier);
+      double node = period;
+      if (fixed_ < system_.fixed_nodes().size()) node = std::min(node, system_.fixed_nodes()[fixed_].x);
+      while (expected_ < plan_.size() && plan_[expected_].x <= x_ + position_tolerance_) ++expected_;
+      // An expected switch right before a node is left to be found there: steps of no length help nobody.
+      const bool to_switch = expected_ < plan_.size() && plan_[expected_].x < node - position_tolerance_;
+      const double target = to_switch ? plan_[expected_].x : node;
+
+      const double left = target - x_;
+      const double pieces = std::ceil(0.999 * left / std::min(h, longest));
+      const bool reaches = pieces <= 1.0;
+      double step = reaches ? left : left / pieces;
+      StepResult<System> result = take_step<quadratures>(options_.method, system_, x_, y_, step, signs_, first_);
+      if (!result.admissible || !is_finite(result.y) || (quadratures && !is_finite(result.dq))) {
+        h = 0.25 * step;
+        continue;
+      }
+      const double error = scaled_error<quadratures>(system_, result, options_.tolerance, integral_scale_);
+      const double factor = error > 0.0 ? 0.9 * std::pow(error, error_exponent_) : 5.0;
+      if (!(error <= 1.0)) {
+        h = step * std::clamp(factor, 0.1, 0.9);
+        if (!std::isfinite(error)) h = 0.25 * step;
+        continue;
+      }
+      double x1 = reaches ? target : x_ + step;
+      Rates<System> last = system_.template rates<quadratures>(x1, result.y, signs_);
+      if constexpr (quadratures) {
+        // Beyond the pair's interval of stability, steps feed an oscillation that the error estimates hardly see.
+        if (options_.method == Method::explicit_pair) {
+          const double decay = step_times_decay(system_, result, last.dy, step);
+          if (decay > largest_decay) {
+            h = step * std::max(0.1, 0.9 * largest_decay / decay);
+            continue;
+          }
+        }
+      }
+      bool flip = false;
+      std::size_t flipped = switch_count;
+      if (reaches && to_switch) {
+        flip = end_on_expected(node, step, result, last);
+        if (flip) flipped = plan_[expected_].sign;
+        x1 = x_ + step;
+      }
+      std::size_t crossed = crossed_switch(last, flipped);
+      if (crossed == switch_count && crossed_twice(step, result, last, flipped)) {
+        // Two sign changes within the step: end it between them.
+        flip = false;
+        flipped = switch_count;
+        x1 = x_ + step;
+        crossed = crossed_switch(last, flipped);
+      }
+      if (crossed < switch_count) {
+        if (!locate(crossed, step, result, last)) {
+          // The switch lies where the step begins: flip there and take the step again.
+          flip_here(crossed);
+          continue;
+        }
+        flip = true;
+        flipped = crossed;
+        // Another switch that changed its sign before this one was seen at its end alone.
+        for (std::size_t other = 0; other < switch_count; ++other) {
+          const std::size_t earlier = crossed_switch(last, flipped);
+          if (earlier == switch_count || !locate(earlier, step, result, last)) break;
+          flipped = earlier;
+        }
+        x1 = x_ + step;
+      }
+      note_others(step, result, last);
+      lap_.error_sum += error * options_.tolerance;
+      accept(x1, step, result, last);
+      if (flip) {
+        flip_here(flipped);
+      } else if (reaches && !to_switch && x1 < period) {
+        pass_fixed_nodes();
+      }
+      h = std::max(h, step) * std::clamp(factor, 0.3, 3.0);
+      if (!reaches || factor < 1.0) h = step * std::clamp(factor, 0.3, 3.0);
+    }
+    stop(LapStatus::complete);
+  }
+
+ private:
+  void begin(const State& start) {
+    lap_.method = options_.method;
+    plan_.swap(lap_.switches);
+    if (located_ < switch_count) {
+      std::erase_if(plan_, [&](const SwitchNode& node) { return node.sign >= located_; });
+    }
+    lap_.switches.clear();
+    lap_.steps.clear();
+    lap_.steps.reserve(64);
+    lap_.error_sum = 0.0;
+    x_ = 0.0;
+    y_ = start;
+    if constexpr (requires { system_.start_signs(start); }) {
+      signs_ = system_.start_signs(start);
+    } else {
+      signs_ = system_.start_signs();
+    }
+    // A switch may depend on the signs of those before it.
+    for (std::size_t k = 0; k < switch_count; ++k) {
+      if (jumps(system_, k)) continue;
+      const Rates<System> rates = system_.template rates<quadratures>(x_, y_, signs_);
+      signs_[k] = rates.switches[k] >= 0.0 ? 1.0 : -1.0;
+    }
+    first_ = system_.template rates<quadratures>(x_, y_, signs_);
+    remember_switch_scale(first_);
+    integral_scale_ = {};
+    remember_integral_scale();
+  }
+
+  void stop(LapStatus status) {
+    lap_.status = status;
+    lap_.stop = x_;
+    lap_.end = y_;
+    lap_.switch_scale = switch_scale_;
+    lap_.integral_scale = integral_scale_;
+  }
+
+  void remember_switch_scale(const Rates<System>& rates) {
+    for (std::size_t k = 0; k < switch_count; ++k) {
+      switch_scale_[k] = std::max(switch_scale_[k], std::abs(rates.switches[k]));
+    }
+  }
+
+  /// How closely the position of switch k must be known.
+  double position_tolerance(std::size_t k) const {
+    return jumps(system_, k) ? std::max(0.01 * options_.tolerance, 1e-14) : position_tolerance_;
+  }
+
+  /// Moves the end of a step onto the expected switch there; false if that is not near, or beyond the next node.
+  bool end_on_expected(double node, double& step, StepResult<System>& result, Rates<System>& last) {
+    const std::size_t k = plan_[expected_].sign;
+    const double near_end = 0.95;
+    const State before = hermite<System>(y_, first_.dy, result.y, last.dy, step, near_end);
+    double slope =
+        (last.switches[k] - system_.template rates<false>(x_ + near_end * step, before, signs_).switches[k]) /
+        ((1.0 - near_end) * step);
+    if (slope * signs_[k] >= 0.0) return false;
+    double moved = step;
+    const int corrections = jumps(system_, k) ? 8 : 3;
+    for (int correction = 0; correction < corrections; ++correction) {
+      const double off = last.switches[k] / slope;
+      if (std::abs(off) <= position_tolerance(k)) return true;
+      const double value = last.switches[k];
+      moved -= off;
+      if (!(moved > 0.7 * step && moved < 1.3 * step && x_ + moved < node)) return false;
+      const StepResult<System> again = take_step<quadratures>(options_.method, system_, x_, y_, moved, signs_, first_);
+      if (!again.admissible) return false;
+      result = again;
+      step = moved;
+      last = system_.template rates<quadratures>(x_ + step, result.y, signs_);
+      if (corrections > 3) slope = (value - last.switches[k]) / off;
+    }
+    return false;
+  }
+
+  /// The switch that was crossed first in a step, or switch_count; `ended_on` is not looked at. Zero counts as not
+  /// crossed.
+  std::size_t crossed_switch(const Rates<System>& last, std::size_t ended_on) {
+    remember_switch_scale(last);
+    std::size_t crossed = switch_count;
+    if (flips_here_ >= 2 * int(switch_count)) return crossed;
+    double at = 2.0;
+    for (std::size_t k = 0; k < located_; ++k) {
+      if (last.switches[k] * signs_[k] >= 0.0 || std::abs(last.switches[k]) < 1e-15 * switch_scale_[k]) continue;
+      if (k == ended_on) continue;
+      const double from = std::max(0.0, first_.switches[k] * signs_[k]);
+      const double fraction = from / (from + std::abs(last.switches[k]));
+      if (fraction < at) {
+        at = fraction;
+        crossed = k;
+      }
+    }
+    return crossed;
+  }
+
+  /// Looks for a switch that changes sign and back within a step; if there is one, shortens the step to end in between.
+  bool crossed_twice(double& step, StepResult<System>& result, Rates<System>& last, std::size_t ended_on) {
+    if (step < 4.0 * position_tolerance_) return false;
+    bool seen = false;
+    for (std::size_t k = 0; k < located_; ++k) {
+      seen = seen || (k != ended_on && result.lowest[k] < -1e-6 * switch_scale_[k]);
+    }
+    if (seen) {
+      for (const double t : {0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875, 0.9375}) {
+        if (ends_between(t, step, result, last, ended_on)) return true;
+      }
+      return false;
+    }
+    // A short dip may lie between two stages: none sees more than that the switch comes near zero.
+    for (std::size_t k = 0; k < located_; ++k) {
+      const double ends = std::min(first_.switches[k] * signs_[k], last.switches[k] * signs_[k]);
+      const bool comes_near = result.lowest[k] < std::min(0.05 * switch_scale_[k], 0.8 * ends);
+      if (k == ended_on || !comes_near) continue;
+      if (ends_between(lowest_within(k, step, result, last), step, result, last, ended_on)) return true;
+    }
+    return false;
+  }
+
+  /// If some switch has the wrong sign at the part t of a step, and at the end of a step that ends there, takes that.
+  bool ends_between(double t, double& step, StepResult<System>& result, Rates<System>& last, std::size_t ended_on) {
+    const State y = hermite<System>(y_, first_.dy, result.y, last.dy, step, t);
+    const Rates<System> inside = system_.template rates<false>(x_ + t * step, y, signs_);
+    for (std::size_t k = 0; k < located_; ++k) {
+      if (k == ended_on || inside.switches[k] * signs_[k] >= -1e-6 * switch_scale_[k]) continue;
+      const double shorter = t * step;
+      const StepResult<System> again =
+          take_step<quadratures>(options_.method, system_, x_, y_, shorter, signs_, first_);
+      if (!again.admissible) return false;
+      const Rates<System> at = system_.template rates<quadratures>(x_ + shorter, again.y, signs_);
+      if (at.switches[k] * signs_[k] >= 0.0) continue;
+      step = shorter;
+      result = again;
+      last = at;
+      return true;
+    }
+    return false;
+  }
+
+  /// Part of a step at which switch k is lowest.
+  double lowest_within(std::size_t k, double step, const StepResult<System>& result, const Rates<System>& last) {
+    const auto value = [&](double t) {
+      const State y = hermite<System>(y_, first_.dy, result.y, last.dy, step, t);
+      return system_.template rates<false>(x_ + t * step, y, signs_).switches[k] * signs_[k];
+    };
+    return minimise(value, 0.0, 1.0, 1e-3).at;
+  }
+
+  /// Shortens the step to end where switch k changes sign; false if that is at its very start.
+  bool locate(std::size_t k, double& step, StepResult<System>& result, Rates<System>& last) {
+    const double whole = step;
+    const State y1 = result.y;
+    const State dy1 = last.dy;
+    const auto value = [&](double at) {
+      const State y = hermite<System>(y_, first_.dy, y1, dy1, whole, at / whole);
+      return system_.template rates<false>(x_ + at, y, signs_).switches[k] * signs_[k];
+    };
+    // Illinois: keeps the bracket, converges superlinearly.
+    double lo = 0.0, hi = whole;
+    double f_lo = first_.switches[k] * signs_[k], f_hi = last.switches[k] * signs_[k];
+    if (f_lo <= 1e-15 * switch_scale_[k]) {
+      // A sign may have been flipped a little before its zero: look past it.
+      lo = std::min(2.0 * position_tolerance_, 0.5 * whole);
+      f_lo = value(lo);
+      if (f_lo <= 0.0) return false;
+    }
+    const double close_enough = 0.1 * position_tolerance_;
+    double at = hi, slope = (f_hi - f_lo) / whole;
+    for (int iteration = 0, side = 0; iteration < 60 && hi - lo > close_enough; ++iteration) {
+      // A start next to a zero of the same switch would draw the secant there.
+      const bool from_zero = f_lo < 0.1 * std::abs(f_hi) && iteration < 20 && hi - lo > 0.1 * whole;
+      const double next = from_zero ? 0.5 * (lo + hi) : (lo * f_hi - hi * f_lo) / (f_hi - f_lo);
+      const double f = value(next);
+      if (next != at && iteration > 0) slope = (f - (at == hi ? f_hi : f_lo)) / (next - at);
+      const double moved = std::abs(next - at);
+      at = next;
+      if (f < 0.0) {
+        hi = next;
+        f_hi = f;
+        if (side == -1) f_lo *= 0.5;
+        side = -1;
+      } else {
+        lo = next;
+        f_lo = f;
+        if (side == 1) f_hi *= 0.5;
+        side = 1;
+      }
+      if (f == 0.0 || (iteration > 0 && !from_zero && moved < close_enough)) break;
+    }
+    if (at < 1e-3 * position_tolerance_) return false;
+    // The Hermite state is of lower order than the step: correct with steps that end at the switch.
+    const int corrections = jumps(system_, k) ? 12 : 4;
+    double value_before = 0.0, moved = 0.0;
+    for (int correction = 0; correction < corrections; ++correction) {
+      step = at;
+      result = take_step<quadratures>(options_.method, system_, x_, y_, step, signs_, first_);
+      last = system_.template rates<quadratures>(x_ + step, result.y, signs_);
+      const double signed_value = last.switches[k] * signs_[k];
+      if (corrections > 4 && moved != 0.0 && signed_value != value_before) {
+        slope = (value_before - signed_value) / moved;
+      }
+      const double off = slope != 0.0 ? signed_value / slope : 0.0;
+      if (std::abs(off) <= position_tolerance(k) || at - off <= 0.0) break;
+      at -= off;
+      moved = off;
+      value_before = signed_value;
+    }
+    return true;
+  }
+
+  /// Notes the sign changes of switches on which no step needs to end, to the accuracy of a secant.
+  void note_others(double step, const StepResult<System>& result, const Rates<System>& last) {
+    for (std::size_t k = located_; k < switch_count; ++k) {
+      if (last.switches[k] * signs_[k] >= 0.0) continue;
+      const double t = first_.switches[k] / (first_.switches[k] - last.switches[k]);
+      if (t > 0.0 && t < 1.0) {
+        const State y = hermite<System>(y_, first_.dy, result.y, last.dy, step, t);
+        const double f0 = first_.switches[k], f1 = last.switches[k];
+        const double ft = system_.template rates<false>(x_ + t * step, y, signs_).switches[k];
+        // The parabola's zero, by one more secant on the side that holds it.
+        const bool after = (ft > 0.0) == (f0 > 0.0);
+        const double better = after ? t + (1.0 - t) * ft / (ft - f1) : t * f0 / (f0 - ft);
+        lap_.switches.push_back({x_ + better * step, k});
+      }
+      signs_[k] = -signs_[k];
+    }
+  }
+
+  void accept(double x1, double step, const StepResult<System>& result, const Rates<System>& last) {
+    lap_.steps.push_back({x_, step, y_, signs_, first_, result.dq});
+    lap_.largest_step = std::max(lap_.largest_step, step);
+    x_ = x1;
+    y_ = result.y;
+    first_ = last;
+    flips_here_ = 0;
+    remember_integral_scale();
+  }
+
+  void remember_integral_scale() {
+    if constexpr (quadratures) {
+      // A lap's integral is a good part of its largest integrand times the period.
+      for (std::size_t q = 0; q < first_.dq.size(); ++q) {
+        integral_scale_[q] = std::max(integral_scale_[q], 0.3 * system_.period() * std::abs(first_.dq[q]));
+      }
+    }
+  }
+
+  /// Flips a located sign at the present position.
+  void flip_here(std::size_t k) {
+    if constexpr (requires { system_.event_transition(k, x_, y_, signs_); }) {
+      system_.event_transition(k, x_, y_, signs_);
+    } else {
+      signs_[k] = -signs_[k];
+    }
+    ++flips_here_;
+    lap_.switches.push_back({x_, k});
+    first_ = system_.template rates<quadratures>(x_, y_, signs_);
+    if (jumps(system_, k)) {
+      // The other switches may have jumped over their zeros with the rates.
+      for (std::size_t other = 0; other < switch_count; ++other) {
+        if (!jumps(system_, other)) signs_[other] = first_.switches[other] >= 0.0 ? 1.0 : -1.0;
+      }
+      first_ = system_.template rates<quadratures>(x_, y_, signs_);
+    }
+  }
+
+  void pass_fixed_nodes() {
+    while (fixed_ < system_.fixed_nodes().size() && system_.fixed_nodes()[fixed_].x <= x_) {
+      const std::size_t k = system_.fixed_nodes()[fixed_].sign;
+      signs_[k] = -signs_[k];
+      ++fixed_;
+    }
+    first_ = system_.template rates<quadratures>(x_, y_, signs_);
+  }
+
+  const System& system_;
+  const LapOptions& options_;
+  Lap<System>& lap_;
+  const std::size_t located_;
+  const double position_tolerance_;
+  const double error_exponent_;
+  std::vector<SwitchNode> plan_;
+  std::size_t expected_ = 0;
+  std::size_t fixed_ = 0;
+  int flips_here_ = 0;
+  double x_ = 0.0;
+  State y_;
+  Signs signs_;
+  Rates<System> first_;
+  std::array<double, switch_count> switch_scale_{};
+  typename System::Quadrature integral_scale_;
+};
+
+}  // namespace detail
+
+}  // namespace wingbeat::solver

@@ -1,0 +1,86 @@
+// What a lap over the period of a piecewise smooth system leaves: its steps, where branches ended, and how it went.
+#pragma once
+
+#include <vector>
+
+#include "wingbeat/solve/explicit_step.hpp"
+#include "wingbeat/solve/implicit_step.hpp"
+
+namespace wingbeat::solver {
+
+/// A branch sign that flips at a known position. Signs with index below the number of switches are located instead.
+struct FixedNode {
+  double x;
+  std::size_t sign;
+};
+
+/// A sign change that was located in a lap, or is expected from the lap before.
+struct SwitchNode {
+  double x;
+  std::size_t sign;
+};
+
+/// One accepted step: everything needed to repeat it or to evaluate the solution inside it.
+template <class System>
+struct Step {
+  double x;
+  double h;
+  typename System::State y;  ///< at x
+  typename System::Signs signs;
+  Rates<System> first;             ///< rates at (x, y)
+  typename System::Quadrature dq;  ///< integrals over the step
+};
+
+enum class Method {
+  explicit_pair,  ///< explicit_step, order 8
+  radau           ///< implicit_step, order 9, for stiff laps
+};
+
+enum class LapStatus {
+  complete,
+  barrier,        ///< the state reached the edge of the admissible region
+  too_many_steps  ///< the step limit was reached (a stiff system, for an explicit method)
+};
+
+template <class System>
+struct Lap {
+  std::vector<Step<System>> steps;
+  std::vector<SwitchNode> switches;  ///< located; on entry of run_lap, the expected ones
+  typename System::State end;
+  LapStatus status = LapStatus::complete;
+  Method method = Method::explicit_pair;
+  double stop = 0.0;                             ///< where the lap ended [same unit as the period]
+  double largest_step = 0.0;                     ///< first guess for the next lap's steps
+  double error_sum = 0.0;                        ///< of the steps' estimated errors, relative
+  typename System::Switches switch_scale{};      ///< largest magnitudes of the switches
+  typename System::Quadrature integral_scale{};  ///< what the integrals' errors were limited by a share of
+};
+
+struct LapOptions {
+  Method method = Method::explicit_pair;
+  double tolerance = 1e-6;  ///< of each step, relative to System::error_scale
+  int max_steps = 2000;
+  double first_step = 0.3;  ///< as a fraction of the period / (2 pi)
+  int switches = 1000;      ///< end steps on the first so many switches only; the others are noted in passing
+};
+
+/// One step by either method.
+template <bool quadratures, class System>
+StepResult<System> take_step(Method method, const System& system, const typename System::Real& x,
+                             const typename System::State& y, const typename System::Real& h,
+                             const typename System::Signs& branch, const Rates<System>& first) {
+  return method == Method::explicit_pair ? explicit_step<quadratures>(system, x, y, h, branch, first)
+                                         : implicit_step<quadratures>(system, x, y, h, branch, first);
+}
+
+/// True if the right-hand side jumps at switch k.
+template <class System>
+bool jumps(const System& system, std::size_t k) {
+  if constexpr (requires { system.jumps(k); }) {
+    return system.jumps(k);
+  } else {
+    return false;
+  }
+}
+
+}  // namespace wingbeat::solver
