@@ -95,8 +95,8 @@ const std::array<DomainLimitInfo, domain_limit_count>& domain_limit_table() {
       {"angle_of_attack",
        "angle of attack within 0 to 90 deg, and within a table of coefficients, over the whole cycle"},
       {"stroke",
-       "stroke angle of a slider-crank up to 85 deg to either side, of another mechanism to 180 deg, stroke amplitude of "
-       "a direct drive to 180 deg"},
+       "stroke angle of a slider-crank up to 85 deg to either side, of another mechanism to 180 deg, stroke "
+       "amplitude of a direct drive to 180 deg"},
       {"formulation_residual", "formulation residual at most 5 % of the input power"},
       {"mechanism_efficiency", "mechanism efficiency from 0 to 1"},
       {"motor_efficiency", "motor efficiency from 0 to 1"},

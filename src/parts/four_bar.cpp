@@ -9,27 +9,28 @@ namespace wingbeat {
 
 void validate(const FourBar<double>& f) {
   const double r_c = f.crank_radius, l = f.coupler_length, p = f.rocker_length, d = f.ground_length;
-  require(r_c > 0.0, "transmission.crank_radius", "must be > 0", "m", r_c);
-  require(l > 0.0, "transmission.coupler_length", "must be > 0", "m", l);
-  require(p > 0.0, "transmission.rocker_length", "must be > 0", "m", p);
-  require(d > 0.0, "transmission.ground_length", "must be > 0", "m", d);
-  require(f.swing_ratio > 0.0, "transmission.swing_ratio", "must be > 0", "1", f.swing_ratio);
+  require(crank_radius_key, r_c);
+  require(four_bar_key::coupler_length, l);
+  require(four_bar_key::rocker_length, p);
+  require(four_bar_key::ground_length, d);
+  require(four_bar_key::swing_ratio, f.swing_ratio);
   // Grashof's condition first: without it the rocker's swing, and the middle of it, do not exist.
   std::array<double, 4> link = {r_c, l, p, d};
   std::sort(link.begin(), link.end());
-  require(r_c < link[1], "transmission.crank_radius", "must be the shortest link, or the crank cannot turn (Grashof)",
-          "m", r_c);
-  require(r_c + link[3] < link[1] + link[2], "transmission.crank_radius",
+  require(r_c < link[1], crank_radius_key.path, "must be the shortest link, or the crank cannot turn (Grashof)", "m",
+          r_c);
+  require(r_c + link[3] < link[1] + link[2], crank_radius_key.path,
           "with the longest link must be shorter than the other two links together, or the crank cannot turn (Grashof)",
           "m", r_c);
   // The transmission angle is extreme with the crank on the line of the axes.
   for (const double diagonal : {d - r_c, d + r_c}) {
     const double cosine = (square(p) + square(l) - square(diagonal)) / (2.0 * p * l);
     const double mu = degrees_per_radian * std::acos(std::clamp(cosine, -1.0, 1.0));
-    require(mu >= transmission_angle_min_deg && mu <= 180.0 - transmission_angle_min_deg, "transmission.coupler_length",
+    require(mu >= transmission_angle_min_deg && mu <= 180.0 - transmission_angle_min_deg,
+            four_bar_key::coupler_length.path,
             "must keep the transmission angle between coupler and rocker within 5 to 175", "deg", mu);
   }
-  require(std::isfinite(f.mid_angle), "transmission.mid_angle", "must be finite", "rad", f.mid_angle);
+  require(four_bar_key::mid_angle, f.mid_angle);
 }
 
 Reversals reversals(const FourBar<double>& f) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "wingbeat/core/root.hpp"
 #include "wingbeat/core/status.hpp"
 
 namespace wingbeat {
@@ -63,24 +64,20 @@ Eigen::VectorXd derivatives(const std::vector<double>& h, const std::vector<doub
 
 double slope_at(const StrokeCurve::Piece& p, double t) {
   double slope = 0.0;
-  for (std::size_t n = 5; n > 0; --n) slope = slope * t + double(n) * p.of[n];
+  for (std::size_t n = 5; n > 0; --n) slope = slope * t + double(n) * p.coefficient[n];
   return slope;
 }
 
 /// Where the slope changes sign on [0, h], from its signs at nine points; at the end it is that of the next piece, so
-/// that both agree at a row. Zeros count with what was before them; `sign` goes along, 0 while it is not known.
+/// that both agree at a row. Zeros count with what was before them; `sign` is that before 0, and becomes that at h.
 std::vector<double> turns_of(const StrokeCurve::Piece& p, double h, double at_end, double& sign) {
   constexpr int parts = 8;
   std::vector<double> turns;
   for (int n = 1; n <= parts; ++n) {
     const double value = n < parts ? slope_at(p, h * n / parts) : at_end;
     if (value == 0.0 || sign_of(value) == sign) continue;
-    double before = h * (n - 1) / parts, after = h * n / parts;
-    for (int k = 0; k < 60 && sign != 0.0; ++k) {
-      const double middle = 0.5 * (before + after);
-      (sign_of(slope_at(p, middle)) == sign ? before : after) = middle;
-    }
-    if (sign != 0.0) turns.push_back(after);
+    const auto turned_not = [&](double t) { return sign_of(slope_at(p, t)) == sign; };
+    turns.push_back(bisect(turned_not, h * (n - 1) / parts, h * n / parts).after);
     sign = sign_of(value);
   }
   return turns;
@@ -111,19 +108,16 @@ StrokeCurve::StrokeCurve(std::vector<std::pair<double, double>> rows) : rows_(st
           (12.0 * rise - 6.0 * (m1 + m0) * w - (M0 - M1) * w * w) / (2.0 * w * w * w * w * w)}});
   }
   std::vector<double> turning;
-  // The second time round the sign with which the turn begins is known.
-  double sign = 0.0;
-  for (const bool again : {false, true}) {
-    for (std::size_t i = 0; i < n; ++i) {
-      const Piece& p = pieces_[i];
-      for (const double t : turns_of(p, h[i], pieces_[(i + 1) % n].of[1], sign)) {
-        if (!again) continue;
-        double beta = 0.0;
-        for (std::size_t k = 6; k-- > 0;) beta = beta * t + p.of[k];
-        high_ = std::max(high_, beta);
-        low_ = std::min(low_, beta);
-        turning.push_back(wrap_angle(rows_[i].first + t));
-      }
+  const double first_slope = pieces_.front().coefficient[1];
+  double sign = sign_of(first_slope != 0.0 ? first_slope : slope_at(pieces_.back(), 0.9 * h.back()));
+  for (std::size_t i = 0; i < n; ++i) {
+    const Piece& p = pieces_[i];
+    for (const double t : turns_of(p, h[i], pieces_[(i + 1) % n].coefficient[1], sign)) {
+      double beta = 0.0;
+      for (std::size_t k = 6; k-- > 0;) beta = beta * t + p.coefficient[k];
+      high_ = std::max(high_, beta);
+      low_ = std::min(low_, beta);
+      turning.push_back(wrap_angle(rows_[i].first + t));
     }
   }
   if (!(high_ > low_)) throw ParameterError(key, "the stroke angle must vary over the turn");
@@ -150,8 +144,8 @@ const StrokeCurve::Piece& StrokeCurve::piece(double position) const {
 
 void validate(const StrokeTable<double>& t) {
   if (!t.curve) throw ParameterError(key, "is missing");
-  require(t.scale > 0.0, "transmission.stroke_scale", "must be > 0", "1", t.scale);
-  require(t.reference_radius > 0.0, "transmission.reference_radius", "must be > 0", "m", t.reference_radius);
+  require(stroke_table_key::scale, t.scale);
+  require(stroke_table_key::reference_radius, t.reference_radius);
 }
 
 }  // namespace wingbeat

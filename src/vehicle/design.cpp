@@ -57,8 +57,7 @@ void validate(const Design<double>& d) {
   if (d.supply.type == SupplyType::battery) validate(d.supply.battery);
 
   const TransmissionType type = d.transmission.type;
-  const bool has_rod = type == TransmissionType::slider_crank || type == TransmissionType::four_bar;
-  if (d.masses.rod_linear_density && !has_rod) {
+  if (d.masses.rod_linear_density && !rod_length(d.transmission)) {
     throw ParameterError(
         "transmission.rod_linear_density",
         std::string("a ") + name_of(type) + (drive_of(d).rotates ? " transmission" : " drive") + " has no rod");

@@ -36,10 +36,6 @@ inline constexpr ParameterRange acute{"> 0, < pi/2", "must lie between 0 and pi/
 inline constexpr ParameterRange zero_to_acute{">= 0, < pi/2", "must be >= 0 and < pi/2", 0.0, pi / 2.0, false, true};
 inline constexpr ParameterRange count{
     "whole number >= 1", "must be a whole number >= 1", 1.0, endless, false, false, true};
-// validate() of a transmission compares its links.
-inline constexpr ParameterRange crank_radius{"> 0, < every other link", "must be > 0", 0.0, endless, true};
-inline constexpr ParameterRange rod_length{"> crank_radius", "must be longer than the crank radius", 0.0, endless,
-                                           true};
 
 }  // namespace range
 

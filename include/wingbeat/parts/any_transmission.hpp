@@ -57,8 +57,8 @@ constexpr auto visit(const AnyTransmission<S>& t, const Use& use) {
 namespace detail {
 
 template <Scalar S>
-[[gnu::noinline, gnu::cold]] CrankKinematics<S> kinematics_by_type(const AnyTransmission<S>& t, const S& sin_theta,
-                                                                   const S& cos_theta) {
+[[gnu::noinline]] CrankKinematics<S> kinematics_by_type(const AnyTransmission<S>& t, const S& sin_theta,
+                                                        const S& cos_theta) {
   return visit(t, [&](const auto& of_type) { return crank_kinematics(of_type, sin_theta, cos_theta); });
 }
 
@@ -69,7 +69,8 @@ template <Scalar S>
 template <Scalar S>
 [[gnu::always_inline]] inline CrankKinematics<S> crank_kinematics(const AnyTransmission<S>& t, const S& sin_theta,
                                                                   const S& cos_theta) {
-  if (t.type == TransmissionType::slider_crank) return crank_kinematics(t.slider_crank, sin_theta, cos_theta);
+  if (t.type == TransmissionType::slider_crank) [[likely]]
+    return crank_kinematics(t.slider_crank, sin_theta, cos_theta);
   return detail::kinematics_by_type(t, sin_theta, cos_theta);
 }
 

@@ -1,5 +1,5 @@
 // Four-bar linkage: a crank drives a rocker through a coupler, the rocker swings the wings, itself or through a gear
-// pair or string; model.md section 12.
+// pair or string; docs/model.md section 8.
 #pragma once
 
 #include <cmath>
@@ -29,7 +29,17 @@ struct FourBar {
   }
 };
 
-/// Bounds of the transmission angle between coupler and rocker [deg]: beyond them the coupler has no lever.
+/// Keys, units and ranges; the table of parameters has them from here.
+namespace four_bar_key {
+inline constexpr ParameterKey coupler_length{"transmission.coupler_length", "m", range::positive};
+inline constexpr ParameterKey rocker_length{"transmission.rocker_length", "m", range::positive};
+inline constexpr ParameterKey ground_length{"transmission.ground_length", "m", range::positive};
+inline constexpr ParameterKey swing_ratio{"transmission.swing_ratio", "1", range::positive};
+inline constexpr ParameterKey mid_angle{"transmission.mid_angle", "rad", range::any};
+}  // namespace four_bar_key
+
+/// Least transmission angle between coupler and rocker, and least distance from 180 deg [deg]: beyond, the coupler has
+/// hardly a lever.
 inline constexpr double transmission_angle_min_deg = 5.0;
 
 /// Refuses what has no crank that turns (Grashof), and a transmission angle beyond its bounds.
@@ -54,23 +64,23 @@ CrankKinematics<S> crank_kinematics(const FourBar<S>& f, const S& sin_theta, con
   // Coupler from crank pin to rocker pin, l e^(i chi).
   const S u_x = p * cos_phi - w_x, u_y = p * sin_phi - w_y;
 
-  // Loop closure: phi' = N / Q, both l times a lever.
-  const S N = r_c * (sin_theta * u_x - cos_theta * u_y);
-  const S Q = p * (sin_phi * u_x - cos_phi * u_y);
-  const S per_Q = inverse_of(Q);
-  const S slope = N * per_Q;
+  // Loop closure: phi' = h / (p sin mu), numerator and denominator times l.
+  const S l_h = r_c * (sin_theta * u_x - cos_theta * u_y);
+  const S l_p_sin_mu = p * (sin_phi * u_x - cos_phi * u_y);
+  const S per_l_p_sin_mu = inverse_of(l_p_sin_mu);
+  const S slope = l_h * per_l_p_sin_mu;
   const S du_x = r_c * sin_theta - p * slope * sin_phi, du_y = p * slope * cos_phi - r_c * cos_theta;
-  const S dN = r_c * (cos_theta * u_x + sin_theta * u_y + sin_theta * du_x - cos_theta * du_y);
-  const S dQ = p * (slope * (cos_phi * u_x + sin_phi * u_y) + sin_phi * du_x - cos_phi * du_y);
+  const S dl_h = r_c * (cos_theta * u_x + sin_theta * u_y + sin_theta * du_x - cos_theta * du_y);
+  const S dl_p_sin_mu = p * (slope * (cos_phi * u_x + sin_phi * u_y) + sin_phi * du_x - cos_phi * du_y);
   const S per_l = inverse_of(l);
 
   CrankKinematics<S> k;
   k.stroke_offset = n_s * (S(0.5 * pi) - atan(S(cos_phi * inverse_of(sin_phi))) - f.mid_angle);
   k.tan_stroke = S(0.0);
   k.stroke_slope = n_s * slope;
-  k.stroke_curve = n_s * (dN - slope * dQ) * per_Q;
-  k.wing_lever = Q * per_l / n_s;
-  k.crank_lever = N * per_l;
+  k.stroke_curve = n_s * (dl_h - slope * dl_p_sin_mu) * per_l_p_sin_mu;
+  k.wing_lever = l_p_sin_mu * per_l / n_s;
+  k.crank_lever = l_h * per_l;
   return k;
 }
 

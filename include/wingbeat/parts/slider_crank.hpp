@@ -35,13 +35,22 @@ struct SliderCrank {
   }
 };
 
+/// Keys, units and ranges; the table of parameters has them from here.
+namespace slider_crank_key {
+inline constexpr ParameterKey rod_length{
+    "transmission.rod_length",
+    "m",
+    {"> crank_radius", "must be longer than the crank radius", 0.0, range::endless, true}};
+inline constexpr ParameterKey hinge_offset{"transmission.hinge_offset", "m", range::positive};
+inline constexpr ParameterKey mid_stroke_height{"transmission.mid_stroke_height", "m", range::any};
+}  // namespace slider_crank_key
+
 inline void validate(const SliderCrank<double>& c) {
-  require(c.crank_radius > 0.0, "transmission.crank_radius", "must be > 0", "m", c.crank_radius);
-  require(c.rod_length > c.crank_radius, "transmission.rod_length", "must be longer than the crank radius", "m",
-          c.rod_length);
-  require(c.hinge_offset > 0.0, "transmission.hinge_offset", "must be > 0", "m", c.hinge_offset);
-  require(std::isfinite(c.mid_stroke_height), "transmission.mid_stroke_height", "must be finite", "m",
-          c.mid_stroke_height);
+  using namespace slider_crank_key;
+  require(crank_radius_key, c.crank_radius);
+  require(c.rod_length > c.crank_radius, rod_length.path, rod_length.range.expected, rod_length.unit, c.rod_length);
+  require(hinge_offset, c.hinge_offset);
+  require(mid_stroke_height, c.mid_stroke_height);
 }
 
 /// A slider-crank with the quotients that its kinematics needs at every crank angle.

@@ -1,8 +1,9 @@
-// Any transmission by its measured or computed stroke law beta(theta): a table; model.md section 12.
+// Any transmission by its measured or computed stroke law beta(theta): a table; docs/model.md section 8.
 #pragma once
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -26,8 +27,8 @@ class StrokeCurve {
   explicit StrokeCurve(std::vector<std::pair<double, double>> rows);
 
   struct Piece {
-    double x0;                 ///< where it begins, as position()
-    std::array<double, 6> of;  ///< coefficients of 1, t ... t^5 [rad], t = position - x0
+    double x0;                          ///< where it begins, as position()
+    std::array<double, 6> coefficient;  ///< of 1, t ... t^5 [rad], t = position - x0
   };
   /// A crank angle [rad] of any turn, counted from the first row: 0 to 2 pi.
   double position(double theta) const { return wrap_angle(theta - rows_.front().first); }
@@ -62,8 +63,15 @@ struct StrokeTable {
   }
 };
 
+/// Keys, units and ranges; the table of parameters has them from here.
+namespace stroke_table_key {
+inline constexpr ParameterKey scale{"transmission.stroke_scale", "1", range::positive};
+inline constexpr ParameterKey reference_radius{"transmission.reference_radius", "m", range::positive};
+}  // namespace stroke_table_key
+
 void validate(const StrokeTable<double>& t);
 
+/// Kinematics at a crank angle given by its sine and cosine. Packs read no tables and are never given one.
 template <Scalar S>
 CrankKinematics<S> crank_kinematics(const StrokeTable<S>& t, const S& sin_theta, const S& cos_theta) {
   CrankKinematics<S> k{S(0.0), S(0.0), S(0.0), S(0.0), t.reference_radius, S(0.0)};
@@ -73,11 +81,11 @@ CrankKinematics<S> crank_kinematics(const StrokeTable<S>& t, const S& sin_theta,
     const StrokeCurve::Piece& p = t.curve->piece(position);
     // The first derivative of the angle is that of its sine and cosine.
     const S x = S(position - p.x0) + (sin_theta - S(s)) * S(c) - (cos_theta - S(c)) * S(s);
-    S beta(p.of[5]), slope(0.0), half_curve(0.0);  // by Horner's scheme
+    S beta(p.coefficient[5]), slope(0.0), half_curve(0.0);  // by Horner's scheme
     for (std::size_t n = 5; n-- > 0;) {
       half_curve = half_curve * x + slope;
       slope = slope * x + beta;
-      beta = beta * x + S(p.of[n]);
+      beta = beta * x + S(p.coefficient[n]);
     }
     k.stroke_offset = t.scale * beta;
     k.stroke_slope = t.scale * slope;
@@ -89,11 +97,11 @@ CrankKinematics<S> crank_kinematics(const StrokeTable<S>& t, const S& sin_theta,
 
 inline Reversals reversals(const StrokeTable<double>& t) { return t.curve->reversals(); }
 
-/// Half the peak-to-peak stroke angle [rad].
+/// Half the peak-to-peak stroke angle [rad]; not a number on a scalar that reads no tables.
 template <Scalar S>
 S stroke_amplitude(const StrokeTable<S>& t) {
   if constexpr (ScalarTraits<S>::reads_tables) return S(0.5) * t.scale * S(t.curve->high() - t.curve->low());
-  return t.scale;
+  return S(std::numeric_limits<double>::quiet_NaN());
 }
 
 /// Largest stroke angle to either side [rad].

@@ -8,6 +8,7 @@
 #include <cstddef>
 
 #include "wingbeat/core/math.hpp"
+#include "wingbeat/core/range.hpp"
 #include "wingbeat/core/root.hpp"
 #include "wingbeat/core/scalar.hpp"
 
@@ -32,6 +33,10 @@ S stroke_angle(const CrankKinematics<S>& k) {
   using std::atan;
   return k.stroke_offset + atan(k.tan_stroke);
 }
+
+/// The key that slider-crank and four-bar share; what it is compared with, their validate() knows.
+inline constexpr ParameterKey crank_radius_key{
+    "transmission.crank_radius", "m", {"> 0, < every other link", "must be > 0", 0.0, range::endless, true}};
 
 /// The crank angles at which the stroke velocity of a turning crank changes its sign.
 struct Reversals {

@@ -167,11 +167,16 @@ bool has_springs(const Design<S>& design) {
   return design.spring.stiffness || design.spring.resonance || design.spring.resonance_ratio;
 }
 
-/// Length of the rod, of a four-bar the coupler [m]; 0 where there is none.
+/// Length of the rod, of a four-bar the coupler [m]; empty where there is none.
 template <Scalar S>
-S rod_length(const TransmissionDesign<S>& t) {
-  if (t.type == TransmissionType::slider_crank) return t.rod_length;
-  return t.type == TransmissionType::four_bar ? t.coupler_length : S(0.0);
+std::optional<S> rod_length(const TransmissionDesign<S>& t) {
+  switch (t.type) {
+    case TransmissionType::slider_crank: return t.rod_length;
+    case TransmissionType::four_bar: return t.coupler_length;
+    case TransmissionType::tabulated:
+    case TransmissionType::direct: break;
+  }
+  return std::nullopt;
 }
 
 /// Mass of the whole vehicle [kg]: vehicle.mass and every mass stated for itself; empty where vehicle.mass is not
@@ -180,11 +185,11 @@ template <Scalar S>
 std::optional<S> total_mass(const Design<S>& design) {
   if (!design.mass) return std::nullopt;
   const ItemMasses<S>& items = design.masses;
-  const TransmissionDesign<S>& t = design.transmission;
+  const std::optional<S> rod = rod_length(design.transmission);
   S mass = *design.mass;
   if (items.supply) mass = mass + *items.supply;
   if (items.motor) mass = mass + *items.motor;
-  if (items.rod_linear_density) mass = mass + *items.rod_linear_density * rod_length(t);
+  if (items.rod_linear_density && rod) mass = mass + *items.rod_linear_density * *rod;
   if (items.spring && has_springs(design)) mass = mass + design.wing.count * *items.spring;
   return mass;
 }

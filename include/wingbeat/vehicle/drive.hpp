@@ -11,7 +11,7 @@ struct Drive {
   bool rotates;                 ///< crank angle and crank speed mean something; the cycle is a turn, its variable the
                                 ///< crank angle. Else the cycle is a period of the supply, its variable the phase
   bool alternating;             ///< the vehicle holds all of the supply, a sine: Vehicle::voltage is its amplitude
-  bool has_rod;                 ///< the rod force is a result
+  bool has_rod;                 ///< an internal force, the rod force, is a result, and friction may follow it
   bool voltage_sets_frequency;  ///< else the supply's frequency is the wings'
   bool stroke_is_fixed;         ///< by the geometry; else it is a result
 };
