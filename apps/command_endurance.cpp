@@ -76,7 +76,7 @@ void add_endurance(CLI::App& program, Action& action) {
   add_input(command, a->vehicle, "vehicle", "Vehicle file (TOML) with a battery", "VEHICLE");
   add_set(command, a->overrides);
   add_json(command, a->json);
-  command->add_option("-o,--output", a->output, "Write the course of the flight (NetCDF-4)")->type_name("FILE.nc");
+  command->add_option("-o,--output", a->output, "Write the trajectory of the flight (NetCDF-4)")->type_name("FILE.nc");
   command->add_option("--plot", a->plot, "Plot the flight to FILE.svg, .pdf or .png")->type_name("FILE");
   add_force(*command, a->force);
   command->footer(

@@ -107,8 +107,8 @@ int main(int argc, char** argv) {
         if (r.status != FlappingStatus::flapping) continue;
         got = r.metrics;
         f.estimate = r.summary.error_estimate;
-        f.note = std::to_string(r.summary.laps) + " laps, " + std::to_string(r.summary.newton_steps) + " Newton, " +
-                 std::to_string(r.summary.steps) + " steps";
+        f.note = std::to_string(r.summary.iterates) + " iterates, " + std::to_string(r.summary.newton_steps) +
+                 " Newton, " + std::to_string(r.summary.steps) + " steps";
       }
       const SteadyFlapping exact =
           find_steady_flapping(v, {.tolerance = 1e-12, .stability = true, .reporting = reporting});

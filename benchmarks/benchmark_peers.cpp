@@ -5,8 +5,8 @@
 //   benchmark_peers             4096 designs (fewer for the slow ones)
 //   benchmark_peers DESIGNS     another number of designs
 //
-// Every peer integrates in crank angle, where the period is known, from the same guess; its first laps are coarse; and
-// its tolerance (for AUTO-07p: its number of mesh intervals) is the loosest of a ladder that brings the median lift
+// Every peer integrates in crank angle, where the period is known, from the same guess; its first iterates are coarse;
+// and its tolerance (for AUTO-07p: its number of mesh intervals) is the loosest of a ladder that brings the median lift
 // error to 1e-6 and 99 % of the designs within ten times that. SciPy is asked of /usr/bin/python3, or of what
 // WINGBEAT_PYTHON names; AUTO-07p is expected where Debian puts it, or in AUTO_DIR.
 #include <algorithm>

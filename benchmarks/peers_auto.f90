@@ -1,8 +1,8 @@
 ! Steady flapping as a periodic boundary-value problem for AUTO-07p, continued in voltage; docs/model.md section 2.
 !
-! Unknowns over one lap from the lower dead centre, each divided by its scale: crank speed, current, time, lift impulse,
-! charge; and the lap's fraction, because FUNC is not told where it is. benchmark_peers writes design.txt (the vehicle's
-! numbers and the scales), start.txt (one lap of the orbit at the first voltage) and AUTO's constants, and builds this.
+! Unknowns over one iterate from the lower dead centre, each divided by its scale: crank speed, current, time, lift impulse,
+! charge; and the iterate's fraction, because FUNC is not told where it is. benchmark_peers writes design.txt (the vehicle's
+! numbers and the scales), start.txt (one iterate of the orbit at the first voltage) and AUTO's constants, and builds this.
 module vehicle
   implicit none
   integer, parameter :: rows = 201
@@ -32,7 +32,7 @@ subroutine func(ndim, u, icp, par, ijac, f, dfdu, dfdp)
   double precision, intent(out) :: f(ndim)
   double precision, intent(inout) :: dfdu(ndim, ndim), dfdp(ndim, *)
   double precision :: w, i, v, s, c, sin_g, cos_g, tan_g, dy, ddy, tan_b, cos2_b, B1, B2, g, h, rate, alpha, M_aero, &
-                      L_aero, drive, A, C_f, lever, w_rate, per_lap
+                      L_aero, drive, A, C_f, lever, w_rate, per_iterate
 
   call load()
   v = par(1)
@@ -67,12 +67,12 @@ subroutine func(ndim, u, icp, par, ijac, f, dfdu, dfdp)
   lever = h + sign(mu_r, J_m * C_f + A * drive)
   w_rate = (drive - C_f * lever) / (J_m + A * lever)
 
-  per_lap = 2 * pi / w
-  f(1) = w_rate * per_lap / scale(1)
-  f(2) = (v - R_a * i - K_m * w) / L_a * per_lap / scale(2)
-  f(3) = per_lap / scale(3)
-  f(4) = L_aero * per_lap / scale(4)
-  f(5) = i * per_lap / scale(5)
+  per_iterate = 2 * pi / w
+  f(1) = w_rate * per_iterate / scale(1)
+  f(2) = (v - R_a * i - K_m * w) / L_a * per_iterate / scale(2)
+  f(3) = per_iterate / scale(3)
+  f(4) = L_aero * per_iterate / scale(4)
+  f(5) = i * per_iterate / scale(5)
   f(6) = 1
 end subroutine func
 

@@ -1,4 +1,4 @@
-"""Steady flapping of the designs of a CSV file by SciPy's LSODA, laps in crank angle until periodic.
+"""Steady flapping of the designs of a CSV file by SciPy's LSODA, iterates in crank angle until periodic.
 
     python3 peers_lsoda.py DESIGNS.csv RTOL
 
@@ -13,8 +13,8 @@ import warnings
 
 from scipy.integrate import odeint
 
-COARSE = 1e-4     # tolerance of the first laps, which only approach the orbit
-PERIODIC = 1e-6   # a lap that returns to its start within this, relatively, is the orbit
+COARSE = 1e-4     # tolerance of the first iterates, which only approach the orbit
+PERIODIC = 1e-6   # an iterate that returns to its start within this, relatively, is the orbit
 LAPS = 60
 
 
@@ -69,9 +69,9 @@ def rates_of(d, scale):
 def steady(d, rtol):
     v, K, R_a = d["voltage"], d["torque_constant"], d["resistance"]
     w = 0.6 * K * v / (K * K + R_a * d["damping"])
-    lap_time = 2.0 * math.pi / w
+    iterate_time = 2.0 * math.pi / w
     beta_rate = d["crank_radius"] / d["hinge_offset"] * w
-    scale = (w, v / R_a, lap_time, 0.5 * d["air_density"] * d["s2"] * beta_rate ** 2 * lap_time, v / R_a * lap_time)
+    scale = (w, v / R_a, iterate_time, 0.5 * d["air_density"] * d["s2"] * beta_rate ** 2 * iterate_time, v / R_a * iterate_time)
     rates = rates_of(d, scale)
     ends = [-0.5 * math.pi, 1.5 * math.pi]
     u, tolerance = [1.0, 1.0 - K * w / v, 0.0, 0.0, 0.0], max(COARSE, rtol)

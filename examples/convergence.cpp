@@ -39,14 +39,14 @@ int main(int argc, char** argv) try {
     std::printf("%s\n", exact.detail.c_str());
     return 3;
   }
-  std::printf("| tolerance | laps | steps in the last lap | largest error of a metric | energy imbalance |\n");
+  std::printf("| tolerance | iterates | steps in the last iterate | largest error of a metric | energy imbalance |\n");
   std::printf("| --- | --- | --- | --- | --- |\n");
   bool within = true;
   for (double tolerance = 1e-3; tolerance > 0.5e-12; tolerance *= 0.1) {
     const SteadyFlapping found = solve(tolerance);
     const EnergyAudit audit = energy_audit(found.metrics);
     const double error = largest_difference(found.metrics, exact.metrics);
-    std::printf("| %.0e | %d | %d | %.1e | %.1e |\n", tolerance, found.summary.laps, found.summary.steps, error,
+    std::printf("| %.0e | %d | %d | %.1e | %.1e |\n", tolerance, found.summary.iterates, found.summary.steps, error,
                 std::abs(audit.imbalance) / audit.electrical);
     within = within && error <= tolerance;
   }

@@ -1,4 +1,4 @@
-// What every general-purpose solver integrates: the right-hand side in doubles, by crank angle, and laps until
+// What every general-purpose solver integrates: the right-hand side in doubles, by crank angle, and iterates until
 // periodic.
 #pragma once
 
@@ -11,11 +11,11 @@
 
 namespace wingbeat::peers {
 
-inline constexpr double periodic = 1e-6;  // a lap that returns to its start within this, relatively, is the orbit
-inline constexpr double coarse = 1e-4;    // tolerance of the first laps, which only approach the orbit
-inline constexpr double settled = 3e-2;   // change over a coarse lap below which the real ones begin
-inline constexpr int max_laps = 60;
-inline constexpr double lap_start = -0.5 * pi;  // the lower dead centre
+inline constexpr double periodic = 1e-6;  // an iterate that returns to its start within this, relatively, is the orbit
+inline constexpr double coarse = 1e-4;    // tolerance of the first iterates, which only approach the orbit
+inline constexpr double settled = 3e-2;   // change over a coarse iterate below which the real ones begin
+inline constexpr int max_iterates = 60;
+inline constexpr double iterate_start = -0.5 * pi;  // the lower dead centre
 
 struct Steady {
   double lift = absent;       // mean [N]
@@ -38,12 +38,12 @@ struct Peer {
 
   explicit Peer(const Vehicle<double>& v) : vehicle(v), geometry(geometry_of(v.transmission.slider_crank)) {
     const double omega = 0.6 * no_load_speed(v.motor, v.voltage);
-    const double lap = two_pi / omega;
+    const double iterate = two_pi / omega;
     const double stall_current = v.voltage / v.motor.armature_resistance;
     const double stroke_velocity =
         v.transmission.slider_crank.crank_radius / v.transmission.slider_crank.hinge_offset * omega;
-    scale = {omega, stall_current, lap, 0.5 * v.wings.air_density * v.wings.s2 * square(stroke_velocity) * lap,
-             stall_current * lap};
+    scale = {omega, stall_current, iterate, 0.5 * v.wings.air_density * v.wings.s2 * square(stroke_velocity) * iterate,
+             stall_current * iterate};
     guess = {1.0, 1.0 - v.motor.torque_constant * omega / v.voltage};
   }
 
@@ -77,22 +77,22 @@ inline double change_of(const double* from, const double* to) {
   return std::max(std::abs(to[0] - from[0]) / std::abs(to[0]), std::abs(to[1] - from[1]));
 }
 
-// Laps until periodic: `plain` takes the two states over a coarse lap, `measured` all states over a lap at the
-// tolerance asked for (the quadratures count from zero). Both return false where they fail.
+// Iterates until periodic: `plain` takes the two states over a coarse iterate, `measured` all states over an iterate at
+// the tolerance asked for (the quadratures count from zero). Both return false where they fail.
 template <class Plain, class Measured>
 inline Steady flap(const Peer& peer, bool start_coarse, const Plain& plain, const Measured& measured,
                    std::array<double, 2>* start = nullptr) {
   std::array<double, all_states> u{peer.guess[0], peer.guess[1]};
-  int laps = 0;
-  for (double change = 1.0; start_coarse && change > settled; ++laps) {
+  int iterates = 0;
+  for (double change = 1.0; start_coarse && change > settled; ++iterates) {
     const std::array<double, 2> from{u[0], u[1]};
-    if (laps == max_laps || !plain(laps, u.data())) return {};
+    if (iterates == max_iterates || !plain(iterates, u.data())) return {};
     change = change_of(from.data(), u.data());
   }
-  for (; laps < max_laps; ++laps) {
+  for (; iterates < max_iterates; ++iterates) {
     const std::array<double, 2> from{u[0], u[1]};
     u[2] = u[3] = u[4] = 0.0;
-    if (!measured(laps, u.data())) return {};
+    if (!measured(iterates, u.data())) return {};
     if (change_of(from.data(), u.data()) < periodic) {
       if (start) *start = {u[0], u[1]};
       return peer.metrics(u.data());

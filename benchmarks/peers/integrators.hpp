@@ -27,8 +27,8 @@ struct Dopri5 {
     std::copy_n(u, N, state.begin());
     auto stepper = odeint::make_controlled(tolerance, tolerance, odeint::runge_kutta_dopri5<State>());
     const auto rates = [&](const State& x, State& dx, double theta) { peer.rates<N>(theta, x.data(), dx.data()); };
-    // As odeint::integrate_adaptive, but the step found is kept for the next lap, and a step to where the crank would
-    // turn back (which odeint accepts if its error is no number) is taken again in quarters.
+    // As odeint::integrate_adaptive, but the step found is kept for the next iterate, and a step to where the crank
+    // would turn back (which odeint accepts if its error is no number) is taken again in quarters.
     double theta = from;
     while (to - theta > 1e-12) {
       const State before = state;
@@ -55,13 +55,13 @@ struct Dopri5 {
 inline Steady by_odeint(const Peer& peer, double tolerance, std::array<double, 2>* start = nullptr) {
   Dopri5<2> plain{peer, std::max(coarse, tolerance)};
   Dopri5<all_states> measured{peer, tolerance};
-  const auto lap = [](auto& method, double* u) {
-    method.integrate(u, lap_start, lap_start + two_pi);
+  const auto iterate = [](auto& method, double* u) {
+    method.integrate(u, iterate_start, iterate_start + two_pi);
     return std::isfinite(u[0]) && u[0] > 0.0;
   };
   return flap(
-      peer, tolerance < coarse, [&](int, double* u) { return lap(plain, u); },
-      [&](int, double* u) { return lap(measured, u); }, start);
+      peer, tolerance < coarse, [&](int, double* u) { return iterate(plain, u); },
+      [&](int, double* u) { return iterate(measured, u); }, start);
 }
 
 // CVODE: Adams with functional iteration.
@@ -92,14 +92,15 @@ class Adams {
   void begin(const Peer& peer, const double* u, double tolerance) {
     peer_ = &peer;
     std::copy_n(u, N, N_VGetArrayPointer(y_));
-    CVodeReInit(memory_, lap_start, y_);
+    CVodeReInit(memory_, iterate_start, y_);
     CVodeSStolerances(memory_, tolerance, tolerance);
-    begun_ = theta_ = lap_start;
+    begun_ = theta_ = iterate_start;
     last_.fill(0.0);
   }
 
-  // Goes on to the next lap's start without a restart, which would fall back to first order; quadratures by difference.
-  bool lap(double* u) {
+  // Goes on to the next iterate's start without a restart, which would fall back to first order; quadratures by
+  // difference.
+  bool iterate(double* u) {
     begun_ += two_pi;
     if (CVode(memory_, begun_, y_, &theta_, CV_NORMAL) < 0) return false;
     const double* y = N_VGetArrayPointer(y_);
@@ -131,14 +132,14 @@ inline Steady by_cvode(Adams<2>& plain, Adams<all_states>& measured, const Peer&
   bool fine = false;
   return flap(
       peer, tolerance < coarse,
-      [&](int laps, double* u) {
-        if (laps == 0) plain.begin(peer, u, coarse);
-        return plain.lap(u);
+      [&](int iterates, double* u) {
+        if (iterates == 0) plain.begin(peer, u, coarse);
+        return plain.iterate(u);
       },
       [&](int, double* u) {
         if (!fine) measured.begin(peer, u, tolerance);
         fine = true;
-        return measured.lap(u);
+        return measured.iterate(u);
       });
 }
 

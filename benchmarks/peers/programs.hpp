@@ -144,7 +144,7 @@ inline Answers by_auto(const std::vector<EnsembleMember>& members, int intervals
     table.precision(17);
     std::array<double, all_states> u{start[0], start[1]};
     for (int row = 0; row < rows; ++row) {
-      const auto angle = [&](int n) { return lap_start + two_pi * n / (rows - 1); };
+      const auto angle = [&](int n) { return iterate_start + two_pi * n / (rows - 1); };
       if (row > 0) Dopri5<all_states>{peer, 1e-8}.integrate(u.data(), angle(row - 1), angle(row));
       for (const double value : u) table << value << ' ';
       table << double(row) / (rows - 1) << '\n';

@@ -1,6 +1,6 @@
 #include "wingbeat/cycle/orbit_gradient.hpp"
 
-#include "wingbeat/cycle/lap_gradient.hpp"
+#include "wingbeat/cycle/cycle_gradient.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ constexpr Metric peak_metrics[] = {Metric::current_peak,           Metric::lift_
 void make_absent(J& x) { x.v.setConstant(absent); }
 
 template <class System>
-OrbitGradient differentiate(const SteadyFlapping& orbit, const RecordedLap<System>& recorded,
+OrbitGradient differentiate(const SteadyFlapping& orbit, const RecordedCycle<System>& recorded,
                             const GradientVehicle& given, const GradientOptions& options) {
   Vehicle<J> vehicle = given.vehicle;
   vehicle.voltage.a = recorded.system.vehicle.voltage;
@@ -28,18 +28,18 @@ OrbitGradient differentiate(const SteadyFlapping& orbit, const RecordedLap<Syste
   // A direct drive's frequency is its supply's: no voltage follows it, and its slot is a third state's.
   const bool voltage_varies = drive_of(vehicle).voltage_sets_frequency;
   if (voltage_varies) vehicle.voltage.v[gradient_voltage_slot] = 1.0;
-  LapGradient<System> lap(recorded, vehicle);
+  CycleGradient<System> cycle(recorded, vehicle);
   OrbitGradient g;
-  g.regular = lap.run();
+  g.regular = cycle.run();
   CycleExtremes<J> extremes;
   extremes.fill(J(absent));
-  if (options.peaks) extremes = lap.extremes();
-  g.metrics = cycle_metrics(vehicle, lap.integrals(), extremes, J(orbit.metrics[Metric::floquet_multiplier_max]), {});
+  if (options.peaks) extremes = cycle.extremes();
+  g.metrics = cycle_metrics(vehicle, cycle.integrals(), extremes, J(orbit.metrics[Metric::floquet_multiplier_max]), {});
   const J bench = voltage_varies ? given.bench_torque_constant : J(absent);
   g.metrics[Metric::power_motor_reference] =
       two_pi * bench * g.metrics[Metric::frequency] * g.metrics[Metric::current_mean];
   g.metrics[Metric::lift_to_weight] = g.metrics[Metric::lift_mean] / (given.mass * standard_gravity);
-  for (const double theta : options.crank_angles) g.instants.push_back(lap.instant(theta));
+  for (const double theta : options.crank_angles) g.instants.push_back(cycle.instant(theta));
 
   if (options.held == Held::frequency && voltage_varies) {
     const J f = g.metrics[Metric::frequency];
@@ -79,14 +79,14 @@ GradientVehicle gradient_vehicle(const Design<GradientJet>& design, Condition co
 OrbitGradient orbit_gradient(const SteadyFlapping& orbit, const GradientVehicle& vehicle,
                              const GradientOptions& options) {
   return std::visit([&](const auto& recorded) { return differentiate(orbit, recorded, vehicle, options); },
-                    orbit.record.laps());
+                    orbit.record.cycles());
 }
 
 MetricGradients metric_gradients(const Design<double>& design, Condition condition, const SteadyFlapping& orbit,
                                  std::span<const DesignParameter> parameters, const GradientOptions& options) {
   MetricGradients result;
   result.by_parameter.resize(parameters.size());
-  if (orbit.record.empty()) {  // a cycle simulated in time is no lap to be repeated
+  if (orbit.record.empty()) {  // a cycle simulated in time is no cycle to be repeated
     result.regular = false;
     result.by_voltage.fill(absent);
     for (auto& gradient : result.by_parameter) gradient.fill(absent);

@@ -10,7 +10,7 @@ template <class Recorded>
 WaveformRow row_inside(const Recorded& recorded, const solver::Step<decltype(Recorded::system)>& step,
                        double start_time, double theta, double& phase_rate) {
   const auto& system = recorded.system;
-  const auto result = solver::evaluate_inside<true>(system, recorded.lap, step, theta);
+  const auto result = solver::evaluate_inside<true>(system, recorded.cycle, step, theta);
   const Motion<double> m = system.motion(theta, result.y, step.signs);
   phase_rate = system.phase_rate(result.y);
   return waveform_row(system.vehicle, m, start_time + result.dq[std::size_t(Integral::time)],
@@ -47,11 +47,11 @@ WaveformRow waveform_row(const Vehicle<double>& v, const Motion<double>& m, doub
 }
 
 bool CycleRecord::empty() const {
-  return std::visit([](const auto& recorded) { return recorded.lap.steps.empty(); }, laps_);
+  return std::visit([](const auto& recorded) { return recorded.cycle.steps.empty(); }, cycles_);
 }
 
 CycleIntegrals<double> CycleRecord::integrals() const {
-  return std::visit([](const auto& recorded) { return lap_integrals(recorded.lap); }, laps_);
+  return std::visit([](const auto& recorded) { return cycle_integrals(recorded.cycle); }, cycles_);
 }
 
 double CycleRecord::period() const { return integrals()[std::size_t(Integral::time)]; }
@@ -60,14 +60,14 @@ WaveformRow CycleRecord::at(double theta) const {
   return std::visit(
       [&](const auto& recorded) {
         double time = 0.0;
-        const auto& step = solver::step_at(recorded.lap, theta);
-        for (const auto* before = recorded.lap.steps.data(); before != &step; ++before) {
+        const auto& step = solver::step_at(recorded.cycle, theta);
+        for (const auto* before = recorded.cycle.steps.data(); before != &step; ++before) {
           time += before->dq[std::size_t(Integral::time)];
         }
         double phase_rate;
         return row_inside(recorded, step, time, theta, phase_rate);
       },
-      laps_);
+      cycles_);
 }
 
 std::vector<WaveformRow> CycleRecord::waveform(int count) const {
@@ -78,7 +78,7 @@ std::vector<WaveformRow> CycleRecord::waveform(int count) const {
         const double period_time = period();
         std::size_t n = 0;
         double start_time = 0.0;
-        const auto& steps = recorded.lap.steps;
+        const auto& steps = recorded.cycle.steps;
         for (int k = 0; k < count; ++k) {
           const double time = period_time * k / (count - 1);
           while (n + 1 < steps.size() && start_time + steps[n].dq[std::size_t(Integral::time)] <= time) {
@@ -97,7 +97,7 @@ std::vector<WaveformRow> CycleRecord::waveform(int count) const {
         }
         return rows;
       },
-      laps_);
+      cycles_);
 }
 
 }  // namespace wingbeat

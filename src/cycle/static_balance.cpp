@@ -35,7 +35,7 @@ CrankKinematics<double> kinematics_at(const Vehicle<double>& v, double theta) {
 
 /// Least value over the circle from samples, refined around the least sample where `refine` says it matters.
 template <class F>
-std::pair<double, double> least_on_circle(const F& f, const std::array<double, angle_count>& samples, double refine) {
+std::pair<double, double> min_on_circle(const F& f, const std::array<double, angle_count>& samples, double refine) {
   const std::size_t n = std::size_t(std::min_element(samples.begin(), samples.end()) - samples.begin());
   const double angle = unit_circle().angle[n];
   if (samples[n] > refine) return {angle, samples[n]};
@@ -61,8 +61,8 @@ StaticBalance static_balance(const Vehicle<double>& v) {
   s.stall_torque = stall_torque(v);
   s.breakaway_torque = breakaway_torque(v);
   s.has_wings = v.wing_inertia > 0.0;
-  s.inertia_least = v.motor.inertia;
-  s.lever_least = typical_lever(v.transmission);
+  s.inertia_min = v.motor.inertia;
+  s.lever_min = typical_lever(v.transmission);
   s.advance_least = s.stall_torque - s.breakaway_torque;
   if (!s.has_wings) return s;
 
@@ -75,13 +75,13 @@ StaticBalance static_balance(const Vehicle<double>& v) {
     lever[n] = k.wing_lever;
     if (springs) advance[n] = advance_torque(v, k, spring_moment(v, k), s.stall_torque);
   }
-  std::tie(s.inertia_angle, s.inertia_least) = least_on_circle(
+  std::tie(s.inertia_angle, s.inertia_min) = min_on_circle(
       [&](double angle) { return min_inertia(v, kinematics_at(v, angle)); }, inertia, 0.3 * v.motor.inertia);
-  std::tie(s.lever_angle, s.lever_least) = least_on_circle(
-      [&](double angle) { return kinematics_at(v, angle).wing_lever; }, lever, 0.1 * typical_lever(v.transmission));
+  std::tie(s.lever_angle, s.lever_min) = min_on_circle([&](double angle) { return kinematics_at(v, angle).wing_lever; },
+                                                       lever, 0.1 * typical_lever(v.transmission));
   if (springs) {
     std::tie(s.advance_angle, s.advance_least) =
-        least_on_circle([&](double angle) { return advance_torque(v, angle); }, advance, 0.2 * s.stall_torque);
+        min_on_circle([&](double angle) { return advance_torque(v, angle); }, advance, 0.2 * s.stall_torque);
   }
   return s;
 }

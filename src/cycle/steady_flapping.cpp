@@ -48,14 +48,14 @@ std::string stall_detail(const StaticBalance& s) {
 }
 
 std::string jam_detail(const StaticBalance& s) {
-  if (s.lever_least <= 0.0) {
+  if (s.lever_min <= 0.0) {
     return format("the rod force loses its lever on the wings at crank angle %.1f deg (least lever %.3g m)",
-                  in_degrees(s.lever_angle), s.lever_least);
+                  in_degrees(s.lever_angle), s.lever_min);
   }
   return format(
       "the equations of motion lose their unique solution at crank angle %.1f deg: the rotor is too light "
       "for the friction (effective inertia %.3g kg m2)",
-      in_degrees(s.inertia_angle), s.inertia_least);
+      in_degrees(s.inertia_angle), s.inertia_min);
 }
 
 std::string lock_list(const Vehicle<double>& vehicle) {
@@ -85,7 +85,7 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
   if (!statics.can_jam()) {
     const BalancedSpeed<double> balanced = balanced_speed(vehicle);
     found = balanced.count > 0.0 && orbit.from(balanced.slowest);
-    // The fastest start: if laps from there fail, no slower one can be expected to last.
+    // The fastest start: if cycles from there fail, no slower one can be expected to last.
     if (!found) found = orbit.from(no_load_speed(vehicle));
     ambiguous = balanced.count > 1.0 || (found && hardly_returns(vehicle, orbit.multiplier(), 1.0 / orbit.frequency()));
   }
@@ -141,8 +141,8 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
         orbit.frequency(), orbit.multiplier());
   } else {
     result.status = FlappingStatus::locked;
-    result.detail = format("no rotating orbit: laps end at crank angle %.1f deg (%s)", in_degrees(result.summary.stop),
-                           result.summary.message.c_str());
+    result.detail = format("no rotating orbit: cycles end at crank angle %.1f deg (%s)",
+                           in_degrees(result.summary.stop), result.summary.message.c_str());
     if (statics.can_lock()) result.detail += "; the crank locks at crank angles " + lock_list(vehicle);
   }
   return result;

@@ -6,24 +6,24 @@
 #include <vector>
 
 #include "wingbeat/cycle/static_balance.hpp"
-#include "wingbeat/ensemble/lane_blocks.hpp"
+#include "wingbeat/ensemble/pack_blocks.hpp"
 #include "wingbeat/solve/collocation.hpp"
 
 namespace wingbeat {
 namespace {
 
-struct LaneSolver {
+struct PackSolver {
   decltype(&solve_block_base) solve;
   int lanes;
 };
 
-LaneSolver solver_for(InstructionSet isa) {
+PackSolver solver_for(InstructionSet isa) {
   switch (isa) {
 #ifdef WINGBEAT_X86
-    case InstructionSet::avx2: return {solve_block_avx2, lanes_avx2};
-    case InstructionSet::avx512: return {solve_block_avx512, lanes_avx512};
+    case InstructionSet::avx2: return {solve_block_avx2, packs_avx2};
+    case InstructionSet::avx512: return {solve_block_avx512, packs_avx512};
 #endif
-    default: return {solve_block_base, lanes_base};
+    default: return {solve_block_base, packs_base};
   }
 }
 
@@ -33,14 +33,14 @@ double max_lag(double tolerance) { return 0.007 * std::min(std::sqrt(tolerance /
 
 /// How a tolerance is met.
 struct Plan {
-  LaneSettings first, from_rest, from_rest_finely;
-  std::array<LaneSettings, 3> again;
+  PackSettings first, from_rest, from_rest_finely;
+  std::array<PackSettings, 3> again;
 };
 
 Plan plan_for(const EnsembleOptions& options) {
   const auto wanted = [&](Metric m) { return options.metrics[std::size_t(m)]; };
   Plan plan{};
-  LaneSettings& s = plan.first;
+  PackSettings& s = plan.first;
   const auto want = [&](Quantity q, bool on) { s.wanted[std::size_t(q)] = on; };
   const bool velocity =
       wanted(Metric::lift_peak) || wanted(Metric::flapping_velocity_peak) || wanted(Metric::angle_of_attack_min);
@@ -64,20 +64,20 @@ Plan plan_for(const EnsembleOptions& options) {
   s.segments = digits > 5.0 ? 8 : 6;
   s.intervals = even(peaks ? 1.6 * (digits - 2.8) : digits - 1.5);
   s.newton_iterations = std::max(2, int(std::ceil((digits - 1.4) / 1.7)));
-  s.coarse_laps = 2;
+  s.coarse_iterates = 2;
   s.peak_tolerance = 0.5 * options.tolerance;
 
-  LaneSettings finer = s;
-  finer.approach = LaneApproach::resume;
+  PackSettings finer = s;
+  finer.approach = PackApproach::resume;
   finer.implicit = true;
-  for (LaneSettings& again : plan.again) {
+  for (PackSettings& again : plan.again) {
     ++finer.newton_iterations;
     finer.segments = std::min(finer.segments + 2, max_half_segments);
     again = finer;
     finer.intervals = std::min(finer.intervals + 2, solver::max_collocation_intervals);
   }
   plan.from_rest = s;
-  plan.from_rest.approach = LaneApproach::from_rest;
+  plan.from_rest.approach = PackApproach::from_rest;
   plan.from_rest.newton_iterations += 1;
   plan.from_rest.segments = max_half_segments;
   plan.from_rest.implicit = true;
@@ -110,7 +110,7 @@ class EnsembleRun {
     std::array<std::vector<std::size_t>, kinds> by_kind;
     for (std::size_t n = 0; n < members_.size(); ++n) {
       const Vehicle<double>& v = members_[n].vehicle;
-      if (options_.scalar_only || !has_lanes || v.wings.coefficients.table || has_pitch_stop(v.wings) ||
+      if (options_.scalar_only || !has_packs || v.wings.coefficients.table || has_pitch_stop(v.wings) ||
           v.transmission.type != TransmissionType::slider_crank) {
         solve_by_scalar(n);
       } else if (stall_torque(v) <= breakaway_torque(v)) {
@@ -129,10 +129,10 @@ class EnsembleRun {
            (v.spring.stiffness > 0.0 ? 3 : 0) + std::size_t(current_of(v));
   }
 
-  LaneCurrent current_of(const Vehicle<double>& v) const {
-    if (!(v.motor.armature_inductance > 0.0)) return LaneCurrent::algebraic;
+  PackCurrent current_of(const Vehicle<double>& v) const {
+    if (!(v.motor.armature_inductance > 0.0)) return PackCurrent::algebraic;
     const double lag = v.motor.armature_inductance / circuit_resistance(v) * no_load_speed(v);
-    return lag < max_lag(options_.tolerance) ? LaneCurrent::lagging : LaneCurrent::state;
+    return lag < max_lag(options_.tolerance) ? PackCurrent::lagging : PackCurrent::state;
   }
 
   /// Few need more than the first attempt: all of a kind together fill the lanes of the others.
@@ -141,7 +141,7 @@ class EnsembleRun {
     run(all, plan_.first, unresolved, inexact);
     run(unresolved, plan_.from_rest, still_unresolved, inexact);
     run(still_unresolved, plan_.from_rest_finely, left, inexact);
-    for (const LaneSettings& finer : plan_.again) {
+    for (const PackSettings& finer : plan_.again) {
       std::vector<std::size_t> still_inexact;
       run(inexact, finer, left, still_inexact);
       inexact.swap(still_inexact);
@@ -151,12 +151,12 @@ class EnsembleRun {
   }
 
   /// Solves those members; settles the outcomes of the exact ones, and lists the others.
-  void run(const std::vector<std::size_t>& which, LaneSettings settings, std::vector<std::size_t>& unresolved,
+  void run(const std::vector<std::size_t>& which, PackSettings settings, std::vector<std::size_t>& unresolved,
            std::vector<std::size_t>& inexact) {
     if (which.empty()) return;
     settings.current = current_of(members_[which.front()].vehicle);
-    std::array<const EnsembleMember*, lanes_avx512> members;
-    std::array<LaneResult*, lanes_avx512> results;
+    std::array<const EnsembleMember*, packs_avx512> members;
+    std::array<PackResult*, packs_avx512> results;
     for (std::size_t start = 0; start < which.size(); start += std::size_t(solver_.lanes)) {
       const std::size_t count = std::min(which.size() - start, std::size_t(solver_.lanes));
       for (std::size_t lane = 0; lane < count; ++lane) {
@@ -166,11 +166,11 @@ class EnsembleRun {
       solver_.solve(members.data(), int(count), settings, results.data());
     }
     for (const std::size_t n : which) {
-      const LaneResult& r = results_[n];
-      if (settings.approach == LaneApproach::from_rest) rotates_[n] = r.assessment == LaneAssessment::rotates;
-      if (r.assessment == LaneAssessment::locked) {
+      const PackResult& r = results_[n];
+      if (settings.approach == PackApproach::from_rest) rotates_[n] = r.assessment == PackAssessment::rotates;
+      if (r.assessment == PackAssessment::locked) {
         settle(n, FlappingStatus::locked);
-      } else if (r.assessment == LaneAssessment::unresolved) {
+      } else if (r.assessment == PackAssessment::unresolved) {
         unresolved.push_back(n);
       } else if (!(r.error_estimate <= options_.tolerance)) {
         inexact.push_back(n);
@@ -217,8 +217,8 @@ class EnsembleRun {
   const StartUp& start_up_;
   std::span<EnsembleOutcome> outcomes_;
   Plan plan_;
-  LaneSolver solver_;
-  std::vector<LaneResult> results_;
+  PackSolver solver_;
+  std::vector<PackResult> results_;
   std::vector<char> rotates_;  ///< from rest, as lanes have shown in time
 };
 

@@ -281,7 +281,7 @@ class StudyReader : public detail::StudySections {
     if (name == "csv") {
       not_with({"count", "seed", "range"});
       need(node, "samples", "file", "the name of a CSV file");
-      const Place place = place_of(*node.find("file"));
+      const SourceLocation place = place_of(*node.find("file"));
       places_.table_lines =
           detail::parse_design_table(input_->table, input_->table_name, axis, [&](const auto& heading) {
             TomlNode key;

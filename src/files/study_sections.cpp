@@ -83,7 +83,7 @@ void StudySections::refuse_file(const char* section, const char* key, const std:
 std::string StudySections::vehicle_text(const std::filesystem::path& vehicle) const {
   const Design<double> alone = read_design(vehicle, overrides_);  // its own errors come first, at its own lines
   std::vector<std::string> overrides;
-  std::vector<std::pair<Place, std::string>> origins;
+  std::vector<std::pair<SourceLocation, std::string>> origins;
   const auto set = [&](const std::string& key, const TomlNode& value, const std::string& shown) {
     overrides.push_back(fmt::format("{}={}", key, toml_text(value)));
     origins.emplace_back(place_of(value), shown);
@@ -134,7 +134,7 @@ const TomlNode& StudySections::need(const TomlNode& table, const std::string& se
   const TomlNode* node = table.find(key);
   if (!node) {
     if (spoiled_.contains({&table, std::string(key)})) finish();  // misspelt, which is told already
-    const Place p = table.line > 0 ? place_of(table) : Place{1, 1};
+    const SourceLocation p = table.line > 0 ? place_of(table) : SourceLocation{1, 1};
     refuse(p, within(section, key), fmt::format("missing; expected {}", expected));
   }
   return *node;

@@ -12,9 +12,9 @@ namespace wingbeat::detail {
 
 /// Where a sweep stands in its study file.
 struct SweepPlaces {
-  Place study;                                     ///< [study]
-  std::map<std::string, Place, std::less<>> keys;  ///< of what is varied
-  std::vector<Place> axes;
+  SourceLocation study;                                     ///< [study]
+  std::map<std::string, SourceLocation, std::less<>> keys;  ///< of what is varied
+  std::vector<SourceLocation> axes;
   std::vector<int> table_lines;           ///< of the designs in a CSV
   const TomlNode* set_voltage = nullptr;  ///< supply.voltage of [set]
 };

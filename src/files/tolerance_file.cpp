@@ -307,7 +307,7 @@ class ToleranceReader : public detail::StudySections {
   fs::path folder_;
   std::set<std::string> used_;
   std::vector<std::pair<std::size_t, const TomlNode*>> correlated_;  ///< parameter and what it says
-  std::map<std::string, Place, std::less<>> places_;
+  std::map<std::string, SourceLocation, std::less<>> places_;
   ToleranceStudy* study_result_ = nullptr;
 };
 

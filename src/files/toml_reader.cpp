@@ -11,7 +11,7 @@ namespace wingbeat {
 
 using Kind = TomlNode::Kind;
 
-void TomlReader::refuse(Place place, const std::string& key, const std::string& message) const {
+void TomlReader::refuse(SourceLocation place, const std::string& key, const std::string& message) const {
   throw InputError(file_, place.line, place.column, key, message);
 }
 

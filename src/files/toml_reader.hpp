@@ -14,10 +14,10 @@
 
 namespace wingbeat {
 
-struct Place {
+struct SourceLocation {
   int line = 0, column = 0;
 };
-inline Place place_of(const TomlNode& node) { return {node.line, node.column}; }
+inline SourceLocation place_of(const TomlNode& node) { return {node.line, node.column}; }
 
 /// `key` is the dotted name that messages give a node. Everything throws InputError.
 class TomlReader {
@@ -26,7 +26,7 @@ class TomlReader {
 
   const std::string& file() const { return file_; }
 
-  [[noreturn]] void refuse(Place place, const std::string& key, const std::string& message) const;
+  [[noreturn]] void refuse(SourceLocation place, const std::string& key, const std::string& message) const;
   [[noreturn]] void refuse(const TomlNode& node, const std::string& key, const std::string& message) const;
   /// "expected ..., got ...".
   [[noreturn]] void wrong(const TomlNode& node, const std::string& key, std::string_view expected) const;

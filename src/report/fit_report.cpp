@@ -113,7 +113,7 @@ std::string describe(const FitFinding& f) {
     case FitFinding::Kind::known_roughly:
       return fmt::format("known only roughly: {} ({:.0f} %)", direction(f), 100.0 * f.relative_error);
     case FitFinding::Kind::determined: return "the data determine " + list(f.parameters);
-    case FitFinding::Kind::most_alike:
+    case FitFinding::Kind::most_correlated:
       return fmt::format("most alike are {} and {} (correlation {:+.2f})", f.parameters[0], f.parameters[1],
                          f.numbers[0]);
     case FitFinding::Kind::determined_by: return fmt::format("only {} determines {}", f.condition, list(f.parameters));
@@ -135,7 +135,7 @@ std::string describe(const FitFinding& f) {
 std::vector<std::string> describe(std::span<const FitFinding> findings) {
   std::vector<std::string> sentences;
   for (const FitFinding& f : findings) {
-    if (f.kind == FitFinding::Kind::most_alike && !sentences.empty()) sentences.back() += "; " + describe(f);
+    if (f.kind == FitFinding::Kind::most_correlated && !sentences.empty()) sentences.back() += "; " + describe(f);
     else sentences.push_back(describe(f));
   }
   return sentences;

@@ -38,9 +38,9 @@ Json start_up_json(const TransientResult& s) {
           {"inrush_current_a", number_or_null(s.inrush_current)},
           {"inrush_current_time_s", number_or_null(s.inrush_current_time)},
           {"simulated_time_s", number_or_null(s.end_time)},
-          {"laps", s.laps},
-          {"averaged_laps", s.averaged_laps},
-          {"lap_scatter", number_or_null(s.lap_scatter)},
+          {"cycles", s.cycles},
+          {"averaged_cycles", s.averaged_cycles},
+          {"cycle_scatter", number_or_null(s.cycle_scatter)},
           {"current_ripple_a", s.current_ripple ? Json(*s.current_ripple) : Json(nullptr)},
           {"events", events}};
 }
@@ -110,10 +110,10 @@ void start_up_group(Table& table, const TransientResult& s, bool flapping) {
              flapping ? "frequency within 1 % from there on" : "");
   table.line("inrush current", readable(s.inrush_current, "A"),
              fmt::format("at {}", readable(s.inrush_current_time, "s")));
-  table.line("simulated", readable(s.end_time, "s"), fmt::format("{} laps, {} steps", s.laps, s.steps));
-  if (s.averaged_laps > 1) {
-    table.line("averaged", fmt::format("{} laps", s.averaged_laps),
-               fmt::format("durations within {:.2g} % of their mean", 100.0 * s.lap_scatter));
+  table.line("simulated", readable(s.end_time, "s"), fmt::format("{} cycles, {} steps", s.cycles, s.steps));
+  if (s.averaged_cycles > 1) {
+    table.line("averaged", fmt::format("{} cycles", s.averaged_cycles),
+               fmt::format("durations within {:.2g} % of their mean", 100.0 * s.cycle_scatter));
   }
   if (s.current_ripple) {
     table.line("ripple of the current", readable(*s.current_ripple, "A"), "peak to peak within a switching period");
@@ -209,8 +209,8 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
       "{}, by {}, tolerance {:.0e}", name_of(options.condition),
       options.method == Method::orbit && !result.simulated_cycle ? "periodic orbit" : "simulation from rest",
       options.tolerance);
-  if (options.method == Method::orbit && result.orbit.laps > 0 && !result.simulated_cycle) {
-    how += fmt::format("; {} lap{}", result.orbit.laps, result.orbit.laps == 1 ? "" : "s");
+  if (options.method == Method::orbit && result.orbit.iterates > 0 && !result.simulated_cycle) {
+    how += fmt::format("; {} iterate{}", result.orbit.iterates, result.orbit.iterates == 1 ? "" : "s");
     if (result.orbit.newton_steps > 0) how += fmt::format(", {} Newton steps", result.orbit.newton_steps);
     if (flapping) how += fmt::format(", closed to {:.0e}", result.orbit.residual);
   }

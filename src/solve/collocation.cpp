@@ -27,7 +27,7 @@ struct Legendre {
 CollocationRule make_rule(int n) {
   CollocationRule rule{};
   rule.intervals = n;
-  double t[CollocationRule::most];
+  double t[CollocationRule::max_points];
   for (int m = 0; m <= n; ++m) {
     // Roots of (1 - t^2) P_n'(t), by Newton's method on t P_n - P_{n-1}, which is (t^2 - 1) P_n' / n.
     t[m] = m == 0 ? -1.0 : m == n ? 1.0 : -std::cos(pi * m / n);

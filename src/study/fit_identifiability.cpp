@@ -221,7 +221,7 @@ void assess_identifiability(const BenchFit& fit, BenchFitter& fitter, const std:
   if (free_directions.empty() && m > 0) {
     const auto known = keys_where([&](std::size_t k) { return result.parameters[k].value.has_value(); });
     findings.push_back({.kind = Kind::determined, .parameters = known});
-    FitFinding alike{.kind = Kind::most_alike, .numbers = {0.0}};
+    FitFinding alike{.kind = Kind::most_correlated, .numbers = {0.0}};
     for (std::size_t a = 0; a < std::size_t(count); ++a) {
       for (std::size_t b = 0; b < a; ++b) {
         const double r = result.correlation[a][b];

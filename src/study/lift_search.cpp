@@ -105,8 +105,8 @@ class LiftTrace {
     }
     if (!first_ || t.voltage < first_->voltage) first_ = t;
     if (!t.inside) return t;
-    if (!most_ || t.lift > most_->lift) most_ = t;
-    if (!least_ || t.lift < least_->lift) least_ = t;
+    if (!max_ || t.lift > max_->lift) max_ = t;
+    if (!min_ || t.lift < min_->lift) min_ = t;
     return t;
   }
 
@@ -255,7 +255,7 @@ class LiftTrace {
 
   /// Where the range ends between a and b: the lift may be largest there.
   void find_border(VoltageTrial a, VoltageTrial b) {
-    if (most_ && std::max(a.lift, b.lift) <= most_->lift) return;
+    if (max_ && std::max(a.lift, b.lift) <= max_->lift) return;
     for (int n = 0; n < 20 && log_width(a, b) > 1e-6; ++n) {
       const double guess = a.excess / (a.excess - b.excess);
       const bool usable = n % 3 != 2 && guess > 0.0 && guess < 1.0 && where_.range == SearchRange::domain;
@@ -277,7 +277,7 @@ class LiftTrace {
                       format("it flaps at no voltage up to %.4g V; there it is %s: %s", last.voltage,
                              name_of(last.status), last.detail.c_str()));
     }
-    if (!most_) {
+    if (!max_) {
       return conclude(FrequencyOutcome::outside_domain, *first_,
                       cannot +
                           format(": it leaves it at every voltage at which it flaps; at %.4g V ", first_->voltage) +
@@ -290,17 +290,17 @@ class LiftTrace {
     }
     if (outside_root_) {
       return conclude(
-          FrequencyOutcome::outside_domain, *most_,
+          FrequencyOutcome::outside_domain, *max_,
           cannot + format(": at %.4g V, where it lifts so much, %s; inside it lifts from %.4g N, at %.4g V, to "
                           "%.4g N, at %.4g V",
-                          outside_root_->voltage, outside_root_->limits.c_str(), least_->lift, least_->voltage,
-                          most_->lift, most_->voltage));
+                          outside_root_->voltage, outside_root_->limits.c_str(), min_->lift, min_->voltage, max_->lift,
+                          max_->voltage));
     }
-    if (least_->lift > target_) {
+    if (min_->lift > target_) {
       if (!below_) {
-        return conclude(FrequencyOutcome::too_low, *least_,
-                        cannot + format(": at %.4g V, the lowest voltage tried, it lifts %.4g N already",
-                                        least_->voltage, least_->lift));
+        return conclude(FrequencyOutcome::too_low, *min_,
+                        cannot + format(": at %.4g V, the lowest voltage tried, it lifts %.4g N already", min_->voltage,
+                                        min_->lift));
       }
       FrequencySearch result =
           conclude(FrequencyOutcome::too_low, *first_,
@@ -311,13 +311,13 @@ class LiftTrace {
       result.status = below_->status;
       return result;
     }
-    std::string text = cannot + format(": it lifts %.4g N at most, at %.4g V", most_->lift, most_->voltage);
+    std::string text = cannot + format(": it lifts %.4g N at most, at %.4g V", max_->lift, max_->voltage);
     if (last.beyond && where_.range == SearchRange::domain) {
       text += format("; at %.4g V %s", last.voltage, last.limits.c_str());
     } else {
       text += format(" (voltages up to %.4g V)", last.voltage);
     }
-    return conclude(FrequencyOutcome::too_high, *most_, text);
+    return conclude(FrequencyOutcome::too_high, *max_, text);
   }
 
   VoltageTrials trials_;
@@ -327,7 +327,7 @@ class LiftTrace {
   double limit_ = 0.0;
   std::optional<VoltageTrial> below_;         ///< highest voltage known not to flap, below all that do
   std::optional<VoltageTrial> first_;         ///< lowest voltage that flaps
-  std::optional<VoltageTrial> most_, least_;  ///< lift, inside the range
+  std::optional<VoltageTrial> max_, min_;     ///< lift, inside the range
   std::optional<VoltageTrial> outside_root_;  ///< has the lift, outside the range
   std::optional<VoltageTrial> jump_low_, jump_high_;
 };

@@ -26,10 +26,10 @@ Motion<double> motion_of(const Vehicle<double>& vehicle, double crank_angle, dou
   return motion_at(vehicle, s, c, omega, i, v_t, branch);
 }
 
-/// The last whole lap of a simulation, sampled evenly in time. The simulation is repeated with samples about as dense
+/// The last whole cycle of a simulation, sampled evenly in time. The simulation is repeated with samples about as dense
 /// as the rows asked for; between samples the state follows cubics.
-void last_lap(const Vehicle<double>& vehicle, const Supply<double>& supply, TransientOptions options, int rows,
-              RunResult& result) {
+void last_cycle(const Vehicle<double>& vehicle, const Supply<double>& supply, TransientOptions options, int rows,
+                RunResult& result) {
   options.record = true;
   options.record_interval = 1.0 / (result.metrics[Metric::frequency] * std::max(rows - 1, 360));
   const TransientResult run = simulate_start_up(vehicle, options);
@@ -144,8 +144,8 @@ void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunRes
     if (!drive_of(vehicle).rotates) {
       result.cycle = simulate_start_up(vehicle, transient).cycle;
     } else {
-      last_lap(vehicle, {SupplyType::constant, vehicle.voltage, 0.0, 1.0, {}}, transient, options.waveform_rows,
-               result);
+      last_cycle(vehicle, {SupplyType::constant, vehicle.voltage, 0.0, 1.0, {}}, transient, options.waveform_rows,
+                 result);
     }
   }
 }
@@ -167,7 +167,7 @@ void run_transient(const Vehicle<double>& vehicle, const RunOptions& options, Ru
     if (!drive.rotates) {
       result.cycle = found.cycle;
     } else if (options.waveform_rows > 1) {
-      last_lap(vehicle, result.design.supply, transient, options.waveform_rows, result);
+      last_cycle(vehicle, result.design.supply, transient, options.waveform_rows, result);
     }
   }
 }

@@ -13,7 +13,7 @@ namespace {
 double place(double from, double to, int n, int samples) { return from + (to - from) * n / (samples - 1); }
 
 /// Place and least value; what is not finite counts as larger than all that is.
-std::pair<double, double> least_between(const AlongTheWay& value, double low, double high) {
+std::pair<double, double> min_between(const AlongTheWay& value, double low, double high) {
   std::uintmax_t evaluations = 40;
   // 13 bits: a minimum is flat, its place is known to the square root of the values' accuracy.
   return boost::math::tools::brent_find_minima(
@@ -40,7 +40,7 @@ TrendPeak highest_along(const AlongTheWay& value, double from, double to, int sa
   const bool right = best + 1 < samples && std::isfinite(values[std::size_t(best + 1)]);
   const double low = left ? place(from, to, best - 1, samples) : peak.at;
   const double high = right ? place(from, to, best + 1, samples) : peak.at;
-  const auto [at, negative] = least_between([&](double x) { return -value(x); }, low, high);
+  const auto [at, negative] = min_between([&](double x) { return -value(x); }, low, high);
   if (-negative > peak.value) {
     peak.at = at;
     peak.value = -negative;
@@ -60,7 +60,7 @@ TrendPeak dip_along(const AlongTheWay& value, double from, double to, int sample
   }
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   if (best < 0) return {none, none, false};
-  const auto [at, least] = least_between(value, place(from, to, best - 1, samples), place(from, to, best + 1, samples));
+  const auto [at, least] = min_between(value, place(from, to, best - 1, samples), place(from, to, best + 1, samples));
   if (values[std::size_t(best)] < least) return {place(from, to, best, samples), values[std::size_t(best)], true};
   return {at, least, true};
 }

@@ -12,7 +12,7 @@ namespace {
 constexpr double captured_amplitude = 1e-4;  // [rad] swings about a stable equilibrium that are smaller cannot leave
 constexpr double captured_creep = 1e-8;      // [rad] the same where friction holds: the angle itself is the answer
 constexpr double same_swing = 1e-4;          // [rad] swings with a varying supply that differ less repeat
-constexpr double lap_spread_settled = 1e-2;
+constexpr double cycle_spread_settled = 1e-2;
 
 }  // namespace
 
@@ -54,13 +54,13 @@ bool CrankStartUp::captured() {
 /// With a varying supply: true, with the decision, when the crank swings without rotating and its swings repeat.
 bool CrankStartUp::swings_repeat() {
   if (model_.supply.type == SupplyType::constant || now_.t < window_end_) return false;
-  const bool same = window_laps_ == crossings_.size() && std::abs(window_low_ - last_low_) < same_swing &&
+  const bool same = window_cycles_ == crossings_.size() && std::abs(window_low_ - last_low_) < same_swing &&
                     std::abs(window_high_ - last_high_) < same_swing;
   repeats_ = same ? repeats_ + 1 : 0;
   last_low_ = window_low_;
   last_high_ = window_high_;
   window_low_ = window_high_ = now_.theta;
-  window_laps_ = crossings_.size();
+  window_cycles_ = crossings_.size();
   window_end_ = now_.t + window_;
   if (repeats_ < 3) return false;
   done_ = true;
@@ -73,16 +73,16 @@ bool CrankStartUp::swings_repeat() {
   return true;
 }
 
-/// Start of the first lap from which on every lap's duration is within 1 % of the period.
+/// Start of the first cycle from which on every cycle's duration is within 1 % of the period.
 double CrankStartUp::time_of_steadiness(double period) const {
-  const auto off = [&](std::size_t lap) { return std::abs(period / lap_time(lap) - 1.0); };
-  std::size_t lap = crossings_.size();
-  while (lap > 0 && off(lap - 1) <= 1e-2) --lap;
-  if (lap == 0) return 0.0;
-  const Crossing& last = crossings_[lap - 1];
-  if (last.skipped == 0.0 || lap == crossings_.size()) return last.time;
-  // Among the laps left out, which approach the period geometrically.
-  const double before = off(lap - 1), after = std::max(off(lap), 1e-6);
+  const auto off = [&](std::size_t cycle) { return std::abs(period / cycle_time(cycle) - 1.0); };
+  std::size_t cycle = crossings_.size();
+  while (cycle > 0 && off(cycle - 1) <= 1e-2) --cycle;
+  if (cycle == 0) return 0.0;
+  const Crossing& last = crossings_[cycle - 1];
+  if (last.skipped == 0.0 || cycle == crossings_.size()) return last.time;
+  // Among the cycles left out, which approach the period geometrically.
+  const double before = off(cycle - 1), after = std::max(off(cycle), 1e-6);
   return last.time + last.skipped * std::clamp(std::log(before / 1e-2) / std::log(before / after), 0.0, 1.0);
 }
 
@@ -90,23 +90,23 @@ void CrankStartUp::flap() {
   done_ = true;
   result_.status = FlappingStatus::flapping;
   const double period =
-      options_.metrics ? result_.integrals[std::size_t(Integral::time)] : lap_time(crossings_.size() - 1);
+      options_.metrics ? result_.integrals[std::size_t(Integral::time)] : cycle_time(crossings_.size() - 1);
   result_.time_to_steady = time_of_steadiness(period);
   if (model_.supply.type == SupplyType::constant) {
     result_.settled = true;
-    result_.detail = format("flaps steadily at %.6g Hz from %.4g s on; after %d laps they repeat to %.1g%s",
+    result_.detail = format("flaps steadily at %.6g Hz from %.4g s on; after %d cycles they repeat to %.1g%s",
                             1.0 / period, result_.time_to_steady, int(crossings_.size()), change_,
                             jumped_      ? " (slow convergence, extrapolated)"
-                            : turns_ > 1 ? format(" every %d laps", int(turns_)).c_str()
+                            : turns_ > 1 ? format(" every %d cycles", int(turns_)).c_str()
                                          : "");
     return;
   }
-  result_.settled = result_.lap_scatter < lap_spread_settled;
+  result_.settled = result_.cycle_scatter < cycle_spread_settled;
   result_.detail = format(
-      "flaps at %.6g Hz, averaged over %d laps whose durations differ by up to %.2g %% from their "
+      "flaps at %.6g Hz, averaged over %d cycles whose durations differ by up to %.2g %% from their "
       "mean%s",
-      1.0 / period, result_.averaged_laps, 100.0 * result_.lap_scatter,
-      result_.settled ? "" : "; laps and supply share no period");
+      1.0 / period, result_.averaged_cycles, 100.0 * result_.cycle_scatter,
+      result_.settled ? "" : "; cycles and supply share no period");
 }
 
 void CrankStartUp::rest(double theta, bool held_by_friction) {
@@ -172,14 +172,14 @@ void CrankStartUp::give_up(const std::string& why) {
   done_ = true;
   result_.settled = false;
   const std::size_t n = crossings_.size();
-  const bool turning = n >= 2 && now_.t - crossings_.back().time < 3.0 * lap_time(n - 1);
+  const bool turning = n >= 2 && now_.t - crossings_.back().time < 3.0 * cycle_time(n - 1);
   result_.status = FlappingStatus::undecided;
   result_.time_to_steady = now_.t;
   if (turning) {
-    if (measuring_ && measured_laps_ > 0 && model_.supply.type != SupplyType::constant) {
-      result_.lap_scatter = lap_scatter(std::size_t(measured_laps_));
+    if (measuring_ && measured_cycles_ > 0 && model_.supply.type != SupplyType::constant) {
+      result_.cycle_scatter = cycle_scatter(std::size_t(measured_cycles_));
     }
-    result_.detail = format("%s; it flaps at %.6g Hz then", why.c_str(), 1.0 / lap_time(n - 1));
+    result_.detail = format("%s; it flaps at %.6g Hz then", why.c_str(), 1.0 / cycle_time(n - 1));
   } else {
     result_.detail = format("%s; the crank makes no forward revolutions then, it has been between %.4g and %.4g deg",
                             why.c_str(), swing_low_ * degrees_per_radian, swing_high_ * degrees_per_radian);

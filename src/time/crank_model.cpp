@@ -12,9 +12,9 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// A lap holds some hundred steps of Adams at usual tolerances; only if the fastest decay is much quicker than that do
+// A cycle holds some hundred steps of Adams at usual tolerances; only if the fastest decay is much quicker than that do
 // the larger steps of BDF make up for its lower order.
-constexpr double stiff_decays_per_lap = 500.0;
+constexpr double stiff_decays_per_cycle = 500.0;
 
 }  // namespace
 
@@ -281,7 +281,7 @@ void CrankModel::tolerated(double relative, const double* y, double* errors) con
 
 bool CrankModel::stiff() const {
   const double span = drive_period > 0.0 ? std::min(time_scale, drive_period) : time_scale;
-  return fastest_decay * span > stiff_decays_per_lap;
+  return fastest_decay * span > stiff_decays_per_cycle;
 }
 
 void CrankModel::switch_supply() {

@@ -10,7 +10,7 @@
 namespace wingbeat::detail {
 namespace {
 
-enum Root { root_force, root_standstill, root_lap, root_jam, root_plain_count };
+enum Root { root_force, root_standstill, root_cycle, root_jam, root_plain_count };
 enum { root_stored_moment = root_plain_count, root_reversal, root_measuring_count };
 
 // A branch that takes more steps is taken as stiff whatever the estimate said.
@@ -39,7 +39,7 @@ void CrankStartUp::prepare() {
   const Vehicle<double>& vehicle = model_.vehicle;
   const Motor<double>& m = vehicle.motor;
   const double R = circuit_resistance(vehicle), K = m.torque_constant;
-  const double lap = model_.time_scale, drive = model_.drive_period;
+  const double cycle = model_.time_scale, drive = model_.drive_period;
   const double mechanical = model_.mechanical_time, electrical = model_.electrical_time;
   swing_low_ = swing_high_ = now_.theta;
   const double released = 0.5 * pi * std::sqrt(vehicle.wing_count * vehicle.spring.stiffness / m.inertia);
@@ -51,10 +51,10 @@ void CrankStartUp::prepare() {
   loosest_ = relative_tolerance_;
 
   end_time_ = options_.max_time > 0.0                  ? options_.max_time
-              : model_.supply.type == SupplyType::sine ? 50.0 * (lap + drive) + 100.0 * (mechanical + electrical)
-                                                       : 1000.0 * (lap + mechanical + electrical + drive);
+              : model_.supply.type == SupplyType::sine ? 50.0 * (cycle + drive) + 100.0 * (mechanical + electrical)
+                                                       : 1000.0 * (cycle + mechanical + electrical + drive);
 
-  window_ = std::max({lap, 8.0 * drive, 0.5 * mechanical, electrical});
+  window_ = std::max({cycle, 8.0 * drive, 0.5 * mechanical, electrical});
   window_end_ = window_;
   window_low_ = window_high_ = now_.theta;
 
@@ -73,9 +73,9 @@ void CrankStartUp::prepare() {
       default: return power;
     }
   };
-  for (int k = 0; k < quadrature_count; ++k) quadrature_scale_[k] = lap * natural(quadratures[k]);
+  for (int k = 0; k < quadrature_count; ++k) quadrature_scale_[k] = cycle * natural(quadratures[k]);
 
-  next_lap_ = two_pi * (std::floor(now_.theta / two_pi) + 1.0);
+  next_cycle_ = two_pi * (std::floor(now_.theta / two_pi) + 1.0);
   recorder_.start(now_.i);
   sample();
 }
@@ -84,7 +84,7 @@ void CrankStartUp::root_values(double t, const double* y, double* values, bool m
   const auto indicators = model_.indicators(t, y);
   values[root_force] = last_force_switch_ = indicators[CrankModel::force];
   values[root_standstill] = indicators[CrankModel::standstill];
-  values[root_lap] = y[0] - next_lap_;
+  values[root_cycle] = y[0] - next_cycle_;
   values[root_jam] = indicators[CrankModel::jam];
   if (!measuring) return;
   values[root_stored_moment] = indicators[CrankModel::stored_moment];
@@ -124,7 +124,7 @@ TransientResult CrankStartUp::run() {
   }
   result_.end_time = now_.t;
   result_.end_crank_angle = now_.theta;
-  result_.laps = int(crossings_.size());
+  result_.cycles = int(crossings_.size());
   if (!crossings_.empty()) {
     result_.crank_speed = crossings_.back().omega;
     result_.current = crossings_.back().current;
@@ -371,7 +371,7 @@ void CrankStartUp::slide() {
         branch_ends = true;
       }
       if (measuring_) add_variation();
-      if (steps.found(root_lap)) branch_ends = lap_done() || branch_ends;
+      if (steps.found(root_cycle)) branch_ends = cycle_done() || branch_ends;
     } else if (outcome == Integrator::Outcome::stop) {
       if (measuring_) add_variation();
       if (stop == switching && now_.t >= stop) switch_supply();
@@ -425,7 +425,7 @@ void CrankStartUp::track_inrush(Integrator& steps, double from) {
   recorder_.note_current(top, model_.current_of(top, steps.dense(top)));
 }
 
-/// Raises the extremes of the lap to what they reach within the last step, on the integrator's own interpolant.
+/// Raises the extremes of the cycle to what they reach within the last step, on the integrator's own interpolant.
 void CrankStartUp::track_extremes(Integrator& steps, double from) {
   raise_extremes(
       [&](double t) {

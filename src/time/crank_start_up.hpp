@@ -1,5 +1,5 @@
-// Start-up of a crank-driven vehicle, for simulate_start_up(): the model's course of events, the settling of its laps,
-// the decision.
+// Start-up of a crank-driven vehicle, for simulate_start_up(): the model's sequence of events, the settling of its
+// cycles, the decision.
 #pragma once
 
 #include <limits>
@@ -29,7 +29,7 @@ class CrankStartUp {
   void root_values(double t, const double* y, double* values, bool measuring);
   std::unique_ptr<Integrator> integrator(bool measuring);
 
-  // The course of events.
+  // The sequence of events.
   void prepare();
   void slide();
   void stand();
@@ -42,18 +42,18 @@ class CrankStartUp {
   void switch_supply();
   bool captured();
   bool swings_repeat();
-  bool lap_done();
-  bool lap_done_constant();
-  void lap_measured(double rate);
-  bool lap_done_averaging();
+  bool cycle_done();
+  bool cycle_done_constant();
+  void cycle_measured(double rate);
+  bool cycle_done_averaging();
   bool jump_ahead(double rate);
   bool jump_by_blocks(std::size_t n, std::size_t block);
   void begin_measuring();
-  void take_metrics(int laps);
-  double lap_time(std::size_t lap) const { return crossings_[lap].lap; }
-  bool repeats_after(std::size_t laps) const;
+  void take_metrics(int cycles);
+  double cycle_time(std::size_t cycle) const { return crossings_[cycle].cycle; }
+  bool repeats_after(std::size_t cycles) const;
   double time_of_steadiness(double period) const;
-  double lap_scatter(std::size_t laps) const;
+  double cycle_scatter(std::size_t cycles) const;
   void add_variation();
 
   void event(Kind kind) { result_.events.push_back({now_.t, now_.theta, kind}); }
@@ -81,30 +81,30 @@ class CrankStartUp {
   double ripple_top_ = absent, ripple_bottom_ = absent, ripple_sum_ = 0.0;
   long ripple_count_ = 0;
   double last_force_switch_ = 0.0;
-  double next_lap_ = 0.0;
+  double next_cycle_ = 0.0;
   double swing_low_ = 0.0, swing_high_ = 0.0;
   double window_ = 0.0, window_end_ = 0.0, window_low_ = 0.0, window_high_ = 0.0, last_low_ = 0.0, last_high_ = 0.0;
-  std::size_t window_laps_ = 0;
+  std::size_t window_cycles_ = 0;
   int repeats_ = 0;
 
   std::unique_ptr<Integrator> plain_, with_quadratures_;
   bool measuring_ = false;
-  int measured_laps_ = 0, laps_at_tightest_ = 0;
-  std::optional<Metrics<double>> last_metrics_;  // of the lap before, found with the relative tolerance
+  int measured_cycles_ = 0, cycles_at_tightest_ = 0;
+  std::optional<Metrics<double>> last_metrics_;  // of the cycle before, found with the relative tolerance
   double measured_with_ = 0.0;
-  double contraction_ = 0.0;  // of a lap, as the blocks of laps before a jump have shown it
-  int laps_since_jump_ = 0;
+  double contraction_ = 0.0;  // of a cycle, as the blocks of cycles before a jump have shown it
+  int cycles_since_jump_ = 0;
   double change_before_jump_ = std::numeric_limits<double>::infinity();
   double variation_ = 0.0, energy_mark_ = 0.0;
   CycleExtremes<double> extremes_{};
 
   struct Crossing {
     double time, omega, current;
-    double lap;      // duration of the lap that ended here [s]
-    double skipped;  // time of the laps that a jump left out after it [s]
+    double cycle;    // duration of the cycle that ended here [s]
+    double skipped;  // time of the cycles that a jump left out after it [s]
   };
   std::vector<Crossing> crossings_;
-  int laps_compared_ = 0;  // successive laps since the start or the last jump
+  int cycles_compared_ = 0;  // successive cycles since the start or the last jump
   double change_ = std::numeric_limits<double>::infinity(), rate_ = 1.0, last_rate_ = 1.0;
   bool rate_seen_ = false;
   int stagnant_ = 0;

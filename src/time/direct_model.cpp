@@ -87,7 +87,7 @@ bool DirectModel::rates(double t, const double* y, double* dy, bool quadrature) 
 std::array<double, DirectModel::indicator_count> DirectModel::indicators(double t, const double* y, bool all) const {
   std::array<double, indicator_count> values;
   values[motion_ends] = !sticks     ? 1.0
-                        : now.stuck ? (holding_torque - std::abs(pull(t, y))) / holding_torque
+                        : now.stuck ? (holding_torque - std::abs(net_torque(t, y))) / holding_torque
                                     : y[1] / speed_scale;
   values[stored_moment] = values[velocity] = 1.0;
   if (!all || now.stuck) return values;
@@ -119,14 +119,14 @@ bool DirectModel::stiff() const { return fastest_decay * period > stiff_decays_p
 
 void DirectModel::come_to_rest() {
   now.y[1] = 0.0;
-  const double torque = pull(now.t, now.y);
+  const double torque = net_torque(now.t, now.y);
   now.stuck = std::abs(torque) <= holding_torque;
   now.direction = sign_of(torque);
 }
 
 void DirectModel::break_away() {
   now.stuck = false;
-  now.direction = sign_of(pull(now.t, now.y));
+  now.direction = sign_of(net_torque(now.t, now.y));
 }
 
 }  // namespace wingbeat::detail

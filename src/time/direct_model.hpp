@@ -53,7 +53,7 @@ class DirectModel {
   }
   double springs_of(double beta) const { return vehicle.wing_count * vehicle.spring.stiffness * beta; }
   /// K i - N_w k beta [N m] at rest.
-  double pull(double t, const double* y) const {
+  double net_torque(double t, const double* y) const {
     const double i = inductive ? y[2] : algebraic_current(vehicle, voltage(t), 0.0);
     return vehicle.motor.torque_constant * i - springs_of(y[0]);
   }
@@ -70,7 +70,7 @@ class DirectModel {
   std::array<int, indicator_count> directions() const { return {now.stuck ? -1 : int(-now.direction), 0, 0}; }
   /// The shaft has come to rest where constant friction acts: it is held, or moves on where it is pulled.
   void come_to_rest();
-  /// The pull has outgrown what friction holds.
+  /// The net torque has outgrown what friction holds.
   void break_away();
 
   Vehicle<double> vehicle;

@@ -188,7 +188,7 @@ void DirectStartUp::advance(double until) {
 
 WaveformRow DirectStartUp::row(double t, const double* y) const {
   const Motion<double> m = model_.motion(t, y);
-  return waveform_row(model_.vehicle, m, t - double(result_.laps) * model_.period, y[0], m.stroke_velocity, y[0]);
+  return waveform_row(model_.vehicle, m, t - double(result_.cycles) * model_.period, y[0], m.stroke_velocity, y[0]);
 }
 
 void DirectStartUp::step_taken(Integrator& steps, double from) {
@@ -206,7 +206,7 @@ void DirectStartUp::step_taken(Integrator& steps, double from) {
         from, now_.t, extremes_);
     const int last = options_.cycle_rows - 1;
     while (last > 0 && int(result_.cycle.size()) <= last) {
-      const double at = model_.period * (result_.laps + double(result_.cycle.size()) / last);
+      const double at = model_.period * (result_.cycles + double(result_.cycle.size()) / last);
       if (at > now_.t + 1e-12 * model_.period) break;
       result_.cycle.push_back(row(std::min(at, now_.t), steps.dense(std::min(at, now_.t))));
     }
@@ -239,7 +239,7 @@ void DirectStartUp::take_metrics() {
   integrals[std::size_t(Integral::time)] = model_.period;
   integrals[std::size_t(Integral::reactive_work)] = variation_;
   result_.metrics = cycle_metrics(model_.vehicle, integrals, extremes_, absent, options_.reporting);
-  result_.averaged_laps = 1;
+  result_.averaged_cycles = 1;
 }
 
 /// True, with the decision, where nothing moves the shaft any more.
@@ -310,11 +310,11 @@ void DirectStartUp::settle(double closure, double change, const std::string& mor
   result_.detail = format(
       "flaps steadily at the supply's %.6g Hz from %.4g s on; after %d periods they repeat to "
       "%.1g%s",
-      model_.vehicle.drive_frequency, result_.time_to_steady, result_.laps, change, more.c_str());
+      model_.vehicle.drive_frequency, result_.time_to_steady, result_.cycles, change, more.c_str());
 }
 
 void DirectStartUp::period_done() {
-  ++result_.laps;
+  ++result_.cycles;
   event(Kind::revolution);
   swings_.push_back(swing_);
   swing_ = std::abs(now_.y[0]);
@@ -366,8 +366,8 @@ void DirectStartUp::period_done() {
     relative_tolerance_ = std::min(relative_tolerance_, std::max(tightest_, left * (1.0 - rate)));
   }
   if (close || change < noise || measuring_) begin_measuring();
-  if (result_.laps >= options_.max_laps) {
-    give_up(format("successive periods still differ by %.2g after %d periods", change, options_.max_laps));
+  if (result_.cycles >= options_.max_cycles) {
+    give_up(format("successive periods still differ by %.2g after %d periods", change, options_.max_cycles));
   }
 }
 
@@ -408,7 +408,7 @@ TransientResult DirectStartUp::run() {
   recorder_.start(std::abs(model_.current_of(0.0, now_.y)));
   recorder_.sample({now_.t, now_.y[0], now_.y[1], model_.current_of(now_.t, now_.y)});
   while (!done_) {
-    const double end = double(result_.laps + 1) * model_.period;
+    const double end = double(result_.cycles + 1) * model_.period;
     const double until = options_.max_time > 0.0 ? std::min(end, options_.max_time) : end;
     advance(until);
     if (done_) break;

@@ -29,7 +29,7 @@ StartUp start_up_in_time(double tolerance, TimeIntegrator integrator) {
       const TransientResult cycle = simulate_start_up(vehicle, onward);
       if (!cycle.settled || !cycle.metrics) return std::optional<SimulatedCycle>();
       return std::optional(
-          SimulatedCycle{*cycle.metrics, std::max(onward.tolerance, cycle.closure), cycle.averaged_laps});
+          SimulatedCycle{*cycle.metrics, std::max(onward.tolerance, cycle.closure), cycle.averaged_cycles});
     };
     return outcome;
   };

@@ -89,7 +89,7 @@ TEST_F(Run, TableNamesStatusMetricsAndBooks) {
   EXPECT_THAT(o.err, IsEmpty());
   for (const char* part :
        {"slider-crank flapper", "flapping: steady flapping at 21.", "Operating point", "copper loss",
-        "energy-balance error", "mean lift", "mN", "stroke amplitude", "deg", "Floquet", "laps, closed to"}) {
+        "energy-balance error", "mean lift", "mN", "stroke amplitude", "deg", "Floquet", "iterates, closed to"}) {
     EXPECT_THAT(o.out, HasSubstr(part));
   }
   std::istringstream lines(o.out);
@@ -212,7 +212,7 @@ TEST_F(Run, MethodsAgree) {
     EXPECT_GT(start_up["time_to_steady_s"].get<double>(), 0.0);
     EXPECT_GT(start_up["inrush_current_a"], orbit["current_peak_a"]);
     EXPECT_GT(start_up["events"]["force_sign_change"].get<int>(), 0);
-    EXPECT_EQ(start_up["events"]["revolution"], start_up["laps"]);
+    EXPECT_EQ(start_up["events"]["revolution"], start_up["cycles"]);
   }
   const Outcome table = run({"run", plain, "--method", "transient"});
   EXPECT_THAT(table.out, HasSubstr("Start-up from rest"));

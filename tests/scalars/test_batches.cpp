@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "scalars/arch/lanes.hpp"
+#include "scalars/arch/packs.hpp"
 #include "vehicle/random_vehicle.hpp"
 
 namespace wingbeat {
@@ -38,7 +38,7 @@ std::vector<InstructionSet> instruction_sets() {
 
 class Batches : public testing::TestWithParam<InstructionSet> {
  protected:
-  void expect_lanes_as_scalars(const std::vector<Case>& cases);
+  void expect_packs_as_scalars(const std::vector<Case>& cases);
 };
 
 /// Numbers of one case by plain doubles.
@@ -53,7 +53,7 @@ std::array<double, outputs> scalar_outputs(const Case& c) {
   return out;
 }
 
-void Batches::expect_lanes_as_scalars(const std::vector<Case>& cases) {
+void Batches::expect_packs_as_scalars(const std::vector<Case>& cases) {
   std::vector<double> got(cases.size() * outputs);
   GetParam().evaluate(cases.data(), int(cases.size()), got.data());
   // Sums of terms that cancel keep the rounding of their terms: the typical size of an output stands for those.
@@ -147,7 +147,7 @@ TEST_P(Batches, SelectTakesTheRightLanes) { EXPECT_EQ(GetParam().check_select(),
 TEST_P(Batches, MixedVehiclesAgreeWithScalars) {
   for (const Formulation formulation : {Formulation::rod_force, Formulation::virtual_work}) {
     for (const Inductance inductance : {Inductance::some, Inductance::none}) {
-      expect_lanes_as_scalars(mixed_cases(formulation, inductance, 403));
+      expect_packs_as_scalars(mixed_cases(formulation, inductance, 403));
     }
   }
 }
@@ -181,15 +181,15 @@ TEST_P(Batches, ElementaryFunctionsKeepTheirErrors) {
 TEST_P(Batches, SpringsInSomeLanesOnly) {
   std::vector<Case> cases = mixed_cases(Formulation::virtual_work, Inductance::some, 64);
   for (std::size_t n = 0; n < cases.size(); ++n) cases[n].vehicle.spring.stiffness = n % 3 == 0 ? 1.4e-3 : 0.0;
-  expect_lanes_as_scalars(cases);
+  expect_packs_as_scalars(cases);
   for (Case& c : cases) c.vehicle.spring.stiffness = 0.0;
-  expect_lanes_as_scalars(cases);
+  expect_packs_as_scalars(cases);
 }
 
 TEST_P(Batches, IncompleteLastBatchLeavesNothingBehind) {
   std::vector<Case> cases = mixed_cases(Formulation::rod_force, Inductance::some, 9);
   for (int count = 1; count <= 9; ++count) {
-    expect_lanes_as_scalars(std::vector<Case>(cases.begin(), cases.begin() + count));
+    expect_packs_as_scalars(std::vector<Case>(cases.begin(), cases.begin() + count));
   }
 }
 

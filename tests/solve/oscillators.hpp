@@ -7,7 +7,7 @@
 
 #include "wingbeat/core/jet.hpp"
 #include "wingbeat/core/math.hpp"
-#include "wingbeat/solve/lap.hpp"
+#include "wingbeat/solve/iterate.hpp"
 
 namespace wingbeat::solver {
 

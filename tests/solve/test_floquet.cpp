@@ -1,4 +1,4 @@
-// Products of step matrices, and multipliers of laps whose steps do not resolve a decay.
+// Products of step matrices, and multipliers of iterates whose steps do not resolve a decay.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -41,8 +41,8 @@ TEST(Floquet, SingularFactorsEndTheProduct) {
 TEST(Floquet, StepsBeyondStabilityDoNotGrow) {
   // At rest nothing is excited: steps of a twelfth of the period, on a decay that takes a hundredth of one.
   const StiffFollower<double> system(300.0);
-  Lap<StiffFollower<double>> lap;
-  lap.steps.clear();
+  Iterate<StiffFollower<double>> iterate;
+  iterate.steps.clear();
   constexpr int steps = 12;
   for (int n = 0; n < steps; ++n) {
     Step<StiffFollower<double>> step{};
@@ -51,10 +51,10 @@ TEST(Floquet, StepsBeyondStabilityDoNotGrow) {
     step.y = {std::cos(step.x)};
     step.signs.fill(1.0);
     step.first = system.template rates<false>(step.x, step.y, step.signs);
-    lap.steps.push_back(step);
+    iterate.steps.push_back(step);
   }
-  lap.end = lap.steps.front().y;
-  EXPECT_LT(monodromy_product(system, system.template cast<Jet<1>>(), lap).spectral_radius(), 1e-6);
+  iterate.end = iterate.steps.front().y;
+  EXPECT_LT(monodromy_product(system, system.template cast<Jet<1>>(), iterate).spectral_radius(), 1e-6);
 }
 
 }  // namespace

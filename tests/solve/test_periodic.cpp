@@ -12,11 +12,11 @@ namespace {
 template <class System>
 struct Found {
   PeriodicSummary summary;
-  Lap<System> lap;
-  std::array<double, std::tuple_size_v<typename System::State>> start() const { return lap.steps.front().y; }
+  Iterate<System> iterate;
+  std::array<double, std::tuple_size_v<typename System::State>> start() const { return iterate.steps.front().y; }
   double integral() const {
     double sum = 0.0;
-    for (const auto& step : lap.steps) sum += step.dq[0];
+    for (const auto& step : iterate.steps) sum += step.dq[0];
     return sum;
   }
 };
@@ -24,7 +24,7 @@ struct Found {
 template <class System>
 Found<System> find(const System& system, const typename System::State& guess, const PeriodicOptions& options) {
   Found<System> found;
-  found.summary = solve_periodic(system, guess, options, found.lap);
+  found.summary = solve_periodic(system, guess, options, found.iterate);
   return found;
 }
 
@@ -36,7 +36,7 @@ TEST(Periodic, LinearOscillatorHasItsClosedForm) {
       const auto found = find(system, {0.0, 0.0}, {.tolerance = tolerance, .method = method});
       ASSERT_EQ(found.summary.status, PeriodicStatus::converged) << tolerance;
       EXPECT_LE(found.summary.residual, tolerance);
-      EXPECT_EQ(found.summary.steps, int(found.lap.steps.size()));
+      EXPECT_EQ(found.summary.steps, int(found.iterate.steps.size()));
       EXPECT_NEAR(found.start()[0], system.cosine(), 3.0 * tolerance);
       EXPECT_NEAR(found.start()[1], system.sine(), 3.0 * tolerance);
       // Energy: what the damper takes is what the drive gives, pi a sin(phase) = pi times the sine amplitude.
@@ -62,8 +62,8 @@ TEST(Periodic, SlowContractionIsOvercomeByNewton) {
       const auto found = find(system, {0.0, 0.0}, {.tolerance = tolerance});
       ASSERT_EQ(found.summary.status, PeriodicStatus::converged) << multiplier << " " << found.summary.message;
       EXPECT_GE(found.summary.newton_steps, 1);
-      EXPECT_LE(found.summary.laps, 15) << multiplier;
-      // The orbit has 1 / (1 - multiplier) times the errors of a lap, which are kept small accordingly.
+      EXPECT_LE(found.summary.iterates, 15) << multiplier;
+      // The orbit has 1 / (1 - multiplier) times the errors of an iterate, which are kept small accordingly.
       EXPECT_NEAR(found.start()[0], system.cosine(), 10.0 * tolerance);
       EXPECT_NEAR(found.start()[1], system.sine(), 10.0 * tolerance);
       EXPECT_NEAR(found.summary.floquet_multiplier_max, multiplier, 1e2 * tolerance);
@@ -72,11 +72,12 @@ TEST(Periodic, SlowContractionIsOvercomeByNewton) {
 }
 
 TEST(Periodic, SlowContractionFromFarAwayIsNotTakenForAnOrbit) {
-  // Too far for Newton, too slow for laps: the search may give up, but must not accept a lap that does not close.
+  // Too far for Newton, too slow for iterates: the search may give up, but must not accept an iterate that does not
+  // close.
   const double c = -std::log(0.999) / pi;
   const LinearOscillator<double> system(c, 2.9);
   const auto found = find(system, {4.0, -3.0}, {.tolerance = 1e-6});
-  EXPECT_LE(found.summary.laps, 210);
+  EXPECT_LE(found.summary.iterates, 210);
   if (found.summary.status == PeriodicStatus::converged) {
     EXPECT_NEAR(found.start()[0], system.cosine(), 1e-2);
   } else {
@@ -85,9 +86,9 @@ TEST(Periodic, SlowContractionFromFarAwayIsNotTakenForAnOrbit) {
   }
 }
 
-/// The state after many laps by the classical Runge-Kutta method, written down here: slow, independent.
+/// The state after many iterates by the classical Runge-Kutta method, written down here: slow, independent.
 template <class System>
-std::array<double, 2> brute_force(const System& system, std::array<double, 2> y, int laps, int steps) {
+std::array<double, 2> brute_force(const System& system, std::array<double, 2> y, int iterates, int steps) {
   const auto slope = [&](double t, const std::array<double, 2>& at) {
     return system.template rates<false>(t, at, {at[0] >= 0.0 ? 1.0 : -1.0}).dy;
   };
@@ -95,7 +96,7 @@ std::array<double, 2> brute_force(const System& system, std::array<double, 2> y,
     return std::array<double, 2>{at[0] + h * k[0], at[1] + h * k[1]};
   };
   const double h = two_pi / steps;
-  for (int lap = 0; lap < laps; ++lap) {
+  for (int iterate = 0; iterate < iterates; ++iterate) {
     for (int n = 0; n < steps; ++n) {
       const double t = n * h;
       const auto k1 = slope(t, y), k2 = slope(t + 0.5 * h, moved(y, 0.5 * h, k1)),
@@ -133,14 +134,14 @@ TEST(Periodic, BilinearOscillatorAgreesWithBruteForce) {
     for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
       const auto found = find(system, {0.1, 0.0}, {.tolerance = tolerance, .method = method});
       ASSERT_EQ(found.summary.status, PeriodicStatus::converged);
-      EXPECT_GE(found.lap.switches.size(), 2u);
+      EXPECT_GE(found.iterate.switches.size(), 2u);
       EXPECT_NEAR(found.start()[0], reference[0], 10.0 * tolerance + 1e-9) << tolerance;
       EXPECT_NEAR(found.start()[1], reference[1], 10.0 * tolerance + 1e-9) << tolerance;
     }
   }
 }
 
-TEST(Periodic, BilinearMonodromyAgreesWithDifferencesOfTheLap) {
+TEST(Periodic, BilinearMonodromyAgreesWithDifferencesOfTheIterate) {
   BilinearOscillator<double> system;
   system.damping = 0.6;
   system.above = 1.5;
@@ -154,9 +155,9 @@ TEST(Periodic, BilinearMonodromyAgreesWithDifferencesOfTheLap) {
     std::array<double, 2> more = found.start(), less = found.start();
     more[std::size_t(n)] += h;
     less[std::size_t(n)] -= h;
-    Lap<BilinearOscillator<double>> up, down;
-    run_lap<false>(system, more, {.tolerance = 1e-13}, up);
-    run_lap<false>(system, less, {.tolerance = 1e-13}, down);
+    Iterate<BilinearOscillator<double>> up, down;
+    run_iterate<false>(system, more, {.tolerance = 1e-13}, up);
+    run_iterate<false>(system, less, {.tolerance = 1e-13}, down);
     matrix[n] = (up.end[0] - down.end[0]) / (2.0 * h);
     matrix[2 + n] = (up.end[1] - down.end[1]) / (2.0 * h);
   }
@@ -200,22 +201,23 @@ struct Drift : TestSystem<S, 1> {
   }
 };
 
-TEST(Periodic, LapIntoTheBarrierIsReportedWithItsPlace) {
+TEST(Periodic, IterateIntoTheBarrierIsReportedWithItsPlace) {
   const auto found = find(Drift<double>(-1.0), {2.5}, {.tolerance = 1e-6});
   EXPECT_EQ(found.summary.status, PeriodicStatus::barrier);
   EXPECT_NEAR(found.summary.stop, 2.5, 1e-6);
-  EXPECT_EQ(found.summary.laps, 1);
+  EXPECT_EQ(found.summary.iterates, 1);
 }
 
-TEST(Periodic, SystemWithoutAnOrbitEndsWithinItsLaps) {
-  const auto found = find(Drift<double>(0.05), {2.5}, {.tolerance = 1e-6, .max_laps = 40});
+TEST(Periodic, SystemWithoutAnOrbitEndsWithinItsIterates) {
+  const auto found = find(Drift<double>(0.05), {2.5}, {.tolerance = 1e-6, .max_iterates = 40});
   EXPECT_EQ(found.summary.status, PeriodicStatus::not_converged);
-  EXPECT_LE(found.summary.laps, 42);
+  EXPECT_LE(found.summary.iterates, 42);
   EXPECT_GT(found.summary.residual, 0.3);
 }
 
 TEST(Periodic, UnstableOscillatorDoesNotPassForAnOrbit) {
-  // Negative damping: laps diverge, but Newton may still find the (unstable) orbit; either way it must say the truth.
+  // Negative damping: iterates diverge, but Newton may still find the (unstable) orbit; either way it must say the
+  // truth.
   const LinearOscillator<double> system(-0.5, 2.0);
   const auto found = find(system, {0.0, 0.0}, {.tolerance = 1e-6});
   if (found.summary.status == PeriodicStatus::converged) {

@@ -97,7 +97,7 @@ std::vector<EnsembleMember> mixed_members(int count, std::uint64_t seed) {
 }
 
 struct Agreement {
-  int flapping = 0, by_lanes = 0, outside = 0;
+  int flapping = 0, by_packs = 0, outside = 0;
 };
 
 /// Counts what flaps, and whose metrics are outside the tolerance; all states must be equal, and no error beyond `far`
@@ -109,7 +109,7 @@ Agreement agreement(const std::vector<EnsembleOutcome>& got, const std::vector<E
     EXPECT_EQ(got[n].status, expected[n].status) << n;
     if (expected[n].status != FlappingStatus::flapping) continue;
     ++found.flapping;
-    found.by_lanes += !got[n].scalar;
+    found.by_packs += !got[n].scalar;
     std::string where;
     const double error = largest_error(got[n].metrics, expected[n].metrics, &where);
     EXPECT_LT(error, far * tolerance) << n << ' ' << where << " at " << tolerance;
@@ -138,9 +138,9 @@ TEST(Ensemble, InternalResistanceAgreesWithTheScalarSolver) {
   for (const InstructionSet isa : available()) {
     options.isa = isa;
     const auto got = solve(members, options);
-    const auto [flapping, by_lanes, outside] = agreement(got, expected, 1e-6, 3.0);
+    const auto [flapping, by_packs, outside] = agreement(got, expected, 1e-6, 3.0);
     EXPECT_GT(flapping, 400);
-    EXPECT_GT(by_lanes, flapping * 4 / 5);
+    EXPECT_GT(by_packs, flapping * 4 / 5);
     EXPECT_LE(outside, flapping / 50);
   }
 }
@@ -158,11 +158,11 @@ TEST(Ensemble, SmallInductancesAgreeWithTheScalarSolver) {
     EnsembleOptions options;
     options.tolerance = tolerance;
     const auto got = solve(members, options, start_up);
-    const auto [flapping, by_lanes, outside] = agreement(got, expected, tolerance, 20.0, tolerance <= 1e-6);
+    const auto [flapping, by_packs, outside] = agreement(got, expected, tolerance, 20.0, tolerance <= 1e-6);
     EXPECT_GT(flapping, many / 30);
     EXPECT_LE(outside, flapping / 200 + 1) << tolerance;
     if (tolerance >= 1e-6) {
-      EXPECT_GT(by_lanes, flapping * 17 / 20) << tolerance;
+      EXPECT_GT(by_packs, flapping * 17 / 20) << tolerance;
     }
   }
 }

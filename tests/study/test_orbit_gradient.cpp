@@ -164,8 +164,9 @@ TEST(OrbitGradient, BatteriesByResistanceChargeAndEverythingElse) {
 TEST(OrbitGradient, ReferenceOrbitsCrossTheKink) {
   for (const bool springs : {false, true}) {
     const SteadyFlapping s = find_steady_flapping(reference_vehicle(springs));
-    const auto& lap = std::get<CycleRecord::Recorded<2>>(s.record.laps()).lap;
-    EXPECT_GE(std::count_if(lap.switches.begin(), lap.switches.end(), [](const auto& w) { return w.sign == 0; }), 2);
+    const auto& cycle = std::get<CycleRecord::Recorded<2>>(s.record.cycles()).cycle;
+    EXPECT_GE(std::count_if(cycle.switches.begin(), cycle.switches.end(), [](const auto& w) { return w.sign == 0; }),
+              2);
   }
 }
 

@@ -62,7 +62,7 @@ TEST(OwnSteps, AreImplicitWhereStiff) {
 }
 
 TEST(OwnSteps, SeeEveryRevolutionOfAFreeMotor) {
-  // Nothing bounds the steps of a motor at constant speed but the laps.
+  // Nothing bounds the steps of a motor at constant speed but the cycles.
   const TransientResult r = by_own_steps(wingless_vehicle());
   ASSERT_EQ(r.status, FlappingStatus::flapping) << r.detail;
   int revolutions = 0;
@@ -71,7 +71,7 @@ TEST(OwnSteps, SeeEveryRevolutionOfAFreeMotor) {
     ++revolutions;
     EXPECT_NEAR(e.crank_angle, two_pi * revolutions, 1e-9 * revolutions);
   }
-  EXPECT_EQ(revolutions, r.laps);
+  EXPECT_EQ(revolutions, r.cycles);
   EXPECT_GE(revolutions, 3);
 }
 

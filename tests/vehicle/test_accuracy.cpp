@@ -75,7 +75,7 @@ TEST(Accuracy, ShortDipsOfASwitchAreSeen) {
 }
 
 TEST(Accuracy, HeavyRotorsKeepTheTolerance) {
-  // A lap that closes to the tolerance leaves 1 / (1 - multiplier) = 500 times as much in the orbit.
+  // A cycle that closes to the tolerance leaves 1 / (1 - multiplier) = 500 times as much in the orbit.
   Vehicle<double> vehicle = reference_vehicle();
   vehicle.motor.inertia = 1e-3;
   const SteadyFlapping exact = find_steady_flapping(vehicle, {.tolerance = 1e-12});
@@ -102,7 +102,7 @@ double transient_off(const Vehicle<double>& vehicle, double tolerance, const cha
 }
 
 // The vehicles of benchmarks/accuracy that were up to 23 times the tolerance off: mean lifts and reactive powers that
-// are what is left of larger parts, and rotors whose laps contract by a thousandth.
+// are what is left of larger parts, and rotors whose cycles contract by a thousandth.
 TEST(Accuracy, TransientsKeepTheTolerance) {
   const std::pair<WideBox, std::vector<int>> worst[] = {{WideBox::strong_springs, {16, 31, 43, 48, 54}},
                                                         {WideBox::heavy_rotor, {5, 20, 25, 39, 44, 50}},
@@ -126,16 +126,16 @@ TEST(Accuracy, TransientsKeepTheTolerance) {
 double wingless_multiplier(const Vehicle<double>& v, double omega) {
   const Motor<double>& m = v.motor;
   const double b = m.viscous_damping + v.friction.damping + 2.0 * v.friction.quadratic * omega;
-  const double per_lap = two_pi / omega, R = m.armature_resistance;
+  const double per_cycle = two_pi / omega, R = m.armature_resistance;
   if (m.armature_inductance == 0.0) {
-    return std::exp(-(b + m.torque_constant * m.torque_constant / R) / m.inertia * per_lap);
+    return std::exp(-(b + m.torque_constant * m.torque_constant / R) / m.inertia * per_cycle);
   }
   const double trace = -b / m.inertia - R / m.armature_inductance;
   const double det = (b * R + m.torque_constant * m.torque_constant) / (m.inertia * m.armature_inductance);
   const std::complex<double> root = std::sqrt(std::complex<double>(0.25 * trace * trace - det));
   // The slower root from the product of both: their sum cancels.
   const double slower = std::imag(root) != 0.0 ? 0.5 * trace : det / (0.5 * trace - std::real(root));
-  return std::exp(slower * per_lap);
+  return std::exp(slower * per_cycle);
 }
 
 TEST(Accuracy, WinglessMultipliersAreTheirClosedForm) {
@@ -158,7 +158,7 @@ TEST(Accuracy, WinglessMultipliersAreTheirClosedForm) {
   }
 }
 
-TEST(Accuracy, MultipliersAreTheContractionOfLaps) {
+TEST(Accuracy, MultipliersAreTheContractionOfCycles) {
   std::mt19937_64 random(5);
   int compared = 0;
   for (int n = 0; n < 60; ++n) {
@@ -167,15 +167,15 @@ TEST(Accuracy, MultipliersAreTheContractionOfLaps) {
     if (orbit.status != FlappingStatus::flapping || v.motor.armature_inductance == 0.0) continue;
     const double multiplier = orbit.metrics[Metric::floquet_multiplier_max];
     if (multiplier < 0.3) continue;
-    // The other multiplier is far smaller: after one lap its part has gone.
+    // The other multiplier is far smaller: after one cycle its part has gone.
     const CrankSystem<double, 2> system{v, 1e-4 * no_load_speed(v), v.voltage / circuit_resistance(v)};
-    solver::Lap<CrankSystem<double, 2>> lap;
+    solver::Iterate<CrankSystem<double, 2>> cycle;
     std::array<double, 2> y = {orbit.crank_speed * (1.0 + 1e-4), orbit.current};
     double apart[4];
     for (double& distance : apart) {
-      solver::run_lap<false>(system, y, {.tolerance = 1e-13, .max_steps = 5000}, lap);
-      ASSERT_EQ(lap.status, solver::LapStatus::complete);
-      y = lap.end;
+      solver::run_iterate<false>(system, y, {.tolerance = 1e-13, .max_steps = 5000}, cycle);
+      ASSERT_EQ(cycle.status, solver::IterateStatus::complete);
+      y = cycle.end;
       distance = y[0] - orbit.crank_speed;
     }
     if (std::abs(apart[3] / apart[2] - apart[2] / apart[1]) > 1e-3 * multiplier) continue;  // a pair of comparable ones

@@ -55,7 +55,7 @@ TEST(Integrators, AgreeOnAnyStart) {
     EXPECT_EQ(ours.status, theirs.status);
     ++compared;
     if (!ours.metrics || !theirs.metrics) continue;
-    // Over laps that share no period with the supply, averages depend on the phase.
+    // Over cycles that share no period with the supply, averages depend on the phase.
     const double close = options.supply ? 2e-2 : 1e-6;
     for (const Metric m : {Metric::frequency, Metric::power_electrical, Metric::rod_force_peak}) {
       EXPECT_NEAR((*ours.metrics)[m], (*theirs.metrics)[m], close * std::abs((*theirs.metrics)[m])) << int(m);

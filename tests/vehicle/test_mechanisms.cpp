@@ -96,11 +96,11 @@ TEST(TabulatedVehicle, FlapsAsTheLawThatItSamples) {
   using System = CrankSystem<double, 2, StrokeLawVehicle<double>>;
   const double speed = 0.6 * no_load_speed(exact);
   const System system(exact, 1e-4 * no_load_speed(exact), exact.voltage / circuit_resistance(exact));
-  solver::Lap<System> lap;
+  solver::Iterate<System> cycle;
   const auto summary = solver::solve_periodic(system, {speed, algebraic_current(exact, exact.voltage, speed)},
-                                              {.tolerance = 1e-10}, lap);
+                                              {.tolerance = 1e-10}, cycle);
   ASSERT_EQ(summary.status, solver::PeriodicStatus::converged) << summary.message;
-  EXPECT_NEAR(found.metrics[Metric::frequency] * lap_integrals(lap)[std::size_t(Integral::time)], 1.0, 1e-7);
+  EXPECT_NEAR(found.metrics[Metric::frequency] * cycle_integrals(cycle)[std::size_t(Integral::time)], 1.0, 1e-7);
 }
 
 class WideMechanism : public testing::TestWithParam<FarBox> {};

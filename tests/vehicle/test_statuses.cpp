@@ -127,7 +127,7 @@ TEST(Statuses, HeavyRotorsSettleByExtrapolation) {
   options.method = Method::transient;
   const RunResult in_time = run_design(d, options);
   ASSERT_EQ(in_time.status, FlappingStatus::flapping) << in_time.detail;
-  EXPECT_LT(in_time.start_up->laps, 1500);
+  EXPECT_LT(in_time.start_up->cycles, 1500);
   EXPECT_THAT(in_time.detail, HasSubstr("extrapolated"));
   const SteadyFlapping exact = orbit_of(d, 1e-9);
   EXPECT_NEAR(in_time.metrics[Metric::frequency] / exact.metrics[Metric::frequency], 1.0, 1e-5);

@@ -66,21 +66,21 @@ TEST(SteadyFlapping, LocatesTheSignChangesOfTheRodForce) {
   }
 }
 
-TEST(SteadyFlapping, TakesAFewLapsFromACoarseGuess) {
+TEST(SteadyFlapping, TakesAFewCyclesFromACoarseGuess) {
   const SteadyFlapping found = find_steady_flapping(reference_vehicle(), {.tolerance = 1e-6});
-  EXPECT_LE(found.summary.laps, 6);
+  EXPECT_LE(found.summary.iterates, 6);
   EXPECT_LE(found.summary.residual, 1e-6);
   EXPECT_EQ(found.summary.newton_steps, 0);
   EXPECT_NEAR(found.metrics[Metric::floquet_multiplier_max], 9.7514e-5, 1e-8);
 }
 
-TEST(SteadyFlapping, FloquetMultiplierIsThatOfTheLapMapByDifferences) {
+TEST(SteadyFlapping, FloquetMultiplierIsThatOfTheCycleMapByDifferences) {
   const Vehicle<double> vehicle = reference_vehicle(true);
   const SteadyFlapping found = find_steady_flapping(vehicle, {.tolerance = tightest});
   CrankSystem<double, 2> system{vehicle, 1e-3, 1.0 / 3.0};
-  solver::Lap<CrankSystem<double, 2>> lap;
-  solver::LapOptions options{.tolerance = 1e-13};
-  // The lap map's derivative by central differences; its eigenvalues are a complex pair here.
+  solver::Iterate<CrankSystem<double, 2>> cycle;
+  solver::IterateOptions options{.tolerance = 1e-13};
+  // The return map's derivative by central differences; its eigenvalues are a complex pair here.
   double matrix[4];
   const double size[2] = {1e-4 * found.crank_speed, 1e-4 * found.current};
   for (std::size_t column = 0; column < 2; ++column) {
@@ -88,8 +88,8 @@ TEST(SteadyFlapping, FloquetMultiplierIsThatOfTheLapMapByDifferences) {
     for (const int side : {0, 1}) {
       std::array<double, 2> y = {found.crank_speed, found.current};
       y[column] += (side == 0 ? -1.0 : 1.0) * size[column];
-      solver::run_lap<false>(system, y, options, lap);
-      ends[side] = lap.end;
+      solver::run_iterate<false>(system, y, options, cycle);
+      ends[side] = cycle.end;
     }
     for (std::size_t row = 0; row < 2; ++row) {
       matrix[2 * row + column] = (ends[1][row] - ends[0][row]) / (2.0 * size[column]);

@@ -52,11 +52,11 @@ TEST_P(KnownOrbits, IsReachedFromRest) {
   expect_relative(m[Metric::rod_force_peak], orbit.rod_force_peak, 1e-9, "rod force, peak");
   EXPECT_TRUE(std::isnan(m[Metric::floquet_multiplier_max]));
 
-  // A step of the measured lap ends at each dead centre.
+  // A step of the measured cycle ends at each dead centre.
   double nearest = 1.0;
   TransientSample lower{};
   for (const TransientSample& s : r.samples) {
-    const double distance = std::abs(s.crank_angle - (two_pi * r.laps - 0.5 * pi));
+    const double distance = std::abs(s.crank_angle - (two_pi * r.cycles - 0.5 * pi));
     if (distance < nearest) {
       nearest = distance;
       lower = s;
@@ -68,7 +68,7 @@ TEST_P(KnownOrbits, IsReachedFromRest) {
 
   int kinks = 0;
   for (const TransientEvent& e : r.events) {
-    if (e.kind != Kind::force_sign_change || e.crank_angle < two_pi * (r.laps - 1)) continue;
+    if (e.kind != Kind::force_sign_change || e.crank_angle < two_pi * (r.cycles - 1)) continue;
     ++kinks;
     const double angle = wrap_angle(e.crank_angle);
     EXPECT_LT(std::min(std::abs(angle - orbit.kinks[0]), std::abs(angle - orbit.kinks[1])), 1e-8);
@@ -125,7 +125,7 @@ TEST(Transient, PeaksAreMaximaNotSamples) {
   double fastest = 0.0, slowest = 1e9, current = 0.0, inrush = 0.0, inrush_time = 0.0;
   for (const TransientSample& s : r.samples) {
     if (s.current > inrush) inrush = s.current, inrush_time = s.time;
-    if (s.crank_angle < two_pi * (r.laps - 1)) continue;
+    if (s.crank_angle < two_pi * (r.cycles - 1)) continue;
     fastest = std::max(fastest, s.crank_speed);
     slowest = std::min(slowest, s.crank_speed);
     current = std::max(current, s.current);
@@ -179,7 +179,7 @@ TEST(Transient, SmallInductanceApproachesNone) {
 }
 
 TEST(Transient, WeakDampingConverges) {
-  // A hundredfold rotor: laps contract by some ten per cent only.
+  // A hundredfold rotor: cycles contract by some ten per cent only.
   Vehicle<double> v = reference_vehicle();
   v.motor.inertia = 1.5e-5;
   const TransientResult jumped = simulate_start_up(v, with_tolerance(1e-8));
@@ -188,7 +188,7 @@ TEST(Transient, WeakDampingConverges) {
   const TransientResult patient = simulate_start_up(v, options);
   ASSERT_TRUE(jumped.settled && jumped.metrics) << jumped.detail;
   ASSERT_TRUE(patient.settled && patient.metrics) << patient.detail;
-  EXPECT_LT(jumped.laps, patient.laps);
+  EXPECT_LT(jumped.cycles, patient.cycles);
   for (const Metric metric : {Metric::frequency, Metric::power_electrical, Metric::lift_mean, Metric::rod_force_peak}) {
     expect_relative((*jumped.metrics)[metric], (*patient.metrics)[metric], 2e-8,
                     metric_table()[std::size_t(metric)].key);
@@ -203,7 +203,7 @@ TEST(Transient, StallsWhereFrictionExceedsTheStallTorque) {
   EXPECT_EQ(r.status, FlappingStatus::stalled);
   EXPECT_TRUE(r.settled);
   EXPECT_THAT(r.detail, HasSubstr("0.003333"));
-  EXPECT_EQ(r.laps, 0);
+  EXPECT_EQ(r.cycles, 0);
   EXPECT_FALSE(r.metrics);
   ASSERT_TRUE(r.lock_angle && r.torque_margin);
   EXPECT_EQ(*r.lock_angle, 0.0);
@@ -322,7 +322,7 @@ TEST(Transient, FastPwmApproachesItsMeanVoltage) {
     ASSERT_EQ(r.status, FlappingStatus::flapping) << r.detail;
     EXPECT_TRUE(r.settled);
     ASSERT_TRUE(r.metrics);
-    EXPECT_GT(r.averaged_laps, 1);
+    EXPECT_GT(r.averaged_cycles, 1);
     const double difference = std::abs((*r.metrics)[Metric::frequency] / (*mean.metrics)[Metric::frequency] - 1.0);
     EXPECT_LT(difference, previous);
     previous = difference;
@@ -395,11 +395,11 @@ TEST(Transient, BudgetsEndUnsettled) {
   EXPECT_THAT(short_time.detail, HasSubstr("no decision within 0.02 s"));
 
   options = {};
-  options.max_laps = 2;
-  const TransientResult few_laps = simulate_start_up(reference_vehicle(), options);
-  EXPECT_FALSE(few_laps.settled);
-  EXPECT_EQ(few_laps.laps, 2);
-  EXPECT_EQ(few_laps.status, FlappingStatus::undecided);
+  options.max_cycles = 2;
+  const TransientResult few_cycles = simulate_start_up(reference_vehicle(), options);
+  EXPECT_FALSE(few_cycles.settled);
+  EXPECT_EQ(few_cycles.cycles, 2);
+  EXPECT_EQ(few_cycles.status, FlappingStatus::undecided);
 
   options = {};
   options.max_steps = 100;
@@ -470,7 +470,7 @@ TEST(Transient, AnyVehicleEndsWithFiniteNumbers) {
     EXPECT_FALSE(r.detail.empty());
     EXPECT_LE(r.steps, options.max_steps + 1);
     for (const double x : {r.end_time, r.end_crank_angle, r.time_to_steady, r.inrush_current, r.inrush_current_time,
-                           r.crank_speed, r.current, r.lap_scatter}) {
+                           r.crank_speed, r.current, r.cycle_scatter}) {
       EXPECT_TRUE(std::isfinite(x));
     }
     for (const std::optional<double>& x : {r.lock_angle, r.torque_margin, r.jam_angle}) {

@@ -7,9 +7,9 @@
 
 #include "vehicle/stroke_law.hpp"
 #include "wingbeat/cycle/crank_system.hpp"
+#include "wingbeat/cycle/cycle_gradient.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/cycle/extremes.hpp"
-#include "wingbeat/cycle/lap_gradient.hpp"
 #include "wingbeat/solve/periodic.hpp"
 
 namespace wingbeat {
@@ -75,7 +75,7 @@ TEST(Transmission, StrokeLawIsConsistent) {
 template <int N>
 struct Orbit {
   using System = CrankSystem<double, N, StrokeLawVehicle<double>>;
-  RecordedLap<System> recorded;
+  RecordedCycle<System> recorded;
   solver::PeriodicSummary summary;
   Metrics<double> metrics;
 };
@@ -88,11 +88,11 @@ Orbit<N> orbit_of(const StrokeLawVehicle<double>& v, double tolerance) {
   typename System::State guess;
   guess[0] = 0.6 * no_load;
   if constexpr (N == 2) guess[1] = algebraic_current(v, v.voltage, guess[0]);
-  orbit.summary = solver::solve_periodic(orbit.recorded.system, guess, {.tolerance = tolerance}, orbit.recorded.lap);
+  orbit.summary = solver::solve_periodic(orbit.recorded.system, guess, {.tolerance = tolerance}, orbit.recorded.cycle);
   EXPECT_EQ(orbit.summary.status, solver::PeriodicStatus::converged) << orbit.summary.message;
-  const auto extremes = lap_extremes(orbit.recorded.system, orbit.recorded.lap, tolerance);
+  const auto extremes = cycle_extremes(orbit.recorded.system, orbit.recorded.cycle, tolerance);
   orbit.metrics =
-      cycle_metrics(v, lap_integrals(orbit.recorded.lap), extremes, orbit.summary.floquet_multiplier_max, {});
+      cycle_metrics(v, cycle_integrals(orbit.recorded.cycle), extremes, orbit.summary.floquet_multiplier_max, {});
   return orbit;
 }
 
@@ -176,9 +176,9 @@ TEST(StrokeLawOrbit, GradientAgreesWithDifferences) {
     GradientJet& p = *parameters(jets)[std::size_t(k)];
     p = gradient_seed(p.a, k);
   }
-  LapGradient<Orbit<2>::System> lap(orbit.recorded, jets);
-  ASSERT_TRUE(lap.run());
-  const auto gradient = cycle_metrics(jets, lap.integrals(), lap.extremes(), GradientJet(absent), {});
+  CycleGradient<Orbit<2>::System> cycle(orbit.recorded, jets);
+  ASSERT_TRUE(cycle.run());
+  const auto gradient = cycle_metrics(jets, cycle.integrals(), cycle.extremes(), GradientJet(absent), {});
   for (int k = 0; k < gradient_parameters; ++k) {
     const auto at = [&](double by) {
       StrokeLawVehicle<double> moved = v;

@@ -161,7 +161,7 @@ void print_design(const WideVehicle& vehicle) {
 struct Counts {
   int vehicles = 0, by_status[5] = {}, batched_other = 0, orbit_other = 0, batched_differs = 0, orbit_differs = 0,
       undecided = 0, averages = 0;
-  int flapping = 0, batched_outside = 0, orbit_outside = 0, transient_outside = 0, by_lanes = 0;
+  int flapping = 0, batched_outside = 0, orbit_outside = 0, transient_outside = 0, by_packs = 0;
   double orbit_seconds = 0.0, transient_seconds = 0.0, batched_seconds = 0.0;
 };
 
@@ -291,7 +291,7 @@ Counts check_box(FarBox box, const Arguments& arguments) {
     ++c.by_status[std::size_t(v.transient.status)];
     c.undecided += !v.transient.decided;
     const bool batched_differs = differs(v.batched, v.transient), orbit_differs = differs(v.orbit, v.transient);
-    const bool averages = vehicles[n].design.supply.type == SupplyType::pwm;  // laps share no period with the supply
+    const bool averages = vehicles[n].design.supply.type == SupplyType::pwm;  // cycles share no period with the supply
     const bool batched_other = !averages && on_another_orbit(v.batched, v.transient);
     const bool orbit_other = !averages && on_another_orbit(v.orbit, v.transient);
     c.batched_other += batched_other;

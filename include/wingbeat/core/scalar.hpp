@@ -1,4 +1,4 @@
-// The three scalars the physics runs on: double, ceres::Jet (core/jet.hpp) and SIMD lanes (core/lanes.hpp).
+// The three scalars the physics runs on: double, ceres::Jet (core/jet.hpp) and SIMD lanes (core/pack.hpp).
 //
 // Code templated on a scalar S never branches on a comparison of S: it writes select(mask, a, b), which blends lanes
 // where a double would branch.

@@ -8,7 +8,7 @@
 
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/cycle/metrics.hpp"
-#include "wingbeat/solve/lap.hpp"
+#include "wingbeat/solve/iterate.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
@@ -53,7 +53,7 @@ struct CrankSystem {
 
   static double period() { return two_pi; }
 
-  /// The reversals, where beta' changes sign. Of a system on plain numbers, which laps are run on.
+  /// The reversals, where beta' changes sign. Of a system on plain numbers, which cycles are run on.
   std::span<const solver::FixedNode> fixed_nodes() const { return {nodes_.data(), node_count_}; }
   Signs start_signs() const { return {S(1.0), S(1.0), S(1.0), S(first_stroke_)}; }
 
@@ -69,7 +69,7 @@ struct CrankSystem {
     return scale;
   }
 
-  /// How many times smaller than what limits their errors (`scale`) the integrals of a lap are: metrics are to be
+  /// How many times smaller than what limits their errors (`scale`) the integrals of a cycle are: metrics are to be
   /// accurate relative to themselves. A mean lift below a thousandth of its peak need not be.
   double cancellation(const Quadrature& totals, const Quadrature& scale) const
     requires std::same_as<S, double>

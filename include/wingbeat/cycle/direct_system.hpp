@@ -6,7 +6,7 @@
 
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/cycle/metrics.hpp"
-#include "wingbeat/solve/lap.hpp"
+#include "wingbeat/solve/iterate.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
@@ -102,7 +102,7 @@ struct DirectSystem {
       hold_or_move(phi, y, signs);
     } else {
       signs[slip] = S(1.0);
-      signs[velocity] = sign_of(pull(phi, y));
+      signs[velocity] = sign_of(net_torque(phi, y));
     }
   }
 
@@ -165,7 +165,7 @@ struct DirectSystem {
     r.dy[1] = m.crank_acceleration * per_phase_rate;
     if constexpr (N == 3) r.dy[2] = m.inductive_voltage / vehicle.motor.armature_inductance * per_phase_rate;
     r.switches[velocity] = stuck ? signs[velocity] : y[1];
-    r.switches[release] = stuck ? S(holding_torque() - abs(pull(phi, y))) : S(1.0);
+    r.switches[release] = stuck ? S(holding_torque() - abs(net_torque(phi, y))) : S(1.0);
     r.switches[pitching] = m.aero.pitch_margin;
     r.switches[stored] = m.stored_moment;
     if constexpr (quadratures) {
@@ -180,14 +180,14 @@ struct DirectSystem {
   /// T_c [N m].
   S holding_torque() const { return vehicle.friction.torque + vehicle.motor.friction_torque; }
   /// K i - N_w k beta [N m]: what would move the shaft at rest.
-  S pull(const S& phi, const State& y) const {
+  S net_torque(const S& phi, const State& y) const {
     State at_rest = y;
     at_rest[1] = S(0.0);
     return vehicle.motor.torque_constant * current(phi, at_rest) - spring_moment_at(y);
   }
   void hold_or_move(const S& phi, const State& y, Signs& signs) const {
     using std::abs;
-    const S torque = pull(phi, y);
+    const S torque = net_torque(phi, y);
     if (value_of(S(abs(torque))) <= value_of(holding_torque())) {
       signs[slip] = S(-1.0);
     } else {

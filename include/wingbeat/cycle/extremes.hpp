@@ -1,4 +1,4 @@
-// Peaks of a recorded lap: zeros of the derivative on the solution itself, never the largest sample.
+// Peaks of a recorded cycle: zeros of the derivative on the solution itself, never the largest sample.
 #pragma once
 
 #include <cmath>
@@ -6,14 +6,14 @@
 
 #include "wingbeat/core/jet.hpp"
 #include "wingbeat/cycle/metrics.hpp"
-#include "wingbeat/solve/lap.hpp"
+#include "wingbeat/solve/iterate.hpp"
 
 namespace wingbeat {
 
-/// Maxima over the lap of extreme_candidates(), to the relative accuracy `tolerance`; absent those that the system has
-/// not.
+/// Maxima over the cycle of extreme_candidates(), to the relative accuracy `tolerance`; absent those that the system
+/// has not.
 template <class System>
-CycleExtremes<double> lap_extremes(const System& system, const solver::Lap<System>& lap, double tolerance) {
+CycleExtremes<double> cycle_extremes(const System& system, const solver::Iterate<System>& cycle, double tolerance) {
   using Derivative = Jet<1>;
   using State = typename System::State;
   using Candidates = CycleExtremes<Derivative>;
@@ -64,17 +64,17 @@ CycleExtremes<double> lap_extremes(const System& system, const solver::Lap<Syste
   for (const Extreme e : System::extremes) best[std::size_t(e)] = -std::numeric_limits<double>::infinity();
   std::array<std::vector<Bracket>, extreme_count> brackets;
   Candidates at;
-  for (std::size_t n = 0; n < lap.steps.size(); ++n) {
-    const auto& step = lap.steps[n];
-    const bool last = n + 1 == lap.steps.size();
-    const bool same_branch = n > 0 && step.signs == lap.steps[n - 1].signs;
+  for (std::size_t n = 0; n < cycle.steps.size(); ++n) {
+    const auto& step = cycle.steps[n];
+    const bool last = n + 1 == cycle.steps.size();
+    const bool same_branch = n > 0 && step.signs == cycle.steps[n - 1].signs;
     if (!same_branch) at = candidates(step.x, step.y, step.first.dy, step.signs);
-    const auto& y1 = last ? lap.end : lap.steps[n + 1].y;
+    const auto& y1 = last ? cycle.end : cycle.steps[n + 1].y;
     const double x1 = step.x + step.h;
     // Where the rates may jump, those of the next step do not belong to this one's end.
     const State dy1 = solver::jumps(system, 0) ? system.template rates<false>(x1, y1, step.signs).dy
-                      : last                   ? lap.steps.front().first.dy
-                                               : lap.steps[n + 1].first.dy;
+                      : last                   ? cycle.steps.front().first.dy
+                                               : cycle.steps[n + 1].first.dy;
     const Candidates end = candidates(x1, y1, dy1, step.signs);
     for (const Extreme e : System::extremes) {
       const auto c = std::size_t(e);
@@ -110,7 +110,7 @@ CycleExtremes<double> lap_extremes(const System& system, const solver::Lap<Syste
       const double doubt = 0.2 * (b.estimate - std::min(b.v0, b.v1)) + 5e-3 * (highest - lowest_candidate);
       if (b.estimate + doubt < highest) continue;
       for (int iteration = 0; iteration < 30; ++iteration) {
-        const auto inside = solver::evaluate_inside<false>(system, lap, *b.step, b.x);
+        const auto inside = solver::evaluate_inside<false>(system, cycle, *b.step, b.x);
         const auto rates = system.template rates<false>(b.x, inside.y, b.step->signs);
         const Derivative value = candidates(b.x, inside.y, rates.dy, b.step->signs)[c];
         const double v = value.a, d = value.v[0];

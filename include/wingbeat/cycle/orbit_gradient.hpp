@@ -1,8 +1,8 @@
-// Exact derivatives of steady flapping by the vehicle's parameters: dual numbers along the recorded lap, closed by the
-// implicit function theorem.
+// Exact derivatives of steady flapping by the vehicle's parameters: dual numbers along the recorded cycle, closed by
+// the implicit function theorem.
 //
-// The orbit is the fixed point y = P(y, p) of the lap map, so dy/dp = (I - dP/dy)^-1 dP/dp. One repetition of the lap
-// gives both Jacobians, and those of all integrals and peaks by y and p; the chain rule does the rest. With the
+// The orbit is the fixed point y = P(y, p) of the return map, so dy/dp = (I - dP/dy)^-1 dP/dp. One repetition of the
+// cycle gives both Jacobians, and those of all integrals and peaks by y and p; the chain rule does the rest. With the
 // frequency held, the voltage follows: dv/dp = -(df/dp) / (df/dv).
 //
 // Steps and branches stay frozen although the parameters move the places where the rod force or the stored power
@@ -74,7 +74,7 @@ struct OrbitGradient {
 
 /// Derivatives of every metric but floquet_multiplier_max (which needs second ones: absent), in SI like the metrics.
 /// Absent too: by the inductance of a vehicle without one. `orbit` must be flapping and `vehicle` the one it was found
-/// for; `orbit.record` is the lap repeated.
+/// for; `orbit.record` is the cycle repeated.
 OrbitGradient orbit_gradient(const SteadyFlapping& orbit, const GradientVehicle& vehicle,
                              const GradientOptions& options = {});
 

@@ -28,22 +28,22 @@ class OrbitSearch {
 
   OrbitSearch(const System& system, const SteadyOptions& options) : options_(options), system_(system) {}
 
-  /// One search from a state at the start of a lap.
+  /// One search from a state at the start of an iterate.
   bool search(const State& guess) {
     solver::PeriodicOptions periodic{.tolerance = options_.tolerance, .stability = options_.stability};
-    const int laps_before = summary_.laps;
-    summary_ = solver::solve_periodic(system_, guess, periodic, lap_);
+    const int iterates_before = summary_.iterates;
+    summary_ = solver::solve_periodic(system_, guess, periodic, iterate_);
     if (summary_.status == solver::PeriodicStatus::too_many_steps) {
       periodic.method = solver::Method::radau;
-      summary_ = solver::solve_periodic(system_, guess, periodic, lap_);
+      summary_ = solver::solve_periodic(system_, guess, periodic, iterate_);
     }
     if (summary_.status == solver::PeriodicStatus::too_many_steps && !System::has_rod) {
       // Not stiff then, but hard: a shaft that hardly breaks away.
       periodic.method = solver::Method::explicit_pair;
       periodic.max_steps *= 20;
-      summary_ = solver::solve_periodic(system_, guess, periodic, lap_);
+      summary_ = solver::solve_periodic(system_, guess, periodic, iterate_);
     }
-    summary_.laps += laps_before;
+    summary_.iterates += iterates_before;
     return summary_.status == solver::PeriodicStatus::converged;
   }
 
@@ -53,37 +53,37 @@ class OrbitSearch {
     solver::PeriodicOptions periodic{.tolerance = options_.tolerance, .stability = options_.stability, .near = true};
     for (const auto method : {solver::Method::explicit_pair, solver::Method::radau}) {
       periodic.method = method;
-      const int laps_before = summary_.laps;
-      summary_ = solver::solve_periodic(system_, guess, periodic, lap_);
-      summary_.laps += laps_before;
+      const int iterates_before = summary_.iterates;
+      summary_ = solver::solve_periodic(system_, guess, periodic, iterate_);
+      summary_.iterates += iterates_before;
       if (summary_.status == solver::PeriodicStatus::converged) return true;
     }
     return false;
   }
 
-  /// The largest multiplier of the orbit found, if only roughly: where plain laps have closed it, that shows that they
-  /// contract.
+  /// The largest multiplier of the orbit found, if only roughly: where plain iterates have closed it, that shows that
+  /// they contract.
   double multiplier() {
     if (std::isfinite(summary_.floquet_multiplier_max)) return summary_.floquet_multiplier_max;
     if (summary_.newton_steps == 0) return 0.0;
     constexpr int n = int(std::tuple_size_v<State>);
-    return solver::monodromy_product(system_, system_.template cast<Jet<n>>(), lap_).spectral_radius();
+    return solver::monodromy_product(system_, system_.template cast<Jet<n>>(), iterate_).spectral_radius();
   }
 
   const System& system() const { return system_; }
   const solver::PeriodicSummary& summary() const { return summary_; }
-  const State& start() const { return lap_.steps.front().y; }
+  const State& start() const { return iterate_.steps.front().y; }
   double frequency() const {
     double period = 0.0;
-    for (const auto& step : lap_.steps) period += step.dq[std::size_t(Integral::time)];
+    for (const auto& step : iterate_.steps) period += step.dq[std::size_t(Integral::time)];
     return 1.0 / period;
   }
 
   void fill(SteadyFlapping& result) {
     result.crank_speed = system_.shaft_speed(start());
     result.current = system_.current(0.0, start());
-    const CycleExtremes<double> extremes = lap_extremes(system_, lap_, options_.tolerance);
-    result.record = CycleRecord(RecordedLap<System>{system_, std::move(lap_)});
+    const CycleExtremes<double> extremes = cycle_extremes(system_, iterate_, options_.tolerance);
+    result.record = CycleRecord(RecordedCycle<System>{system_, std::move(iterate_)});
     result.metrics = cycle_metrics(system_.vehicle, result.record.integrals(), extremes,
                                    summary_.floquet_multiplier_max, options_.reporting);
   }
@@ -91,7 +91,7 @@ class OrbitSearch {
  private:
   const SteadyOptions& options_;
   System system_;
-  solver::Lap<System> lap_;
+  solver::Iterate<System> iterate_;
   solver::PeriodicSummary summary_;
 };
 

@@ -36,33 +36,33 @@ struct WaveformRow {
 WaveformRow waveform_row(const Vehicle<double>& vehicle, const Motion<double>& motion, double time, double shaft_angle,
                          double shaft_speed, double stroke_angle);
 
-/// Integrals over a recorded lap.
+/// Integrals over a recorded cycle.
 template <class System>
-CycleIntegrals<double> lap_integrals(const solver::Lap<System>& lap) {
+CycleIntegrals<double> cycle_integrals(const solver::Iterate<System>& cycle) {
   CycleIntegrals<double> sum{};
-  for (const auto& step : lap.steps) {
+  for (const auto& step : cycle.steps) {
     for (std::size_t q = 0; q < sum.size(); ++q) sum[q] += step.dq[q];
   }
   return sum;
 }
 
-/// A system and its lap.
+/// A system and its cycle.
 template <class System>
-struct RecordedLap {
+struct RecordedCycle {
   System system;
-  solver::Lap<System> lap;
+  solver::Iterate<System> cycle;
 };
 
-/// A lap of the crank or of a direct drive, each with or without inductance.
+/// A cycle of the crank or of a direct drive, each with or without inductance.
 class CycleRecord {
  public:
   template <int N>
-  using Recorded = RecordedLap<CrankSystem<double, N>>;
-  using Laps = std::variant<Recorded<1>, Recorded<2>, RecordedLap<DirectSystem<double, 2>>,
-                            RecordedLap<DirectSystem<double, 3>>>;
+  using Recorded = RecordedCycle<CrankSystem<double, N>>;
+  using Cycles = std::variant<Recorded<1>, Recorded<2>, RecordedCycle<DirectSystem<double, 2>>,
+                              RecordedCycle<DirectSystem<double, 3>>>;
 
   CycleRecord() = default;
-  explicit CycleRecord(Laps laps) : laps_(std::move(laps)) {}
+  explicit CycleRecord(Cycles cycles) : cycles_(std::move(cycles)) {}
 
   bool empty() const;
   /// Period of the cycle [s].
@@ -73,10 +73,10 @@ class CycleRecord {
   WaveformRow at(double theta) const;
   /// The cycle at `count` instants equally spaced in time, both ends included; count >= 2.
   std::vector<WaveformRow> waveform(int count) const;
-  const Laps& laps() const { return laps_; }
+  const Cycles& cycles() const { return cycles_; }
 
  private:
-  Laps laps_;
+  Cycles cycles_;
 };
 
 }  // namespace wingbeat

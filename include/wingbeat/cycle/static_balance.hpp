@@ -20,9 +20,9 @@ struct LockInterval {
 struct StaticBalance {
   double stall_torque;      ///< K v / (R_a + R_i) [N m]
   double breakaway_torque;  ///< T_c, the constant friction that holds the motor [N m]
-  double inertia_least;     ///< least J + A (h + s mu r_e) over crank angle and branch [kg m2]; <= 0 jams
+  double inertia_min;       ///< least J + A (h + s mu r_e) over crank angle and branch [kg m2]; <= 0 jams
   double inertia_angle;     ///< crank angle of it [rad]
-  double lever_least;       ///< least wing lever g over crank angle [m]; <= 0 jams
+  double lever_min;         ///< least wing lever g over crank angle [m]; <= 0 jams
   double lever_angle;       ///< crank angle of it [rad]
   double
       advance_least;  ///< least K v/(R_a + R_i) - F_s h - mu r_e |F_s| - T_c over crank angle [N m]; <= 0: locks exist
@@ -30,7 +30,7 @@ struct StaticBalance {
   bool has_wings;        ///< false: rod force zero, nothing can jam or lock
 
   bool stalled() const { return stall_torque <= breakaway_torque; }
-  bool can_jam() const { return has_wings && (inertia_least <= 0.0 || lever_least <= 0.0); }
+  bool can_jam() const { return has_wings && (inertia_min <= 0.0 || lever_min <= 0.0); }
   bool can_lock() const { return has_wings && advance_least <= 0.0; }
 };
 
@@ -93,7 +93,7 @@ StaticBalance static_balance(const Vehicle<double>& vehicle);
 /// All intervals in which the crank locks, in order of crank angle; empty unless static_balance().can_lock().
 std::vector<LockInterval> lock_intervals(const Vehicle<double>& vehicle);
 
-/// A crank angle as the mean load of a lap sees it.
+/// A crank angle as the mean load of a cycle sees it.
 template <Scalar S>
 struct LoadPlace {
   S inertia;         ///< N_w J_w B2 [kg m2]
@@ -115,7 +115,7 @@ LoadPlace<S> load_place(const V<S>& v, const CrankKinematics<S>& k, const S& N_k
           inverse_of(k.wing_lever)};
 }
 
-/// Motor torque less the mean load over evenly spaced places of a lap at the constant crank speed omega [N m].
+/// Motor torque less the mean load over evenly spaced places of a cycle at the constant crank speed omega [N m].
 template <template <Scalar> class V, Scalar S>
 S torque_surplus(const V<S>& v, std::span<const LoadPlace<S>> places, const S& omega) {
   using std::abs;
@@ -130,7 +130,7 @@ S torque_surplus(const V<S>& v, std::span<const LoadPlace<S>> places, const S& o
          v.motor.friction_torque - load_free_friction(v.friction, omega, S(1.0)) - load;
 }
 
-/// Crank speeds at which the motor's torque balances the mean load of a lap at constant speed.
+/// Crank speeds at which the motor's torque balances the mean load of a cycle at constant speed.
 template <Scalar S>
 struct BalancedSpeed {
   S slowest;  ///< first guess for the periodic orbit [rad/s]; the no-load speed where there is none

@@ -10,7 +10,7 @@
 #include "wingbeat/cycle/domain.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
-#include "wingbeat/ensemble/lane_blocks.hpp"
+#include "wingbeat/ensemble/pack_blocks.hpp"
 
 namespace wingbeat {
 

@@ -11,14 +11,14 @@ namespace wingbeat::solver {
 inline constexpr int max_collocation_intervals = 16;
 
 struct CollocationRule {
-  static constexpr int most = max_collocation_intervals + 1;
-  int intervals;        ///< n: nodes 0 .. n
-  double node[most];    ///< in [0, 1], growing
-  double weight[most];  ///< of the integral over [0, 1]
-  double between[most]
-                [most];  ///< [m][j]: integral from node m - 1 to m of the polynomial that is 1 at node j alone; m > 0
-  double slope[most][most];     ///< [m][j]: derivative of that polynomial at node m
-  double legendre[most][most];  ///< [k][j]: its coefficient of P_k(2 x - 1)
+  static constexpr int max_points = max_collocation_intervals + 1;
+  int intervals;                            ///< n: nodes 0 .. n
+  double node[max_points];                  ///< in [0, 1], growing
+  double weight[max_points];                ///< of the integral over [0, 1]
+  double between[max_points][max_points];   ///< [m][j]: integral from node m - 1 to m of the polynomial that is 1 at
+                                            ///< node j alone; m > 0
+  double slope[max_points][max_points];     ///< [m][j]: derivative of that polynomial at node m
+  double legendre[max_points][max_points];  ///< [k][j]: its coefficient of P_k(2 x - 1)
 };
 
 /// The rule with an even number of intervals, 2 to max_collocation_intervals.

@@ -1,5 +1,5 @@
-// The lap map's derivative along a recorded lap, and its Floquet multipliers: a product of one factor for each step
-// that neither overflows nor underflows.
+// The return map's derivative along a recorded iterate, and its Floquet multipliers: a product of one factor for each
+// step that neither overflows nor underflows.
 //
 // A factor is the derivative of the step itself where the step resolves the flow's own decay. Where it does not - a
 // mode that decays quickly and is not excited lets an error control take steps far beyond the method's stability - the
@@ -14,7 +14,7 @@
 #include <tuple>
 
 #include "wingbeat/core/jet.hpp"
-#include "wingbeat/solve/lap.hpp"
+#include "wingbeat/solve/iterate.hpp"
 #include "wingbeat/solve/linear.hpp"
 
 namespace wingbeat::solver {
@@ -80,7 +80,7 @@ namespace detail {
 
 /// The flow's derivative over a recorded explicit step, by `pieces` implicit steps on the variational equation.
 template <class JetSystem, class System>
-auto stiff_factor(const System& system, const JetSystem& jets, const Lap<System>& lap, const Step<System>& step,
+auto stiff_factor(const System& system, const JetSystem& jets, const Iterate<System>& iterate, const Step<System>& step,
                   int pieces) {
   constexpr std::size_t n = std::tuple_size_v<typename System::State>;
   constexpr std::size_t stages = RadauTableau::stages, unknowns = stages * n;
@@ -91,10 +91,10 @@ auto stiff_factor(const System& system, const JetSystem& jets, const Lap<System>
   for (std::size_t k = 0; k < n * n; ++k) factor[k] = k % (n + 1) == 0 ? 1.0 : 0.0;
   for (int piece = 0; piece < pieces; ++piece) {
     std::array<double, unknowns * unknowns> matrix;
-    std::array<double, unknowns * n> course;  // of the derivative at the stages
+    std::array<double, unknowns * n> trajectory;  // of the derivative at the stages
     for (std::size_t j = 0; j < stages; ++j) {
       const double x = step.x + (piece + tableau.c[j]) * h;
-      const typename System::State at = evaluate_inside<false>(system, lap, step, x).y;
+      const typename System::State at = evaluate_inside<false>(system, iterate, step, x).y;
       typename JetSystem::State y;
       for (std::size_t k = 0; k < n; ++k) y[k] = typename JetSystem::Real(at[k], int(k));
       const Rates<JetSystem> rates = jets.template rates<false>(typename JetSystem::Real(x), y, signs);
@@ -105,19 +105,19 @@ auto stiff_factor(const System& system, const JetSystem& jets, const Lap<System>
               (row == column ? 1.0 : 0.0) - h * tableau.a[i][j] * rates.dy[k / n].v[Eigen::Index(k % n)];
         }
       }
-      std::copy(factor.begin(), factor.end(), course.begin() + std::ptrdiff_t(j * n * n));
+      std::copy(factor.begin(), factor.end(), trajectory.begin() + std::ptrdiff_t(j * n * n));
     }
-    solve_linear(int(unknowns), matrix.data(), int(n), course.data());
-    std::copy(course.end() - std::ptrdiff_t(n * n), course.end(), factor.begin());
+    solve_linear(int(unknowns), matrix.data(), int(n), trajectory.data());
+    std::copy(trajectory.end() - std::ptrdiff_t(n * n), trajectory.end(), factor.begin());
   }
   return factor;
 }
 
 }  // namespace detail
 
-/// The derivative d y(period) / d y(0) of a recorded lap; `jets` is the system with Jet<states> scalars.
+/// The derivative d y(period) / d y(0) of a recorded iterate; `jets` is the system with Jet<states> scalars.
 template <class JetSystem, class System>
-auto monodromy_product(const System& system, const JetSystem& jets, const Lap<System>& lap) {
+auto monodromy_product(const System& system, const JetSystem& jets, const Iterate<System>& iterate) {
   constexpr std::size_t n = std::tuple_size_v<typename System::State>;
   using Real = typename JetSystem::Real;
   using State = typename JetSystem::State;
@@ -131,24 +131,24 @@ auto monodromy_product(const System& system, const JetSystem& jets, const Lap<Sy
   };
   const auto start_of = [&](std::size_t k) {
     State y;
-    for (std::size_t j = 0; j < n; ++j) y[j] = Real(lap.steps[k].y[j], int(j));
-    reset_map<false>(jets, lap.steps, k, y, nullptr);
+    for (std::size_t j = 0; j < n; ++j) y[j] = Real(iterate.steps[k].y[j], int(j));
+    reset_map<false>(jets, iterate.steps, k, y, nullptr);
     return y;
   };
   const auto rates_at_start = [&](std::size_t k, const State& y) {
-    return jets.template rates<false>(Real(lap.steps[k].x), y, signs_of<JetSystem>(lap.steps[k]));
+    return jets.template rates<false>(Real(iterate.steps[k].x), y, signs_of<JetSystem>(iterate.steps[k]));
   };
 
   MatrixProduct<n> product;
   State y = start_of(0);
   Rates<JetSystem> first = rates_at_start(0, y);
-  for (std::size_t k = 0; k < lap.steps.size(); ++k) {
-    const Step<System>& step = lap.steps[k];
-    const bool last = k + 1 == lap.steps.size();
+  for (std::size_t k = 0; k < iterate.steps.size(); ++k) {
+    const Step<System>& step = iterate.steps[k];
+    const bool last = k + 1 == iterate.steps.size();
     const State next_y = last ? y : start_of(k + 1);
     const Rates<JetSystem> next = last ? first : rates_at_start(k + 1, next_y);
     double quickest = 0.0;
-    if (lap.method == Method::explicit_pair) {
+    if (iterate.method == Method::explicit_pair) {
       quickest = std::max(decay(first, step.h), last ? 0.0 : decay(next, step.h));
     }
     const auto append_derivatives = [&](const State& of) {
@@ -159,10 +159,10 @@ auto monodromy_product(const System& system, const JetSystem& jets, const Lap<Sy
     if (quickest > resolved) {
       append_derivatives(y);
       const int pieces = std::min(int(std::ceil(quickest / resolved)), max_pieces);
-      product.append(detail::stiff_factor(system, jets, lap, step, pieces));
+      product.append(detail::stiff_factor(system, jets, iterate, step, pieces));
     } else {
       const typename JetSystem::Signs signs = signs_of<JetSystem>(step);
-      append_derivatives(take_step<false>(lap.method, jets, Real(step.x), y, Real(step.h), signs, first).y);
+      append_derivatives(take_step<false>(iterate.method, jets, Real(step.x), y, Real(step.h), signs, first).y);
     }
     y = next_y;
     first = next;
@@ -172,8 +172,8 @@ auto monodromy_product(const System& system, const JetSystem& jets, const Lap<Sy
 
 /// The same as a row-major matrix.
 template <class JetSystem, class System>
-auto monodromy(const System& system, const JetSystem& jets, const Lap<System>& lap) {
-  return monodromy_product(system, jets, lap).matrix();
+auto monodromy(const System& system, const JetSystem& jets, const Iterate<System>& iterate) {
+  return monodromy_product(system, jets, iterate).matrix();
 }
 
 }  // namespace wingbeat::solver

@@ -1,4 +1,5 @@
-// One step of the implicit Radau IIA method with five stages, order 9: for stiff laps (small inductance, light rotor).
+// One step of the implicit Radau IIA method with five stages, order 9: for stiff iterates (small inductance, light
+// rotor).
 //
 // E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", 2nd ed., Springer 1996, sections IV.5 and IV.8.
 // The tableau is computed from the conditions that define it (src/solve/radau.cpp); tests/solve measures its order.

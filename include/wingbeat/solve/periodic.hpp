@@ -1,8 +1,9 @@
-// Periodic orbits of known period: the fixed point of the lap map y(0) -> y(period).
+// Periodic orbits of known period: the fixed point of the return map y(0) -> y(period).
 //
-// Damped systems forget their start within a lap, so plain laps are the iteration: coarse ones first, then one at the
-// tolerance asked for. What is left of the start's error fades within a fraction of the next lap, which is taken on the
-// same mesh and only as far as it changes anything. Where laps contract slowly, Newton steps with the monodromy matrix.
+// Damped systems forget their start within an iterate, so plain iterates are the iteration: coarse ones first, then one
+// at the tolerance asked for. What is left of the start's error fades within a fraction of the next iterate, which is
+// taken on the same mesh and only as far as it changes anything. Where iterates contract slowly, Newton steps with the
+// monodromy matrix.
 #pragma once
 
 #include <array>
@@ -15,37 +16,37 @@
 
 #include "wingbeat/core/jet.hpp"
 #include "wingbeat/solve/floquet.hpp"
-#include "wingbeat/solve/lap.hpp"
+#include "wingbeat/solve/iterate.hpp"
 #include "wingbeat/solve/linear.hpp"
 
 namespace wingbeat::solver {
 
 struct PeriodicOptions {
   double tolerance = 1e-6;  ///< wanted relative accuracy of the orbit and its integrals
-  int max_laps = 200;
+  int max_iterates = 200;
   Method method = Method::explicit_pair;
-  int max_steps = 80;     ///< of a lap at the coarsest level, more is called stiff; ten times as many later
+  int max_steps = 80;     ///< of an iterate at the coarsest level, more is called stiff; ten times as many later
   bool stability = true;  ///< compute the monodromy matrix and the Floquet multipliers
-  bool near = false;      ///< the guess is close to the orbit: no coarse laps, which may lose it
+  bool near = false;      ///< the guess is close to the orbit: no coarse iterates, which may lose it
 };
 
 enum class PeriodicStatus {
   converged,
-  barrier,         ///< laps run into the edge of the admissible region: no orbit was found
-  too_many_steps,  ///< a lap needs more steps than allowed
-  not_converged    ///< laps neither settle nor fail within max_laps
+  barrier,         ///< iterates run into the edge of the admissible region: no orbit was found
+  too_many_steps,  ///< an iterate needs more steps than allowed
+  not_converged    ///< iterates neither settle nor fail within max_iterates
 };
 
 /// How a search for an orbit ended, in the manner of Ceres and SUNDIALS.
 struct PeriodicSummary {
   PeriodicStatus status = PeriodicStatus::not_converged;
   std::string message;
-  int laps = 0;  ///< laps integrated, those with derivatives included
+  int iterates = 0;  ///< iterates integrated, those with derivatives included
   int newton_steps = 0;
-  int steps = 0;                ///< integration steps of the final lap
-  double residual = 0.0;        ///< largest distance of the lap's start from the orbit's, over its error scale
+  int steps = 0;                ///< integration steps of the final iterate
+  double residual = 0.0;        ///< largest distance of the iterate's start from the orbit's, over its error scale
   double error_estimate = 0.0;  ///< of the orbit and its integrals, relative
-  double stop = 0.0;            ///< where the last lap ended, if it did not complete
+  double stop = 0.0;            ///< where the last iterate ended, if it did not complete
   double floquet_multiplier_max = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -59,38 +60,40 @@ double scaled_distance(const System& system, const typename System::State& a, co
   return distance;
 }
 
-/// Runs the recorded steps again from the lap's own end, until the solution has merged with the recorded one.
+/// Runs the recorded steps again from the iterate's own end, until the solution has merged with the recorded one.
 /// Returns the scaled residual of the closed orbit, at most `tolerance` if it merged before the end. `grazes` becomes
 /// true where a switch has the wrong sign on the way, deeper than by an error of `position_error` in where it changes:
-/// it has changed twice on a step that the lap recorded without.
+/// it has changed twice on a step that the iterate recorded without.
 template <class System>
-double merge_lap(const System& system, Lap<System>& lap, double tolerance, double position_error, bool& grazes) {
-  typename System::State y = lap.end;
-  double apart = scaled_distance(system, y, lap.steps.front().y);
-  for (std::size_t n = 0; n < lap.steps.size() && apart > tolerance; ++n) {
-    Step<System>& step = lap.steps[n];
+double close_on_mesh(const System& system, Iterate<System>& iterate, double tolerance, double position_error,
+                     bool& grazes) {
+  typename System::State y = iterate.end;
+  double apart = scaled_distance(system, y, iterate.steps.front().y);
+  for (std::size_t n = 0; n < iterate.steps.size() && apart > tolerance; ++n) {
+    Step<System>& step = iterate.steps[n];
     typename System::Quadrature gained{};
-    reset_map<true>(system, lap.steps, n, y, &gained);
+    reset_map<true>(system, iterate.steps, n, y, &gained);
     if (n > 0) {
-      for (std::size_t q = 0; q < gained.size(); ++q) lap.steps[n - 1].dq[q] += gained[q];
+      for (std::size_t q = 0; q < gained.size(); ++q) iterate.steps[n - 1].dq[q] += gained[q];
     }
     step.y = y;
     step.first = system.template rates<true>(step.x, y, step.signs);
-    const StepResult<System> result = take_step<true>(lap.method, system, step.x, y, step.h, step.signs, step.first);
+    const StepResult<System> result =
+        take_step<true>(iterate.method, system, step.x, y, step.h, step.signs, step.first);
     if (!result.admissible) return std::numeric_limits<double>::infinity();
     step.dq = result.dq;
     y = result.y;
     for (std::size_t k = 0; k < result.lowest.size(); ++k) {
-      grazes = grazes || result.lowest[k] < -position_error * lap.switch_scale[k];
+      grazes = grazes || result.lowest[k] < -position_error * iterate.switch_scale[k];
     }
-    const bool last = n + 1 == lap.steps.size();
-    apart = scaled_distance(system, y, last ? lap.end : lap.steps[n + 1].y);
-    if (last) lap.end = y;
+    const bool last = n + 1 == iterate.steps.size();
+    apart = scaled_distance(system, y, last ? iterate.end : iterate.steps[n + 1].y);
+    if (last) iterate.end = y;
   }
   return apart;
 }
 
-/// True of systems whose laps contract too slowly to be merged by repeating them alone.
+/// True of systems whose iterates contract too slowly to be merged by repeating them alone.
 template <class System>
 constexpr bool contracts_slowly() {
   if constexpr (requires { System::contracts_slowly; }) {
@@ -100,19 +103,20 @@ constexpr bool contracts_slowly() {
   }
 }
 
-/// (1 - M)^-1 of a lap map's derivative M: what moves the start of a lap onto the orbit, and magnifies a lap's errors.
+/// (1 - M)^-1 of a return map's derivative M: what moves the start of an iterate onto the orbit, and magnifies an
+/// iterate's errors.
 template <class System>
-class LapInverse {
+class IterateInverse {
  public:
   using State = typename System::State;
   static constexpr std::size_t n = std::tuple_size_v<State>;
 
-  /// The derivative is that of `lap`.
-  LapInverse(const System& system, const Lap<System>& lap)
-      : inverse_(monodromy(system, system.template cast<Jet<int(n)>>(), lap)) {
+  /// The derivative is that of `iterate`.
+  IterateInverse(const System& system, const Iterate<System>& iterate)
+      : inverse_(monodromy(system, system.template cast<Jet<int(n)>>(), iterate)) {
     for (std::size_t k = 0; k < n * n; ++k) inverse_[k] = (k % (n + 1) == 0 ? 1.0 : 0.0) - inverse_[k];
     if (!invert(int(n), inverse_.data())) return;
-    const State scale = system.error_scale(lap.steps.front().y);
+    const State scale = system.error_scale(iterate.steps.front().y);
     for (std::size_t row = 0; row < n; ++row) {
       double sum = 0.0;
       for (std::size_t column = 0; column < n; ++column) {
@@ -126,18 +130,18 @@ class LapInverse {
   /// False where something drifts freely: neither a fixed point nor errors of it are to be had from the derivative.
   bool isolated() const { return isolated_; }
 
-  /// How much further from the orbit a lap's start may be than its end is from its start, at least 1.
+  /// How much further from the orbit an iterate's start may be than its end is from its start, at least 1.
   double amplification() const { return isolated_ ? amplification_ : 1.0; }
 
-  /// Moves y, the end of the lap, to the fixed point of the linearised lap map. False, y unchanged, where that is not
-  /// trustworthy.
-  bool move(const System& system, const Lap<System>& lap, State& y) const {
+  /// Moves y, the end of the iterate, to the fixed point of the linearised return map. False, y unchanged, where that
+  /// is not trustworthy.
+  bool move(const System& system, const Iterate<System>& iterate, State& y) const {
     if (!isolated_) return false;
-    const State& start = lap.steps.front().y;
+    const State& start = iterate.steps.front().y;
     State moved = start;
     for (std::size_t row = 0; row < n; ++row) {
       for (std::size_t column = 0; column < n; ++column) {
-        moved[row] += inverse_[row * n + column] * (lap.end[column] - start[column]);
+        moved[row] += inverse_[row * n + column] * (iterate.end[column] - start[column]);
       }
     }
     if (!system.admissible(moved) || !(scaled_distance(system, y, moved) < 0.5)) return false;
@@ -151,15 +155,15 @@ class LapInverse {
   double amplification_ = 1.0;
 };
 
-/// What laps' integrals must be more accurate than the steps' own scale by, for metrics that are small differences.
+/// What iterates' integrals must be more accurate than the steps' own scale by, for metrics that are small differences.
 template <class System>
-double cancellation(const System& system, const Lap<System>& lap) {
+double cancellation(const System& system, const Iterate<System>& iterate) {
   if constexpr (requires(typename System::Quadrature totals) { system.cancellation(totals, totals); }) {
     typename System::Quadrature totals{};
-    for (const Step<System>& step : lap.steps) {
+    for (const Step<System>& step : iterate.steps) {
       for (std::size_t q = 0; q < totals.size(); ++q) totals[q] += step.dq[q];
     }
-    return system.cancellation(totals, lap.integral_scale);
+    return system.cancellation(totals, iterate.integral_scale);
   } else {
     return 1.0;
   }
@@ -167,91 +171,93 @@ double cancellation(const System& system, const Lap<System>& lap) {
 
 }  // namespace detail
 
-/// Finds a periodic orbit from the state `guess` at x = 0. On success `lap` holds the orbit's lap with its integrals.
-/// `system.cast<Jet<states>>()` must give it dual numbers for Newton steps and stability. Never throws.
+/// Finds a periodic orbit from the state `guess` at x = 0. On success `iterate` holds the orbit's iterate with its
+/// integrals. `system.cast<Jet<states>>()` must give it dual numbers for Newton steps and stability. Never throws.
 template <class System>
 PeriodicSummary solve_periodic(const System& system, const typename System::State& guess,
-                               const PeriodicOptions& options, Lap<System>& lap) {
+                               const PeriodicOptions& options, Iterate<System>& iterate) {
   using State = typename System::State;
   constexpr std::size_t n = std::tuple_size_v<State>;
   constexpr double slow_contraction = 0.1;
   constexpr double tightest = 2e-14, rounding = 3e-15;
-  // Local errors add up over a lap: this leaves the metrics of all but the oddest vehicles within the tolerance.
+  // Local errors add up over an iterate: this leaves the metrics of all but the oddest vehicles within the tolerance.
   const double fine = std::clamp(0.15 * options.tolerance, 1e-13, 1e-3);
   double closed = 0.1 * options.tolerance;
 
   PeriodicSummary summary;
-  const auto failed = [&](LapStatus status) {
-    summary.stop = lap.stop;
-    summary.status = status == LapStatus::barrier ? PeriodicStatus::barrier : PeriodicStatus::too_many_steps;
-    summary.message = status == LapStatus::barrier ? "a lap ran into the edge of the admissible region"
-                                                   : "a lap needs more steps than allowed";
+  const auto failed = [&](IterateStatus status) {
+    summary.stop = iterate.stop;
+    summary.status = status == IterateStatus::barrier ? PeriodicStatus::barrier : PeriodicStatus::too_many_steps;
+    summary.message = status == IterateStatus::barrier ? "an iterate ran into the edge of the admissible region"
+                                                       : "an iterate needs more steps than allowed";
     return summary;
   };
-  lap.switches.clear();
-  lap.largest_step = 0.0;
+  iterate.switches.clear();
+  iterate.largest_step = 0.0;
 
   std::array<double, 3> tolerances = {std::max(fine, 1e-2), std::max(10.0 * fine, 1e-7), fine};
   State y = guess;
   double residual = 1.0, before_tolerance = tolerances[0];
-  // Errors of a lap are left in the orbit 1 / (1 - multiplier) times: unless laps have been seen to contract quickly,
-  // the lap map's derivative tells.
+  // Errors of an iterate are left in the orbit 1 / (1 - multiplier) times: unless iterates have been seen to contract
+  // quickly, the return map's derivative tells.
   bool contracts = false, moved_by_newton = true, known = false;
   double amplification = 1.0, cancellation = 1.0, off = 1.0;
   int repeats = 0;
-  for (std::size_t level = options.near ? 1 : 0; summary.laps < options.max_laps;) {
-    // Coarse laps need only the switches that bend the solution itself.
+  for (std::size_t level = options.near ? 1 : 0; summary.iterates < options.max_iterates;) {
+    // Coarse iterates need only the switches that bend the solution itself.
     const bool is_fine = level + 1 == tolerances.size();
-    const LapOptions lap_options = {.method = options.method,
-                                    .tolerance = tolerances[level],
-                                    .max_steps = level == 0 ? options.max_steps : 10 * options.max_steps,
-                                    .switches = is_fine ? 1000 : System::state_switches};
+    const IterateOptions iterate_options = {.method = options.method,
+                                            .tolerance = tolerances[level],
+                                            .max_steps = level == 0 ? options.max_steps : 10 * options.max_steps,
+                                            .switches = is_fine ? 1000 : System::state_switches};
     if (is_fine) {
-      run_lap<true>(system, y, lap_options, lap);
+      run_iterate<true>(system, y, iterate_options, iterate);
     } else {
-      run_lap<false>(system, y, lap_options, lap);
+      run_iterate<false>(system, y, iterate_options, iterate);
     }
-    ++summary.laps;
-    if (lap.status != LapStatus::complete) return failed(lap.status);
+    ++summary.iterates;
+    if (iterate.status != IterateStatus::complete) return failed(iterate.status);
     const double before = residual;
-    residual = detail::scaled_distance(system, lap.end, y);
+    residual = detail::scaled_distance(system, iterate.end, y);
     if (!std::isfinite(residual)) break;
     if (!moved_by_newton && before > 3.0 * before_tolerance)
       contracts = contracts || residual < slow_contraction * before;
     moved_by_newton = false;
     const State start = y;
-    y = lap.end;
+    y = iterate.end;
 
     const bool slow = detail::contracts_slowly<System>() || amplification > 1.0 + slow_contraction;
-    // A fine lap closes by merging if its start was close enough for its switches to stay where they are.
+    // A fine iterate closes by repeating its mesh if its start was close enough for its switches to stay where they
+    // are.
     const double near = (slow ? 3e-3 : 0.1) * std::sqrt(options.tolerance);
     off = residual;
     bool grazes = false;
-    const double position_error = 0.7 * detail::switch_tolerance(lap_options.tolerance);
-    std::optional<detail::LapInverse<System>> inverse;
+    const double position_error = 0.7 * detail::switch_tolerance(iterate_options.tolerance);
+    std::optional<detail::IterateInverse<System>> inverse;
     if (is_fine && slow) {
-      inverse.emplace(system, lap);
-      ++summary.laps;
+      inverse.emplace(system, iterate);
+      ++summary.iterates;
       amplification = inverse->amplification();
     }
     if (inverse && inverse->isolated()) {
       const auto move_on = [&] {
-        State moved = lap.end;
-        const bool good = inverse->move(system, lap, moved);
-        off = detail::scaled_distance(system, lap.steps.front().y, moved);
+        State moved = iterate.end;
+        const bool good = inverse->move(system, iterate, moved);
+        off = detail::scaled_distance(system, iterate.steps.front().y, moved);
         return std::pair{good, moved};
       };
       auto [good, moved] = move_on();
       if (good && off < near) {
         for (double previous = 1.0; good && off > closed && off < 0.5 * previous;) {
           previous = off;
-          lap.end = moved;
+          iterate.end = moved;
           ++summary.newton_steps;
-          residual = detail::merge_lap(system, lap, std::max(closed / amplification, rounding), position_error, grazes);
-          ++summary.laps;
+          residual = detail::close_on_mesh(system, iterate, std::max(closed / amplification, rounding), position_error,
+                                           grazes);
+          ++summary.iterates;
           std::tie(good, moved) = move_on();
         }
-        // The last digits of a lap are rounding, whatever that makes of the orbit.
+        // The last digits of an iterate are rounding, whatever that makes of the orbit.
         if (off <= closed || residual <= 5.0 * rounding) summary.status = PeriodicStatus::converged;
       }
       if (summary.status != PeriodicStatus::converged && good) {
@@ -263,64 +269,64 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
     } else if (is_fine && residual < near) {
       for (double previous = 1.0; residual > closed && residual < 0.5 * previous;) {
         previous = residual;
-        residual = detail::merge_lap(system, lap, closed, position_error, grazes);
-        ++summary.laps;
+        residual = detail::close_on_mesh(system, iterate, closed, position_error, grazes);
+        ++summary.iterates;
       }
       off = residual;
       if (residual <= closed) summary.status = PeriodicStatus::converged;
-      y = lap.end;
+      y = iterate.end;
     }
     if (summary.status == PeriodicStatus::converged && grazes && repeats++ < 2) {
       summary.status = PeriodicStatus::not_converged;
-      y = lap.steps.front().y;
+      y = iterate.steps.front().y;
       continue;
     }
     if (summary.status == PeriodicStatus::converged) {
-      const double needed = detail::cancellation(system, lap);
+      const double needed = detail::cancellation(system, iterate);
       if (!(needed > 1.5 * cancellation) || tolerances[2] <= tightest) break;
       // Metrics that are small differences of what was controlled: once more, with tighter steps.
       cancellation = needed;
       closed = 0.1 * options.tolerance / cancellation;
       summary.status = PeriodicStatus::not_converged;
       tolerances[2] = std::max(fine / (amplification * cancellation), tightest);
-      y = lap.steps.front().y;
+      y = iterate.steps.front().y;
       continue;
     }
 
-    // What the coarser of the two laps got wrong says nothing about the contraction.
-    const bool stalls = summary.laps > 1 && residual > slow_contraction * before && residual > before_tolerance;
-    before_tolerance = lap_options.tolerance;
+    // What the coarser of the two iterates got wrong says nothing about the contraction.
+    const bool stalls = summary.iterates > 1 && residual > slow_contraction * before && residual > before_tolerance;
+    before_tolerance = iterate_options.tolerance;
     const bool closes = residual < 0.1;
     const bool ask = level + 2 == tolerances.size() && closes && !contracts && !known;
     if ((stalls && residual < 0.5) || ask) {
-      const detail::LapInverse<System> of_lap(system, lap);
-      ++summary.laps;
+      const detail::IterateInverse<System> of_iterate(system, iterate);
+      ++summary.iterates;
       known = ask;
       if (ask) {
-        amplification = of_lap.amplification();
+        amplification = of_iterate.amplification();
         tolerances[2] = std::max(fine / amplification, tightest);
       }
-      if ((stalls || amplification > 1.0 + slow_contraction) && of_lap.move(system, lap, y)) {
+      if ((stalls || amplification > 1.0 + slow_contraction) && of_iterate.move(system, iterate, y)) {
         ++summary.newton_steps;
         moved_by_newton = true;
-        // The fine lap may start from here only if the step was small.
+        // The fine iterate may start from here only if the step was small.
         if (ask && detail::scaled_distance(system, start, y) > 0.1) continue;
       }
     }
     if (!is_fine && closes) ++level;
   }
   summary.residual = off;
-  summary.steps = int(lap.steps.size());
+  summary.steps = int(iterate.steps.size());
   if (summary.status != PeriodicStatus::converged) {
-    summary.message = "laps did not close";
+    summary.message = "iterates did not close";
     return summary;
   }
   summary.message = "orbit closed";
   // Estimates of single steps are pessimistic.
-  summary.error_estimate = 0.4 * amplification * cancellation * lap.error_sum + cancellation * off;
+  summary.error_estimate = 0.4 * amplification * cancellation * iterate.error_sum + cancellation * off;
   if (options.stability) {
     summary.floquet_multiplier_max =
-        monodromy_product(system, system.template cast<Jet<int(n)>>(), lap).spectral_radius();
+        monodromy_product(system, system.template cast<Jet<int(n)>>(), iterate).spectral_radius();
   }
   return summary;
 }

@@ -114,7 +114,7 @@ struct FitFinding {
     left_free,           ///< a direction of which the data know nothing, or less than its own size
     known_roughly,       ///< a direction that the data fix to no better than a fifth
     determined,          ///< the parameters
-    most_alike,          ///< of those determined the two with the strongest correlation, the number
+    most_correlated,     ///< of those determined the two with the strongest correlation, the number
     determined_by,       ///< the condition alone determines the parameters
     narrowed_by,         ///< without the condition the intervals would be wider, by the numbers' factors
     product_of_friction  ///< the parameter is a product that no such measurement takes apart

@@ -37,7 +37,7 @@ struct RunResult {
   FlappingStatus status = FlappingStatus::stalled;
   std::string detail;  ///< one sentence with the evidence
   /// False: no steady state was shown within the solvers' limits; the status is undecided, or the metrics are averages
-  /// over laps that still differ.
+  /// over cycles that still differ.
   bool settled = true;
   bool simulated_cycle = false;  ///< Method::orbit found flapping in time only: the metrics are the simulated cycle's
   Metrics<double> metrics;       ///< all absent unless flapping

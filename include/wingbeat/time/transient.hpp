@@ -1,6 +1,6 @@
 // Start-up in the time domain: from rest (or any state) to steady flapping, standstill or jam;
 // model.md sections 2, 'Not flapping', and 6. Of a direct drive, read shaft for crank: its angle is the stroke angle,
-// and a lap is a period of the supply. By SUNDIALS CVODE it is independent of
+// and a cycle is a period of the supply. By SUNDIALS CVODE it is independent of
 // the periodic-orbit solver, so that each can check the other; by the project's own steps it needs nothing.
 #pragma once
 
@@ -27,7 +27,7 @@ enum class TimeIntegrator {
 struct TransientOptions {
   double tolerance = 1e-6;  ///< wanted relative accuracy of the metrics of steady flapping [1], 1e-11 to 1e-2
   double max_time = 0.0;    ///< give up after this time [s]; 0: chosen from the vehicle's own time scales
-  int max_laps = 5000;      ///< give up after this many revolutions
+  int max_cycles = 5000;    ///< give up after this many revolutions
   /// Give up after this many integration steps, a microsecond or two each: weakly damped drives with small inductances
   /// take more than a million.
   long max_steps = 3000000;
@@ -41,7 +41,7 @@ struct TransientOptions {
 
   std::optional<Supply<double>> supply;  ///< replaces the constant vehicle.voltage; not for a direct drive
   int cycle_rows = 0;  ///< direct drive: instants of the last period to return, both ends included; 0: none
-  /// False, for a slider-crank under constant voltage: ends as soon as laps are within 1e-4 of where they settle, and
+  /// False, for a slider-crank under constant voltage: ends as soon as cycles are within 1e-4 of where they settle, and
   /// gives no metrics.
   bool metrics = true;
   Reporting reporting;
@@ -68,15 +68,15 @@ struct TransientSample {
 
 struct TransientResult {
   FlappingStatus status = FlappingStatus::undecided;
-  /// The decision is final. False: time, laps or steps ran out first and the status is undecided; or it flaps, but laps
-  /// share no period with the supply.
+  /// The decision is final. False: time, cycles or steps ran out first and the status is undecided; or it flaps, but
+  /// cycles share no period with the supply.
   bool settled = false;
   std::string detail;  ///< one sentence with the evidence
 
   double end_time = 0.0;         ///< time simulated [s]
   double end_crank_angle = 0.0;  ///< theta then, not wrapped [rad]
-  int laps = 0;                  ///< times that theta passed another multiple of 2 pi, forwards
-  /// [s] Flapping: start of the first lap from which on every lap's frequency is within 1 % of the last one's.
+  int cycles = 0;                ///< times that theta passed another multiple of 2 pi, forwards
+  /// [s] Flapping: start of the first cycle from which on every cycle's frequency is within 1 % of the last one's.
   /// Otherwise the time at which the crank came to rest for good or jammed.
   double time_to_steady = 0.0;
   double inrush_current = 0.0;       ///< highest current of the whole start-up [A]
@@ -86,18 +86,18 @@ struct TransientResult {
   std::optional<double> torque_margin;  ///< mu r_e |F_s| + T_c - |K v/(R_a + R_i) - F_s h| there [N m]
   std::optional<double> jam_angle;      ///< theta where the equations lose their unique solution, 0 to 2 pi [rad]
 
-  double crank_speed = 0.0;                ///< omega at theta = 0 (mod 2 pi) at the end of the last lap [rad/s]
+  double crank_speed = 0.0;                ///< omega at theta = 0 (mod 2 pi) at the end of the last cycle [rad/s]
   double current = 0.0;                    ///< i there [A]: with crank_speed the state of the periodic orbit
   double stroke_angle = 0.0;               ///< direct drive: beta there [rad]
-  std::optional<Metrics<double>> metrics;  ///< of the last lap; floquet_multiplier_max is `absent`
-  CycleIntegrals<double> integrals{};      ///< behind the metrics, per lap
-  int averaged_laps = 0;  ///< laps behind the metrics: 1, or several where the supply has no period in common
+  std::optional<Metrics<double>> metrics;  ///< of the last cycle; floquet_multiplier_max is `absent`
+  CycleIntegrals<double> integrals{};      ///< behind the metrics, per cycle
+  int averaged_cycles = 0;  ///< cycles behind the metrics: 1, or several where the supply has no period in common
   /// Ripple of the current at the switching frequency of a pwm supply, peak to peak, averaged over the switching
   /// periods behind the metrics [A]: how far the current at a switching off lies above the straight line between the
   /// currents at the switchings on before and after it, which leaves the swing within a flapping cycle out.
   std::optional<double> current_ripple = {};
-  double closure = 0.0;      ///< estimate of how far the states behind the metrics are from where they settle, relative
-  double lap_scatter = 0.0;  ///< largest relative deviation of a lap's duration from their mean, over those laps
+  double closure = 0.0;  ///< estimate of how far the states behind the metrics are from where they settle, relative
+  double cycle_scatter = 0.0;  ///< largest relative deviation of a cycle's duration from their mean, over those cycles
 
   std::vector<TransientEvent> events;
   std::vector<TransientSample> samples;

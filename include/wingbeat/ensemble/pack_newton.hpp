@@ -1,20 +1,20 @@
-// Newton's method along the lap on SIMD lanes: the part of LaneOrbit that places nodes on the segments and makes the
-// trajectory satisfy the equations there.
+// Newton's method along the iterate on SIMD lanes: the part of PackOrbit that places nodes on the segments and makes
+// the trajectory satisfy the equations there.
 #pragma once
 
-#include "wingbeat/ensemble/lane_orbit.hpp"
+#include "wingbeat/ensemble/pack_orbit.hpp"
 
 namespace wingbeat {
 
 /// Nodes on segments that end at the switches as march() left them, with its trajectory and derivatives interpolated
 /// there.
 template <class L, int N>
-void LaneOrbit<L, N>::place_nodes() {
+void PackOrbit<L, N>::place_nodes() {
   for (std::size_t row = 0; row < N; ++row) {
     for (std::size_t column = 0; column < N; ++column) monodromy_[row][column] = L(row == column ? 1.0 : 0.0);
   }
   for (int half = 0; half < 2; ++half) {
-    const System system = half_lap(half);
+    const System system = half_cycle(half);
     const HalfMesh<L> before = mesh_[std::size_t(half)];
     build_mesh(half);
     const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
@@ -70,9 +70,9 @@ void LaneOrbit<L, N>::place_nodes() {
 }
 
 /// What the nodes of a segment would each move by if the node before stood still: its rates' integral says so. `end` is
-/// what the node before the segment, and afterwards its last one, moves by if the lap's start stands still.
+/// what the node before the segment, and afterwards its last one, moves by if the iterate's start stands still.
 template <class L, int N>
-void LaneOrbit<L, N>::propose(std::size_t base, const L& h, State& end) {
+void PackOrbit<L, N>::propose(std::size_t base, const L& h, State& end) {
   const std::size_t intervals = std::size_t(rule_.intervals);
   for (std::size_t n = 0; n < N; ++n) end[n] = end[n] + correction_[base][n];
   for (std::size_t m = 1; m <= intervals; ++m) {
@@ -98,14 +98,14 @@ void LaneOrbit<L, N>::propose(std::size_t base, const L& h, State& end) {
   }
 }
 
-/// Newton's step from the proposed corrections, along the lap, which is to end where it started; `end` as propose()
+/// Newton's step from the proposed corrections, along the iterate, which is to end where it started; `end` as propose()
 /// leaves it.
 template <class L, int N>
-void LaneOrbit<L, N>::correct(State end) {
+void PackOrbit<L, N>::correct(State end) {
   const std::size_t per_segment = std::size_t(rule_.intervals + 1), nodes = first_node(2, 0);
   State by;
   for (std::size_t n = 0; n < N; ++n) by[n] = end[n] + trajectory_[nodes - 1][n] - trajectory_[0][n];
-  close_lap(by);
+  close_iterate(by);
   L sum(0.0);
   slowest_ = trajectory_[0][0];
   const L per_speed = inverse_of(slowest_), per_current = inverse_of(current_scale_);
@@ -140,7 +140,7 @@ void LaneOrbit<L, N>::correct(State end) {
 /// error left behind, up to O(d^3).
 template <class L, int N>
 template <bool last>
-void LaneOrbit<L, N>::newton_iteration() {
+void PackOrbit<L, N>::newton_iteration() {
   const std::size_t intervals = std::size_t(rule_.intervals);
   solver::Rates<System> rates;
   State end;
@@ -157,7 +157,7 @@ void LaneOrbit<L, N>::newton_iteration() {
     switch_offset_ = layer_ = L(0.0);
   }
   for (int half = 0; half < 2; ++half) {
-    System system = half_lap(half);
+    System system = half_cycle(half);
     const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
     L h_before(0.0);
     for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
@@ -174,7 +174,7 @@ void LaneOrbit<L, N>::newton_iteration() {
           highest = max(highest, abs(rates.switches[0]));
           if (m > 0 && m < intervals) overlooked = max(overlooked, -(rates.switches[0] * sign));
         } else {
-          evaluate<false>(system, place_of(base + m), trajectory_[base + m], sign, rates);
+          evaluate<false>(system, configuration_of(base + m), trajectory_[base + m], sign, rates);
         }
         rates_[base + m] = rates.dy;
         force_[base + m] = rates.switches[0];
@@ -261,7 +261,7 @@ void LaneOrbit<L, N>::newton_iteration() {
 
 /// Adds the last coefficients of a segment's rates of speed and integrals.
 template <class L, int N>
-void LaneOrbit<L, N>::add_tails(const std::array<std::array<L, nodes_per_segment>, 4>& controlled, std::size_t base,
+void PackOrbit<L, N>::add_tails(const std::array<std::array<L, nodes_per_segment>, 4>& controlled, std::size_t base,
                                 const L& h) {
   const std::size_t n = std::size_t(rule_.intervals);
   const L per_omega = inverse_of(trajectory_[base][0]);
@@ -278,7 +278,7 @@ void LaneOrbit<L, N>::add_tails(const std::array<std::array<L, nodes_per_segment
 
 /// The observables wanted at a state, with the motion there.
 template <class L, int N>
-void LaneOrbit<L, N>::read(const System& system, const L& u, const State& y, const L& force, const Motion<L>& m,
+void PackOrbit<L, N>::read(const System& system, const L& u, const State& y, const L& force, const Motion<L>& m,
                            const State& dy, const L& drop_slope, const std::array<bool, quantity_count>& wanted,
                            std::array<Observable<L>, quantity_count>& out) const {
   const auto is_wanted = [&](Quantity q) { return wanted[std::size_t(q)]; };
@@ -322,8 +322,8 @@ void LaneOrbit<L, N>::read(const System& system, const L& u, const State& y, con
 
 /// Rates and observables at a node.
 template <class L, int N>
-void LaneOrbit<L, N>::visit_node(const System& system, std::size_t node, const L& force, solver::Rates<System>& rates) {
-  const Motion<L> motion = system.motion(place_of(node), trajectory_[node], force);
+void PackOrbit<L, N>::visit_node(const System& system, std::size_t node, const L& force, solver::Rates<System>& rates) {
+  const Motion<L> motion = system.motion(configuration_of(node), trajectory_[node], force);
   rates = system.template rates_of<true>(motion, trajectory_[node], force);
   if (!reads_) return;
   std::array<bool, quantity_count> wanted = wanted_;

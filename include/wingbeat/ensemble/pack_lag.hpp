@@ -1,15 +1,15 @@
-// The current behind a small inductance on SIMD lanes: the part of LaneOrbit in which it is no state, but lags behind
+// The current behind a small inductance on SIMD lanes: the part of PackOrbit in which it is no state, but lags behind
 // the speed. To first order i = (v - K omega - L_a di/dt) / R, di/dt being that of the trajectory found before.
 #pragma once
 
-#include "wingbeat/ensemble/lane_orbit.hpp"
+#include "wingbeat/ensemble/pack_orbit.hpp"
 
 namespace wingbeat {
 
 /// The inductance's voltage at the nodes from the trajectory of the current that it leaves, twice: an iteration gains
 /// the ratio of its time constant to that of the trajectory.
 template <class L, int N>
-void LaneOrbit<L, N>::lag_current() {
+void PackOrbit<L, N>::lag_current() {
   if constexpr (N == 1) {
     const std::size_t intervals = std::size_t(rule_.intervals), nodes = first_node(2, 0);
     const L inductance = vehicle_.motor.armature_inductance;
@@ -42,11 +42,11 @@ void LaneOrbit<L, N>::lag_current() {
 /// Where the trajectory bends, at a sign change of the rod force, the current goes on from what it was before and has
 /// relaxed within a time constant: what that adds to state and integrals, up to the square of the angle it takes.
 template <class L, int N>
-auto LaneOrbit<L, N>::relaxation(System system, std::size_t base, const L& force) const -> solver::Rates<System> {
+auto PackOrbit<L, N>::relaxation(System system, std::size_t base, const L& force) const -> solver::Rates<System> {
   solver::Rates<System> after, before;
-  evaluate<true>(system, place_of(base), trajectory_[base], force, after);
+  evaluate<true>(system, configuration_of(base), trajectory_[base], force, after);
   system.drop = drop_[base - 1];
-  evaluate<true>(system, place_of(base), trajectory_[base], force, before);
+  evaluate<true>(system, configuration_of(base), trajectory_[base], force, before);
   const L angle = vehicle_.motor.armature_inductance * trajectory_[base][0] * inverse_of(circuit_resistance(vehicle_));
   for (std::size_t n = 0; n < N; ++n) after.dy[n] = angle * (before.dy[n] - after.dy[n]);
   for (std::size_t q = 0; q < after.dq.size(); ++q) after.dq[q] = angle * (before.dq[q] - after.dq[q]);
@@ -56,14 +56,14 @@ auto LaneOrbit<L, N>::relaxation(System system, std::size_t base, const L& force
 /// What relaxation() leaves out, relative: what grows with the angle of a time constant, and with what the speed
 /// changes by meanwhile. The factor is measured, on the coreless motors of tests/study/test_ensemble.cpp.
 template <class L, int N>
-L LaneOrbit<L, N>::lag_left_out() const {
+L PackOrbit<L, N>::lag_left_out() const {
   const L angle = vehicle_.motor.armature_inductance * no_load_ * inverse_of(circuit_resistance(vehicle_));
   return L(20.0) * layer_ * (angle + electrical_to_mechanical_time());
 }
 
 /// Ratio of the motor's time constants, (L_a / R) / (J R / K^2).
 template <class L, int N>
-L LaneOrbit<L, N>::electrical_to_mechanical_time() const {
+L PackOrbit<L, N>::electrical_to_mechanical_time() const {
   const Motor<L>& m = vehicle_.motor;
   return m.armature_inductance * square(L(m.torque_constant * inverse_of(circuit_resistance(vehicle_)))) *
          inverse_of(m.inertia);
@@ -71,7 +71,7 @@ L LaneOrbit<L, N>::electrical_to_mechanical_time() const {
 
 /// Takes the rates below and above a node's speed again with what the inductance makes of the change of acceleration.
 template <class L, int N>
-void LaneOrbit<L, N>::lag_with(System system, std::size_t node, const L& by, const L& force,
+void PackOrbit<L, N>::lag_with(System system, std::size_t node, const L& by, const L& force,
                                solver::Rates<System>& below, solver::Rates<System>& above) const {
   const L per_acceleration =
       vehicle_.motor.armature_inductance * vehicle_.motor.torque_constant * inverse_of(circuit_resistance(vehicle_));
@@ -82,7 +82,7 @@ void LaneOrbit<L, N>::lag_with(System system, std::size_t node, const L& by, con
     moved[0] = rates == &below ? y[0] - by : y[0] + by;
     for (int repeat = 0; repeat < 2; ++repeat) {
       system.drop = drop_[node] - per_acceleration * (rates->dy[0] * moved[0] - acceleration);
-      evaluate<false>(system, place_of(node), moved, force, *rates);
+      evaluate<false>(system, configuration_of(node), moved, force, *rates);
     }
   }
 }

@@ -1,4 +1,5 @@
-// What a lap over the period of a piecewise smooth system leaves: its steps, where branches ended, and how it went.
+// What an iterate over the period of a piecewise smooth system leaves: its steps, where branches ended, and how it
+// went.
 #pragma once
 
 #include <vector>
@@ -14,7 +15,7 @@ struct FixedNode {
   std::size_t sign;
 };
 
-/// A sign change that was located in a lap, or is expected from the lap before.
+/// A sign change that was located in an iterate, or is expected from the iterate before.
 struct SwitchNode {
   double x;
   std::size_t sign;
@@ -33,30 +34,30 @@ struct Step {
 
 enum class Method {
   explicit_pair,  ///< explicit_step, order 8
-  radau           ///< implicit_step, order 9, for stiff laps
+  radau           ///< implicit_step, order 9, for stiff iterates
 };
 
-enum class LapStatus {
+enum class IterateStatus {
   complete,
   barrier,        ///< the state reached the edge of the admissible region
   too_many_steps  ///< the step limit was reached (a stiff system, for an explicit method)
 };
 
 template <class System>
-struct Lap {
+struct Iterate {
   std::vector<Step<System>> steps;
-  std::vector<SwitchNode> switches;  ///< located; on entry of run_lap, the expected ones
+  std::vector<SwitchNode> switches;  ///< located; on entry of run_iterate, the expected ones
   typename System::State end;
-  LapStatus status = LapStatus::complete;
+  IterateStatus status = IterateStatus::complete;
   Method method = Method::explicit_pair;
-  double stop = 0.0;                             ///< where the lap ended [same unit as the period]
-  double largest_step = 0.0;                     ///< first guess for the next lap's steps
+  double stop = 0.0;                             ///< where the iterate ended [same unit as the period]
+  double largest_step = 0.0;                     ///< first guess for the next iterate's steps
   double error_sum = 0.0;                        ///< of the steps' estimated errors, relative
   typename System::Switches switch_scale{};      ///< largest magnitudes of the switches
   typename System::Quadrature integral_scale{};  ///< what the integrals' errors were limited by a share of
 };
 
-struct LapOptions {
+struct IterateOptions {
   Method method = Method::explicit_pair;
   double tolerance = 1e-6;  ///< of each step, relative to System::error_scale
   int max_steps = 2000;

@@ -1,35 +1,35 @@
 // The orbits of many vehicles at once, one per lane, by collocation on meshes of fixed size.
 //
-// A lap runs from the lower dead centre through two half laps, on each of which the stroke velocity keeps its sign. The
-// half laps' segments end where the rod force changes sign, which differs from lane to lane while the number of
-// segments does not. Coarse laps find where; a lap with one step per segment gives a first trajectory and its
-// derivatives; Newton's method makes it satisfy the equations at the Lobatto points of every segment, and the lap its
-// own end. Everything is computed lane by lane without looking at the neighbours, so that a vehicle gets the same bits
-// in any company.
+// An iterate runs from the lower dead centre through two half cycles, on each of which the stroke velocity keeps its
+// sign. The half cycles' segments end where the rod force changes sign, which differs from lane to lane while the
+// number of segments does not. Coarse iterates find where; an iterate with one step per segment gives a first
+// trajectory and its derivatives; Newton's method makes it satisfy the equations at the Lobatto points of every
+// segment, and the iterate its own end. Everything is computed lane by lane without looking at the neighbours, so that
+// a vehicle gets the same bits in any company.
 //
-// lane_start.hpp holds the way to the first trajectory, lane_newton.hpp Newton's method, lane_lag.hpp the current
-// behind a small inductance, lane_peaks.hpp the search for extremes, lane_multiplier.hpp the lap map's derivative.
+// pack_start.hpp holds the way to the first trajectory, pack_newton.hpp Newton's method, pack_lag.hpp the current
+// behind a small inductance, pack_peaks.hpp the search for extremes, pack_multiplier.hpp the return map's derivative.
 #pragma once
 
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "wingbeat/core/lanes.hpp"
 #include "wingbeat/core/math.hpp"
+#include "wingbeat/core/pack.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
-#include "wingbeat/ensemble/half_lap.hpp"
-#include "wingbeat/ensemble/lane_blocks.hpp"
+#include "wingbeat/ensemble/half_cycle.hpp"
+#include "wingbeat/ensemble/pack_blocks.hpp"
 #include "wingbeat/solve/collocation.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
 
 inline constexpr int coarse_half_steps = 8;
-inline constexpr int max_energy_extremes = 5;  ///< of the energy stored in wings and springs, within half a lap
+inline constexpr int max_energy_extremes = 5;  ///< of the energy stored in wings and springs, within half an iterate
 
-/// Where the rod force changes sign within half a lap.
+/// Where the rod force changes sign within half an iterate.
 template <class L>
 struct ForceSwitches {
   std::array<L, max_force_switches> at;  ///< [rad], growing; pi/2 beyond the count
@@ -37,7 +37,7 @@ struct ForceSwitches {
   L first_sign;  ///< sign of the rod force at the start
 };
 
-/// The segments of half a lap.
+/// The segments of half an iterate.
 template <class L>
 struct HalfMesh {
   std::array<L, max_half_segments + 1> u;
@@ -54,7 +54,7 @@ struct Observable {
 /// A subinterval between two nodes in which a quantity rises from its start and falls towards its end.
 template <class L>
 struct PeakBracket {
-  L segment;          ///< of the lap, counted from 0
+  L segment;          ///< of the iterate, counted from 0
   L x0, v0, d0;       ///< start: distance from the segment's start [rad], value, slope
   L x1, v1, d1;       ///< end
   L rises_and_falls;  ///< 1, or 0 where the larger end is all there is
@@ -65,23 +65,23 @@ struct PeakBracket {
 template <class L, int N>
 struct SegmentTrajectory {
   L half, u, length, force;
-  std::array<std::array<L, N>, solver::CollocationRule::most + 1> legendre;  ///< coefficients of the state
-  std::array<L, solver::CollocationRule::most + 1> drop;                     ///< and of HalfLap::drop
+  std::array<std::array<L, N>, solver::CollocationRule::max_points + 1> legendre;  ///< coefficients of the state
+  std::array<L, solver::CollocationRule::max_points + 1> drop;                     ///< and of HalfCycle::drop
 };
 
 template <class L, int N>
-class LaneOrbit {
+class PackOrbit {
   using State = std::array<L, N>;
   using Mask = wingbeat::Mask<L>;
-  using System = HalfLap<L, N>;
+  using System = HalfCycle<L, N>;
   using Matrix = std::array<std::array<L, N>, N>;
   static constexpr double quarter = slider_crank_dead_centre;
-  static constexpr std::size_t nodes_per_segment = solver::CollocationRule::most;
+  static constexpr std::size_t nodes_per_segment = solver::CollocationRule::max_points;
   static constexpr std::size_t max_nodes = 2 * max_half_segments * nodes_per_segment;
   static constexpr int coarse_samples = 2 * coarse_half_steps + 1;
 
  public:
-  LaneOrbit(const Vehicle<L>& vehicle, const LaneSettings& settings)
+  PackOrbit(const Vehicle<L>& vehicle, const PackSettings& settings)
       : vehicle_(vehicle),
         settings_(settings),
         rule_(solver::collocation_rule(settings.intervals)),
@@ -92,7 +92,7 @@ class LaneOrbit {
     wanted_ = settings.wanted;
     for (const bool wanted : wanted_) reads_ = reads_ || wanted;
     geometry_ = geometry_of(vehicle.transmission.slider_crank);
-    lags_ = N == 1 && settings.current == LaneCurrent::lagging;
+    lags_ = N == 1 && settings.current == PackCurrent::lagging;
     if (N == 2 || lags_) per_inductance_ = L(1.0) / vehicle.motor.armature_inductance;
   }
 
@@ -104,8 +104,8 @@ class LaneOrbit {
   const L& error_estimate() const { return error_estimate_; }
   const Mask& unresolved() const { return unresolved_; }
   const Mask& locked() const { return locked_; }
-  /// Calls visit(lanes, place), place(LapStart&) being where the number stands there, for all of where the next lap
-  /// starts: to set it before solve(), or to keep it afterwards.
+  /// Calls visit(lanes, place), place(IterateStart&) being where the number stands there, for all of where the next
+  /// iterate starts: to set it before solve(), or to keep it afterwards.
   template <class Visit>
   void visit_start(const Visit& visit) {
     for (std::size_t n = 0; n < N; ++n) visit(y_[n], [n](auto& start) -> double& { return start.state[n]; });
@@ -123,7 +123,7 @@ class LaneOrbit {
   }
 
  private:
-  System half_lap(int half) const { return {vehicle_, geometry_, per_inductance_, L(half == 0 ? 1.0 : -1.0)}; }
+  System half_cycle(int half) const { return {vehicle_, geometry_, per_inductance_, L(half == 0 ? 1.0 : -1.0)}; }
 
   [[gnu::noinline, gnu::flatten]] void tabulate();
   [[gnu::noinline, gnu::flatten]] void assess_statics();
@@ -132,7 +132,7 @@ class LaneOrbit {
   [[gnu::noinline]] void replace_stiff(const System& system, const L& u, const L& h, const State& y, State& end,
                                        L& force_in_middle, L& force_at_end) const;
   template <bool last>
-  [[gnu::noinline, gnu::flatten]] void coarse_lap();
+  [[gnu::noinline, gnu::flatten]] void coarse_iterate();
   [[gnu::noinline, gnu::flatten]] L find_switches(int half, const L* u, const L* force, int count);
   [[gnu::noinline, gnu::flatten]] void build_mesh(int half);
   [[gnu::noinline]] void march();
@@ -171,8 +171,8 @@ class LaneOrbit {
                                   solver::Rates<System>& below, solver::Rates<System>& above) const;
   template <class RatesAt>
   Matrix derivatives(const State& y, const State& rates, const RatesAt& rates_at) const;
-  [[gnu::noinline]] Matrix jacobian_at(const System& system, const Place<L>& place, const State& y, const State& rates,
-                                       const L& force) const;
+  [[gnu::noinline]] Matrix jacobian_at(const System& system, const Configuration<L>& place, const State& y,
+                                       const State& rates, const L& force) const;
   static Mask is_stiff(const Matrix& jacobian, const L& h);
   [[gnu::noinline, gnu::flatten]] static void find_rates(const System& system, const L& u, const State& y, State& rates,
                                                          L& force) {
@@ -185,13 +185,14 @@ class LaneOrbit {
   static void propagator(const Matrix& jacobian, const L& h, Matrix& out);
   static void append(const Matrix& step, Matrix& product);
   static L largest_modulus(const Matrix& M);
-  void close_lap(State& off) const;
+  void close_iterate(State& off) const;
 
-  [[gnu::noinline, gnu::flatten]] static void find_place(const System& system, const L& u, Place<L>& place) {
+  [[gnu::noinline, gnu::flatten]] static void find_configuration(const System& system, const L& u,
+                                                                 Configuration<L>& place) {
     place = system.place(u);
   }
   /// Segments that meet share the place of their common node.
-  const Place<L>& place_of(std::size_t node) const {
+  const Configuration<L>& configuration_of(std::size_t node) const {
     return places_[node > 0 && node % std::size_t(rule_.intervals + 1) == 0 && node != first_node(1, 0) ? node - 1
                                                                                                         : node];
   }
@@ -200,14 +201,14 @@ class LaneOrbit {
   }
 
   const Vehicle<L>& vehicle_;
-  const LaneSettings& settings_;
+  const PackSettings& settings_;
   const solver::CollocationRule& rule_;
-  int segments_;  ///< of half a lap
+  int segments_;  ///< of half an iterate
   CrankGeometry<L> geometry_;
   L per_inductance_, current_scale_, no_load_, floor_;
-  Matrix monodromy_;  ///< of a lap
-  std::array<std::array<Place<L>, coarse_samples>, 2> table_;
-  State y_;  ///< where a lap starts
+  Matrix monodromy_;  ///< of an iterate
+  std::array<std::array<Configuration<L>, coarse_samples>, 2> table_;
+  State y_;  ///< where an iterate starts
   Mask unresolved_, locked_;
   Mask lost_;  ///< the crank comes near standstill on the way to the orbit
   std::array<ForceSwitches<L>, 2> switches_{};
@@ -220,7 +221,7 @@ class LaneOrbit {
   };
   std::array<Subinterval, 2 * max_half_segments + 1> subintervals_;
   // At the nodes, segment after segment; where segments meet there is one for either.
-  std::array<Place<L>, max_nodes> places_;
+  std::array<Configuration<L>, max_nodes> places_;
   std::array<State, max_nodes> trajectory_, rates_, correction_;
   std::array<L, max_nodes> force_;
   std::array<L, 2 * max_half_segments>
@@ -228,13 +229,13 @@ class LaneOrbit {
   std::array<Matrix, max_nodes> step_;  ///< derivative of the state by that at the node before
   std::array<std::array<Observable<L>, max_nodes>, quantity_count> observables_;
 
-  std::array<L, lane_integrals.size()> integrals_;
+  std::array<L, pack_integrals.size()> integrals_;
   std::array<L, 5> high_, low_;  ///< sums of the last and last but two coefficients of what limits the error
   std::array<bool, quantity_count> wanted_;
   bool reads_ = false;  ///< anything
   // The current behind the speed, where the inductance is small.
   bool lags_;
-  std::array<L, max_nodes> drop_;  ///< HalfLap::drop at the nodes
+  std::array<L, max_nodes> drop_;  ///< HalfCycle::drop at the nodes
   L lag_residual_;                 ///< its last change, of the voltage
   L layer_;                        ///< largest relaxation() of the speed, relative
 
@@ -248,7 +249,7 @@ class LaneOrbit {
 /// Derivatives by the state of the rates, which rates_at(state) gives, to four digits.
 template <class L, int N>
 template <class RatesAt>
-auto LaneOrbit<L, N>::derivatives(const State& y, const State& rates, const RatesAt& rates_at) const -> Matrix {
+auto PackOrbit<L, N>::derivatives(const State& y, const State& rates, const RatesAt& rates_at) const -> Matrix {
   Matrix jacobian;
   for (std::size_t n = 0; n < N; ++n) {
     State moved = y;
@@ -262,8 +263,8 @@ auto LaneOrbit<L, N>::derivatives(const State& y, const State& rates, const Rate
 }
 
 template <class L, int N>
-auto LaneOrbit<L, N>::jacobian_at(const System& system, const Place<L>& place, const State& y, const State& rates,
-                                  const L& force) const -> Matrix {
+auto PackOrbit<L, N>::jacobian_at(const System& system, const Configuration<L>& place, const State& y,
+                                  const State& rates, const L& force) const -> Matrix {
   solver::Rates<System> at;
   return derivatives(y, rates, [&](const State& moved) -> const State& {
     evaluate<false>(system, place, moved, force, at);
@@ -273,7 +274,7 @@ auto LaneOrbit<L, N>::jacobian_at(const System& system, const Place<L>& place, c
 
 /// exp(h jacobian) by its (1, 1) Pade approximation (1 - z)^-1 (1 + z), z = h jacobian / 2.
 template <class L, int N>
-void LaneOrbit<L, N>::propagator(const Matrix& jacobian, const L& h, Matrix& out) {
+void PackOrbit<L, N>::propagator(const Matrix& jacobian, const L& h, Matrix& out) {
   const L half_h = L(0.5) * h;
   if constexpr (N == 1) {
     out[0][0] = L(2.0) * inverse_of(L(L(1.0) - half_h * jacobian[0][0])) - L(1.0);
@@ -290,7 +291,7 @@ void LaneOrbit<L, N>::propagator(const Matrix& jacobian, const L& h, Matrix& out
 
 /// product := step product.
 template <class L, int N>
-void LaneOrbit<L, N>::append(const Matrix& step, Matrix& product) {
+void PackOrbit<L, N>::append(const Matrix& step, Matrix& product) {
   const Matrix before = product;
   for (std::size_t row = 0; row < N; ++row) {
     for (std::size_t column = 0; column < N; ++column) {
@@ -303,7 +304,7 @@ void LaneOrbit<L, N>::append(const Matrix& step, Matrix& product) {
 
 /// Largest modulus of the eigenvalues.
 template <class L, int N>
-L LaneOrbit<L, N>::largest_modulus(const Matrix& M) {
+L PackOrbit<L, N>::largest_modulus(const Matrix& M) {
   if constexpr (N == 1) {
     return abs(M[0][0]);
   } else {
@@ -315,9 +316,9 @@ L LaneOrbit<L, N>::largest_modulus(const Matrix& M) {
   }
 }
 
-/// off := (1 - M)^-1 off: what a lap's start must move by for its end to meet it, the end being off it by so much.
+/// off := (1 - M)^-1 off: what an iterate's start must move by for its end to meet it, the end being off it by so much.
 template <class L, int N>
-void LaneOrbit<L, N>::close_lap(State& off) const {
+void PackOrbit<L, N>::close_iterate(State& off) const {
   const auto& M = monodromy_;
   if constexpr (N == 1) {
     off[0] = off[0] * inverse_of(L(L(1.0) - M[0][0]));
@@ -330,10 +331,10 @@ void LaneOrbit<L, N>::close_lap(State& off) const {
   }
 }
 
-/// Sign changes of the rod force between the samples force[0..count] at u[0..count] of half a lap, by parabolas.
+/// Sign changes of the rod force between the samples force[0..count] at u[0..count] of half an iterate, by parabolas.
 /// Returns the largest distance from the switches known before [rad].
 template <class L, int N>
-L LaneOrbit<L, N>::find_switches(int half, const L* u, const L* force, int count) {
+L PackOrbit<L, N>::find_switches(int half, const L* u, const L* force, int count) {
   ForceSwitches<L> found;
   found.at.fill(L(quarter));
   found.count = L(0.0);
@@ -386,7 +387,7 @@ L LaneOrbit<L, N>::find_switches(int half, const L* u, const L* force, int count
 
 /// Segments of equal length between the switches, their number in proportion to the distance.
 template <class L, int N>
-void LaneOrbit<L, N>::build_mesh(int half) {
+void PackOrbit<L, N>::build_mesh(int half) {
   const int steps = segments_;
   const ForceSwitches<L>& s = switches_[std::size_t(half)];
   HalfMesh<L>& mesh = mesh_[std::size_t(half)];
@@ -421,15 +422,15 @@ void LaneOrbit<L, N>::build_mesh(int half) {
 }
 
 template <class L, int N>
-Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant) {
+Metrics<L> PackOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant) {
   lost_ = L(1.0) < L(0.0);
-  if (settings_.approach == LaneApproach::resume) {
+  if (settings_.approach == PackApproach::resume) {
     unresolved_ = locked_ = lost_;
   } else {
     tabulate();
     assess_statics();
     const L balances = guess_speed();
-    if (settings_.approach == LaneApproach::guess) {
+    if (settings_.approach == PackApproach::guess) {
       unresolved_ = unresolved_ || !(balances == L(1.0));
     } else {
       // A heavy rotor is far from any orbit after the few turns simulated: they do not show which of several it
@@ -437,8 +438,8 @@ Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
       start_from_rest();
       unresolved_ = unresolved_ || balances > L(1.0);
     }
-    for (int n = 1; n < settings_.coarse_laps; ++n) coarse_lap<false>();
-    coarse_lap<true>();
+    for (int n = 1; n < settings_.coarse_iterates; ++n) coarse_iterate<false>();
+    coarse_iterate<true>();
   }
   march();
   place_nodes();
@@ -449,7 +450,7 @@ Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   CycleIntegrals<L> integrals;
   integrals.fill(L(0.0));
   const auto total = [&](Integral which) -> L& { return integrals[std::size_t(which)]; };
-  for (std::size_t q = 0; q < lane_integrals.size(); ++q) total(lane_integrals[q]) = integrals_[q];
+  for (std::size_t q = 0; q < pack_integrals.size(); ++q) total(pack_integrals[q]) = integrals_[q];
   total(Integral::electrical_work) =
       vehicle_.voltage * total(Integral::current) - vehicle_.source_resistance * total(Integral::current_square);
   total(Integral::motor_work) =
@@ -478,12 +479,12 @@ Metrics<L> LaneOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
                     overlooked_ * sqrt(overlooked_);
   // A motor near its speed without load draws the small difference of two large voltages.
   const L back_emf = L(two_pi) * vehicle_.motor.torque_constant;
-  const L resistive = circuit_resistance(vehicle_) * abs(integrals_[lane_integral(Integral::current)]);
+  const L resistive = circuit_resistance(vehicle_) * abs(integrals_[pack_integral(Integral::current)]);
   const L difference = max(L(back_emf * inverse_of(max(resistive, L(1e-300))) - L(1.0)), L(0.0));
   error_estimate_ = error_estimate_ + L(1.5) * difference * (speed_error_ + L(2.0) * residual_);
   if (lags_) error_estimate_ = error_estimate_ + L(1.5) * (difference + L(2.0)) * lag_residual_ + lag_left_out();
   lost_ = lost_ || !(slowest_ > floor_);
-  if (settings_.approach == LaneApproach::guess) unresolved_ = unresolved_ || lost_;
+  if (settings_.approach == PackApproach::guess) unresolved_ = unresolved_ || lost_;
   unresolved_ = unresolved_ || (!lost_ && hardly_returns(vehicle_, largest_modulus(monodromy_), total(Integral::time)));
   error_estimate_ = select<L>(lost_, L(std::numeric_limits<double>::infinity()), error_estimate_);
   return cycle_metrics(vehicle_, integrals, extremes, multiplier, ReportingOf<L>{mass, bench_torque_constant});

@@ -1,23 +1,23 @@
-// What every src/ensemble/instruction_sets/lane_blocks_*.cpp compiles for its instruction set.
+// What every src/ensemble/instruction_sets/pack_blocks_*.cpp compiles for its instruction set.
 #pragma once
 
 #include <type_traits>
 
-#include "wingbeat/ensemble/lane_blocks.hpp"
-#include "wingbeat/ensemble/lane_lag.hpp"
-#include "wingbeat/ensemble/lane_multiplier.hpp"
-#include "wingbeat/ensemble/lane_newton.hpp"
-#include "wingbeat/ensemble/lane_orbit.hpp"
-#include "wingbeat/ensemble/lane_peaks.hpp"
-#include "wingbeat/ensemble/lane_start.hpp"
+#include "wingbeat/ensemble/pack_blocks.hpp"
+#include "wingbeat/ensemble/pack_lag.hpp"
+#include "wingbeat/ensemble/pack_multiplier.hpp"
+#include "wingbeat/ensemble/pack_newton.hpp"
+#include "wingbeat/ensemble/pack_orbit.hpp"
+#include "wingbeat/ensemble/pack_peaks.hpp"
+#include "wingbeat/ensemble/pack_start.hpp"
 
 namespace wingbeat {
 
 /// The body of solve_block_*() for one instruction set. No containers: what this leaves behind must belong to the
 /// instruction set alone.
 template <class L>
-void solve_block(const EnsembleMember* const* members, int count, const LaneSettings& settings,
-                 LaneResult* const* results) {
+void solve_block(const EnsembleMember* const* members, int count, const PackSettings& settings,
+                 PackResult* const* results) {
   alignas(64) double numbers[std::size_t(L::lanes)];
   // The block is filled up with its last member.
   const auto member = [&](int lane) -> const EnsembleMember& { return *members[lane < count ? lane : count - 1]; };
@@ -28,9 +28,9 @@ void solve_block(const EnsembleMember* const* members, int count, const LaneSett
   const auto with_states = [&](auto states) {
     constexpr int N = decltype(states)::value;
     const Vehicle<L> vehicle =
-        in_lanes<L, Vehicle>([&](int lane) -> const Vehicle<double>& { return member(lane).vehicle; });
-    LaneOrbit<L, N> orbit(vehicle, settings);
-    if (settings.approach == LaneApproach::resume) {
+        in_packs<L, Vehicle>([&](int lane) -> const Vehicle<double>& { return member(lane).vehicle; });
+    PackOrbit<L, N> orbit(vehicle, settings);
+    if (settings.approach == PackApproach::resume) {
       orbit.visit_start([&](L& to, const auto& of) {
         for (int lane = 0; lane < L::lanes; ++lane) numbers[lane] = of(results[lane < count ? lane : count - 1]->start);
         to = L::load(numbers);
@@ -44,19 +44,19 @@ void solve_block(const EnsembleMember* const* members, int count, const LaneSett
       for (int lane = 0; lane < count; ++lane) to(*results[lane]) = numbers[lane];
     };
     for (std::size_t m = 0; m < std::size_t(metric_count); ++m) {
-      scatter(found.values[m], [m](LaneResult& r) -> double& { return r.metrics.values[m]; });
+      scatter(found.values[m], [m](PackResult& r) -> double& { return r.metrics.values[m]; });
     }
-    scatter(orbit.error_estimate(), [](LaneResult& r) -> double& { return r.error_estimate; });
+    scatter(orbit.error_estimate(), [](PackResult& r) -> double& { return r.error_estimate; });
     select<L>(orbit.locked(), L(2.0), select<L>(orbit.unresolved(), L(1.0), L(0.0))).store(numbers);
     for (int lane = 0; lane < count; ++lane) {
-      results[lane]->assessment = numbers[lane] == 0.0   ? LaneAssessment::rotates
-                                  : numbers[lane] == 1.0 ? LaneAssessment::unresolved
-                                                         : LaneAssessment::locked;
+      results[lane]->assessment = numbers[lane] == 0.0   ? PackAssessment::rotates
+                                  : numbers[lane] == 1.0 ? PackAssessment::unresolved
+                                                         : PackAssessment::locked;
     }
     orbit.visit_start(
-        [&](L& from, const auto& to) { scatter(from, [&](LaneResult& r) -> double& { return to(r.start); }); });
+        [&](L& from, const auto& to) { scatter(from, [&](PackResult& r) -> double& { return to(r.start); }); });
   };
-  if (settings.current == LaneCurrent::state) {
+  if (settings.current == PackCurrent::state) {
     with_states(std::integral_constant<int, 2>{});
   } else {
     with_states(std::integral_constant<int, 1>{});

@@ -1,15 +1,15 @@
-// The bodies of lanes.hpp for one instruction set. No containers: what this file instantiates must belong to its own
+// The bodies of packs.hpp for one instruction set. No containers: what this file instantiates must belong to its own
 // instruction set alone.
 #pragma once
 
-#include "scalars/arch/lanes.hpp"
-#include "wingbeat/core/lanes.hpp"
+#include "scalars/arch/packs.hpp"
+#include "wingbeat/core/pack.hpp"
 
 namespace wingbeat::lanes {
 
 template <class Arch>
 void evaluate(const Case* cases, int count, double* out) {
-  using B = Lanes<Arch, 2>;
+  using B = Pack<Arch, 2>;
   constexpr int size = ScalarTraits<B>::lanes;
   constexpr int outputs = instant_size + step_size;
   for (int start = 0; start < count; start += size) {
@@ -22,7 +22,7 @@ void evaluate(const Case* cases, int count, double* out) {
       }
       return B::load(numbers);
     };
-    const Vehicle<B> vehicle = in_lanes<B, Vehicle>([&](int lane) -> const Vehicle<double>& {
+    const Vehicle<B> vehicle = in_packs<B, Vehicle>([&](int lane) -> const Vehicle<double>& {
       return cases[start + lane < count ? start + lane : count - 1].vehicle;
     });
     const B omega = gather([](const Case& c) { return c.omega; });
@@ -36,7 +36,7 @@ void evaluate(const Case* cases, int count, double* out) {
                          force,
                          force};
     const auto at = instant<B>(vehicle, point);
-    // Steps start a little off rest, as a crank speed of zero ends a lap.
+    // Steps start a little off rest, as a crank speed of zero ends a cycle.
     const auto step = crank_step<B>(vehicle, gather([](const Case& c) { return c.theta; }),
                                     {B(120.0) + abs(omega), current}, B(0.1), {force, B(1.0), B(1.0), B(1.0)});
     for (int n = 0; n < outputs; ++n) {
@@ -50,7 +50,7 @@ void evaluate(const Case* cases, int count, double* out) {
 
 template <class Arch>
 int check_select() {
-  using B = Lanes<Arch, 2>;
+  using B = Pack<Arch, 2>;
   constexpr int size = ScalarTraits<B>::lanes;
   alignas(64) double x[size], a[size], b[size], got[size];
   const double values[] = {-1.0, 0.0, -0.0, 2.0, -3.0, 1e-300, -1e-300, 5.0};
@@ -99,7 +99,7 @@ int check_select() {
 
 template <class Arch>
 void functions(const double* x, int count, double* out) {
-  using B = Lanes<Arch, 2>;
+  using B = Pack<Arch, 2>;
   for (int start = 0; start < count; start += B::lanes) {
     alignas(64) double numbers[B::lanes];
     for (int lane = 0; lane < B::lanes; ++lane) numbers[lane] = x[start + lane];

@@ -1,4 +1,4 @@
-// A recorded lap repeated on dual numbers: what orbit_gradient.hpp differentiates any system by.
+// A recorded cycle repeated on dual numbers: what orbit_gradient.hpp differentiates any system by.
 #pragma once
 
 #include <algorithm>
@@ -15,10 +15,10 @@
 
 namespace wingbeat {
 
-/// The recorded lap of any system with its switches where the signs change, and its repetition on dual numbers, whose
+/// The recorded cycle of any system with its switches where the signs change, and its repetition on dual numbers, whose
 /// slots are those of orbit_gradient.hpp.
 template <class System>
-class LapGradient {
+class CycleGradient {
  public:
   using J = GradientJet;
   using Jets = decltype(std::declval<System>().template cast<J>());
@@ -28,8 +28,8 @@ class LapGradient {
   static constexpr int N = int(std::tuple_size_v<State>);
   static_assert(N <= gradient_first_slot);
 
-  LapGradient(const RecordedLap<System>& recorded, const decltype(Jets::vehicle)& vehicle)
-      : system_(recorded.system), lap_(recorded.lap), jets_(recorded.system.template cast<J>()) {
+  CycleGradient(const RecordedCycle<System>& recorded, const decltype(Jets::vehicle)& vehicle)
+      : system_(recorded.system), cycle_(recorded.cycle), jets_(recorded.system.template cast<J>()) {
     jets_.vehicle = vehicle;
     sharpen();
     for (auto& constant : inductance_slots_) constant = false;
@@ -38,19 +38,19 @@ class LapGradient {
     }
   }
 
-  /// One lap from the orbit's start, its states in the first slots. False where the fixed point is singular.
+  /// One cycle from the orbit's start, its states in the first slots. False where the fixed point is singular.
   bool run() {
     JetState y;
-    for (int n = 0; n < N; ++n) y[n] = J(lap_.steps.front().y[n], n);
+    for (int n = 0; n < N; ++n) y[n] = J(cycle_.steps.front().y[n], n);
     totals_.fill(J(0.0));
-    starts_.reserve(lap_.steps.size());
-    for (std::size_t at = 0; at < lap_.steps.size(); ++at) {
-      const auto& step = lap_.steps[at];
-      solver::reset_map<true>(jets_, lap_.steps, at, y, &totals_);
+    starts_.reserve(cycle_.steps.size());
+    for (std::size_t at = 0; at < cycle_.steps.size(); ++at) {
+      const auto& step = cycle_.steps[at];
+      solver::reset_map<true>(jets_, cycle_.steps, at, y, &totals_);
       starts_.push_back(y);
       const auto signs = solver::signs_of<Jets>(step);
       const auto first = jets_.template rates<true>(J(step.x), y, signs);
-      const auto result = solver::take_step<true>(lap_.method, jets_, J(step.x), y, J(step.h), signs, first);
+      const auto result = solver::take_step<true>(cycle_.method, jets_, J(step.x), y, J(step.h), signs, first);
       for (std::size_t q = 0; q < totals_.size(); ++q) totals_[q] += result.dq[q];
       y = result.y;
     }
@@ -88,11 +88,11 @@ class LapGradient {
   CycleExtremes<J> extremes() const {
     CycleExtremes<J> peaks;
     peaks.fill(J(absent));
-    const std::array<Place, extreme_count> places = locate();
+    const std::array<PeakLocation, extreme_count> places = locate();
     for (const Extreme e : System::extremes) {
       const auto c = std::size_t(e);
       const JetState y = state_at(places[c].step, places[c].x);
-      const auto signs = solver::signs_of<Jets>(lap_.steps[places[c].step]);
+      const auto signs = solver::signs_of<Jets>(cycle_.steps[places[c].step]);
       const Motion<J> m = jets_.motion(J(places[c].x), y, signs);
       peaks[c] = total(jets_.candidates(m, y, signs)[c]);
     }
@@ -100,10 +100,10 @@ class LapGradient {
   }
 
   GradientInstant instant(double theta) const {
-    std::size_t n = lap_.steps.size() - 1;
-    while (n > 0 && lap_.steps[n].x > theta) --n;
+    std::size_t n = cycle_.steps.size() - 1;
+    while (n > 0 && cycle_.steps[n].x > theta) --n;
     const JetState y = state_at(n, theta);
-    const auto signs = solver::signs_of<Jets>(lap_.steps[n]);
+    const auto signs = solver::signs_of<Jets>(cycle_.steps[n]);
     const Motion<J> m = jets_.motion(J(theta), y, signs);
     return {total(jets_.shaft_speed(y)),
             total(m.current),
@@ -114,7 +114,7 @@ class LapGradient {
   }
 
  private:
-  struct Place {
+  struct PeakLocation {
     std::size_t step;
     double x;
   };
@@ -124,11 +124,11 @@ class LapGradient {
   };
 
   JetState state_at(std::size_t step, double x) const {
-    const auto& s = lap_.steps[step];
+    const auto& s = cycle_.steps[step];
     if (x == s.x) return starts_[step];
     const auto signs = solver::signs_of<Jets>(s);
     const auto first = jets_.template rates<false>(J(s.x), starts_[step], signs);
-    return solver::take_step<false>(lap_.method, jets_, J(s.x), starts_[step], J(x - s.x), signs, first).y;
+    return solver::take_step<false>(cycle_.method, jets_, J(s.x), starts_[step], J(x - s.x), signs, first).y;
   }
 
   /// The state with its derivative along the solution.
@@ -145,9 +145,9 @@ class LapGradient {
   /// fixed nodes (dead centres) and at jumps, which are where they belong.
   void sharpen() {
     constexpr std::size_t switches = std::tuple_size_v<typename System::Switches>;
-    for (std::size_t n = 1; n < lap_.steps.size(); ++n) {
-      auto& before = lap_.steps[n - 1];
-      auto& after = lap_.steps[n];
+    for (std::size_t n = 1; n < cycle_.steps.size(); ++n) {
+      auto& before = cycle_.steps[n - 1];
+      auto& after = cycle_.steps[n];
       std::size_t flipped = switches;
       bool stays = false;
       for (std::size_t k = before.signs.size(); k-- > 0;) {
@@ -169,9 +169,9 @@ class LapGradient {
   }
 
   /// Where each extreme lies.
-  std::array<Place, extreme_count> locate() const {
+  std::array<PeakLocation, extreme_count> locate() const {
     constexpr int pieces = 4;
-    std::array<Place, extreme_count> best{};
+    std::array<PeakLocation, extreme_count> best{};
     std::array<double, extreme_count> highest;
     highest.fill(-std::numeric_limits<double>::infinity());
     struct Bracket {
@@ -179,11 +179,11 @@ class LapGradient {
       double x0, d0, x1, d1, estimate;
     };
     std::array<std::vector<Bracket>, extreme_count> brackets;
-    for (std::size_t n = 0; n < lap_.steps.size(); ++n) {
-      const auto& step = lap_.steps[n];
-      const bool last = n + 1 == lap_.steps.size();
-      const State& y1 = last ? lap_.end : lap_.steps[n + 1].y;
-      const State& dy1 = last ? lap_.steps.front().first.dy : lap_.steps[n + 1].first.dy;
+    for (std::size_t n = 0; n < cycle_.steps.size(); ++n) {
+      const auto& step = cycle_.steps[n];
+      const bool last = n + 1 == cycle_.steps.size();
+      const State& y1 = last ? cycle_.end : cycle_.steps[n + 1].y;
+      const State& dy1 = last ? cycle_.steps.front().first.dy : cycle_.steps[n + 1].first.dy;
       Sample before{};
       for (int k = 0; k <= pieces; ++k) {
         const double t = double(k) / pieces;
@@ -212,14 +212,14 @@ class LapGradient {
       for (const Bracket& b : brackets[c]) top = std::max(top, b.estimate);
       for (Bracket b : brackets[c]) {
         if (b.estimate < top - 0.02 * std::abs(top)) continue;
-        const auto& step = lap_.steps[b.step];
+        const auto& step = cycle_.steps[b.step];
         // The zero of the slope by false position in the manner of Illinois.
         double x = b.x0, value = 0.0;
         int side = 0;
         for (int iteration = 0; iteration < 60; ++iteration) {
           const double previous = x;
           x = b.d0 - b.d1 > 0.0 ? b.x0 + (b.x1 - b.x0) * b.d0 / (b.d0 - b.d1) : 0.5 * (b.x0 + b.x1);
-          const auto inside = solver::evaluate_inside<false>(system_, lap_, step, x);
+          const auto inside = solver::evaluate_inside<false>(system_, cycle_, step, x);
           const Jet<1> at = candidates(b.step, x, inside.y)[c];
           value = at.a;
           if (std::abs(x - previous) < 1e-11 || at.v[0] == 0.0) break;
@@ -243,13 +243,13 @@ class LapGradient {
   }
 
   CycleExtremes<Jet<1>> candidates(std::size_t n, double x, const State& y) const {
-    const auto signs = solver::signs_of<Along>(lap_.steps[n]);
-    const auto state = moving(y, system_.template rates<false>(x, y, lap_.steps[n].signs).dy);
+    const auto signs = solver::signs_of<Along>(cycle_.steps[n]);
+    const auto state = moving(y, system_.template rates<false>(x, y, cycle_.steps[n].signs).dy);
     return along_.candidates(along_.motion(Jet<1>(x, 0), state, signs), state, signs);
   }
 
   System system_;
-  solver::Lap<System> lap_;
+  solver::Iterate<System> cycle_;
   Jets jets_;
   Along along_ = system_.template cast<Jet<1>>();
   CycleIntegrals<J> totals_;

@@ -1,13 +1,13 @@
-// Floquet multipliers on SIMD lanes: the part of LaneOrbit that differentiates the lap map.
+// Floquet multipliers on SIMD lanes: the part of PackOrbit that differentiates the return map.
 #pragma once
 
-#include "wingbeat/ensemble/lane_orbit.hpp"
+#include "wingbeat/ensemble/pack_orbit.hpp"
 
 namespace wingbeat {
 
-/// The largest modulus of the eigenvalues of the lap map's derivative, by collocation of the variational equation.
+/// The largest modulus of the eigenvalues of the return map's derivative, by collocation of the variational equation.
 template <class L, int N>
-L LaneOrbit<L, N>::floquet_multiplier() {
+L PackOrbit<L, N>::floquet_multiplier() {
   const std::size_t intervals = std::size_t(rule_.intervals);
   Matrix M;
   for (std::size_t row = 0; row < N; ++row) {
@@ -16,7 +16,7 @@ L LaneOrbit<L, N>::floquet_multiplier() {
   std::array<Matrix, nodes_per_segment> jacobian, path, moves;
   solver::Rates<System> below, above;
   for (int half = 0; half < 2; ++half) {
-    System system = half_lap(half);
+    System system = half_cycle(half);
     const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
     for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
       const std::size_t base = first_node(half, s);
@@ -28,9 +28,9 @@ L LaneOrbit<L, N>::floquet_multiplier() {
           const L by = column == 0 ? L(1e-4) * trajectory_[base + m][0] : L(1e-4) * current_scale_;
           State moved = trajectory_[base + m];
           moved[column] = moved[column] - by;
-          evaluate<false>(system, place_of(base + m), moved, mesh.force[s], below);
+          evaluate<false>(system, configuration_of(base + m), moved, mesh.force[s], below);
           moved[column] = trajectory_[base + m][column] + by;
-          evaluate<false>(system, place_of(base + m), moved, mesh.force[s], above);
+          evaluate<false>(system, configuration_of(base + m), moved, mesh.force[s], above);
           if (lags_) lag_with(system, base + m, by, mesh.force[s], below, above);
           const L per_both = L(0.5) * inverse_of(by);
           for (std::size_t row = 0; row < N; ++row)

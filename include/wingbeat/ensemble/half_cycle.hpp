@@ -1,47 +1,47 @@
-// Half a lap of the crank as a system for solve/, on SIMD lanes.
+// Half a cycle of the crank as a system for solve/, on SIMD lanes.
 #pragma once
 
 #include <array>
 
-#include "wingbeat/core/lanes.hpp"
 #include "wingbeat/core/math.hpp"
+#include "wingbeat/core/pack.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/solve/explicit_step.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
 
-/// Integrals over the lap. The others follow: the supply's work from the current, the motor's from what it drives,
+/// Integrals over the cycle. The others follow: the supply's work from the current, the motor's from what it drives,
 /// the reactive work from the extremes of the stored energy.
-inline constexpr std::array lane_integrals = {
+inline constexpr std::array pack_integrals = {
     Integral::time,          Integral::current,       Integral::current_square,
     Integral::speed_square,  Integral::friction_work, Integral::aero_work,
     Integral::residual_work, Integral::lift,          Integral::rod_force};
 
-/// Where an integral stands among lane_integrals.
-constexpr std::size_t lane_integral(Integral which) {
+/// Where an integral stands among pack_integrals.
+constexpr std::size_t pack_integral(Integral which) {
   std::size_t at = 0;
-  while (lane_integrals[at] != which) ++at;
+  while (pack_integrals[at] != which) ++at;
   return at;
 }
 
 /// All that depends on the crank angle alone.
 template <Scalar S>
-struct Place {
+struct Configuration {
   CrankKinematics<S> kinematics;
   S spring_moment;  ///< N_w k beta [N m]
 };
 
-/// The crank over half a lap as a system for solve/: the independent variable u runs from -pi/2 to pi/2.
+/// The crank over half a cycle as a system for solve/: the independent variable u runs from -pi/2 to pi/2.
 template <Scalar S, int N>
-struct HalfLap {
+struct HalfCycle {
   using Real = S;
   using State = std::array<S, N>;
-  using Quadrature = std::array<S, lane_integrals.size()>;
+  using Quadrature = std::array<S, pack_integrals.size()>;
   using Switches = std::array<S, 1>;  ///< force_switch
   static constexpr std::array<std::size_t, 4> controlled_integrals = {
-      lane_integral(Integral::time), lane_integral(Integral::friction_work), lane_integral(Integral::aero_work),
-      lane_integral(Integral::lift)};
+      pack_integral(Integral::time), pack_integral(Integral::friction_work), pack_integral(Integral::aero_work),
+      pack_integral(Integral::lift)};
 
   const Vehicle<S>& vehicle;
   CrankGeometry<S> geometry;
@@ -57,15 +57,15 @@ struct HalfLap {
     }
   }
 
-  Place<S> place(const S& u) const {
+  Configuration<S> place(const S& u) const {
     const SineCosine<S> of = sine_cosine_of_reduced(u);
-    return place_of(crank_kinematics(geometry, S(half * of.sine), S(half * of.cosine)));
+    return configuration_of(crank_kinematics(geometry, S(half * of.sine), S(half * of.cosine)));
   }
-  Place<S> place_of(const CrankKinematics<S>& k) const { return {k, spring_moment(vehicle, k)}; }
+  Configuration<S> configuration_of(const CrankKinematics<S>& k) const { return {k, spring_moment(vehicle, k)}; }
 
   Branch<S> branch(const S& force) const { return {half, force, S(1.0), S(1.0)}; }
 
-  Motion<S> motion(const Place<S>& place, const State& y, const S& force) const {
+  Motion<S> motion(const Configuration<S>& place, const State& y, const S& force) const {
     const S i = current(y);
     const S v_t = terminal_voltage(vehicle, vehicle.voltage, i);
     const Instant<S> at = instant_at(vehicle, place.kinematics, place.spring_moment, y[0], i, v_t, half, S(1.0));
@@ -73,7 +73,7 @@ struct HalfLap {
   }
 
   /// The branch that holds is chosen on the spot.
-  Motion<S> motion_on_its_branch(const Place<S>& place, const State& y) const {
+  Motion<S> motion_on_its_branch(const Configuration<S>& place, const State& y) const {
     const S i = current(y);
     const S v_t = terminal_voltage(vehicle, vehicle.voltage, i);
     const Instant<S> at = instant_at(vehicle, place.kinematics, place.spring_moment, y[0], i, v_t, half, S(1.0));
@@ -81,25 +81,25 @@ struct HalfLap {
   }
 
   template <bool quadratures>
-  solver::Rates<HalfLap> rates_of(const Motion<S>& m, const State& y, const S& force) const {
+  solver::Rates<HalfCycle> rates_of(const Motion<S>& m, const State& y, const S& force) const {
     const S per_omega = inverse_of(y[0]);
-    solver::Rates<HalfLap> r;
+    solver::Rates<HalfCycle> r;
     r.dy[0] = m.crank_acceleration * per_omega;
     if constexpr (N == 2) r.dy[1] = m.inductive_voltage * per_inductance * per_omega;
     r.switches[0] = m.force_switch;
     if constexpr (quadratures) {
       const CycleIntegrals<S> in_time = integrands(m, y[0], branch(force));
-      for (std::size_t q = 0; q < lane_integrals.size(); ++q) {
-        r.dq[q] = in_time[std::size_t(lane_integrals[q])] * per_omega;
+      for (std::size_t q = 0; q < pack_integrals.size(); ++q) {
+        r.dq[q] = in_time[std::size_t(pack_integrals[q])] * per_omega;
       }
     }
     return r;
   }
 };
 
-// A lap's code must stay within the processor's instruction cache: the right-hand side is one function.
+// A cycle's code must stay within the processor's instruction cache: the right-hand side is one function.
 template <bool quadratures, class System>
-[[gnu::noinline, gnu::flatten]] void evaluate(const System& system, const Place<typename System::Real>& place,
+[[gnu::noinline, gnu::flatten]] void evaluate(const System& system, const Configuration<typename System::Real>& place,
                                               const typename System::State& y, const typename System::Real& force,
                                               solver::Rates<System>& out) {
   out = system.template rates_of<quadratures>(system.motion(place, y, force), y, force);

@@ -1,14 +1,14 @@
-// Extremes of a lap on SIMD lanes: the part of LaneOrbit that looks for them.
+// Extremes of a cycle on SIMD lanes: the part of PackOrbit that looks for them.
 #pragma once
 
-#include "wingbeat/ensemble/lane_orbit.hpp"
+#include "wingbeat/ensemble/pack_orbit.hpp"
 
 namespace wingbeat {
 
 /// The trajectory over a segment, which may differ from lane to lane: the integral of its rates' interpolant, and
 /// through the nodes that the last correction has moved since the rates were taken.
 template <class L, int N>
-void LaneOrbit<L, N>::follow(const L& segment, SegmentTrajectory<L, N>& trajectory) const {
+void PackOrbit<L, N>::follow(const L& segment, SegmentTrajectory<L, N>& trajectory) const {
   const std::size_t intervals = std::size_t(rule_.intervals);
   std::array<State, nodes_per_segment> rates, y;
   trajectory = {};
@@ -64,7 +64,7 @@ void LaneOrbit<L, N>::follow(const L& segment, SegmentTrajectory<L, N>& trajecto
 
 /// A quantity, with the motion, at distance x from the start of a segment.
 template <class L, int N>
-Observable<L> LaneOrbit<L, N>::observable_inside(Quantity quantity, const SegmentTrajectory<L, N>& trajectory,
+Observable<L> PackOrbit<L, N>::observable_inside(Quantity quantity, const SegmentTrajectory<L, N>& trajectory,
                                                  const L& x) const {
   std::array<bool, quantity_count> wanted{};
   wanted[std::size_t(quantity)] = true;
@@ -99,12 +99,12 @@ Observable<L> LaneOrbit<L, N>::observable_inside(Quantity quantity, const Segmen
   return observables[std::size_t(quantity)];
 }
 
-/// Calls visit(bracket, mask) for each subinterval of half a lap, in order: from node to node, and where the cubic
+/// Calls visit(bracket, mask) for each subinterval of half a cycle, in order: from node to node, and where the cubic
 /// through both turns twice in between, its two parts; subintervals that cannot rise above `floor` in any lane are left
 /// out.
 template <class L, int N>
 template <class Visit>
-void LaneOrbit<L, N>::for_each_subinterval(int half, Quantity quantity, const L& floor, const Visit& visit) const {
+void PackOrbit<L, N>::for_each_subinterval(int half, Quantity quantity, const L& floor, const Visit& visit) const {
   const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
   const auto& observables = observables_[std::size_t(quantity)];
   for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
@@ -148,7 +148,7 @@ void LaneOrbit<L, N>::for_each_subinterval(int half, Quantity quantity, const L&
 }
 
 template <class L, int N>
-void LaneOrbit<L, N>::keep(const PeakBracket<L>& from, const Mask& where, PeakBracket<L>& to) {
+void PackOrbit<L, N>::keep(const PeakBracket<L>& from, const Mask& where, PeakBracket<L>& to) {
   using P = PeakBracket<L>;
   for (L P::* member :
        {&P::segment, &P::x0, &P::v0, &P::d0, &P::x1, &P::v1, &P::d1, &P::rises_and_falls, &P::estimate}) {
@@ -158,7 +158,7 @@ void LaneOrbit<L, N>::keep(const PeakBracket<L>& from, const Mask& where, PeakBr
 
 /// Distance from x0, as a fraction of the bracket, of the maximum of the cubic through its ends; sets the estimate.
 template <class L, int N>
-L LaneOrbit<L, N>::estimate_peak(PeakBracket<L>& b) {
+L PackOrbit<L, N>::estimate_peak(PeakBracket<L>& b) {
   const L h = b.x1 - b.x0;
   const L slope = (b.v1 - b.v0) * inverse_of(max(h, L(1e-300)));
   const L z = b.d0 + b.d1 - L(3.0) * slope;
@@ -175,7 +175,7 @@ L LaneOrbit<L, N>::estimate_peak(PeakBracket<L>& b) {
 /// The maximum within a bracket: the cubic's, read on the trajectory, and again within the bracket that this leaves.
 /// What the trajectory errs by is added to the error of peaks.
 template <class L, int N>
-L LaneOrbit<L, N>::refine(Quantity quantity, const L& sign, PeakBracket<L> b) {
+L PackOrbit<L, N>::refine(Quantity quantity, const L& sign, PeakBracket<L> b) {
   L highest = max(b.v0, b.v1);
   const Mask inside = b.rises_and_falls > L(0.0);
   if (!any<L>(inside)) return highest;
@@ -216,9 +216,9 @@ L LaneOrbit<L, N>::refine(Quantity quantity, const L& sign, PeakBracket<L> b) {
   return select<L>(inside, max(highest, b.estimate), highest);
 }
 
-/// The maximum of a quantity over the lap. Of two subintervals with almost the same peak both are refined.
+/// The maximum of a quantity over the cycle. Of two subintervals with almost the same peak both are refined.
 template <class L, int N>
-L LaneOrbit<L, N>::peak(Quantity quantity) {
+L PackOrbit<L, N>::peak(Quantity quantity) {
   L highest_node(-1e300);
   const std::size_t nodes = first_node(2, 0);
   for (std::size_t n = 0; n < nodes; ++n)
@@ -245,10 +245,10 @@ L LaneOrbit<L, N>::peak(Quantity quantity) {
   return select<L>(close, max(highest, refine(quantity, L(1.0), other)), highest);
 }
 
-/// The work that wings and springs exchange with the rest, |power| integrated over the lap [J]: the energy that they
+/// The work that wings and springs exchange with the rest, |power| integrated over the cycle [J]: the energy that they
 /// store rises and falls by it between its extremes.
 template <class L, int N>
-L LaneOrbit<L, N>::exchanged_energy() {
+L PackOrbit<L, N>::exchanged_energy() {
   L total(0.0);
   for (int half = 0; half < 2; ++half) {
     const auto& observables = observables_[std::size_t(Quantity::energy)];
@@ -285,7 +285,7 @@ L LaneOrbit<L, N>::exchanged_energy() {
 
 /// The largest lift while |beta'| runs from zero to its peak: at the peak, or where lift falls with speed before it.
 template <class L, int N>
-L LaneOrbit<L, N>::lift_peak(const L& highest_velocity) const {
+L PackOrbit<L, N>::lift_peak(const L& highest_velocity) const {
   const auto lift_at = [&](const L& speed) { return aero_loads(vehicle_.wings, speed).lift; };
   // Samples of lift over speed find the highest subinterval; a parabola's vertex, twice, the maximum in it.
   constexpr int samples = 12;

@@ -8,7 +8,7 @@ namespace wingbeat::detail {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr int averaged_laps_pwm = 8;
+constexpr int averaged_cycles_pwm = 8;
 constexpr double settled_without_metrics = 1e-4;
 constexpr double largest_rate = 0.99999;  // of contraction: what is left of a change is no more than 1e5 times it
 constexpr std::size_t max_turns = 8;      // after which a motion is looked at for repeating
@@ -24,40 +24,41 @@ bool cancels(const Metrics<double>& m) {
 }  // namespace
 
 /// A forward crossing of theta = 2 pi n. True if the integrator must start afresh.
-bool CrankStartUp::lap_done() {
+bool CrankStartUp::cycle_done() {
   const double before = crossings_.empty() ? 0.0 : crossings_.back().time + crossings_.back().skipped;
   crossings_.push_back({now_.t, now_.omega, now_.i, now_.t - before, 0.0});
   event(Kind::revolution);
-  next_lap_ += two_pi;
-  const bool restart = model_.supply.type == SupplyType::constant ? lap_done_constant() : lap_done_averaging();
-  if (!done_ && int(crossings_.size()) >= options_.max_laps) {
-    give_up(format("successive laps still differ by %.2g of their speed after %d laps", change_, options_.max_laps));
+  next_cycle_ += two_pi;
+  const bool restart = model_.supply.type == SupplyType::constant ? cycle_done_constant() : cycle_done_averaging();
+  if (!done_ && int(crossings_.size()) >= options_.max_cycles) {
+    give_up(
+        format("successive cycles still differ by %.2g of their speed after %d cycles", change_, options_.max_cycles));
   }
   return restart;
 }
 
-bool CrankStartUp::lap_done_constant() {
-  ++laps_compared_;
-  ++laps_since_jump_;
+bool CrankStartUp::cycle_done_constant() {
+  ++cycles_compared_;
+  ++cycles_since_jump_;
   if (crossings_.size() < 2) return false;
-  if (turns_ == 1 && laps_compared_ >= 40 && laps_compared_ % 16 == 0) {
+  if (turns_ == 1 && cycles_compared_ >= 40 && cycles_compared_ % 16 == 0) {
     for (std::size_t turns = 2; turns <= max_turns && turns_ == 1; ++turns) {
       if (!repeats_after(turns)) continue;
       turns_ = turns;
       change_ = infinity;
       rate_ = last_rate_ = 1.0;
       rate_seen_ = false;
-      laps_compared_ = 0;
+      cycles_compared_ = 0;
       return false;
     }
   }
-  if (turns_ > 1 && laps_compared_ % int(turns_) != 0) return false;
+  if (turns_ > 1 && cycles_compared_ % int(turns_) != 0) return false;
   const Crossing& before = crossings_[crossings_.size() - 1 - turns_];
   const double noise = 30.0 * relative_tolerance_;
   const double previous = change_;
   change_ = std::max(std::abs(now_.omega - before.omega) / (std::abs(now_.omega) + 1e-6 * model_.speed_scale),
                      std::abs(now_.i - before.current) / (std::abs(now_.i) + 0.01 * model_.current_scale));
-  if (laps_compared_ >= 3 && previous > noise && !measuring_) {
+  if (cycles_compared_ >= 3 && previous > noise && !measuring_) {
     last_rate_ = rate_;
     rate_ = std::min(change_ / previous, 10.0);
     if (!rate_seen_) last_rate_ = rate_;
@@ -66,7 +67,7 @@ bool CrankStartUp::lap_done_constant() {
   // The slower of the last two contractions, since complex multipliers make the changes uneven.
   double rate = std::max(rate_, last_rate_);
   stagnant_ = !measuring_ && change_ < 100.0 * noise && change_ > 0.5 * previous ? stagnant_ + 1 : 0;
-  if ((change_ < noise && laps_compared_ >= 3 && !measuring_ && (!rate_seen_ || rate >= 0.3)) || stagnant_ >= 2) {
+  if ((change_ < noise && cycles_compared_ >= 3 && !measuring_ && (!rate_seen_ || rate >= 0.3)) || stagnant_ >= 2) {
     // Slow approach or the integrator's own errors? More accuracy tells; at rounding it must be the latter.
     stagnant_ = 0;
     if (relative_tolerance_ <= tightest_ && change_ < 0.1 * options_.tolerance) rate_ = last_rate_ = rate = 0.5;
@@ -75,11 +76,11 @@ bool CrankStartUp::lap_done_constant() {
   const double to_come = rate < 1.0 ? change_ * rate / (1.0 - rate) : infinity;
 
   if (measuring_) {
-    lap_measured(rate);
+    cycle_measured(rate);
     return true;
   }
   if (rate < 1.0 && rate > 0.3 && to_come < 1e-2) {
-    // Weakly damped: what a lap's errors leave behind adds up over 1 / (1 - rate) laps.
+    // Weakly damped: what a cycle's errors leave behind adds up over 1 / (1 - rate) cycles.
     relative_tolerance_ = std::min(relative_tolerance_, std::max(tightest_, loosest_ * (1.0 - rate)));
   }
   if (!options_.metrics && rate < 0.3 && to_come < settled_without_metrics) {
@@ -94,25 +95,25 @@ bool CrankStartUp::lap_done_constant() {
   return jump_ahead(rate);
 }
 
-/// Takes the metrics of a lap as those of steady flapping where it began close enough to the orbit and a lap of looser
-/// steps gives the same. Otherwise the next lap is measured: with tighter steps, and, where laps converge slowly, from
-/// where the known contraction leads.
-void CrankStartUp::lap_measured(double rate) {
+/// Takes the metrics of a cycle as those of steady flapping where it began close enough to the orbit and a cycle of
+/// looser steps gives the same. Otherwise the next cycle is measured: with tighter steps, and, where cycles converge
+/// slowly, from where the known contraction leads.
+void CrankStartUp::cycle_measured(double rate) {
   const double tolerance = options_.tolerance;
   const double gain = 1.0 / (1.0 - std::min(std::max(rate, contraction_), largest_rate));
-  // The lap began as far from the orbit as change / (1 - rate).
+  // The cycle began as far from the orbit as change / (1 - rate).
   const double off = change_ * gain;
   const bool tightest = relative_tolerance_ <= tightest_;
   const std::optional<Metrics<double>> before = std::exchange(last_metrics_, std::nullopt);
   take_metrics(int(turns_));
-  ++measured_laps_;
-  laps_at_tightest_ += tightest;
+  ++measured_cycles_;
+  cycles_at_tightest_ += tightest;
   const bool closed = off < 0.1 * tolerance;
-  // Where errors neither cancel nor add up over laps, steps of a thousandth are known to be enough.
+  // Where errors neither cancel nor add up over cycles, steps of a thousandth are known to be enough.
   const bool enough = gain < 1.5 && relative_tolerance_ <= 1e-3 * tolerance && !cancels(*result_.metrics);
   const bool agree = enough || ((tightest || relative_tolerance_ < 0.2 * measured_with_) && before &&
                                 metrics_apart(*before, *result_.metrics) < 0.3 * tolerance);
-  const bool rounding = change_ < tolerance && laps_at_tightest_ > (change_ < 30.0 * tightest_ ? 4 : 40);
+  const bool rounding = change_ < tolerance && cycles_at_tightest_ > (change_ < 30.0 * tightest_ ? 4 : 40);
   if ((closed && agree) || rounding) {
     result_.closure = off;
     flap();
@@ -120,22 +121,22 @@ void CrankStartUp::lap_measured(double rate) {
   }
   last_metrics_ = std::exchange(result_.metrics, std::nullopt);
   measured_with_ = relative_tolerance_;
-  if (change_ > 100.0 * tolerance || laps_at_tightest_ > 40) {
-    // Not what was known of the contraction: back to plain laps.
+  if (change_ > 100.0 * tolerance || cycles_at_tightest_ > 40) {
+    // Not what was known of the contraction: back to plain cycles.
     measuring_ = false;
     change_ = infinity;
     rate_ = last_rate_ = 1.0;
     rate_seen_ = false;
-    laps_compared_ = 1;
-    laps_at_tightest_ = 0;
+    cycles_compared_ = 1;
+    cycles_at_tightest_ = 0;
     contraction_ = 0.0;
     last_metrics_.reset();
     return;
   }
-  if (laps_since_jump_ == 2 && change_ > 0.5 * change_before_jump_) contraction_ = 0.0;
+  if (cycles_since_jump_ == 2 && change_ > 0.5 * change_before_jump_) contraction_ = 0.0;
   relative_tolerance_ =
       std::max(tightest_, closed ? relative_tolerance_ / 10.0 : std::min(relative_tolerance_, 3e-3 * tolerance / gain));
-  if (!closed && contraction_ > 0.0 && laps_since_jump_ >= 2) {
+  if (!closed && contraction_ > 0.0 && cycles_since_jump_ >= 2) {
     const Crossing& last = crossings_[crossings_.size() - 2];
     const double share = contraction_ / (1.0 - contraction_);
     now_.omega += share * (now_.omega - last.omega);
@@ -143,18 +144,18 @@ void CrankStartUp::lap_measured(double rate) {
                               : algebraic_current(model_.vehicle, model_.voltage(now_.t), now_.omega);
     crossings_.back().omega = now_.omega;
     crossings_.back().current = now_.i;
-    laps_since_jump_ = 0;
+    cycles_since_jump_ = 0;
     change_before_jump_ = change_;
   }
   begin_measuring();
 }
 
-/// True if the state repeats after so many laps, far better than after one.
-bool CrankStartUp::repeats_after(std::size_t laps) const {
+/// True if the state repeats after so many cycles, far better than after one.
+bool CrankStartUp::repeats_after(std::size_t cycles) const {
   const std::size_t n = crossings_.size();
-  if (n < 4 * laps) return false;
-  for (std::size_t k = n - 2 * laps; k < n; ++k) {
-    const Crossing &a = crossings_[k - laps], &b = crossings_[k], &next = crossings_[k - laps + 1];
+  if (n < 4 * cycles) return false;
+  for (std::size_t k = n - 2 * cycles; k < n; ++k) {
+    const Crossing &a = crossings_[k - cycles], &b = crossings_[k], &next = crossings_[k - cycles + 1];
     const double off =
         std::abs(a.omega - b.omega) / model_.speed_scale + std::abs(a.current - b.current) / model_.current_scale;
     const double within =
@@ -164,17 +165,17 @@ bool CrankStartUp::repeats_after(std::size_t laps) const {
   return true;
 }
 
-/// Where laps converge slowly along one direction, skips ahead. Blocks of laps of one size show by how much each moves
-/// less than the one before, which single laps of a heavy rotor do not show above the integrator's errors. To the limit
-/// (Aitken) once that changes nothing a start-up is looked at for: less than a thousandth. Half of the way, but no more
-/// than a fifth of the speed, where a heavy rotor has far to go.
+/// Where cycles converge slowly along one direction, skips ahead. Blocks of cycles of one size show by how much each
+/// moves less than the one before, which single cycles of a heavy rotor do not show above the integrator's errors. To
+/// the limit (Aitken) once that changes nothing a start-up is looked at for: less than a thousandth. Half of the way,
+/// but no more than a fifth of the speed, where a heavy rotor has far to go.
 bool CrankStartUp::jump_ahead(double rate) {
   const std::size_t n = crossings_.size();
-  if (options_.record || turns_ > 1 || laps_compared_ < 5 || rate < 0.3) return false;
-  const std::size_t laps = std::size_t(laps_compared_) - 2;  // the first one after a jump still settles
+  if (options_.record || turns_ > 1 || cycles_compared_ < 5 || rate < 0.3) return false;
+  const std::size_t cycles = std::size_t(cycles_compared_) - 2;  // the first one after a jump still settles
   for (const std::size_t block : {1, 8, 32, 128}) {
-    if (3 * block > laps) break;
-    if (block > 1 ? rate < 0.9 || laps % block != 0 : rate >= 1.0) continue;
+    if (3 * block > cycles) break;
+    if (block > 1 ? rate < 0.9 || cycles % block != 0 : rate >= 1.0) continue;
     if (jump_by_blocks(n, block)) return true;
   }
   return false;
@@ -194,7 +195,7 @@ bool CrankStartUp::jump_by_blocks(std::size_t n, std::size_t block) {
   };
   const double newer = ratio(0), older = ratio(1);
   if (!(newer > 0.0 && newer < 0.9999)) return false;
-  const double gain = newer / (1.0 - newer), per_lap = std::pow(newer, 1.0 / double(block));
+  const double gain = newer / (1.0 - newer), per_cycle = std::pow(newer, 1.0 / double(block));
   const auto [speed, current] = difference(0);
   const double to_come =
       std::max(std::abs(speed) * model_.speed_scale / std::abs(now_.omega),
@@ -204,9 +205,9 @@ bool CrankStartUp::jump_by_blocks(std::size_t n, std::size_t block) {
   if (std::abs(newer - older) > (to_the_limit ? 0.05 : 0.2) * (1.0 - newer)) return false;
   double share = 1.0, skipped = 0.0;
   if (!to_the_limit) {
-    if (block == 1 || per_lap < 0.98) return false;
+    if (block == 1 || per_cycle < 0.98) return false;
     share = std::min(0.5, 0.2 / to_come);
-    skipped = std::log1p(-share) / std::log(per_lap);
+    skipped = std::log1p(-share) / std::log(per_cycle);
     if (skipped < double(2 * block)) return false;
   }
   now_.omega += share * gain * speed * model_.speed_scale;
@@ -215,12 +216,12 @@ bool CrankStartUp::jump_by_blocks(std::size_t n, std::size_t block) {
   Crossing& here = crossings_.back();
   here.omega = now_.omega;
   here.current = now_.i;
-  here.skipped = skipped * here.lap;
+  here.skipped = skipped * here.cycle;
   now_.t += here.skipped;
   end_time_ += here.skipped;
-  laps_compared_ = 1;
-  laps_since_jump_ = 0;
-  contraction_ = per_lap;
+  cycles_compared_ = 1;
+  cycles_since_jump_ = 0;
+  contraction_ = per_cycle;
   change_ = infinity;
   jumped_ = true;
   if (to_the_limit && !options_.metrics) {
@@ -230,35 +231,35 @@ bool CrankStartUp::jump_by_blocks(std::size_t n, std::size_t block) {
   return true;
 }
 
-/// Supplies that vary: laps share no period with the supply in general, so averages over several laps are compared.
-bool CrankStartUp::lap_done_averaging() {
-  constexpr std::size_t window = averaged_laps_pwm;
+/// Supplies that vary: cycles share no period with the supply in general, so averages over several cycles are compared.
+bool CrankStartUp::cycle_done_averaging() {
+  constexpr std::size_t window = averaged_cycles_pwm;
   const std::size_t n = crossings_.size();
   if (measuring_) {
-    if (++measured_laps_ < int(window)) return false;
-    result_.lap_scatter = lap_scatter(window);
+    if (++measured_cycles_ < int(window)) return false;
+    result_.cycle_scatter = cycle_scatter(window);
     take_metrics(int(window));
     flap();
     return true;
   }
   if (n < 5) return false;
-  const double newer = lap_time(n - 1) + lap_time(n - 2), older = lap_time(n - 3) + lap_time(n - 4);
+  const double newer = cycle_time(n - 1) + cycle_time(n - 2), older = cycle_time(n - 3) + cycle_time(n - 4);
   change_ = std::abs(newer / older - 1.0);
   if (change_ > std::max(options_.tolerance, 1e-4) && n < 40) return false;
   begin_measuring();
   return true;
 }
 
-double CrankStartUp::lap_scatter(std::size_t laps) const {
+double CrankStartUp::cycle_scatter(std::size_t cycles) const {
   const std::size_t n = crossings_.size();
   double mean = 0.0, scatter = 0.0;
-  for (std::size_t k = n - laps; k < n; ++k) mean += lap_time(k) / double(laps);
-  for (std::size_t k = n - laps; k < n; ++k) scatter = std::max(scatter, std::abs(lap_time(k) / mean - 1.0));
+  for (std::size_t k = n - cycles; k < n; ++k) mean += cycle_time(k) / double(cycles);
+  for (std::size_t k = n - cycles; k < n; ++k) scatter = std::max(scatter, std::abs(cycle_time(k) / mean - 1.0));
   return scatter;
 }
 
 void CrankStartUp::begin_measuring() {
-  if (!measuring_) measured_laps_ = 0;
+  if (!measuring_) measured_cycles_ = 0;
   measuring_ = true;
   std::fill(std::begin(q_), std::end(q_), 0.0);
   ripple_sum_ = 0.0;
@@ -275,15 +276,15 @@ void CrankStartUp::add_variation() {
   energy_mark_ = energy;
 }
 
-void CrankStartUp::take_metrics(int laps) {
+void CrankStartUp::take_metrics(int cycles) {
   const std::size_t n = crossings_.size();
-  const double start = int(n) > laps ? crossings_[n - 1 - std::size_t(laps)].time : 0.0;
+  const double start = int(n) > cycles ? crossings_[n - 1 - std::size_t(cycles)].time : 0.0;
   CycleIntegrals<double>& integrals = result_.integrals;
-  for (int k = 0; k < quadrature_count; ++k) integrals[std::size_t(quadratures[k])] = q_[k] / laps;
-  integrals[std::size_t(Integral::time)] = (now_.t - start) / laps;
-  integrals[std::size_t(Integral::reactive_work)] = variation_ / laps;
+  for (int k = 0; k < quadrature_count; ++k) integrals[std::size_t(quadratures[k])] = q_[k] / cycles;
+  integrals[std::size_t(Integral::time)] = (now_.t - start) / cycles;
+  integrals[std::size_t(Integral::reactive_work)] = variation_ / cycles;
   result_.metrics = cycle_metrics(model_.vehicle, integrals, extremes_, absent, options_.reporting);
-  result_.averaged_laps = laps;
+  result_.averaged_cycles = cycles;
   if (ripple_count_ > 0) result_.current_ripple = ripple_sum_ / double(ripple_count_);
 }
 

@@ -1,14 +1,14 @@
-// From a vehicle on each lane to a first trajectory of its lap: the part of LaneOrbit that comes before the nodes.
+// From a vehicle on each lane to a first trajectory of its cycle: the part of PackOrbit that comes before the nodes.
 #pragma once
 
-#include "wingbeat/ensemble/lane_orbit.hpp"
+#include "wingbeat/ensemble/pack_orbit.hpp"
 
 namespace wingbeat {
 
 template <class L, int N>
-void LaneOrbit<L, N>::tabulate() {
+void PackOrbit<L, N>::tabulate() {
   for (int half = 0; half < 2; ++half) {
-    const System system = half_lap(half);
+    const System system = half_cycle(half);
     for (int k = 0; k < coarse_samples; ++k) {
       table_[std::size_t(half)][std::size_t(k)] = system.place(L(quarter * (2.0 * k / (coarse_samples - 1) - 1.0)));
     }
@@ -18,17 +18,17 @@ void LaneOrbit<L, N>::tabulate() {
 /// Marks the lanes that could jam or lock: within a margin, for the table is coarse; static_balance() has the last
 /// word.
 template <class L, int N>
-void LaneOrbit<L, N>::assess_statics() {
+void PackOrbit<L, N>::assess_statics() {
   const Vehicle<L>& v = vehicle_;
   const L stall = stall_torque(v);
   unresolved_ = !(stall > breakaway_torque(v));
   locked_ = !unresolved_ && unresolved_;
   // From rest, locking shows by itself, and only jams on the way are left to be told from near ones.
-  const bool from_rest = settings_.approach == LaneApproach::from_rest;
+  const bool from_rest = settings_.approach == PackApproach::from_rest;
   const L inertia_margin(from_rest ? 0.05 : 0.3), lever_margin(from_rest ? 0.02 : 0.1);
   const bool springs = !from_rest && any<L>(v.spring.stiffness > L(0.0));
   for (const auto& half : table_) {
-    for (const Place<L>& place : half) {
+    for (const Configuration<L>& place : half) {
       const CrankKinematics<L>& k = place.kinematics;
       unresolved_ = unresolved_ || !(min_inertia(v, k) > inertia_margin * v.motor.inertia) ||
                     !(k.wing_lever > lever_margin * typical_lever(v.transmission));
@@ -41,11 +41,11 @@ void LaneOrbit<L, N>::assess_statics() {
 
 /// Starts at the balanced_speed(); returns how many there are.
 template <class L, int N>
-L LaneOrbit<L, N>::guess_speed() {
+L PackOrbit<L, N>::guess_speed() {
   constexpr int stride = 4, count = coarse_samples / stride;
   std::array<LoadPlace<L>, 2 * count> places;
   for (int n = 0; n < 2 * count; ++n) {
-    const Place<L>& at = table_[std::size_t(n / count)][std::size_t(stride / 2 + stride * (n % count))];
+    const Configuration<L>& at = table_[std::size_t(n / count)][std::size_t(stride / 2 + stride * (n % count))];
     places[std::size_t(n)] = load_place(vehicle_, at.kinematics, at.spring_moment);
   }
   const BalancedSpeed<L> balanced = balanced_speed(vehicle_, places);
@@ -55,30 +55,30 @@ L LaneOrbit<L, N>::guess_speed() {
 }
 
 /// From rest at crank angle zero, in time, by the classical fourth-order method: over the lower dead centre twice,
-/// where the lap may begin. Lanes that come near standing still are unresolved, but for those that come to rest and
+/// where the cycle may begin. Pack that come near standing still are unresolved, but for those that come to rest and
 /// stay.
 template <class L, int N>
-void LaneOrbit<L, N>::start_from_rest() {
+void PackOrbit<L, N>::start_from_rest() {
   using Moving = std::array<L, N + 1>;  // crank angle, state
-  const int steps_per_lap = settings_.start_up_steps;
-  constexpr int max_laps = 24;
+  const int steps_per_cycle = settings_.start_up_steps;
+  constexpr int max_cycles = 24;
   // The kinks leave an error of the second order, which counts most where the crank almost stands still.
-  L slow_limit = L(1.92 / steps_per_lap) * no_load_;
+  L slow_limit = L(1.92 / steps_per_cycle) * no_load_;
   // An inductance that is left out here changes the speed by less than its share of the motor's time constant.
   if (lags_) slow_limit = slow_limit + L(2.0) * electrical_to_mechanical_time() * no_load_;
   constexpr double end = 4.0 * pi - quarter;
-  const L dt = L(two_pi / double(steps_per_lap)) * inverse_of(no_load_);
+  const L dt = L(two_pi / double(steps_per_cycle)) * inverse_of(no_load_);
   if constexpr (N == 2) {  // beyond the method's stability
     unresolved_ = unresolved_ || dt * circuit_resistance(vehicle_) * per_inductance_ > L(2.0);
   }
   const auto rates = [&](const Moving& x) {
     const L sine = sin(x[0]), cosine = cos(x[0]);
-    System system = half_lap(0);
+    System system = half_cycle(0);
     State y;
     for (std::size_t n = 0; n < N; ++n) y[n] = x[n + 1];
     const CrankKinematics<L> k = crank_kinematics(geometry_, sine, cosine);
     system.half = sign_of(k.stroke_slope);
-    const Motion<L> m = system.motion_on_its_branch(system.place_of(k), y);
+    const Motion<L> m = system.motion_on_its_branch(system.configuration_of(k), y);
     Moving r;
     r[0] = y[0];
     r[1] = m.crank_acceleration;
@@ -96,9 +96,9 @@ void LaneOrbit<L, N>::start_from_rest() {
   x.fill(L(0.0));
   y_.fill(L(0.0));
   Mask done = L(1.0) < L(0.0), started = done, slow = done, stopped = done;
-  L waited(0.0);  // steps at rest, or since the crank was slow: after a few laps' worth others must decide
-  for (int n = 0; n < steps_per_lap * max_laps; ++n) {
-    if (all<L>(done || stopped || waited > L(2.0 * steps_per_lap))) break;
+  L waited(0.0);  // steps at rest, or since the crank was slow: after a few cycles' worth others must decide
+  for (int n = 0; n < steps_per_cycle * max_cycles; ++n) {
+    if (all<L>(done || stopped || waited > L(2.0 * steps_per_cycle))) break;
     const Moving k1 = rates(x);
     const Moving k2 = rates(moved(x, k1, L(0.5) * dt));
     const Moving k3 = rates(moved(x, k2, L(0.5) * dt));
@@ -138,7 +138,7 @@ void LaneOrbit<L, N>::start_from_rest() {
 
 /// Whether an explicit step of fourth order would be near its limit of stability.
 template <class L, int N>
-auto LaneOrbit<L, N>::is_stiff(const Matrix& jacobian, const L& h) -> Mask {
+auto PackOrbit<L, N>::is_stiff(const Matrix& jacobian, const L& h) -> Mask {
   L fastest = abs(jacobian[0][0]);
   if constexpr (N == 2) fastest = max(fastest, abs(jacobian[1][1]));
   return h * fastest > L(1.5);
@@ -148,7 +148,7 @@ auto LaneOrbit<L, N>::is_stiff(const Matrix& jacobian, const L& h) -> Mask {
 /// Newton steps; rates(part, y) are those at a part of the step.
 template <class L, int N>
 template <class Rates>
-auto LaneOrbit<L, N>::implicit_step(const State& y, const L& h, const Rates& rates) const -> State {
+auto PackOrbit<L, N>::implicit_step(const State& y, const L& h, const Rates& rates) const -> State {
   const double gamma = 1.0 - std::sqrt(0.5);
   const L own = L(gamma) * h;
   State known = y, at = y;
@@ -180,10 +180,10 @@ auto LaneOrbit<L, N>::implicit_step(const State& y, const L& h, const Rates& rat
   return at;
 }
 
-/// Where a step of coarse_lap() from y is stiff, takes an implicit one instead: its end, and the rod force's switch in
-/// its middle and at its end.
+/// Where a step of coarse_iterate() from y is stiff, takes an implicit one instead: its end, and the rod force's switch
+/// in its middle and at its end.
 template <class L, int N>
-void LaneOrbit<L, N>::replace_stiff(const System& system, const L& u, const L& h, const State& y, State& end,
+void PackOrbit<L, N>::replace_stiff(const System& system, const L& u, const L& h, const State& y, State& end,
                                     L& force_in_middle, L& force_at_end) const {
   State rates, beside;
   L force;
@@ -209,18 +209,18 @@ void LaneOrbit<L, N>::replace_stiff(const System& system, const L& u, const L& h
   force_at_end = select<L>(stiff, force, force_at_end);
 }
 
-/// One lap by the classical fourth-order method, each stage on the branch that holds there; the last one finds the
+/// One cycle by the classical fourth-order method, each stage on the branch that holds there; the last one finds the
 /// switches.
 template <class L, int N>
 template <bool last>
-void LaneOrbit<L, N>::coarse_lap() {
+void PackOrbit<L, N>::coarse_iterate() {
   constexpr double h = pi / coarse_half_steps;
   slowest_ = y_[0];
   std::array<L, coarse_samples> angles;
   for (std::size_t k = 0; k < coarse_samples; ++k)
     angles[k] = L(quarter * (2.0 * double(k) / (coarse_samples - 1) - 1.0));
   for (int half = 0; half < 2; ++half) {
-    const System system = half_lap(half);
+    const System system = half_cycle(half);
     const auto& table = table_[std::size_t(half)];
     std::array<L, coarse_samples> force;
     const auto moved = [](const State& from, const State& slope, double by) {
@@ -251,16 +251,16 @@ void LaneOrbit<L, N>::coarse_lap() {
   lost_ = lost_ || !(slowest_ > floor_);
 }
 
-/// A lap from y_ by the classical fourth-order method with one step per segment; corrects the switches.
+/// A cycle from y_ by the classical fourth-order method with one step per segment; corrects the switches.
 template <class L, int N>
-void LaneOrbit<L, N>::march() {
+void PackOrbit<L, N>::march() {
   solver::Rates<System> k1, k2, k3, k4;
   for (int half = 0; half < 2; ++half) {
-    const System system = half_lap(half);
+    const System system = half_cycle(half);
     build_mesh(half);
     const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
     std::array<L, 2 * max_half_segments + 1> u, force;
-    std::array<Place<L>, 3> places;
+    std::array<Configuration<L>, 3> places;
     places[2] = system.place(mesh.u[0]);
     const auto moved = [](const State& from, const State& slope, const L& by) {
       State to;
@@ -272,9 +272,9 @@ void LaneOrbit<L, N>::march() {
       const L sign = mesh.force[s], h = mesh.u[s + 1] - mesh.u[s], half_h = L(0.5) * h;
       u[2 * s] = mesh.u[s];
       u[2 * s + 1] = mesh.u[s] + half_h;
-      const Place<L>&start = places[s % 2 == 0 ? 2 : 0], &middle = places[1], &end = places[s % 2 == 0 ? 0 : 2];
-      find_place(system, u[2 * s + 1], places[1]);
-      find_place(system, mesh.u[s + 1], places[s % 2 == 0 ? 0 : 2]);
+      const Configuration<L>&start = places[s % 2 == 0 ? 2 : 0], &middle = places[1], &end = places[s % 2 == 0 ? 0 : 2];
+      find_configuration(system, u[2 * s + 1], places[1]);
+      find_configuration(system, mesh.u[s + 1], places[s % 2 == 0 ? 0 : 2]);
       evaluate<false>(system, start, y_, sign, k1);
       force[2 * s] = k1.switches[0];
       subinterval.y = y_;
@@ -294,8 +294,8 @@ void LaneOrbit<L, N>::march() {
         const Mask stiff = is_stiff(subinterval.jacobian[0], h);
         solver::Rates<System> rates;
         const State by_implicit = implicit_step(y_, h, [&](const L& part, const State& y) {
-          Place<L> place;
-          find_place(system, mesh.u[s] + part * h, place);
+          Configuration<L> place;
+          find_configuration(system, mesh.u[s] + part * h, place);
           evaluate<false>(system, place, y, sign, rates);
           return rates.dy;
         });

@@ -19,8 +19,8 @@
 
 namespace wingbeat {
 
-inline constexpr int max_half_segments = 12;  ///< of half a lap
-inline constexpr int max_force_switches = 3;  ///< sign changes of the rod force within half a lap
+inline constexpr int max_half_segments = 12;  ///< of half an iterate
+inline constexpr int max_force_switches = 3;  ///< sign changes of the rod force within half an iterate
 
 /// A quantity of which extremes are sought.
 enum class Quantity { velocity, current, negated_speed, speed, force, energy };
@@ -32,35 +32,36 @@ struct EnsembleMember {
   Reporting reporting;
 };
 
-/// Where a lap begins: near the orbit, at the lower dead centre.
-struct LapStart {
+/// Where an iterate begins: near the orbit, at the lower dead centre.
+struct IterateStart {
   std::array<double, 2> state;                                      ///< omega [rad/s], i [A]
-  std::array<std::array<double, max_force_switches>, 2> switch_at;  ///< of either half lap [rad]
+  std::array<std::array<double, max_force_switches>, 2> switch_at;  ///< of either half cycle [rad]
   std::array<double, 2> switch_count, first_sign;
-  std::array<double, 4> monodromy;  ///< of a lap, to a few per cent
+  std::array<double, 4> monodromy;  ///< of an iterate, to a few per cent
 };
 
-enum class LaneApproach {
+enum class PackApproach {
   guess,      ///< from the speed at which the motor balances the mean load
   from_rest,  ///< from rest, in time: what happens there is no longer in doubt
-  resume      ///< from the LapStart that an earlier attempt left
+  resume      ///< from the IterateStart that an earlier attempt left
 };
 
 /// What the inductance of a block's motors makes of the current.
-enum class LaneCurrent {
+enum class PackCurrent {
   algebraic,  ///< none
   lagging,    ///< small: the current follows the speed within a fraction of a segment
   state
 };
 
-struct LaneSettings {
-  LaneApproach approach = LaneApproach::guess;
+struct PackSettings {
+  PackApproach approach = PackApproach::guess;
   int start_up_steps = 48;  ///< from rest: of a turn at the speed without load
-  LaneCurrent current = LaneCurrent::state;
-  int coarse_laps = 2;
-  bool implicit = false;  ///< where explicit steps would be unstable, laps before the collocation take implicit ones
-  int segments = 6;       ///< of half a lap
-  int intervals = 6;      ///< between the nodes of a segment, even
+  PackCurrent current = PackCurrent::state;
+  int coarse_iterates = 2;
+  bool implicit =
+      false;          ///< where explicit steps would be unstable, iterates before the collocation take implicit ones
+  int segments = 6;   ///< of half an iterate
+  int intervals = 6;  ///< between the nodes of a segment, even
   int newton_iterations = 2;     ///< before the last
   double peak_tolerance = 5e-7;  ///< a peak is settled when the cubic at its top promises less, relative
   std::array<bool, quantity_count> wanted{};
@@ -68,35 +69,35 @@ struct LaneSettings {
   bool multipliers = false;
 };
 
-enum class LaneAssessment {
+enum class PackAssessment {
   rotates,
   unresolved,  ///< may lock, stall, jam or have several orbits, or is beyond this solver's means
   locked       ///< from rest it has come to a stop, in time, where it stays
 };
 
-struct LaneResult {
+struct PackResult {
   Metrics<double> metrics;
   double error_estimate;  ///< of the cycle's means, relative
-  LaneAssessment assessment;
-  LapStart start;
+  PackAssessment assessment;
+  IterateStart start;
 };
 
 /// Solves `count` members, at most lanes_* of them, alike in formulation, in whether they have springs and in
 /// what their inductance makes of the current. A member's result does not depend on the others.
-void solve_block_base(const EnsembleMember* const* members, int count, const LaneSettings& settings,
-                      LaneResult* const* results);
+void solve_block_base(const EnsembleMember* const* members, int count, const PackSettings& settings,
+                      PackResult* const* results);
 #ifdef WINGBEAT_X86
-void solve_block_avx2(const EnsembleMember* const* members, int count, const LaneSettings& settings,
-                      LaneResult* const* results);
-void solve_block_avx512(const EnsembleMember* const* members, int count, const LaneSettings& settings,
-                        LaneResult* const* results);
+void solve_block_avx2(const EnsembleMember* const* members, int count, const PackSettings& settings,
+                      PackResult* const* results);
+void solve_block_avx512(const EnsembleMember* const* members, int count, const PackSettings& settings,
+                        PackResult* const* results);
 #endif
 
 #ifdef WINGBEAT_NO_LANES
-inline constexpr bool has_lanes = false;
+inline constexpr bool has_packs = false;
 #else
-inline constexpr bool has_lanes = true;
+inline constexpr bool has_packs = true;
 #endif
-inline constexpr int lanes_base = 4, lanes_avx2 = 8, lanes_avx512 = 16;
+inline constexpr int packs_base = 4, packs_avx2 = 8, packs_avx512 = 16;
 
 }  // namespace wingbeat

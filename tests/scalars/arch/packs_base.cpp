@@ -1,4 +1,4 @@
-#include "scalars/arch/lanes_impl.hpp"
+#include "scalars/arch/packs_impl.hpp"
 
 namespace wingbeat::lanes {
 

@@ -1,4 +1,5 @@
-// Steps of a lap from branch to branch: their size, and the search for the switches that end branches (lap.hpp).
+// Steps of an iterate from branch to branch: their size, and the search for the switches that end branches
+// (iterate.hpp).
 #pragma once
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/minimise.hpp"
-#include "wingbeat/solve/lap_record.hpp"
+#include "wingbeat/solve/iterate_record.hpp"
 
 namespace wingbeat::solver {
 namespace detail {
@@ -32,7 +33,7 @@ bool is_finite(const State& y) {
   return std::all_of(y.begin(), y.end(), [](double value) { return std::isfinite(value); });
 }
 
-/// Error of a step relative to the tolerance; `integral_scale` holds the size of each integral over the whole lap.
+/// Error of a step relative to the tolerance; `integral_scale` holds the size of each integral over the whole iterate.
 template <bool quadratures, class System>
 double scaled_error(const System& system, const StepResult<System>& step, double tolerance,
                     const typename System::Quadrature& integral_scale) {
@@ -76,19 +77,19 @@ double step_times_decay(const System& system, const StepResult<System>& step, co
 /// Position tolerance of a switch: an error e in its position costs about e^2 times the change of slope there.
 inline double switch_tolerance(double tolerance) { return 0.4 * std::sqrt(tolerance); }
 
-/// Drives one lap; see run_lap.
+/// Drives one iterate; see run_iterate.
 template <bool quadratures, class System>
-class LapDriver {
+class IterateDriver {
  public:
   using State = typename System::State;
   using Signs = typename System::Signs;
   static constexpr double largest_decay = 6.0;  ///< |h lambda| within which the explicit pair is stable
   static constexpr std::size_t switch_count = std::tuple_size_v<typename System::Switches>;
 
-  LapDriver(const System& system, const LapOptions& options, Lap<System>& lap)
+  IterateDriver(const System& system, const IterateOptions& options, Iterate<System>& iterate)
       : system_(system),
         options_(options),
-        lap_(lap),
+        iterate_(iterate),
         located_(std::min(switch_count, std::size_t(options.switches))),
         position_tolerance_(switch_tolerance(options.tolerance)),
         error_exponent_(options.method == Method::explicit_pair ? -1.0 / dop853::order
@@ -97,13 +98,13 @@ class LapDriver {
   void run(const State& start) {
     begin(start);
     const double period = system_.period();
-    double h = lap_.largest_step > 0.0 ? lap_.largest_step : options_.first_step * period / two_pi;
-    lap_.largest_step = 0.0;
+    double h = iterate_.largest_step > 0.0 ? iterate_.largest_step : options_.first_step * period / two_pi;
+    iterate_.largest_step = 0.0;
     // A step must not jump over the shape of what is integrated along.
     const double longest = quadratures ? period / 12.0 : period;
     while (x_ < period) {
-      if (int(lap_.steps.size()) >= options_.max_steps) return stop(LapStatus::too_many_steps);
-      if (h < 1e-12 * period) return stop(LapStatus::barrier);
+      if (int(iterate_.steps.size()) >= options_.max_steps) return stop(IterateStatus::too_many_steps);
+      if (h < 1e-12 * period) return stop(IterateStatus::barrier);
       double node = period;
       if (fixed_ < system_.fixed_nodes().size()) node = std::min(node, system_.fixed_nodes()[fixed_].x);
       while (expected_ < plan_.size() && plan_[expected_].x <= x_ + position_tolerance_) ++expected_;
@@ -171,7 +172,7 @@ class LapDriver {
         x1 = x_ + step;
       }
       note_others(step, result, last);
-      lap_.error_sum += error * options_.tolerance;
+      iterate_.error_sum += error * options_.tolerance;
       accept(x1, step, result, last);
       if (flip) {
         flip_here(flipped);
@@ -181,20 +182,20 @@ class LapDriver {
       h = std::max(h, step) * std::clamp(factor, 0.3, 3.0);
       if (!reaches || factor < 1.0) h = step * std::clamp(factor, 0.3, 3.0);
     }
-    stop(LapStatus::complete);
+    stop(IterateStatus::complete);
   }
 
  private:
   void begin(const State& start) {
-    lap_.method = options_.method;
-    plan_.swap(lap_.switches);
+    iterate_.method = options_.method;
+    plan_.swap(iterate_.switches);
     if (located_ < switch_count) {
       std::erase_if(plan_, [&](const SwitchNode& node) { return node.sign >= located_; });
     }
-    lap_.switches.clear();
-    lap_.steps.clear();
-    lap_.steps.reserve(64);
-    lap_.error_sum = 0.0;
+    iterate_.switches.clear();
+    iterate_.steps.clear();
+    iterate_.steps.reserve(64);
+    iterate_.error_sum = 0.0;
     x_ = 0.0;
     y_ = start;
     if constexpr (requires { system_.start_signs(start); }) {
@@ -214,12 +215,12 @@ class LapDriver {
     remember_integral_scale();
   }
 
-  void stop(LapStatus status) {
-    lap_.status = status;
-    lap_.stop = x_;
-    lap_.end = y_;
-    lap_.switch_scale = switch_scale_;
-    lap_.integral_scale = integral_scale_;
+  void stop(IterateStatus status) {
+    iterate_.status = status;
+    iterate_.stop = x_;
+    iterate_.end = y_;
+    iterate_.switch_scale = switch_scale_;
+    iterate_.integral_scale = integral_scale_;
   }
 
   void remember_switch_scale(const Rates<System>& rates) {
@@ -406,15 +407,15 @@ class LapDriver {
         // The parabola's zero, by one more secant on the side that holds it.
         const bool after = (ft > 0.0) == (f0 > 0.0);
         const double better = after ? t + (1.0 - t) * ft / (ft - f1) : t * f0 / (f0 - ft);
-        lap_.switches.push_back({x_ + better * step, k});
+        iterate_.switches.push_back({x_ + better * step, k});
       }
       signs_[k] = -signs_[k];
     }
   }
 
   void accept(double x1, double step, const StepResult<System>& result, const Rates<System>& last) {
-    lap_.steps.push_back({x_, step, y_, signs_, first_, result.dq});
-    lap_.largest_step = std::max(lap_.largest_step, step);
+    iterate_.steps.push_back({x_, step, y_, signs_, first_, result.dq});
+    iterate_.largest_step = std::max(iterate_.largest_step, step);
     x_ = x1;
     y_ = result.y;
     first_ = last;
@@ -424,7 +425,7 @@ class LapDriver {
 
   void remember_integral_scale() {
     if constexpr (quadratures) {
-      // A lap's integral is a good part of its largest integrand times the period.
+      // An iterate's integral is a good part of its largest integrand times the period.
       for (std::size_t q = 0; q < first_.dq.size(); ++q) {
         integral_scale_[q] = std::max(integral_scale_[q], 0.3 * system_.period() * std::abs(first_.dq[q]));
       }
@@ -439,7 +440,7 @@ class LapDriver {
       signs_[k] = -signs_[k];
     }
     ++flips_here_;
-    lap_.switches.push_back({x_, k});
+    iterate_.switches.push_back({x_, k});
     first_ = system_.template rates<quadratures>(x_, y_, signs_);
     if (jumps(system_, k)) {
       // The other switches may have jumped over their zeros with the rates.
@@ -460,8 +461,8 @@ class LapDriver {
   }
 
   const System& system_;
-  const LapOptions& options_;
-  Lap<System>& lap_;
+  const IterateOptions& options_;
+  Iterate<System>& iterate_;
   const std::size_t located_;
   const double position_tolerance_;
   const double error_exponent_;

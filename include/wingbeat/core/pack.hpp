@@ -18,49 +18,49 @@
 namespace wingbeat {
 
 template <class Arch, int K>
-struct LaneMask {
+struct PackMask {
   using Part = xsimd::batch_bool<double, Arch>;
   Part part[K];
 
-  friend LaneMask operator&&(const LaneMask& a, const LaneMask& b) {
-    LaneMask r;
+  friend PackMask operator&&(const PackMask& a, const PackMask& b) {
+    PackMask r;
     for (int n = 0; n < K; ++n) r.part[n] = a.part[n] & b.part[n];
     return r;
   }
-  friend LaneMask operator||(const LaneMask& a, const LaneMask& b) {
-    LaneMask r;
+  friend PackMask operator||(const PackMask& a, const PackMask& b) {
+    PackMask r;
     for (int n = 0; n < K; ++n) r.part[n] = a.part[n] | b.part[n];
     return r;
   }
-  friend LaneMask operator!(const LaneMask& a) {
-    LaneMask r;
+  friend PackMask operator!(const PackMask& a) {
+    PackMask r;
     for (int n = 0; n < K; ++n) r.part[n] = ~a.part[n];
     return r;
   }
 };
 
 template <class Arch, int K>
-struct Lanes {
+struct Pack {
   using Part = xsimd::batch<double, Arch>;
   static constexpr int part_lanes = int(Part::size);
   static constexpr int lanes = K * part_lanes;
   Part part[K];
 
-  Lanes() = default;
+  Pack() = default;
   // Spelt out, or arrays of lanes are copied by calls of memmove.
-  Lanes(const Lanes& x) {
+  Pack(const Pack& x) {
     for (int n = 0; n < K; ++n) part[n] = x.part[n];
   }
-  Lanes& operator=(const Lanes& x) {  // NOLINT(bugprone-unhandled-self-assignment): numbers
+  Pack& operator=(const Pack& x) {  // NOLINT(bugprone-unhandled-self-assignment): numbers
     for (int n = 0; n < K; ++n) part[n] = x.part[n];
     return *this;
   }
-  Lanes(double x) {  // NOLINT: numbers mix freely with lanes
+  Pack(double x) {  // NOLINT: numbers mix freely with lanes
     for (int n = 0; n < K; ++n) part[n] = Part(x);
   }
 
-  static Lanes load(const double* aligned) {
-    Lanes r;
+  static Pack load(const double* aligned) {
+    Pack r;
     for (int n = 0; n < K; ++n) r.part[n] = Part::load_aligned(aligned + n * part_lanes);
     return r;
   }
@@ -69,8 +69,8 @@ struct Lanes {
   }
 
 #define WINGBEAT_LANES_OPERATOR(op)                                 \
-  friend Lanes operator op(const Lanes& a, const Lanes& b) {        \
-    Lanes r;                                                        \
+  friend Pack operator op(const Pack& a, const Pack& b) {           \
+    Pack r;                                                         \
     for (int n = 0; n < K; ++n) r.part[n] = a.part[n] op b.part[n]; \
     return r;                                                       \
   }
@@ -79,11 +79,11 @@ struct Lanes {
   WINGBEAT_LANES_OPERATOR(*)
   WINGBEAT_LANES_OPERATOR(/)
 #undef WINGBEAT_LANES_OPERATOR
-#define WINGBEAT_LANES_COMPARISON(op)                                      \
-  friend LaneMask<Arch, K> operator op(const Lanes & a, const Lanes & b) { \
-    LaneMask<Arch, K> r;                                                   \
-    for (int n = 0; n < K; ++n) r.part[n] = a.part[n] op b.part[n];        \
-    return r;                                                              \
+#define WINGBEAT_LANES_COMPARISON(op)                                    \
+  friend PackMask<Arch, K> operator op(const Pack & a, const Pack & b) { \
+    PackMask<Arch, K> r;                                                 \
+    for (int n = 0; n < K; ++n) r.part[n] = a.part[n] op b.part[n];      \
+    return r;                                                            \
   }
   WINGBEAT_LANES_COMPARISON(<)
   WINGBEAT_LANES_COMPARISON(<=)
@@ -91,17 +91,17 @@ struct Lanes {
   WINGBEAT_LANES_COMPARISON(>=)
   WINGBEAT_LANES_COMPARISON(==)
 #undef WINGBEAT_LANES_COMPARISON
-  friend Lanes operator-(const Lanes& a) {
-    Lanes r;
+  friend Pack operator-(const Pack& a) {
+    Pack r;
     for (int n = 0; n < K; ++n) r.part[n] = -a.part[n];
     return r;
   }
 };
 
 template <class Arch, int K>
-struct ScalarTraits<Lanes<Arch, K>> {
-  using S = Lanes<Arch, K>;
-  using Mask = LaneMask<Arch, K>;
+struct ScalarTraits<Pack<Arch, K>> {
+  using S = Pack<Arch, K>;
+  using Mask = PackMask<Arch, K>;
   static constexpr int lanes = S::lanes;
   static constexpr bool differentiates = false;
   static constexpr bool reads_tables = false;
@@ -125,7 +125,7 @@ struct ScalarTraits<Lanes<Arch, K>> {
 
 /// A part whose numbers are those of part_of(lane) in each lane. Choices are those of lane 0.
 template <class L, template <Scalar> class Part, class PartOf>
-Part<L> in_lanes(const PartOf& part_of) {
+Part<L> in_packs(const PartOf& part_of) {
   // Not Part<double>, on which clang 14 crashes.
   constexpr int count = number_count<std::remove_cvref_t<decltype(part_of(0))>>;
   alignas(64) double numbers[count][std::size_t(L::lanes)];
@@ -140,26 +140,26 @@ Part<L> in_lanes(const PartOf& part_of) {
 }
 
 template <class Arch, int K>
-Lanes<Arch, K> abs(const Lanes<Arch, K>& x) {
-  Lanes<Arch, K> r;
+Pack<Arch, K> abs(const Pack<Arch, K>& x) {
+  Pack<Arch, K> r;
   for (int n = 0; n < K; ++n) r.part[n] = xsimd::abs(x.part[n]);
   return r;
 }
 template <class Arch, int K>
-Lanes<Arch, K> min(const Lanes<Arch, K>& a, const Lanes<Arch, K>& b) {
-  Lanes<Arch, K> r;
+Pack<Arch, K> min(const Pack<Arch, K>& a, const Pack<Arch, K>& b) {
+  Pack<Arch, K> r;
   for (int n = 0; n < K; ++n) r.part[n] = xsimd::min(a.part[n], b.part[n]);
   return r;
 }
 template <class Arch, int K>
-Lanes<Arch, K> max(const Lanes<Arch, K>& a, const Lanes<Arch, K>& b) {
-  Lanes<Arch, K> r;
+Pack<Arch, K> max(const Pack<Arch, K>& a, const Pack<Arch, K>& b) {
+  Pack<Arch, K> r;
   for (int n = 0; n < K; ++n) r.part[n] = xsimd::max(a.part[n], b.part[n]);
   return r;
 }
 template <class Arch, int K>
-Lanes<Arch, K> sqrt(const Lanes<Arch, K>& x) {
-  Lanes<Arch, K> r;
+Pack<Arch, K> sqrt(const Pack<Arch, K>& x) {
+  Pack<Arch, K> r;
   for (int n = 0; n < K; ++n) r.part[n] = xsimd::sqrt(x.part[n]);
   return r;
 }
@@ -257,32 +257,32 @@ B reduce_by_pi(const B& x, B& magic) {
 
 /// 1 / x to within rounding, x normal.
 template <class Arch, int K>
-Lanes<Arch, K> inverse_of(const Lanes<Arch, K>& x) {
-  Lanes<Arch, K> r;
+Pack<Arch, K> inverse_of(const Pack<Arch, K>& x) {
+  Pack<Arch, K> r;
   for (int n = 0; n < K; ++n) r.part[n] = detail::inverse_of(x.part[n]);
   return r;
 }
 
 /// 1 / sqrt(x) to within rounding, x > 0 and normal.
 template <class Arch, int K>
-Lanes<Arch, K> inverse_sqrt(const Lanes<Arch, K>& x) {
-  Lanes<Arch, K> r;
+Pack<Arch, K> inverse_sqrt(const Pack<Arch, K>& x) {
+  Pack<Arch, K> r;
   for (int n = 0; n < K; ++n) r.part[n] = detail::inverse_sqrt(x.part[n]);
   return r;
 }
 
 template <class Arch, int K>
-Root<Lanes<Arch, K>> root_of(const Lanes<Arch, K>& x) {
-  const Lanes<Arch, K> inverse = inverse_sqrt(x);
+Root<Pack<Arch, K>> root_of(const Pack<Arch, K>& x) {
+  const Pack<Arch, K> inverse = inverse_sqrt(x);
   return {x * inverse, inverse};
 }
 
 /// Absolute error 4e-16 for |x| <= 30, growing with |x|.
 template <class Arch, int K>
-Lanes<Arch, K> sin(const Lanes<Arch, K>& x) {
-  Lanes<Arch, K> result;
+Pack<Arch, K> sin(const Pack<Arch, K>& x) {
+  Pack<Arch, K> result;
   for (int n = 0; n < K; ++n) {
-    typename Lanes<Arch, K>::Part magic;
+    typename Pack<Arch, K>::Part magic;
     const auto r = detail::reduce_by_pi(x.part[n], magic);
     result.part[n] = detail::flip_sign(detail::sine_of_reduced(r), magic);
   }
@@ -290,10 +290,10 @@ Lanes<Arch, K> sin(const Lanes<Arch, K>& x) {
 }
 
 template <class Arch, int K>
-Lanes<Arch, K> cos(const Lanes<Arch, K>& x) {
-  Lanes<Arch, K> result;
+Pack<Arch, K> cos(const Pack<Arch, K>& x) {
+  Pack<Arch, K> result;
   for (int n = 0; n < K; ++n) {
-    typename Lanes<Arch, K>::Part magic;
+    typename Pack<Arch, K>::Part magic;
     const auto r = detail::reduce_by_pi(x.part[n], magic);
     result.part[n] = detail::flip_sign(detail::cosine_of_reduced(r), magic);
   }
@@ -307,8 +307,8 @@ struct SineCosine {
 
 /// Sine and cosine of |x| <= pi/2, without reduction.
 template <class Arch, int K>
-SineCosine<Lanes<Arch, K>> sine_cosine_of_reduced(const Lanes<Arch, K>& x) {
-  SineCosine<Lanes<Arch, K>> r;
+SineCosine<Pack<Arch, K>> sine_cosine_of_reduced(const Pack<Arch, K>& x) {
+  SineCosine<Pack<Arch, K>> r;
   for (int n = 0; n < K; ++n) {
     r.sine.part[n] = detail::sine_of_reduced(x.part[n]);
     r.cosine.part[n] = detail::cosine_of_reduced(x.part[n]);
@@ -318,10 +318,10 @@ SineCosine<Lanes<Arch, K>> sine_cosine_of_reduced(const Lanes<Arch, K>& x) {
 
 /// Nearest whole number.
 template <class Arch, int K>
-Lanes<Arch, K> nearest_whole(const Lanes<Arch, K>& x) {
-  Lanes<Arch, K> r;
+Pack<Arch, K> nearest_whole(const Pack<Arch, K>& x) {
+  Pack<Arch, K> r;
   for (int n = 0; n < K; ++n) {
-    typename Lanes<Arch, K>::Part magic;
+    typename Pack<Arch, K>::Part magic;
     r.part[n] = detail::round_to(x.part[n], magic);
   }
   return r;
@@ -329,9 +329,9 @@ Lanes<Arch, K> nearest_whole(const Lanes<Arch, K>& x) {
 
 /// Arc tangent, relative error 2e-16 before rounding.
 template <class Arch, int K>
-Lanes<Arch, K> atan(const Lanes<Arch, K>& x) {
-  using B = typename Lanes<Arch, K>::Part;
-  Lanes<Arch, K> result;
+Pack<Arch, K> atan(const Pack<Arch, K>& x) {
+  using B = typename Pack<Arch, K>::Part;
+  Pack<Arch, K> result;
   for (int n = 0; n < K; ++n) {
     const B y = xsimd::abs(x.part[n]), one(1.0);
     // atan y = pi/4 + atan((y - 1) / (y + 1)) and pi/2 - atan(1 / y) leave |t| <= tan(pi/8).
