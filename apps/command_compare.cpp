@@ -16,7 +16,7 @@
 namespace wingbeat::app {
 namespace {
 
-struct Arguments {
+struct CompareArguments {
   std::vector<std::string> overrides;
   std::string file;
   bool json = false, force = false;
@@ -28,7 +28,7 @@ std::string spaced(std::string text) {
   return text;
 }
 
-int run(const Arguments& arguments) {
+int run(const CompareArguments& arguments) {
   std::optional<PlotFormat> format;
   if (!arguments.plot_power.empty()) {
     format = plot_format(arguments.plot_power);
@@ -67,7 +67,7 @@ int run(const Arguments& arguments) {
 
 void add_compare(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("compare", "Compute published values and show ours beside them");
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<CompareArguments>();
   add_input(command, a->file, "file", "File of published values (TOML)", "FILE");
   add_set(command, a->overrides);
   add_json(command, a->json);

@@ -16,14 +16,14 @@
 namespace wingbeat::app {
 namespace {
 
-struct Arguments {
+struct EnduranceArguments {
   std::string vehicle, output, plot;
   std::vector<std::string> overrides;
   bool json = false, force = false;
   bool allow_extrapolation = false;
 };
 
-int run(const Arguments& arguments) {
+int run(const EnduranceArguments& arguments) {
   std::optional<PlotFormat> format;
   if (!arguments.plot.empty()) {
     format = plot_format(arguments.plot);
@@ -70,7 +70,7 @@ int run(const Arguments& arguments) {
 
 void add_endurance(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("endurance", "How long its battery flies a vehicle");
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<EnduranceArguments>();
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
                     "Flight outside the model's domain may hover (docs/domain.md)");
   add_input(command, a->vehicle, "vehicle", "Vehicle file (TOML) with a battery", "VEHICLE");

@@ -20,7 +20,7 @@
 namespace wingbeat::app {
 namespace {
 
-struct Arguments {
+struct FitArguments {
   std::vector<std::string> overrides;
   std::string file, output, plot;
   bool json = false, compare_friction = false, no_profiles = false, force = false;
@@ -29,7 +29,7 @@ struct Arguments {
 void show(const std::string& what) { fmt::print(stderr, "\r{:<78}", "fit: " + what); }
 void clear() { fmt::print(stderr, "\r{:<78}\r", ""); }
 
-int run(const Arguments& arguments) {
+int run(const FitArguments& arguments) {
   std::optional<PlotFormat> format;
   if (!arguments.plot.empty()) {
     format = plot_format(arguments.plot);
@@ -98,7 +98,7 @@ int run(const Arguments& arguments) {
 
 void add_fit(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("fit", "Fit a vehicle's parameters to bench measurements");
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<FitArguments>();
   add_input(command, a->file, "bench", "Bench file (TOML): vehicle, logs, free parameters", "BENCH");
   add_set(command, a->overrides);
   command->add_option("-o,--output", a->output, "Write the fitted vehicle file, and FILE's .covariance.toml beside it")

@@ -16,13 +16,13 @@
 namespace wingbeat::app {
 namespace {
 
-struct Arguments {
+struct IdentifyMotorArguments {
   std::string file, output, frequency;
   std::vector<std::string> fallbacks;
   bool json = false, force = false;
 };
 
-int run(const Arguments& arguments) {
+int run(const IdentifyMotorArguments& arguments) {
   std::optional<double> frequency;
   if (!arguments.frequency.empty()) {
     try {
@@ -65,7 +65,7 @@ int run(const Arguments& arguments) {
 
 void add_identify_motor(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("identify-motor", "Find a motor's constants from its data sheet");
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<IdentifyMotorArguments>();
   add_input(command, a->file, "datasheet", "Data sheet (TOML)", "DATASHEET");
   command->add_option("-o,--output", a->output, "Write the [motor] section of a vehicle file")->type_name("FILE.toml");
   command->add_option("--frequency", a->frequency, "Flapping frequency in mind, for the inductance's effect")

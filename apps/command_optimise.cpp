@@ -28,7 +28,7 @@
 namespace wingbeat::app {
 namespace {
 
-struct Arguments {
+struct OptimiseArguments {
   std::vector<std::string> overrides;
   std::string study, output, plot, designs;
   int threads = 0;
@@ -39,12 +39,12 @@ struct Arguments {
 bool is_data_set(const std::string& name) { return std::filesystem::path(name).extension() == ".nc"; }
 
 /// The study's, for a comment.
-std::string file_name(const Arguments& arguments) {
+std::string file_name(const OptimiseArguments& arguments) {
   return one_line(std::filesystem::path(arguments.study).filename().string(), 200);
 }
 
 /// Refuses before the search what write_designs() would meet after it.
-void check_designs(const Arguments& arguments, const OptimiseFile& file) {
+void check_designs(const OptimiseArguments& arguments, const OptimiseFile& file) {
   namespace fs = std::filesystem;
   const auto refuse = [&](const std::string& why) {
     throw InputError("--designs " + arguments.designs, 0, 0, "", why);
@@ -66,7 +66,7 @@ void check_designs(const Arguments& arguments, const OptimiseFile& file) {
 }
 
 /// Writes the picked designs of a front into a folder, which is made where it is not there.
-void write_designs(const std::string& folder, const Arguments& arguments, const OptimiseFile& optimise,
+void write_designs(const std::string& folder, const OptimiseArguments& arguments, const OptimiseFile& optimise,
                    const ParetoStudy& study, const ParetoResult& result) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -87,7 +87,7 @@ void write_designs(const std::string& folder, const Arguments& arguments, const 
 }
 
 /// Several objectives.
-int run_front(const Arguments& arguments, const OptimiseFile& file, const ForEach& for_each) {
+int run_front(const OptimiseArguments& arguments, const OptimiseFile& file, const ForEach& for_each) {
   if (!arguments.output.empty() && !is_data_set(arguments.output)) {
     throw InputError("-o " + arguments.output, 0, 0, "",
                      "several objectives have many best designs: the name must end in .nc; --designs writes vehicles");
@@ -127,7 +127,7 @@ int run_front(const Arguments& arguments, const OptimiseFile& file, const ForEac
   return found ? done : does_not_flap;
 }
 
-int run(const Arguments& arguments) {
+int run(const OptimiseArguments& arguments) {
   if (!arguments.plot.empty() && !plot_format(arguments.plot)) {
     throw InputError("--plot " + arguments.plot, 0, 0, "", "the name must end in .svg, .pdf or .png");
   }
@@ -193,7 +193,7 @@ int run(const Arguments& arguments) {
 
 void add_optimise(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("optimise", "Find the best design within bounds and constraints");
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<OptimiseArguments>();
   add_input(command, a->study, "study", "Study file (TOML): objective, parameters, constraints, motors", "STUDY");
   add_set(command, a->overrides);
   command

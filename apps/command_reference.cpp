@@ -18,12 +18,12 @@
 namespace wingbeat::app {
 namespace {
 
-struct Arguments {
+struct ReferenceArguments {
   std::string filter;
   bool json = false;
 };
 
-int show(const Arguments& a, std::string (*text)(const std::string&), std::string (*json)(const std::string&),
+int show(const ReferenceArguments& a, std::string (*text)(const std::string&), std::string (*json)(const std::string&),
          const char* what, const std::vector<std::string_view>& names) {
   if (text(a.filter).empty()) {
     const std::string_view near = nearest_name(a.filter, names);
@@ -70,7 +70,7 @@ int write_new(const NewArguments& a) {
 
 void add_keys(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("keys", "List the keys of vehicle files: unit, range, default, meaning");
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<ReferenceArguments>();
   command->add_option("filter", a->filter, "Only keys with this in their name, unit or meaning")->type_name("WORD");
   add_json(command, a->json);
   command->footer("Example:\n  wingbeat keys torque");
@@ -85,7 +85,7 @@ void add_keys(CLI::App& program, Action& action) {
 
 void add_metrics(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("metrics", "List the metrics of a run: name, unit, meaning");
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<ReferenceArguments>();
   command->add_option("filter", a->filter, "Only metrics with this in their name, unit or meaning")->type_name("WORD");
   add_json(command, a->json);
   command->footer("Example:\n  wingbeat metrics power");

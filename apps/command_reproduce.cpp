@@ -15,20 +15,20 @@
 namespace wingbeat::app {
 namespace {
 
-struct Arguments {
+struct ReproduceArguments {
   std::string paper, output;
   bool coarse = false, json = false, force = false;
   int threads = 0;
 };
 
-void show(double share, const std::string& what) {
+void show_reproduction(double share, const std::string& what) {
   constexpr int width = 24;
   std::string bar(std::size_t(share * width), '#');
   bar.resize(width, '.');
   fmt::print(stderr, "\r{:<78}", fmt::format("[{}] {:5.1f} %  {} ", bar, 100.0 * share, what));
 }
 
-int run(const Arguments& arguments) {
+int run(const ReproduceArguments& arguments) {
   const KnownPaper& paper = known_paper(arguments.paper);
   ReproduceOptions options;
   options.output = arguments.output;
@@ -39,7 +39,7 @@ int run(const Arguments& arguments) {
     for_each_in_parallel(count, act, arguments.threads);
   };
   const bool terminal = ::isatty(STDERR_FILENO) == 1;
-  if (terminal) options.progress = show;
+  if (terminal) options.progress = show_reproduction;
   const ReproduceResult result = reproduce_paper(paper, options);
   if (terminal) fmt::print(stderr, "\r{:<78}\r", "");
   take_written();  // the folder stands for its files, and the text names it
@@ -58,7 +58,7 @@ int run(const Arguments& arguments) {
 
 void add_reproduce(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("reproduce", "Reproduce a paper's figures and assess its statements");
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<ReproduceArguments>();
   command->add_option("paper", a->paper, "Which paper: friction2022")->required()->type_name("PAPER");
   command->add_option("-o,--output", a->output, "Folder to be written: new, empty, or of an earlier reproduction")
       ->required()

@@ -23,7 +23,7 @@ namespace {
 
 constexpr int waveform_rows = 361;
 
-struct Arguments {
+struct RunArguments {
   std::string vehicle;
   std::vector<std::string> overrides;
   std::string voltage, frequency, lift, lift_to_weight;
@@ -87,7 +87,7 @@ void apply_voltage(Supply<double>& supply, const std::string& text) {
   if (supply.voltage < 0.0) throw InputError("--voltage", 0, 0, "", "must be >= 0 V");
 }
 
-int run(const Arguments& arguments) {
+int run(const RunArguments& arguments) {
   RunOptions options;
   options.allow_extrapolation = arguments.allow_extrapolation;
   options.condition = choice<Condition>("--condition", arguments.condition);
@@ -195,7 +195,7 @@ int run(const Arguments& arguments) {
 
 void add_run(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("run", "Find the steady flapping of one vehicle and report its metrics");
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<RunArguments>();
   add_input(command, a->vehicle, "vehicle", "Vehicle file (TOML)", "VEHICLE");
   add_set(command, a->overrides);
   CLI::Option* voltage =

@@ -26,7 +26,7 @@
 namespace wingbeat::app {
 namespace {
 
-struct Arguments {
+struct SweepArguments {
   std::vector<std::string> overrides;
   std::string study, output;
   std::string tolerance, isa;
@@ -74,7 +74,7 @@ std::string rate(double designs, double seconds) {
   return grouped(std::uint64_t(std::llround(r / unit) * std::llround(unit)));
 }
 
-void show_progress(const SweepProgress& p) {
+void show_sweep_progress(const SweepProgress& p) {
   constexpr int width = 24;
   const double share = double(p.done) / double(p.designs);
   const int filled = int(share * width);
@@ -172,7 +172,7 @@ std::string summary(const Study& study, const SweepResult& result) {
 }
 
 /// The summary as one JSON object: numbers of designs by status, and the best ones with their swept values [SI].
-std::string json_summary(const Study& study, const SweepResult& result, const Arguments& arguments) {
+std::string json_summary(const Study& study, const SweepResult& result, const SweepArguments& arguments) {
   using Json = nlohmann::ordered_json;
   const Sweep& sweep = study.sweep;
   Json json;
@@ -221,7 +221,7 @@ std::string known_instruction_sets() {
   return names;
 }
 
-Study study_of(const Arguments& arguments) {
+Study study_of(const SweepArguments& arguments) {
   const bool data_set = std::filesystem::path(arguments.study).extension() == ".nc";
   if (data_set && !arguments.overrides.empty()) {
     throw InputError("--set", 0, 0, "",
@@ -251,7 +251,7 @@ Study study_of(const Arguments& arguments) {
   return study;
 }
 
-int sweep_on_rank_0(const Arguments& arguments, Ranks* ranks) {
+int sweep_on_rank_0(const SweepArguments& arguments, Ranks* ranks) {
   SweepRunOptions options;
   options.output = arguments.output;
   options.version = version;
@@ -260,7 +260,7 @@ int sweep_on_rank_0(const Arguments& arguments, Ranks* ranks) {
   options.force = arguments.force;
   options.stop = [] { return interrupted != 0; };
   const bool on_terminal = ::isatty(STDERR_FILENO) == 1;
-  if (on_terminal) options.progress = show_progress;
+  if (on_terminal) options.progress = show_sweep_progress;
 
   const Study study = study_of(arguments);
   if (options.output.extension() != ".nc") {
@@ -295,7 +295,7 @@ int sweep_on_rank_0(const Arguments& arguments, Ranks* ranks) {
   return done;
 }
 
-int sweep(const Arguments& arguments) {
+int sweep(const SweepArguments& arguments) {
   catch_signals();
   const std::unique_ptr<Ranks> ranks = Ranks::join();
   if (!ranks || ranks->rank() == 0) {
@@ -315,7 +315,7 @@ int sweep(const Arguments& arguments) {
 
 void add_sweep(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("sweep", "Compute very many vehicles into one data set");
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<SweepArguments>();
   add_input(command, a->study, "study", "Study file (TOML), or a data set of an earlier sweep (.nc)", "STUDY");
   add_set(command, a->overrides);
   command->add_option("-o,--output", a->output, "Data set to be written (NetCDF-4)")->required()->type_name("FILE.nc");

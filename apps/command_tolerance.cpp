@@ -20,7 +20,7 @@
 namespace wingbeat::app {
 namespace {
 
-struct Arguments {
+struct ToleranceArguments {
   std::vector<std::string> overrides;
   std::string study, output, plot, plot_metric;
   int threads = 0;
@@ -28,12 +28,12 @@ struct Arguments {
   bool allow_extrapolation = false;
 };
 
-void show_progress(const SweepProgress& p) {
+void show_tolerance_progress(const SweepProgress& p) {
   const double percent = 100.0 * double(p.done) / double(p.designs);
   fmt::print(stderr, "\r{:<78}", fmt::format("tolerance: {:.0f} % of {} vehicles", percent, p.designs));
 }
 
-int run(const Arguments& arguments) {
+int run(const ToleranceArguments& arguments) {
   std::optional<PlotFormat> format;
   if (!arguments.plot.empty()) {
     format = plot_format(arguments.plot);
@@ -57,7 +57,7 @@ int run(const Arguments& arguments) {
 
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
   std::function<void(const SweepProgress&)> progress;
-  if (terminal) progress = show_progress;
+  if (terminal) progress = show_tolerance_progress;
   const SweepColumns columns = solve_sweep(tolerance_sweep(study), arguments.threads, progress);
   if (terminal) fmt::print(stderr, "\r{:<78}\r", "");
   const ToleranceResult result = assess_tolerance(study, columns, start_up_in_time());
@@ -84,7 +84,7 @@ int run(const Arguments& arguments) {
 
 void add_tolerance(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("tolerance", "What uncertain parameters do to a vehicle's metrics");
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<ToleranceArguments>();
   add_input(command, a->study, "study", "Study file (TOML): vehicle, distributions", "STUDY");
   add_set(command, a->overrides);
   command->add_option("-o,--output", a->output, "Write samples, metrics and indices (NetCDF-4)")->type_name("FILE.nc");

@@ -5,13 +5,11 @@
 #include <string_view>
 #include <vector>
 
+#include "wingbeat/core/text.hpp"
+
 namespace wingbeat {
 
-inline std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
+using detail::trimmed;
 
 struct CsvCell {
   std::string_view text;  ///< without blanks around it

@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "wingbeat/core/text.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
@@ -341,12 +342,6 @@ void spell_out_coefficients(Document& document, std::string_view overridden) {
   }
 }
 
-std::string_view trim(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
 /// The value of an override as the one entry of a table, or nothing where it is a bare string.
 std::optional<toml::table> override_value(std::string_view text, const Origin& origin) {
   if (text.find_first_of("\r\n") == std::string_view::npos) {
@@ -367,8 +362,8 @@ void apply_override(Document& document, const std::string& assignment) {
   origin.overridden = true;
   const auto equals = assignment.find('=');
   if (equals == std::string::npos) origin.refuse("", "expected KEY=VALUE, as in --set supply.voltage=\"3 V\"");
-  const std::string path(trim(std::string_view(assignment).substr(0, equals)));
-  const std::string_view text = trim(std::string_view(assignment).substr(equals + 1));
+  const std::string path(detail::trimmed(std::string_view(assignment).substr(0, equals)));
+  const std::string_view text = detail::trimmed(std::string_view(assignment).substr(equals + 1));
   if (!find_parameter<double>(path) && !is_section(path)) {
     origin.refuse(one_line(path), unknown_key_message(path));
   }

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "wingbeat/core/math.hpp"
+#include "wingbeat/core/text.hpp"
 
 namespace wingbeat {
 
@@ -159,12 +160,6 @@ bool has_stray_number(std::string_view unit) {
   return false;
 }
 
-std::string_view trim(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
-}
-
 /// Spaces and powers as word processors write them, in the form that UDUNITS reads.
 std::string typewritten(std::string_view text) {
   static constexpr std::pair<std::string_view, std::string_view> replacements[] = {
@@ -175,7 +170,7 @@ std::string typewritten(std::string_view text) {
       result.replace(at, from.size(), to);
     }
   }
-  return std::string(trim(result));
+  return std::string(detail::trimmed(result));
 }
 
 /// number * factor, exact where the factor is a power of ten: the decimal point is moved in the text.
@@ -335,7 +330,7 @@ double parse_quantity(std::string_view text, std::string_view expected_unit, Spe
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
   if (error != std::errc{}) return fail(", a number too large or too small to store");
   const std::string_view mantissa = number.substr(0, std::size_t(end - number.data()));
-  const std::string unit(trim(number.substr(mantissa.size())));
+  const std::string unit(detail::trimmed(number.substr(mantissa.size())));
   if (unit.starts_with(',')) return fail("; write a decimal point, not a comma");
   const Factor factor = factor_for(unit, expected_unit);
   if (factor.of_reciprocal) {

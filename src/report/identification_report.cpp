@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "wingbeat/core/text.hpp"
 #include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/report/report.hpp"
@@ -31,11 +32,6 @@ std::string percent(double x) { return fmt::format("{:.{}f} %", 100.0 * x, std::
 
 std::string sentence(const Contradiction& c) {
   return fmt::format("{} and {} disagree about the {} by {}", c.first, c.second, c.constant, percent(c.size));
-}
-
-std::string spaced(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
 }
 
 std::string scientific(double x, std::string_view unit) { return fmt::format("{:.4g} {}", x, unit); }
@@ -74,7 +70,7 @@ std::string text_identification(const MotorIdentification& motor, const MotorDat
   if (!motor.checks.empty()) {
     text += "\nThe sheet beside the identified motor    published    identified   deviation\n";
     for (const DatasheetCheck& c : motor.checks) {
-      text += fmt::format("  {:<34}{:>14.4g}{:>14.4g}{:>12}\n", spaced(c.name), c.published, c.identified,
+      text += fmt::format("  {:<34}{:>14.4g}{:>14.4g}{:>12}\n", detail::spaced(c.name), c.published, c.identified,
                           fmt::format("{:+.1f} %", 100.0 * c.deviation));
     }
   }

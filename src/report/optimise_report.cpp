@@ -12,10 +12,7 @@
 namespace wingbeat {
 namespace {
 
-using detail::Json, detail::number_or_null, detail::with_unit;
-using Outcome = OptimiseResult::Outcome;
-
-constexpr int width = 100;
+using detail::Json, detail::optimum_width, detail::number_or_null, detail::with_unit;
 
 /// What holds an optimum and how flat it is.
 template <class Out>
@@ -30,7 +27,7 @@ void text_neighbourhood(Out& out, const OptimiseStudy& study, const OptimiseResu
     fmt::format_to(out, "{}\n",
                    wrapped("  The model's domain limits this optimum: a better one would lie where the model no "
                            "longer holds.",
-                           width, 2));
+                           optimum_width, 2));
   }
 
   fmt::format_to(out, "\nHow flat it is: moving along each direction until the objective is {:g} % worse\n",
@@ -62,7 +59,7 @@ Json result_json(const OptimiseFile& file, const OptimiseResult& r) {
   json["screened"]["feasible"] = r.screen.feasible;
   json["screened"]["outside_domain"] = r.screen.outside;
   json["allow_extrapolation"] = study.allow_extrapolation;
-  if (r.outcome != Outcome::found) {
+  if (r.outcome != OptimiseResult::Outcome::found) {
     json["reason"] = describe(nothing_found(study, r));
     for (const char* key : {"domain", "limited_by_domain", "value", "parameters", "metrics", "active", "directions",
                             "starts", "evaluations"}) {
@@ -101,8 +98,8 @@ Json result_json(const OptimiseFile& file, const OptimiseResult& r) {
 }  // namespace
 
 NothingFound nothing_found(const OptimiseStudy& study, const OptimiseResult& r) {
-  return {r.outcome != Outcome::nothing_flaps, study.parameters.empty() ? 0 : study.screen, study.allow_extrapolation,
-          study.constraints, r.screen};
+  return {r.outcome != OptimiseResult::Outcome::nothing_flaps, study.parameters.empty() ? 0 : study.screen,
+          study.allow_extrapolation, study.constraints, r.screen};
 }
 
 NothingFound nothing_found(const ParetoStudy& study, const ParetoResult& r) {
@@ -151,7 +148,7 @@ std::string text_optimum(const OptimiseFile& file, const OptimiseResult& r) {
   const OptimiseStudy& study = file.study;
   std::string text;
   auto out = std::back_inserter(text);
-  if (!file.title.empty()) fmt::format_to(out, "{}\n", wrapped(file.title, width, 0));
+  if (!file.title.empty()) fmt::format_to(out, "{}\n", wrapped(file.title, optimum_width, 0));
   const MetricInfo& objective = metric_info(study.objective);
   fmt::format_to(out, "{} {}", study.maximise ? "maximise" : "minimise", objective.key);
   for (std::size_t c = 0; c < study.constraints.size(); ++c) {
@@ -166,8 +163,8 @@ std::string text_optimum(const OptimiseFile& file, const OptimiseResult& r) {
   }
   if (study.allow_extrapolation)
     fmt::format_to(out, "designs outside the model's domain count: extrapolation is allowed\n");
-  if (r.outcome != Outcome::found) {
-    fmt::format_to(out, "{}\n", wrapped("No design found: " + describe(nothing_found(study, r)), width, 2));
+  if (r.outcome != OptimiseResult::Outcome::found) {
+    fmt::format_to(out, "{}\n", wrapped("No design found: " + describe(nothing_found(study, r)), optimum_width, 2));
     return text;
   }
   fmt::format_to(out, "{} starts: {} ended in the best optimum, {} in a worse one, {} found nothing\n\n", r.starts,
@@ -178,7 +175,7 @@ std::string text_optimum(const OptimiseFile& file, const OptimiseResult& r) {
     fmt::format_to(
         out, "{}\n",
         wrapped(fmt::format("OUTSIDE THE MODEL'S DOMAIN ({}): these numbers are extrapolated", name_of(r.point.domain)),
-                width, 2));
+                optimum_width, 2));
   }
   if (!study.parameters.empty()) {
     fmt::format_to(out, "\n{:<36}{:>13}{:>13}{:>13}\n", "Parameter", "optimum", "lower", "upper");
@@ -205,7 +202,7 @@ std::string text_motors(const OptimiseFile& file, std::span<const MotorTrial> tr
   for (const MotorTrial& t : trials) order.push_back(&t);
   const auto rank = [&](const MotorTrial* t) {
     if (t->refused()) return std::pair(3, 0.0);
-    if (t->result.outcome != Outcome::found) return std::pair(int(t->result.outcome), 0.0);
+    if (t->result.outcome != OptimiseResult::Outcome::found) return std::pair(int(t->result.outcome), 0.0);
     return std::pair(0, (study.maximise ? -1.0 : 1.0) * t->result.point.metrics[study.objective]);
   };
   std::stable_sort(order.begin(), order.end(), [&](const auto* a, const auto* b) { return rank(a) < rank(b); });
@@ -217,7 +214,7 @@ std::string text_motors(const OptimiseFile& file, std::span<const MotorTrial> tr
     std::string what;
     if (t->refused()) {
       what = t->motor->refused;
-    } else if (t->result.outcome != Outcome::found) {
+    } else if (t->result.outcome != OptimiseResult::Outcome::found) {
       what = describe(nothing_found(study, t->result));
     } else {
       what = with_unit(t->result.point.metrics[study.objective], metric_info(study.objective).unit);
@@ -233,7 +230,7 @@ std::string text_motors(const OptimiseFile& file, std::span<const MotorTrial> tr
     if (name.size() > 29) fmt::format_to(out, "{}\n", name);
     // The name's columns are a stand-in while lines are broken.
     fmt::format_to(out, "{:<30}{}\n", name.size() > 29 ? "" : name,
-                   wrapped(std::string(30, '_') + what, width, 30).substr(30));
+                   wrapped(std::string(30, '_') + what, optimum_width, 30).substr(30));
   }
   if (!best) {
     return text + (file.motors.empty() ? "\nNone of the choices does it.\n" : "\nNo motor of the catalogue does it.\n");

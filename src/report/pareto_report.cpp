@@ -16,11 +16,7 @@
 namespace wingbeat {
 namespace {
 
-using detail::Json, detail::number_or_null, detail::with_unit;
-using Outcome = ParetoResult::Outcome;
-
-constexpr int width = 100;
-
+using detail::Json, detail::optimum_width, detail::number_or_null, detail::with_unit;
 const char* algorithm_of(EvolutionMethod method) { return method == EvolutionMethod::nsga2 ? "NSGA-II" : "MOEA/D"; }
 
 /// Parameters, then choices: all that a design of the study sets.
@@ -115,7 +111,7 @@ std::vector<std::pair<std::string, std::size_t>> named_picks(const ParetoStudy& 
 std::string text_front(const OptimiseFile& file, const ParetoStudy& study, const ParetoResult& r) {
   std::string text;
   auto out = std::back_inserter(text);
-  if (!file.title.empty()) fmt::format_to(out, "{}\n", wrapped(file.title, width, 0));
+  if (!file.title.empty()) fmt::format_to(out, "{}\n", wrapped(file.title, optimum_width, 0));
   std::string aims;
   for (const ParetoObjective& o : study.objectives) {
     aims += fmt::format("{}{} {}", aims.empty() ? "" : ", ", o.maximise ? "maximise" : "minimise",
@@ -126,7 +122,7 @@ std::string text_front(const OptimiseFile& file, const ParetoStudy& study, const
   }
   if (study.frequency) aims += fmt::format("; flapping held at {:.6g} Hz", *study.frequency);
   fmt::format_to(out, "{}\nscreened {} designs: {} flap, {} of these within every constraint\n",
-                 wrapped(aims, width, 0), study.screen, r.screen.status[0], r.screen.feasible);
+                 wrapped(aims, optimum_width, 0), study.screen, r.screen.status[0], r.screen.feasible);
   if (r.screen.outside > 0) {
     fmt::format_to(out, "{} that flap are outside the model's domain and do not count\n", r.screen.outside);
   }
@@ -143,11 +139,11 @@ std::string text_front(const OptimiseFile& file, const ParetoStudy& study, const
     for (const MotorCandidate& motor : file.motors) {
       if (motor.refused.empty()) continue;
       fmt::format_to(out, "{:<30}{}\n", motor.model,
-                     wrapped(std::string(30, '_') + motor.refused, width, 30).substr(30));
+                     wrapped(std::string(30, '_') + motor.refused, optimum_width, 30).substr(30));
     }
   };
-  if (r.outcome != Outcome::found) {
-    fmt::format_to(out, "{}\n", wrapped("No design found: " + describe(nothing_found(study, r)), width, 2));
+  if (r.outcome != ParetoResult::Outcome::found) {
+    fmt::format_to(out, "{}\n", wrapped("No design found: " + describe(nothing_found(study, r)), optimum_width, 2));
     motors();
     return text;
   }
@@ -226,7 +222,7 @@ std::string json_front(const OptimiseFile& file, const ParetoStudy& study, const
       if (!motor.refused.empty()) json["motors"].push_back({{"model", motor.model}, {"refused", motor.refused}});
     }
   }
-  if (r.outcome != Outcome::found) {
+  if (r.outcome != ParetoResult::Outcome::found) {
     json["reason"] = describe(nothing_found(study, r));
     return json.dump(2) + "\n";
   }

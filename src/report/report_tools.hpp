@@ -10,6 +10,9 @@
 
 namespace wingbeat::detail {
 
+/// Columns of the texts about optima and fronts.
+inline constexpr int optimum_width = 100;
+
 using Json = nlohmann::ordered_json;
 
 /// JSON knows neither infinity nor NaN.

@@ -6,15 +6,11 @@
 #include <cmath>
 #include <utility>
 
+#include "wingbeat/core/text.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 namespace {
-
-std::string spaced(std::string text) {
-  std::replace(text.begin(), text.end(), '_', ' ');
-  return text;
-}
 
 Display display_for(std::string_view unit, double largest, bool efficiency = false) {
   if (efficiency) return {"%", 100.0};
@@ -43,20 +39,20 @@ bool is_number(const SweepAxis& axis) {
 
 std::string words(const std::string& key) {
   const auto dot = key.rfind('.');
-  if (dot == std::string::npos) return spaced(key);
+  if (dot == std::string::npos) return detail::spaced(key);
   const std::string leaf = key.substr(dot + 1);
   int same = 0;
   for (const auto& known : parameter_table<double>()) same += known.path.substr(known.path.rfind('.') + 1) == leaf;
-  if (same == 1 && leaf.find('_') != std::string::npos) return spaced(leaf);
+  if (same == 1 && leaf.find('_') != std::string::npos) return detail::spaced(leaf);
   const std::string above = key.substr(0, dot);
-  return spaced(above.substr(above.rfind('.') + 1) + " " + leaf);
+  return detail::spaced(above.substr(above.rfind('.') + 1) + " " + leaf);
 }
 
 std::string Display::in_brackets() const { return unit.empty() ? "" : fmt::format(" ({})", unit); }
 
 Scale::Scale(const SweepAxis& axis) {
   const SweptQuantity& q = axis.quantities.front();
-  name = axis.name == q.name || axis.quantities.size() == 1 ? words(q.key) : spaced(axis.name);
+  name = axis.name == q.name || axis.quantities.size() == 1 ? words(q.key) : detail::spaced(axis.name);
   double largest = 0.0;
   for (const double x : q.values) largest = std::max(largest, std::abs(x));
   display = display_for(q.unit, largest);

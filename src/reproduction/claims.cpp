@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "reproduction/statement_answers.hpp"
+#include "wingbeat/core/text.hpp"
 #include "wingbeat/report/report.hpp"
 #include "wingbeat/study/bench_fit.hpp"
 
@@ -17,17 +18,15 @@ namespace {
 constexpr int loss_points = 13;
 constexpr double max_loss_stiffness = 1.5;  ///< of the springs of the vehicle that has them
 
-std::string spaced(std::string text) {
-  std::replace(text.begin(), text.end(), '_', ' ');
-  return text;
-}
-
 std::string design_words(const std::string& design) {
-  return design == "spring_off" ? "without springs" : design == "spring_on" ? "with springs" : "of " + spaced(design);
+  return design == "spring_off"  ? "without springs"
+         : design == "spring_on" ? "with springs"
+                                 : "of " + detail::spaced(design);
 }
 std::string ratio_words(const std::string& design, const std::string& other) {
-  return design == "spring_on" && other == "spring_off" ? "with / without springs"
-                                                        : fmt::format("{} / {}", spaced(design), spaced(other));
+  return design == "spring_on" && other == "spring_off"
+             ? "with / without springs"
+             : fmt::format("{} / {}", detail::spaced(design), detail::spaced(other));
 }
 
 /// A number for reading.

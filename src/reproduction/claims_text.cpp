@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "wingbeat/core/text.hpp"
 #include "wingbeat/report/report.hpp"
 #include "wingbeat/reproduction/claims.hpp"
 #include "wingbeat/study/bench_fit.hpp"
@@ -18,11 +19,6 @@ bool has_outcome(const Claim& c) {
   return c.outcome != StatementOutcome::not_checkable && c.outcome != StatementOutcome::no_published_value;
 }
 bool predicted(const Claim& c) { return c.basis == Basis::predicted && has_outcome(c) && !c.restates; }
-
-std::string underscored(std::string text) {
-  std::replace(text.begin(), text.end(), ' ', '_');
-  return text;
-}
 
 constexpr const char* keys[variant_count] = {"rod-force", "virtual-work", "virtual-work-own-calibration"};
 
@@ -136,7 +132,7 @@ std::string json_claims(const PublishedFile& file, const Assessment& a) {
   for (const char* reading : readings) {
     const Score s = a.score(reading);
     if (s.statements == 0) continue;
-    Json& entry = json["section_5"][underscored(reading)] = json_score(s, a.variants);
+    Json& entry = json["section_5"][detail::underscored(reading)] = json_score(s, a.variants);
     entry["crank_radius_rms_deviation"] = number(s.rms_crank_radius);
   }
   json["calibration"] = Json::array();

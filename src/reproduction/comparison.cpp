@@ -7,17 +7,11 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "wingbeat/core/text.hpp"
 #include "wingbeat/report/report.hpp"
 
 namespace wingbeat {
-namespace {
-
-std::string spaced(std::string text) {
-  std::replace(text.begin(), text.end(), '_', ' ');
-  return text;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 int Comparison::outside() const {
   return int(std::count_if(values.begin(), values.end(), [](const ComparedValue& v) { return !v.within; }));
@@ -57,7 +51,7 @@ std::string text_comparison(const PublishedFile& file, const Comparison& compari
   for (const ComparedValue& v : comparison.values) {
     const PublishedValue& p = v.published;
     const std::string here = operating_point(p.voltage, p.frequency);
-    const std::string which = spaced(p.design) + (p.relative_to ? " / " + spaced(*p.relative_to) : "");
+    const std::string which = detail::spaced(p.design) + (p.relative_to ? " / " + detail::spaced(*p.relative_to) : "");
     if (here != at) {
       fmt::format_to(out, "\n{:<37}{:>11}{:>12}{:>12}{:>12}\n", "At " + here, "published", "ours", "deviation",
                      "tolerance");

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "wingbeat/core/text.hpp"
+
 #include "reproduction/trend_figure.hpp"
 
 namespace wingbeat::reproduction {
@@ -31,7 +33,7 @@ Sheet cycle_sheet(int number, const std::vector<CycleCase>& cycles, double Wavef
       y.push_back(row.*value);
     }
     const std::string which =
-        fmt::format("{}_{}", springs_name(c.of.springs), underscored(wingbeat::name_of(c.of.formulation)));
+        fmt::format("{}_{}", springs_name(c.of.springs), detail::underscored(wingbeat::name_of(c.of.formulation)));
     const std::string words =
         fmt::format("{} springs, {}", c.of.springs ? "with" : "without", wingbeat::name_of(c.of.formulation));
     if (s.table.columns.empty())

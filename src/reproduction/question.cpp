@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "reproduction/sheet.hpp"
+#include "wingbeat/core/text.hpp"
 #include "wingbeat/report/report.hpp"
 #include "wingbeat/study/bench_fit.hpp"
 
@@ -15,11 +16,6 @@ constexpr CurveStyle law_styles[] = {{"#000000", "(3,3)", 2},
                                      {"#cc79a7", "(8,3)", 8},
                                      {"#d55e00", "(12,6)", 4},
                                      {"#0072b2", "1", 7}};
-
-std::string underscored(std::string text) {
-  for (char& c : text) c = c == '-' ? '_' : c;
-  return text;
-}
 
 }  // namespace
 
@@ -60,8 +56,8 @@ std::vector<Sheet> friction_sheets(const Material& m) {
     if (s.table.columns.empty()) {
       s.table.add("spring_stiffness_nm_per_rad", "N m/rad", "stiffness of each hinge spring", p.loss.stiffness);
     }
-    const std::string which =
-        fmt::format("{}_{}", underscored(name_of(p.law.law)), underscored(wingbeat::name_of(p.law.formulation)));
+    const std::string which = fmt::format("{}_{}", detail::underscored(name_of(p.law.law)),
+                                          detail::underscored(wingbeat::name_of(p.law.formulation)));
     const std::string words = fmt::format("{} friction, {}", name_of(p.law.law), wingbeat::name_of(p.law.formulation));
     s.table.add("rod_force_mean_n_" + which, "N", "mean magnitude of the rod force, " + words, f_si);
     s.table.add("power_friction_w_" + which, "W", "mean friction loss, " + words, l_si);

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "reproduction/sheet.hpp"
+#include "wingbeat/core/text.hpp"
 #include "wingbeat/report/report.hpp"
 
 namespace wingbeat::reproduction {
@@ -26,11 +27,6 @@ inline constexpr CurveStyle radii[] = {
     {"#d55e00", "(12,6)", 4}, {"#0072b2", "1", 7}, {"#009e73", "(14,4,3,4)", 6}, {"#000000", "(3,3)", 8}};
 
 inline const char* springs_name(bool springs) { return springs ? "springs_on" : "springs_off"; }
-
-inline std::string underscored(std::string text) {
-  std::replace(text.begin(), text.end(), '-', '_');
-  return text;
-}
 
 inline std::vector<double> scaled(const std::vector<double>& x, double factor) {
   std::vector<double> y;
@@ -109,12 +105,12 @@ class TrendFigure {
         meaning += fmt::format(", crank radius {:g} mm", 1e3 * curve.crank_radius);
       }
       if (!tag.empty()) {
-        name += fmt::format("_{}", underscored(tag));
+        name += fmt::format("_{}", detail::underscored(tag));
         meaning += ", " + tag;
         std::replace(name.begin(), name.end(), ' ', '_');
       }
       if (curve.of.condition != Condition::wingless) {
-        name += fmt::format("_{}", underscored(wingbeat::name_of(curve.of.formulation)));
+        name += fmt::format("_{}", detail::underscored(wingbeat::name_of(curve.of.formulation)));
         meaning += fmt::format(", {}", wingbeat::name_of(curve.of.formulation));
       }
       tabulate(fmt::format("{}_{}", info.key, name), info.unit, fmt::format("{}, {}", info.long_name, meaning), y);

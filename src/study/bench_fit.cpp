@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include "study/bench_fitter.hpp"
@@ -17,7 +16,6 @@ namespace wingbeat {
 namespace {
 
 using detail::format;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void tell(const std::function<void(const std::string&)>& progress, const std::string& text) {
   if (progress) progress(text);

@@ -19,6 +19,13 @@ double between(double a, double b) {
 
 }  // namespace
 
+double percentile(const std::vector<double>& sorted, double p) {
+  const double at = p * double(sorted.size() - 1);
+  const std::size_t k = std::min(std::size_t(at), sorted.size() - 1);
+  const std::size_t above = std::min(k + 1, sorted.size() - 1);
+  return sorted[k] + (at - double(k)) * (sorted[above] - sorted[k]);
+}
+
 double normal_probability(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
 
 double normal_quantile(double u) { return -std::numbers::sqrt2 * boost::math::erfc_inv(2.0 * u); }

@@ -5,7 +5,6 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include "wingbeat/study/distribution.hpp"
 
@@ -13,7 +12,6 @@ namespace wingbeat {
 namespace {
 
 using Kind = FitFinding::Kind;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Relative standard errors from which a direction counts as left free, and as known only roughly.
 constexpr double free_error = 1.0, rough_error = 0.2;
 

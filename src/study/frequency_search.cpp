@@ -175,7 +175,6 @@ class Search {
 }  // namespace
 
 double highest_frequency(const Vehicle<double>& v, SearchRange range) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   const BladeElement<double>& w = v.wings;
   if (!drive_of(v).stroke_is_fixed || !(w.air_density > 0.0) || !(w.s2 > 0.0 || w.s3 > 0.0)) return infinity;
   const bool domain = range == SearchRange::domain;

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "study/bench_fitter.hpp"
 #include "study/fit_stages.hpp"
@@ -8,8 +7,6 @@
 
 namespace wingbeat {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double mean_friction_torque(const BenchFit& fit, double& speed) {
   Design<double> design = fit.design;

@@ -17,11 +17,6 @@ bool is_gross(double ratio, double deviation) {
 
 }  // namespace
 
-std::string spaced(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
-}
-
 void find_contradictions(const std::string& constant_name, const std::vector<Estimate>& estimates,
                          std::vector<Contradiction>& out) {
   for (std::size_t a = 0; a < estimates.size(); ++a) {
@@ -93,8 +88,8 @@ void refuse_contradictions(const std::vector<Datum>& data, MotorIdentification& 
                                     [&](const DatasheetCheck& c) { return c.name == d.name; });
     if (!electrical.empty() || check == result.checks.end()) continue;
     if (!is_gross(check->identified / check->published, d.deviation)) continue;
-    electrical = format("%s (%.4g) and the rest of the sheet (%.4g) contradict each other", spaced(d.name).c_str(),
-                        check->published, check->identified);
+    electrical = format("%s (%.4g) and the rest of the sheet (%.4g) contradict each other",
+                        detail::spaced(d.name).c_str(), check->published, check->identified);
   }
   if (!electrical.empty()) {
     for (IdentifiedConstant* c :

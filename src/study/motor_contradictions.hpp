@@ -28,6 +28,5 @@ void compare_ways(const MotorDatasheet& sheet, double friction_torque, double to
 void refuse_contradictions(const std::vector<Datum>& data, MotorIdentification& result);
 
 /// "no load speed" of "no_load_speed"
-std::string spaced(std::string name);
 
 }  // namespace wingbeat::detail

@@ -5,18 +5,12 @@
 #include <limits>
 #include <random>
 
+#include "wingbeat/study/distribution.hpp"
+
 namespace wingbeat {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-/// Share `p` of a sorted sample, interpolated.
-double percentile(const std::vector<double>& sorted, double p) {
-  const double at = p * double(sorted.size() - 1);
-  const std::size_t k = std::min(std::size_t(at), sorted.size() - 1);
-  const std::size_t above = std::min(k + 1, sorted.size() - 1);
-  return sorted[k] + (at - double(k)) * (sorted[above] - sorted[k]);
-}
 
 }  // namespace
 

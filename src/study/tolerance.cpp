@@ -66,13 +66,6 @@ std::vector<std::vector<double>> correlation_of(const ToleranceStudy& study, con
   return matrix;
 }
 
-double percentile(const std::vector<double>& sorted, double p) {
-  const double at = p * double(sorted.size() - 1);
-  const std::size_t k = std::size_t(at);
-  const std::size_t above = std::min(k + 1, sorted.size() - 1);
-  return sorted[k] + (at - double(k)) * (sorted[above] - sorted[k]);
-}
-
 /// Moments and percentiles of the values that are there.
 void describe(ToleranceOutput& output, std::span<const double> values) {
   std::vector<double> there;

@@ -7,7 +7,6 @@
 namespace wingbeat::detail {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int averaged_cycles_pwm = 8;
 constexpr double settled_without_metrics = 1e-4;
 constexpr double largest_rate = 0.99999;  // of contraction: what is left of a change is no more than 1e5 times it

@@ -10,8 +10,6 @@
 namespace wingbeat::detail {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 // A cycle holds some hundred steps of Adams at usual tolerances; only if the fastest decay is much quicker than that do
 // the larger steps of BDF make up for its lower order.
 constexpr double stiff_decays_per_cycle = 500.0;

@@ -1,7 +1,6 @@
 #include "time/direct_transient.hpp"
 
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -16,7 +15,6 @@ namespace wingbeat::detail {
 namespace {
 
 using Kind = TransientEvent::Kind;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 constexpr int sticking_pieces = 512;     // of a period: how often a stuck shaft is looked at
 constexpr int creep_periods = 8;         // of ever shorter slips in one direction, that end at rest

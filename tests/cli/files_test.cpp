@@ -16,7 +16,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-const std::string direct = data + "/designs/direct-drive.toml";
+const std::string direct_drive = data + "/designs/direct-drive.toml";
 
 const char* const header =
     "time_s,crank_angle_rad,crank_speed_rad_per_s,current_a,stroke_angle_rad,flapping_velocity_rad_per_s,"
@@ -98,13 +98,13 @@ TEST_F(Files, CsvHoldsOneCycleThatGivesBackTheMetrics) {
 }
 
 TEST_F(Files, WaveformsHoldVoltageAndTheMomentsOfTheWings) {
-  const std::vector<std::string> vehicles[] = {{springs}, {springs, "--method", "transient"}, {direct}};
+  const std::vector<std::string> vehicles[] = {{springs}, {springs, "--method", "transient"}, {direct_drive}};
   for (const auto& vehicle : vehicles) {
     std::vector<std::string> arguments = {"run", "--json", "--waveforms", path("w.csv")};
     arguments.insert(arguments.end(), vehicle.begin(), vehicle.end());
     const Outcome o = run(arguments);
     ASSERT_EQ(o.status, 0) << o.err;
-    const bool is_direct = vehicle.front() == direct;
+    const bool is_direct = vehicle.front() == direct_drive;
     const Columns c = read_csv(path("w.csv"), is_direct);
     const double stiffness = is_direct ? 0.0 : 2.0 * 1.377e-3;
     double most = 0.0, volts = 0.0;

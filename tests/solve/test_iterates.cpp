@@ -169,17 +169,17 @@ TEST(Iterate, StiffSystemNeedsTheImplicitMethod) {
 }
 
 /// x' = -1 with x > 0 only.
-struct Sinking : TestSystem<double, 1> {
+struct SinkingToABarrier : TestSystem<double, 1> {
   bool admissible(const State& y) const { return y[0] > 0.0; }
   template <bool>
-  Rates<Sinking> rates(double, const State&, const Signs&) const {
+  Rates<SinkingToABarrier> rates(double, const State&, const Signs&) const {
     return {{-1.0}, {1.0}, {1.0}};
   }
 };
 
 TEST(Iterate, BarrierIsReachedAndNamed) {
-  Iterate<Sinking> iterate;
-  run_iterate<true>(Sinking{}, {2.0}, {.tolerance = 1e-8}, iterate);
+  Iterate<SinkingToABarrier> iterate;
+  run_iterate<true>(SinkingToABarrier{}, {2.0}, {.tolerance = 1e-8}, iterate);
   EXPECT_EQ(iterate.status, IterateStatus::barrier);
   EXPECT_NEAR(iterate.stop, 2.0, 1e-9);
   EXPECT_LT(iterate.steps.size(), 100u);

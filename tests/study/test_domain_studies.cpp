@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "study/optimised_parameters.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/report/optimise_report.hpp"
@@ -19,10 +20,6 @@ namespace wingbeat {
 namespace {
 
 Design<double> with_springs() { return read_design(std::string(WINGBEAT_DATA) + "/designs/friction2022-springs.toml"); }
-
-OptimisedParameter between(const char* key, double lower, double upper) {
-  return {design_parameter(key), lower, upper, false};
-}
 
 /// The reference vehicle from 1 to 100 V, where the angle of attack falls far below zero.
 std::vector<EnsembleMember> up_to_100_volts() {

@@ -16,8 +16,8 @@ struct Results {
   std::vector<FrequencyOutcome> reached;
 };
 
-Results solve(std::vector<EnsembleMember> members, const std::vector<double>& frequencies,
-              const EnsembleOptions& options) {
+Results frequencies_of(std::vector<EnsembleMember> members, const std::vector<double>& frequencies,
+                       const EnsembleOptions& options) {
   Results results{std::vector<EnsembleOutcome>(members.size()), std::vector<FrequencyOutcome>(members.size())};
   solve_ensemble_at_frequency(members, frequencies, options, start_up_in_time(), results.outcomes, results.reached);
   return results;
@@ -34,7 +34,7 @@ TEST(EnsembleFrequency, FindsTheVoltagesThatTheSearchOfOneFinds) {
     frequencies.push_back(frequency(random));
   }
   EnsembleOptions options;
-  const Results results = solve(members, frequencies, options);
+  const Results results = frequencies_of(members, frequencies, options);
   int reached = 0;
   for (std::size_t n = 0; n < members.size(); ++n) {
     const FrequencySearch one = find_voltage_for_frequency(members[n].vehicle, frequencies[n], {}, start_up_in_time());
@@ -58,9 +58,9 @@ TEST(EnsembleFrequency, NeighboursDoNotMatter) {
   std::vector<EnsembleMember> members;
   for (int n = 0; n < 12; ++n) members.push_back({resolve(random_design(random, 1.3)), {}});
   const std::vector<double> frequencies(members.size(), 18.0);
-  const Results together = solve(members, frequencies, {});
+  const Results together = frequencies_of(members, frequencies, {});
   for (std::size_t n = 0; n < members.size(); ++n) {
-    const Results alone = solve({members[n]}, {18.0}, {});
+    const Results alone = frequencies_of({members[n]}, {18.0}, {});
     EXPECT_EQ(alone.reached[0], together.reached[n]);
     for (int m = 0; m < metric_count; ++m) {
       const double a = alone.outcomes[0].metrics.values[std::size_t(m)];
@@ -72,8 +72,8 @@ TEST(EnsembleFrequency, NeighboursDoNotMatter) {
 
 TEST(EnsembleFrequency, RefusesFrequenciesThatAreNone) {
   std::vector<EnsembleMember> members = {{reference_vehicle(), {}}};
-  EXPECT_THROW(solve(members, {0.0}, {}), ParameterError);
-  EXPECT_THROW(solve(members, {absent}, {}), ParameterError);
+  EXPECT_THROW(frequencies_of(members, {0.0}, {}), ParameterError);
+  EXPECT_THROW(frequencies_of(members, {absent}, {}), ParameterError);
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include "study/optimised_parameters.hpp"
 #include "wingbeat/study/optimise.hpp"
 
 #include <gmock/gmock.h>
@@ -14,10 +15,6 @@ namespace wingbeat {
 namespace {
 
 using Outcome = OptimiseResult::Outcome;
-
-OptimisedParameter between(const char* key, double lower, double upper) {
-  return {design_parameter(key), lower, upper, false};
-}
 
 OptimiseStudy study_of(std::vector<OptimisedParameter> parameters) {
   OptimiseStudy study;

@@ -1,3 +1,4 @@
+#include "study/optimised_parameters.hpp"
 #include "wingbeat/study/pareto.hpp"
 
 #include <gmock/gmock.h>
@@ -135,10 +136,6 @@ TEST_P(Methods, WholeNumbersStayWhole) {
   EXPECT_TRUE(whole);
   EXPECT_GT(hypervolume(t.objectives, {1.0, 1.0}), 0.48);
   EXPECT_EQ(trace(GetParam(), problem, f, 40).points, t.points);  // the seed alone decides
-}
-
-OptimisedParameter between(const char* key, double lower, double upper) {
-  return {design_parameter(key), lower, upper, false};
 }
 
 /// Lift against power over voltage and spring stiffness.

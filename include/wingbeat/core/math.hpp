@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "wingbeat/core/scalar.hpp"
@@ -10,6 +11,7 @@ namespace wingbeat {
 
 inline constexpr double pi = std::numbers::pi;
 inline constexpr double two_pi = 2.0 * std::numbers::pi;
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
 inline constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 
 /// +1 for x >= 0, else -1: a sign that is never zero, so that a branch is always chosen.

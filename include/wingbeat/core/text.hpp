@@ -1,9 +1,11 @@
-/// Sentences with numbers in them, for the layers below io.
+// Sentences with numbers in them, and words made of identifiers.
 #pragma once
 
+#include <algorithm>
 #include <cstdarg>
 #include <cstdio>
 #include <string>
+#include <string_view>
 
 namespace wingbeat::detail {
 
@@ -15,6 +17,26 @@ namespace wingbeat::detail {
   std::vsnprintf(text, sizeof text, pattern, arguments);
   va_end(arguments);
   return text;
+}
+
+/// An identifier as words: spaces for underscores.
+inline std::string spaced(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+/// A name as an identifier: underscores for hyphens and spaces.
+inline std::string underscored(std::string name) {
+  std::replace_if(name.begin(), name.end(), [](char c) { return c == '-' || c == ' '; }, '_');
+  return name;
+}
+
+/// Without white space at either end.
+inline std::string_view trimmed(std::string_view text) {
+  constexpr const char* white = " \t\r\n";
+  const auto first = text.find_first_not_of(white);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(white) - first + 1);
 }
 
 }  // namespace wingbeat::detail

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <vector>
 
 #include "wingbeat/core/names.hpp"
 
@@ -35,5 +36,8 @@ struct Distribution {
 /// Distribution function of the standard normal distribution, and its inverse.
 double normal_probability(double z);
 double normal_quantile(double u);
+
+/// The value below which the share `p` of a sorted sample lies, interpolated; the sample holds one value at least.
+double percentile(const std::vector<double>& sorted, double p);
 
 }  // namespace wingbeat
