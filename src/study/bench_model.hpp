@@ -2,10 +2,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "wingbeat/study/bench_fit.hpp"
+#include "wingbeat/study/frequency_search.hpp"
 
 namespace wingbeat {
 
@@ -57,7 +59,9 @@ class BenchModel {
 
  private:
   SteadyFlapping orbit(Vehicle<double>& vehicle, double voltage, const Reporting& reporting);
-  SteadyFlapping orbit_at_frequency(std::size_t n, Vehicle<double>& vehicle, const Reporting& reporting);
+  /// `refused`: the search, where the frequency cannot be reached.
+  SteadyFlapping orbit_at_frequency(std::size_t n, Vehicle<double>& vehicle, const Reporting& reporting,
+                                    std::optional<FrequencySearch>& refused);
   void evaluate_point(std::size_t n, Design<double> design);
   void differentiate_point(std::size_t n, const Design<GradientJet>& seeded, std::size_t first, std::size_t count);
 

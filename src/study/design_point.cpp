@@ -33,7 +33,7 @@ DesignPoint design_point(const Design<double>& given, const DesignPointOptions& 
   }
   const SteadyFlapping orbit = find_steady_flapping(vehicle, steady, start_up);
   point.status = sweep_status(orbit.status);
-  point.detail = orbit.detail;
+  point.detail = describe(orbit.evidence);
   if (orbit.status != FlappingStatus::flapping) return point;
   point.metrics = orbit.metrics;
   point.domain_excess = domain_excess(vehicle, orbit.metrics);

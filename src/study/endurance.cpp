@@ -87,7 +87,7 @@ class Flight {
     vehicle_.voltage = voltage;
     const SteadyFlapping found = find_steady_flapping(vehicle_, steady_, start_up);
     const bool flaps = found.status == FlappingStatus::flapping;
-    return {flaps, found.status, found.detail, found.metrics,
+    return {flaps, found.status, wingbeat::describe(found.evidence), found.metrics,
             flaps ? domain_of(vehicle_, found.metrics) : DomainStatus()};
   }
 

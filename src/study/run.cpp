@@ -126,7 +126,7 @@ void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunRes
   steady.reporting = reporting_of(result.design);
   const SteadyFlapping found = find_steady_flapping(vehicle, steady, start_up_in_time());
   result.status = found.status;
-  result.detail = found.detail;
+  result.detail = describe(found.evidence);
   result.metrics = found.metrics;
   result.settled = found.status != FlappingStatus::undecided;
   result.orbit = found.summary;
@@ -160,7 +160,7 @@ void run_transient(const Vehicle<double>& vehicle, const RunOptions& options, Ru
   result.start_up = simulate_start_up(vehicle, transient);
   const TransientResult& found = *result.start_up;
   result.status = found.status;
-  result.detail = found.detail;
+  result.detail = describe(found.evidence);
   result.settled = found.settled;
   if (found.metrics && found.status == FlappingStatus::flapping) {
     result.metrics = *found.metrics;

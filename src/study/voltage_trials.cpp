@@ -25,7 +25,7 @@ VoltageTrial VoltageTrials::at(double voltage) {
   trial.voltage = voltage;
   trial.status = found.status;
   trial.flaps = found.status == FlappingStatus::flapping;
-  trial.detail = found.detail;
+  trial.detail = describe(found.evidence);
   if (!trial.flaps) return trial;
 
   const Metrics<double>& m = found.metrics;

@@ -94,9 +94,9 @@ TEST(Statuses, ACrankThatStopsWithinEachTurnIsReportedFromItsSimulatedCycle) {
   // Number 22: friction holds the crank for a moment in every turn.
   const WideVehicle v = wide_vehicle(FarBox::crank_near_rod, 22);
   const SteadyFlapping found = orbit_of(v.design);
-  ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+  ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
   ASSERT_TRUE(found.simulated);
-  EXPECT_THAT(found.detail, HasSubstr("from its cycle simulated in time"));
+  EXPECT_THAT(describe(found.evidence), HasSubstr("from its cycle simulated in time"));
   EXPECT_GE(found.simulated->error_estimate, 1e-6);
   EXPECT_LT(found.metrics[Metric::crank_speed_min], 1e-6);
   EXPECT_TRUE(found.record.empty());
@@ -107,7 +107,7 @@ TEST(Statuses, OfSeveralOrbitsTheOneReachedFromRest) {
   for (const double tolerance : {1e-3, 1e-6, 1e-9}) {
     for (const bool stability : {true, false}) {
       const SteadyFlapping found = orbit_of(design, tolerance, stability);
-      ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+      ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
       EXPECT_NEAR(found.metrics[Metric::frequency], 47.20, 0.05) << tolerance << ' ' << stability;
     }
   }
@@ -223,7 +223,7 @@ TEST(Statuses, DoNotDependOnTheTolerance) {
       const FlappingStatus expected = orbit_of(v.design, 1e-6).status;
       for (const double tolerance : {1e-2, 1e-4, 1e-9, 1e-11}) {
         const SteadyFlapping found = orbit_of(v.design, tolerance);
-        EXPECT_EQ(found.status, expected) << n << " at " << tolerance << ": " << found.detail;
+        EXPECT_EQ(found.status, expected) << n << " at " << tolerance << ": " << describe(found.evidence);
       }
     }
   }
