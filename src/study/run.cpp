@@ -175,9 +175,8 @@ void run_transient(const Vehicle<double>& vehicle, const RunOptions& options, Ru
 void note_domain(const Vehicle<double>& vehicle, RunResult& result) {
   if (result.status != FlappingStatus::flapping || !std::isfinite(result.metrics[Metric::frequency])) return;
   result.domain = domain_of(vehicle, result.metrics);
-  result.domain_detail = describe_domain(vehicle, result.metrics);
-  const std::string warning = residual_warning(vehicle, result.metrics);
-  if (!warning.empty()) result.warnings.push_back(warning);
+  result.domain_evidence = domain_evidence(vehicle, result.metrics);
+  result.residual_share = notable_residual(vehicle, result.metrics);
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ VoltageTrial VoltageTrials::at(double voltage) {
   trial.excess = -1.0;
   for (const double e : excess) trial.excess = std::isfinite(e) ? std::max(trial.excess, e) : 1.0;
   trial.inside = domain ? domain_of(excess).none() : !trial.beyond;
-  if (!trial.inside && domain) trial.limits = describe_domain(vehicle_, m);
+  if (!trial.inside && domain) trial.limits = describe(domain_evidence(vehicle_, m));
   return trial;
 }
 

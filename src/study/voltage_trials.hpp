@@ -23,7 +23,7 @@ struct VoltageTrial {
   double excess = absent;           ///< largest domain_excess()
   bool inside = false;              ///< the range that is searched
   bool beyond = false;              ///< so fast that no higher voltage can be inside
-  std::string limits;               ///< of the domain, where they are exceeded: describe_domain()
+  std::string limits;               ///< of the domain, where they are exceeded
 };
 
 class VoltageTrials {

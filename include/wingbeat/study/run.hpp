@@ -42,8 +42,8 @@ struct RunResult {
   bool simulated_cycle = false;  ///< Method::orbit found flapping in time only: the metrics are the simulated cycle's
   Metrics<double> metrics;       ///< all absent unless flapping
   DomainStatus domain;           ///< limits of the model that the cycle exceeds; none unless flapping
-  std::string domain_detail;     ///< the same in words with numbers; empty inside
-  std::vector<std::string> warnings;  ///< what a reader of the metrics should know beside the domain
+  std::vector<DomainEvidence> domain_evidence;  ///< the same with numbers
+  std::optional<double> residual_share;         ///< notable_residual(), of a vehicle that flaps
   std::vector<WaveformRow> cycle;
   solver::PeriodicSummary orbit;            ///< of Method::orbit
   std::optional<TransientResult> start_up;  ///< of Method::transient
