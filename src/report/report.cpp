@@ -9,6 +9,7 @@
 
 #include "report/report_tools.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
+#include "wingbeat/report/describe.hpp"
 
 namespace wingbeat {
 namespace {
@@ -178,7 +179,7 @@ std::string wrapped(std::string_view text, int width, int indent) {
 std::string json_report(const RunResult& result) {
   Json json;
   json["status"] = result.status == FlappingStatus::undecided ? Json(nullptr) : Json(name_of(result.status));
-  json["status_detail"] = result.detail;
+  json["status_detail"] = describe(result);
   const bool assessed = result.status == FlappingStatus::flapping && std::isfinite(result.metrics[Metric::frequency]);
   json["domain"] = assessed ? Json(name_of(result.domain)) : Json(nullptr);
   json["domain_detail"] = result.domain_evidence.empty() ? Json(nullptr) : Json(describe(result.domain_evidence));
@@ -202,7 +203,7 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
                        table_width, 2) +
                "\n");
   }
-  table.text(wrapped(fmt::format("{}: {}.", name_of(result.status), result.detail), table_width, 2) + "\n");
+  table.text(wrapped(fmt::format("{}: {}.", name_of(result.status), describe(result)), table_width, 2) + "\n");
   if (result.residual_share) {
     table.text(wrapped(fmt::format("warning: {}.", residual_warning(*result.residual_share)), table_width, 2) + "\n");
   }

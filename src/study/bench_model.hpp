@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "wingbeat/study/bench_fit.hpp"
@@ -34,7 +33,8 @@ struct Observation {
 struct Prediction {
   bool reached = false;
   FlappingStatus status = FlappingStatus::stalled;
-  std::string detail;
+  StatusEvidence evidence;
+  std::optional<SearchFinding> refused;
 };
 
 /// The model at all points of the bench, with derivatives; remembers the last parameters it was asked for.
@@ -61,7 +61,7 @@ class BenchModel {
   SteadyFlapping orbit(Vehicle<double>& vehicle, double voltage, const Reporting& reporting);
   /// `refused`: the search, where the frequency cannot be reached.
   SteadyFlapping orbit_at_frequency(std::size_t n, Vehicle<double>& vehicle, const Reporting& reporting,
-                                    std::optional<FrequencySearch>& refused);
+                                    std::optional<SearchFinding>& refused);
   void evaluate_point(std::size_t n, Design<double> design);
   void differentiate_point(std::size_t n, const Design<GradientJet>& seeded, std::size_t first, std::size_t count);
 

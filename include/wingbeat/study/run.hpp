@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "wingbeat/cycle/domain.hpp"
@@ -33,9 +32,10 @@ struct RunOptions {
   int waveform_rows = 0;             ///< instants of one cycle to return, both ends included; 0: none
 };
 
+/// In words: describe() of report/describe.hpp.
 struct RunResult {
   FlappingStatus status = FlappingStatus::stalled;
-  std::string detail;  ///< one sentence with the evidence
+  StatusEvidence evidence;  ///< what shows the status, unless `search` says why nothing was computed
   /// False: no steady state was shown within the solvers' limits; the status is undecided, or the metrics are averages
   /// over cycles that still differ.
   bool settled = true;
@@ -48,6 +48,7 @@ struct RunResult {
   solver::PeriodicSummary orbit;            ///< of Method::orbit
   std::optional<TransientResult> start_up;  ///< of Method::transient
   std::optional<FrequencySearch> search;    ///< where a frequency or a lift was asked for
+  std::optional<double> mean_voltage;       ///< of a pwm supply, which Method::orbit took for constant [V]
   Design<double> design;                    ///< as computed: with the voltage or duty that was found
 };
 
