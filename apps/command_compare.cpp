@@ -10,6 +10,7 @@
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/output_file.hpp"
 #include "wingbeat/files/published.hpp"
+#include "wingbeat/report/describe.hpp"
 #include "wingbeat/report/plot.hpp"
 #include "wingbeat/reproduction/comparison.hpp"
 
@@ -47,7 +48,7 @@ int run(const CompareArguments& arguments) {
     if (r.result.status != FlappingStatus::flapping ||
         r.result.search.value_or(FrequencySearch{}).outcome == FrequencyOutcome::too_high) {
       complain(fmt::format("{} at {} does not flap: {}", spaced(r.design), operating_point(r.voltage, r.frequency),
-                           r.result.detail));
+                           describe(r.result)));
       all_flap = false;
       continue;
     }

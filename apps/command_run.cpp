@@ -14,6 +14,7 @@
 #include "wingbeat/files/output_file.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/files/waveform_file.hpp"
+#include "wingbeat/report/describe.hpp"
 #include "wingbeat/report/plot.hpp"
 #include "wingbeat/report/report.hpp"
 #include "wingbeat/study/run.hpp"
@@ -143,9 +144,9 @@ int run(const RunArguments& arguments) {
     const std::string asked = !arguments.frequency.empty() ? "--frequency " + arguments.frequency
                               : !arguments.lift.empty()    ? "--lift " + arguments.lift
                                                            : "--lift-to-weight " + arguments.lift_to_weight;
-    const bool leaves = result.detail.find("inside the domain of validity") != std::string::npos;
+    const bool leaves = result.search->finding.inside_domain_only();
     throw InputError(asked, 0, 0, "",
-                     result.search->detail + (leaves ? "; --allow-extrapolation searches beyond" : ""));
+                     describe(result.search->finding) + (leaves ? "; --allow-extrapolation searches beyond" : ""));
   }
   const bool flaps = result.status == FlappingStatus::flapping;
   const bool has_metrics = std::isfinite(result.metrics[Metric::frequency]);
@@ -185,7 +186,7 @@ int run(const RunArguments& arguments) {
   if (flaps && has_metrics) return done;
   if (waveforms || cycle_plot || power_plot) complain("no steady flapping: no file was written");
   if (flaps || result.status == FlappingStatus::undecided) {
-    complain("no decision: " + result.detail);
+    complain("no decision: " + describe(result));
     return failed;
   }
   return does_not_flap;

@@ -95,7 +95,7 @@ int main(int argc, char** argv) {
         const TransientResult r = simulate_start_up(v, options);
         f.seconds = seconds_since(start);
         sums.seconds += f.seconds;
-        f.note = r.detail;
+        f.note = describe(r.evidence);
         if (r.status != FlappingStatus::flapping || !r.metrics) continue;
         got = *r.metrics;
       } else {
@@ -114,7 +114,7 @@ int main(int argc, char** argv) {
           find_steady_flapping(v, {.tolerance = 1e-12, .stability = true, .reporting = reporting});
       if (exact.status != FlappingStatus::flapping) {
         ++sums.other;
-        if (list) std::printf("box %d number %d: not found at 1e-12: %s\n", b, n, exact.detail.c_str());
+        if (list) std::printf("box %d number %d: not found at 1e-12: %s\n", b, n, describe(exact.evidence).c_str());
         continue;
       }
       f.multiplier = got[Metric::floquet_multiplier_max];

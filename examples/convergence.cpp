@@ -36,7 +36,7 @@ int main(int argc, char** argv) try {
   };
   const SteadyFlapping exact = solve(1e-13);
   if (exact.status != FlappingStatus::flapping) {
-    std::printf("%s\n", exact.detail.c_str());
+    std::printf("%s\n", describe(exact.evidence).c_str());
     return 3;
   }
   std::printf("| tolerance | iterates | steps in the last iterate | largest error of a metric | energy imbalance |\n");

@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "wingbeat/files/design_file.hpp"
+#include "wingbeat/report/describe.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace {
@@ -41,7 +42,7 @@ struct Vehicles {
     std::array<Metrics<double>, 2> metrics;
     for (std::size_t n = 0; n < 2; ++n) {
       const RunResult r = run_design(designs[n], {.tolerance = 1e-10, .frequency = frequency});
-      if (r.status != FlappingStatus::flapping) throw std::runtime_error(r.detail);
+      if (r.status != FlappingStatus::flapping) throw std::runtime_error(describe(r));
       metrics[n] = r.metrics;
     }
     return metrics;

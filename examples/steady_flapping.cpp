@@ -12,7 +12,7 @@ int main(int argc, char** argv) try {
 
   const wingbeat::SteadyOptions options{.tolerance = 1e-9, .reporting = wingbeat::reporting_of(design)};
   const auto found = wingbeat::find_steady_flapping(vehicle, options, wingbeat::start_up_in_time());
-  std::printf("%s: %s\n", wingbeat::name_of(found.status), found.detail.c_str());
+  std::printf("%s: %s\n", wingbeat::name_of(found.status), describe(found.evidence).c_str());
   if (found.status != wingbeat::FlappingStatus::flapping) return 3;
 
   for (const Metric m : {Metric::frequency, Metric::power_electrical, Metric::lift_mean, Metric::rod_force_peak}) {

@@ -18,13 +18,15 @@
 
 #include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/files/design_file.hpp"
+#include "wingbeat/report/describe.hpp"
 #include "wingbeat/study/design_point.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {
 
 /// What a vehicle does from rest: its steady flapping with all metrics, domain status and energy balance, or the status
-/// with the evidence. Start-up is assessed wherever a doubt is left. Throws ParameterError.
+/// with the evidence, which describe() puts in words. Start-up is assessed wherever a doubt is left. Throws
+/// ParameterError.
 RunResult solve(const Design<double>& design, const RunOptions& options = {});
 
 /// Its start-up in time, with events and, where `options.record` asks for them, samples. The supply is the design's.

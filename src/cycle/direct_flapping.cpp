@@ -7,6 +7,8 @@
 namespace wingbeat::detail {
 namespace {
 
+using Evidence = StatusEvidence::Kind;
+
 template <int N>
 SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& options, const StartUp& start_up) {
   using System = DirectSystem<double, N>;
@@ -18,10 +20,10 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
   result.balance.breakaway_torque = balance.breakaway_torque;
   if (balance.stalled()) {
     result.status = FlappingStatus::stalled;
-    result.detail = format(
-        "the motor never breaks away: at %.4g Hz the supply gives it a torque of %.4g N m at most, "
-        "which does not exceed the constant friction %.4g N m",
-        vehicle.drive_frequency, balance.drive_torque, balance.breakaway_torque);
+    result.evidence = {.kind = Evidence::weak_supply,
+                       .frequency = vehicle.drive_frequency,
+                       .torque = balance.drive_torque,
+                       .friction_torque = balance.breakaway_torque};
     return result;
   }
 
@@ -55,7 +57,7 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
     result.summary = orbit.summary();
     if (outcome.status != FlappingStatus::flapping) {
       result.status = outcome.status;
-      result.detail = outcome.detail;
+      result.evidence = outcome.evidence;
       return result;
     }
     if (outcome.settled) {
@@ -64,27 +66,23 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
       result.summary = orbit.summary();
     }
     if (!found) {
-      fill_simulated(outcome, options, "the phase of the supply", result);
+      fill_simulated(outcome, options, true, result);
       return result;
     }
   }
   result.summary = orbit.summary();
   if (!found || !is_stable()) {
     result.status = FlappingStatus::undecided;
-    result.detail =
-        found ? format("the periodic response to the supply is unstable (Floquet multiplier %.4g)", orbit.multiplier())
-              : format("no periodic response to the supply was found: %s", orbit.summary().message.c_str());
+    if (found) result.evidence = {.kind = Evidence::unstable_response, .multiplier = orbit.multiplier()};
+    else result.evidence = {.kind = Evidence::no_response, .search = orbit.summary().status};
     return result;
   }
   orbit.fill(result);
   if (!springs) result.metrics[Metric::floquet_multiplier_max] = absent;
   result.status = FlappingStatus::flapping;
-  result.detail = format("steady flapping at the supply's %.4g Hz", vehicle.drive_frequency);
-  const double amplitude = result.metrics[Metric::stroke_amplitude];
-  if (amplitude > 0.5 * pi) {
-    result.detail += format("; a stroke of +-%.0f deg passes the quarter turn that wings have room for",
-                            degrees_per_radian * amplitude);
-  }
+  result.evidence = {.kind = Evidence::response,
+                     .frequency = vehicle.drive_frequency,
+                     .stroke_amplitude = result.metrics[Metric::stroke_amplitude]};
   return result;
 }
 

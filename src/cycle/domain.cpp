@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "wingbeat/core/jet.hpp"
-#include "wingbeat/core/text.hpp"
 
 namespace wingbeat {
 namespace {
-
-using detail::format;
 
 bool in_air(const Vehicle<double>& v) { return v.wings.air_density > 0.0 && (v.wings.s2 > 0.0 || v.wings.s3 > 0.0); }
 
@@ -161,52 +159,47 @@ std::string name_of(DomainStatus status) {
   return names;
 }
 
-std::string describe_domain(const Vehicle<double>& v, const Metrics<double>& m) {
+std::vector<DomainEvidence> domain_evidence(const Vehicle<double>& v, const Metrics<double>& m) {
+  using Quantity = DomainEvidence::Quantity;
   const DomainStatus status = domain_of(v, m);
-  std::string text;
-  const auto say = [&](DomainLimit limit, const std::string& clause) {
-    if (status[std::size_t(limit)]) text += (text.empty() ? "" : "; ") + clause;
+  std::vector<DomainEvidence> rows;
+  const auto add = [&](DomainLimit limit, Quantity quantity, double value, double lowest, double highest) {
+    if (status[std::size_t(limit)]) rows.push_back({limit, quantity, value, lowest, highest});
   };
   const double P_e = m[Metric::power_electrical], P_m = m[Metric::power_motor], P_aero = m[Metric::power_aerodynamic];
   const Range range = angle_range(v);
-  if (range.high < angle_of_attack_highest_deg - angle_slack_deg) {
-    say(DomainLimit::angle_of_attack,
-        format("the angle of attack runs from %.4g to 90 deg (the coefficients hold from %.4g to %.4g deg)",
-               m[Metric::angle_of_attack_min], range.low, range.high));
-  } else {
-    say(DomainLimit::angle_of_attack,
-        format("the angle of attack falls to %.4g deg (the coefficients hold from %.4g to %.4g deg)",
-               m[Metric::angle_of_attack_min], range.low, range.high));
-  }
+  const bool short_table = range.high < angle_of_attack_highest_deg - angle_slack_deg;
+  add(DomainLimit::angle_of_attack, short_table ? Quantity::angle_of_attack_range : Quantity::angle_of_attack_min,
+      m[Metric::angle_of_attack_min], range.low, range.high);
   if (!drive_of(v).stroke_is_fixed) {
-    say(DomainLimit::stroke, format("the stroke amplitude is %.4g deg (at most %.4g deg)",
-                                    degrees_per_radian * m[Metric::stroke_amplitude], other_stroke_max_deg));
+    add(DomainLimit::stroke, Quantity::stroke_amplitude, degrees_per_radian * m[Metric::stroke_amplitude], 0.0,
+        other_stroke_max_deg);
   } else {
-    say(DomainLimit::stroke, format("the stroke angle reaches %.4g deg (the mechanism's law holds to %.4g deg)",
-                                    stroke_reach_deg(v), stroke_max_deg(v.transmission.type)));
+    const double most = stroke_max_deg(v.transmission.type);
+    add(DomainLimit::stroke, Quantity::stroke_angle, stroke_reach_deg(v), -most, most);
   }
-  say(DomainLimit::formulation_residual,
-      format("the formulation fails to conserve %.3g %% of the input power (at most %.3g %%)",
-             100.0 * std::abs(m[Metric::power_residual] / P_e), 100.0 * formulation_residual_max));
-  say(DomainLimit::mechanism_efficiency,
-      P_m > 0.0 ? format("the mechanism efficiency is %.4g %% (0 to 100 %%)", 100.0 * P_aero / P_m)
-                : format("the wings take %.3g W from a motor output of %.3g W", P_aero, P_m));
-  say(DomainLimit::motor_efficiency, format("the motor efficiency is %.4g %% (0 to 100 %%)", 100.0 * P_m / P_e));
-  say(DomainLimit::input_power, format("the input power is %.3g W (positive where the motor drives)", P_e));
-  say(DomainLimit::flow_speed, format("the wings reach %.4g m/s (incompressible flow to %.4g m/s)",
-                                      m[Metric::flapping_velocity_peak] * reference_radius(v), flow_speed_max));
-  return text;
+  add(DomainLimit::formulation_residual, Quantity::residual_share, std::abs(m[Metric::power_residual] / P_e), 0.0,
+      formulation_residual_max);
+  if (P_m > 0.0) {
+    add(DomainLimit::mechanism_efficiency, Quantity::mechanism_efficiency, P_aero / P_m, 0.0, 1.0);
+  } else {
+    add(DomainLimit::mechanism_efficiency, Quantity::aerodynamic_power, P_aero, 0.0, P_m);
+  }
+  add(DomainLimit::motor_efficiency, Quantity::motor_efficiency, P_m / P_e, 0.0, 1.0);
+  add(DomainLimit::input_power, Quantity::input_power, P_e, 0.0, std::numeric_limits<double>::infinity());
+  add(DomainLimit::flow_speed, Quantity::flow_speed, m[Metric::flapping_velocity_peak] * reference_radius(v), 0.0,
+      flow_speed_max);
+  return rows;
 }
 
-std::string residual_warning(const Vehicle<double>& v, const Metrics<double>& m) {
+std::optional<double> notable_residual(const Vehicle<double>& v, const Metrics<double>& m) {
   if (v.transmission.type != TransmissionType::slider_crank ||
       v.transmission.slider_crank.formulation != Formulation::rod_force) {
-    return {};
+    return std::nullopt;
   }
   const double share = std::abs(m[Metric::power_residual] / m[Metric::power_electrical]);
-  if (!(share > formulation_residual_warn) || !(m[Metric::power_electrical] > 0.0)) return {};
-  return format("the formulation rod-force fails to conserve %.3g %% of the input power; virtual-work conserves it",
-                100.0 * share);
+  if (!(share > formulation_residual_warn) || !(m[Metric::power_electrical] > 0.0)) return std::nullopt;
+  return share;
 }
 
 }  // namespace wingbeat

@@ -7,10 +7,9 @@
 namespace wingbeat {
 namespace {
 
-using detail::format;
 using detail::OrbitSearch;
 
-double in_degrees(double angle) { return degrees_per_radian * angle; }
+using Evidence = StatusEvidence::Kind;
 
 template <int N>
 class CrankSearch : public OrbitSearch<CrankSystem<double, N>> {
@@ -42,30 +41,14 @@ class CrankSearch : public OrbitSearch<CrankSystem<double, N>> {
   double crank_speed() const { return this->start()[0]; }
 };
 
-std::string stall_detail(const StaticBalance& s) {
-  return format("the motor never starts: its stall torque %.4g N m does not exceed the constant friction %.4g N m",
-                s.stall_torque, s.breakaway_torque);
+StatusEvidence jam_evidence(const StaticBalance& s) {
+  if (s.lever_min <= 0.0) return {.kind = Evidence::lever_may_vanish, .angle = s.lever_angle, .lever = s.lever_min};
+  return {.kind = Evidence::inertia_may_vanish, .angle = s.inertia_angle, .inertia = s.inertia_min};
 }
 
-std::string jam_detail(const StaticBalance& s) {
-  if (s.lever_min <= 0.0) {
-    return format("the rod force loses its lever on the wings at crank angle %.1f deg (least lever %.3g m)",
-                  in_degrees(s.lever_angle), s.lever_min);
-  }
-  return format(
-      "the equations of motion lose their unique solution at crank angle %.1f deg: the rotor is too light "
-      "for the friction (effective inertia %.3g kg m2)",
-      in_degrees(s.inertia_angle), s.inertia_min);
-}
-
-std::string lock_list(const Vehicle<double>& vehicle) {
-  std::string text;
-  for (const LockInterval& lock : lock_intervals(vehicle)) {
-    if (!text.empty()) text += ", ";
-    text += lock.to - lock.from < 1e-6 ? format("%.1f deg", in_degrees(lock.angle))
-                                       : format("%.1f to %.1f deg", in_degrees(lock.from), in_degrees(lock.to));
-  }
-  return text;
+void add_locks(const Vehicle<double>& vehicle, const StaticBalance& statics, StatusEvidence& evidence) {
+  evidence.can_lock = statics.can_lock();
+  if (evidence.can_lock) evidence.locks = lock_intervals(vehicle);
 }
 
 template <int N>
@@ -76,7 +59,8 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
   const StaticBalance& statics = result.balance;
   if (statics.stalled()) {
     result.status = FlappingStatus::stalled;
-    result.detail = stall_detail(statics);
+    result.evidence = {
+        .kind = Evidence::weak_motor, .torque = statics.stall_torque, .friction_torque = statics.breakaway_torque};
     return result;
   }
 
@@ -95,10 +79,8 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
     outcome = start_up(vehicle);
     if (outcome->status != FlappingStatus::flapping) {
       result.status = outcome->status;
-      result.detail = outcome->detail;
-      if (found) {
-        result.detail += format("; a rotating orbit at %.4g Hz exists for a faster start", orbit.frequency());
-      }
+      result.evidence = outcome->evidence;
+      if (found) result.evidence.faster_orbit = orbit.frequency();
       result.summary = orbit.summary();
       return result;
     }
@@ -117,61 +99,50 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
   result.summary = orbit.summary();
   if (found) {
     result.status = FlappingStatus::flapping;
-    result.detail = format("steady flapping at %.4g Hz", orbit.frequency());
-    if (statics.can_lock()) {
-      result.detail += start_up ? "; once stopped, the crank also locks at crank angles "
-                                : "; the crank also locks at crank angles ";
-      result.detail += lock_list(vehicle);
-    }
+    result.evidence = {.kind = Evidence::orbit, .frequency = orbit.frequency(), .assessed = bool(start_up)};
+    add_locks(vehicle, statics, result.evidence);
     orbit.fill(result);
     return result;
   }
   if (outcome) {
-    detail::fill_simulated(*outcome, options, "crank angle", result);
+    detail::fill_simulated(*outcome, options, false, result);
     return result;
   }
   if (statics.can_jam()) {
     result.status = FlappingStatus::jammed;
-    result.detail = jam_detail(statics);
+    result.evidence = jam_evidence(statics);
   } else if (result.summary.status == solver::PeriodicStatus::converged) {
     result.status = FlappingStatus::undecided;
-    result.detail = format(
-        "the only orbit found, at %.4g Hz, is unstable (Floquet multiplier %.4g), and nobody says what "
-        "start-up does",
-        orbit.frequency(), orbit.multiplier());
+    result.evidence = {
+        .kind = Evidence::unstable_orbit, .frequency = orbit.frequency(), .multiplier = orbit.multiplier()};
   } else {
     result.status = FlappingStatus::locked;
-    result.detail = format("no rotating orbit: cycles end at crank angle %.1f deg (%s)",
-                           in_degrees(result.summary.stop), result.summary.message.c_str());
-    if (statics.can_lock()) result.detail += "; the crank locks at crank angles " + lock_list(vehicle);
+    result.evidence = {.kind = Evidence::no_orbit, .angle = result.summary.stop, .search = result.summary.status};
+    add_locks(vehicle, statics, result.evidence);
   }
   return result;
 }
 
 }  // namespace
 
-void detail::fill_simulated(const StartUpOutcome& outcome, const SteadyOptions& options, const char* variable,
+void detail::fill_simulated(const StartUpOutcome& outcome, const SteadyOptions& options, bool direct,
                             SteadyFlapping& result) {
   if (outcome.settled && outcome.cycle) result.simulated = outcome.cycle(options.tolerance, options.reporting);
-  const std::string& why = result.summary.message;
+  result.evidence.search = result.summary.status;
+  result.evidence.direct = direct;
   if (!result.simulated) {
     result.status = FlappingStatus::undecided;
-    result.detail = format(
-        "it rotates when simulated in time, but neither a periodic orbit in %s (%s) nor a simulated "
-        "cycle was found that it settles on",
-        variable, why.c_str());
+    result.evidence.kind = Evidence::no_cycle;
     return;
   }
   result.status = FlappingStatus::flapping;
   result.metrics = result.simulated->metrics;
   result.crank_speed = outcome.crank_speed;
   result.current = outcome.current;
-  result.detail = format(
-      "steady flapping at %.4g Hz, from its cycle simulated in time to %.1g%s: the search for an orbit "
-      "in %s found none that start-up reaches (%s)",
-      result.metrics[Metric::frequency], result.simulated->error_estimate,
-      result.simulated->cycles > 1 ? format(", which repeats after %d turns", result.simulated->cycles).c_str() : "",
-      variable, why.c_str());
+  result.evidence.kind = Evidence::simulated_cycle;
+  result.evidence.frequency = result.metrics[Metric::frequency];
+  result.evidence.change = result.simulated->error_estimate;
+  result.evidence.repeats_after = result.simulated->cycles;
 }
 
 SteadyFlapping find_steady_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,

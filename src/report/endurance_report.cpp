@@ -10,6 +10,7 @@
 
 #include "report/figure.hpp"
 #include "report/report_tools.hpp"
+#include "wingbeat/report/describe.hpp"
 #include "wingbeat/report/report.hpp"
 
 namespace wingbeat {
@@ -102,7 +103,7 @@ const char* name_of(Hover hover) {
 std::string json_endurance(const EnduranceResult& result) {
   Json json;
   json["status"] = name_of(result.status);
-  json["status_detail"] = result.detail;
+  json["status_detail"] = describe(result);
   json["end"] = name_of(result.end);
   json["endurance_s"] = result.endurance();
   json["hover"] = name_of(result.hover);
@@ -169,7 +170,7 @@ std::string text_endurance(const Design<double>& design, const EnduranceResult& 
                     88, 2) +
             "\n";
   }
-  text += wrapped(fmt::format("{}: {}.", name_of(result.end), result.detail), 88, 2) + "\n";
+  text += wrapped(fmt::format("{}: {}.", name_of(result.end), describe(result)), 88, 2) + "\n";
   if (result.rows.empty()) return text;
   const Flight f(result);
 
@@ -329,7 +330,7 @@ void write_endurance(const EnduranceResult& result, const Provenance& provenance
   for (const DomainLimitInfo& limit : domain_limit_table()) limits.push_back(limit.key);
   file.set_flag_masks(domain, limits);
   file.set_attribute("end", name_of(result.end));
-  file.set_attribute("end_detail", result.detail);
+  file.set_attribute("end_detail", describe(result));
   file.set_attribute("hover", name_of(result.hover));
   write_provenance(file, provenance);
   std::vector<double> values(result.rows.size());

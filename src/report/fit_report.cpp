@@ -9,6 +9,7 @@
 #include "report/report_tools.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/report/describe.hpp"
 #include "wingbeat/report/plot_panels.hpp"
 #include "wingbeat/report/report.hpp"
 
@@ -225,7 +226,7 @@ std::string text_fit(const BenchFit& fit, const FitResult& r) {
     for (const UnreachedRow& u : r.unreached) {
       text += "  " +
               wrapped(fmt::format("{} ({}): {}: {}", row_name(fit, u.log, u.row), given_text(fit, u.log, u.row),
-                                  name_of(u.status), u.detail),
+                                  name_of(u.status), describe(u)),
                       88, 4) +
               "\n";
     }
@@ -341,7 +342,7 @@ std::string json_fit(const BenchFit& fit, const FitResult& r, std::span<const Fr
   json["unreached"] = Json::array();
   for (const UnreachedRow& u : r.unreached) {
     json["unreached"].push_back(
-        {{"row", row_name(fit, u.log, u.row)}, {"status", name_of(u.status)}, {"detail", u.detail}});
+        {{"row", row_name(fit, u.log, u.row)}, {"status", name_of(u.status)}, {"detail", describe(u)}});
   }
   json["points"] = Json::array();
   for (const FitPoint& p : r.points) {

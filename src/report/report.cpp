@@ -9,6 +9,7 @@
 
 #include "report/report_tools.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
+#include "wingbeat/report/describe.hpp"
 
 namespace wingbeat {
 namespace {
@@ -178,11 +179,12 @@ std::string wrapped(std::string_view text, int width, int indent) {
 std::string json_report(const RunResult& result) {
   Json json;
   json["status"] = result.status == FlappingStatus::undecided ? Json(nullptr) : Json(name_of(result.status));
-  json["status_detail"] = result.detail;
+  json["status_detail"] = describe(result);
   const bool assessed = result.status == FlappingStatus::flapping && std::isfinite(result.metrics[Metric::frequency]);
   json["domain"] = assessed ? Json(name_of(result.domain)) : Json(nullptr);
-  json["domain_detail"] = result.domain_detail.empty() ? Json(nullptr) : Json(result.domain_detail);
-  json["warnings"] = result.warnings;
+  json["domain_detail"] = result.domain_evidence.empty() ? Json(nullptr) : Json(describe(result.domain_evidence));
+  json["warnings"] = Json::array();
+  if (result.residual_share) json["warnings"].push_back(residual_warning(*result.residual_share));
   const auto& table = metric_table();
   for (std::size_t m = 0; m < table.size(); ++m) json[table[m].key] = number_or_null(result.metrics.values[m]);
   if (result.design.supply.type == SupplyType::pwm) json["supply_duty"] = result.design.supply.duty;
@@ -197,13 +199,13 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
   if (!result.design.name.empty()) table.text(wrapped(result.design.name, table_width, 0) + "\n");
   if (result.domain.any()) {
     table.text(wrapped(fmt::format("OUTSIDE THE MODEL'S DOMAIN ({}): {}. The numbers below are extrapolated.",
-                                   name_of(result.domain), result.domain_detail),
+                                   name_of(result.domain), describe(result.domain_evidence)),
                        table_width, 2) +
                "\n");
   }
-  table.text(wrapped(fmt::format("{}: {}.", name_of(result.status), result.detail), table_width, 2) + "\n");
-  for (const std::string& warning : result.warnings) {
-    table.text(wrapped(fmt::format("warning: {}.", warning), table_width, 2) + "\n");
+  table.text(wrapped(fmt::format("{}: {}.", name_of(result.status), describe(result)), table_width, 2) + "\n");
+  if (result.residual_share) {
+    table.text(wrapped(fmt::format("warning: {}.", residual_warning(*result.residual_share)), table_width, 2) + "\n");
   }
   std::string how = fmt::format(
       "{}, by {}, tolerance {:.0e}", name_of(options.condition),

@@ -9,6 +9,7 @@
 #include "report/report_tools.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/report/describe.hpp"
 #include "wingbeat/report/report.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
@@ -116,7 +117,7 @@ std::string text_tolerance(const ToleranceStudy& study, const ToleranceResult& r
   }
   if (result.centre.status != SweepStatus::flapping) {
     const std::string reason = fmt::format("No linear prediction: at the parameters' means the vehicle is {}: {}",
-                                           name_of(result.centre.status), result.centre.detail);
+                                           name_of(result.centre.status), describe(result.centre));
     fmt::format_to(out, "{}\n", wrapped(reason, 100, 2));
   }
 

@@ -17,7 +17,7 @@
 namespace wingbeat {
 namespace {
 
-using Kind = PublishedTrend::Kind;
+using TrendKind = PublishedTrend::Kind;
 
 /// The limits that a result must keep to count. The residual of the formulation is left out by name: what equation (1)
 /// as printed does is itself under test; the answer says how large it is where it exceeds its limit.
@@ -108,13 +108,13 @@ std::string residual_remark(const Metrics<double>& m) {
 
 Answer extreme(const Asked& ask, const PublishedTrend& t) {
   const auto value = [&](double x) { return ask.along(t.design, x)[t.metric]; };
-  const bool dip = t.kind == Kind::trough_at;
+  const bool dip = t.kind == TrendKind::trough_at;
   const TrendPeak peak = dip ? dip_along(value, t.from, t.to) : highest_along(value, t.from, t.to);
   if (!std::isfinite(peak.at)) return {absent, dip ? "no minimum" : "none flaps inside the domain", false};
   const std::string unit = t.over.empty() ? "Hz" : design_parameter(t.over).unit;
   const std::string at = readable(peak.at, unit);
   const std::string reached = shown(peak.value, metric_info(t.metric).unit, is_efficiency(t.metric));
-  const bool height = t.kind == Kind::peak;
+  const bool height = t.kind == TrendKind::peak;
   std::string remark = height ? fmt::format("at {}", at) : reached;
   if (!peak.inside) {
     const double end = std::abs(peak.at - t.to) < std::abs(peak.at - t.from) ? t.to : t.from;
@@ -211,17 +211,17 @@ Answer of_number(double x, const PublishedTrend& t, bool share) { return {x, sho
 Answer answer_to(const PublishedFile& file, const PublishedTrend& t) {
   const Asked ask(file, t);
   switch (t.kind) {
-    case Kind::crossing: {
+    case TrendKind::crossing: {
       const auto ratio = [&](double x) {
         return ask.along(t.design, x)[t.metric] / ask.along(*t.relative_to, x)[t.metric];
       };
       const double at = crossing_along(ratio, 1.0, t.from, t.to);
       return std::isfinite(at) ? of_number(at, t, false) : Answer{absent, "never", false};
     }
-    case Kind::peak_at:
-    case Kind::trough_at:
-    case Kind::peak: return extreme(ask, t);
-    case Kind::value: {
+    case TrendKind::peak_at:
+    case TrendKind::trough_at:
+    case TrendKind::peak: return extreme(ask, t);
+    case TrendKind::value: {
       const Metrics<double> m = ask.here(t.design);
       Answer answer = of_number(m[t.metric], t, is_efficiency(t.metric));
       if (const std::string remark = residual_remark(m); !remark.empty()) {
@@ -230,33 +230,33 @@ Answer answer_to(const PublishedFile& file, const PublishedTrend& t) {
       }
       return answer;
     }
-    case Kind::change:
+    case TrendKind::change:
       return of_number(ask.here(t.design)[t.metric] / ask.here(*t.relative_to)[t.metric] - 1.0, t, true);
-    case Kind::difference: {
+    case TrendKind::difference: {
       const double one = ask.here(t.design)[t.metric], other = ask.here(*t.relative_to)[t.metric];
       if (!is_efficiency(t.metric)) return of_number(one - other, t, false);
       return {one - other, fmt::format("{:+.2f} percentage points, to {}", 100.0 * (one - other), percent(one)), false};
     }
-    case Kind::best_range: return best_range(ask, t);
-    case Kind::power_balance: {
+    case TrendKind::best_range: return best_range(ask, t);
+    case TrendKind::power_balance: {
       const Metrics<double> m = ask.here(t.design);
       const double left = m[Metric::power_motor] - m[Metric::power_friction], air = m[Metric::power_aerodynamic];
       return {left / air, fmt::format("{:#.4g} ({} against {})", left / air, readable(left, "W"), readable(air, "W")),
               false};
     }
-    case Kind::between: return between(ask, t);
-    case Kind::steadier: return steadier(ask, t);
-    case Kind::saturates: return saturates(ask, t);
-    case Kind::initial_guesses: return initial_guesses(ask, t);
-    case Kind::constant_load_efficiency:
+    case TrendKind::between: return between(ask, t);
+    case TrendKind::steadier: return steadier(ask, t);
+    case TrendKind::saturates: return saturates(ask, t);
+    case TrendKind::initial_guesses: return initial_guesses(ask, t);
+    case TrendKind::constant_load_efficiency:
       return of_number(best_constant_load_efficiency(resolve(file.designs.at(t.design)).motor, *t.voltage), t, true);
-    case Kind::spring_resonance: {
+    case TrendKind::spring_resonance: {
       const Vehicle<double> vehicle = resolve(file.designs.at(t.design));
       return of_number(std::sqrt(vehicle.spring.stiffness / vehicle.wing_inertia) / two_pi, t, false);
     }
-    case Kind::weight:
+    case TrendKind::weight:
       return of_number(total_mass(file.designs.at(t.design)).value_or(absent) * standard_gravity, t, false);
-    case Kind::best_friction_law: break;
+    case TrendKind::best_friction_law: break;
   }
   return {};
 }

@@ -139,7 +139,8 @@ FitResult run_fit(const BenchFit& fit, bool reweight, const std::function<void(c
   }
   for (std::size_t n = 0; n < bench.points().size(); ++n) {
     const Prediction& p = bench.predictions()[n];
-    if (!p.reached) result.unreached.push_back({bench.points()[n].log, bench.points()[n].row, p.status, p.detail});
+    if (!p.reached)
+      result.unreached.push_back({bench.points()[n].log, bench.points()[n].row, p.status, p.evidence, p.refused});
   }
   for (const auto& [quantity, deviation] : fitter.estimated()) {
     if (fit.deviations.at(quantity).kind == Deviation::Kind::estimated) {

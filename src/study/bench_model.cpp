@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "wingbeat/study/frequency_search.hpp"
-
 namespace wingbeat {
 namespace {
 
@@ -120,14 +118,15 @@ void BenchModel::evaluate_point(std::size_t n, Design<double> design) {
   const Reporting reporting = reporting_of(design);
   SteadyFlapping& found = orbits_[n];
   Prediction& prediction = predictions_[n];
+  prediction.refused.reset();
   if (point.given == Given::voltage) {
     found = orbit(vehicle, point.value, reporting);
   } else {
-    found = orbit_at_frequency(n, vehicle, reporting);
+    found = orbit_at_frequency(n, vehicle, reporting, prediction.refused);
   }
   prediction.reached = found.status == FlappingStatus::flapping && !found.record.empty();
   prediction.status = found.status;
-  prediction.detail = found.detail;
+  prediction.evidence = found.evidence;
   for (const std::size_t o : point.observations) {
     const Observation& observation = observations_[o];
     double& value = fitted_[o];
@@ -141,7 +140,8 @@ void BenchModel::evaluate_point(std::size_t n, Design<double> design) {
   }
 }
 
-SteadyFlapping BenchModel::orbit_at_frequency(std::size_t n, Vehicle<double>& vehicle, const Reporting& reporting) {
+SteadyFlapping BenchModel::orbit_at_frequency(std::size_t n, Vehicle<double>& vehicle, const Reporting& reporting,
+                                              std::optional<SearchFinding>& refused) {
   const double wanted = points_[n].value;
   if (!drive_of(vehicle).voltage_sets_frequency) {
     vehicle.drive_frequency = wanted;
@@ -185,7 +185,7 @@ SteadyFlapping BenchModel::orbit_at_frequency(std::size_t n, Vehicle<double>& ve
     start = absent;
     SteadyFlapping none;
     none.status = search.status == FlappingStatus::flapping ? FlappingStatus::stalled : search.status;
-    none.detail = search.detail;
+    refused = search.finding;
     return none;
   }
   start = search.voltage;

@@ -2,10 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <string>
+#include <optional>
 #include <vector>
 
 #include "wingbeat/study/bench_fit.hpp"
+#include "wingbeat/study/frequency_search.hpp"
 
 namespace wingbeat {
 
@@ -32,7 +33,8 @@ struct Observation {
 struct Prediction {
   bool reached = false;
   FlappingStatus status = FlappingStatus::stalled;
-  std::string detail;
+  StatusEvidence evidence;
+  std::optional<SearchFinding> refused;
 };
 
 /// The model at all points of the bench, with derivatives; remembers the last parameters it was asked for.
@@ -57,7 +59,9 @@ class BenchModel {
 
  private:
   SteadyFlapping orbit(Vehicle<double>& vehicle, double voltage, const Reporting& reporting);
-  SteadyFlapping orbit_at_frequency(std::size_t n, Vehicle<double>& vehicle, const Reporting& reporting);
+  /// `refused`: the search, where the frequency cannot be reached.
+  SteadyFlapping orbit_at_frequency(std::size_t n, Vehicle<double>& vehicle, const Reporting& reporting,
+                                    std::optional<SearchFinding>& refused);
   void evaluate_point(std::size_t n, Design<double> design);
   void differentiate_point(std::size_t n, const Design<GradientJet>& seeded, std::size_t first, std::size_t count);
 

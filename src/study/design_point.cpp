@@ -16,7 +16,7 @@ DesignPoint design_point(const Design<double>& given, const DesignPointOptions& 
   try {
     validate(design);
   } catch (const ParameterError& error) {
-    point.detail = error.what();
+    point.error = error.what();
     return point;
   }
   Vehicle<double> vehicle = resolve(design, options.condition);
@@ -26,14 +26,14 @@ DesignPoint design_point(const Design<double>& given, const DesignPointOptions& 
     if (search.outcome != FrequencyOutcome::reached) {
       const bool flaps = search.status == FlappingStatus::flapping;
       point.status = flaps ? SweepStatus::unreached : sweep_status(search.status);
-      point.detail = search.detail;
+      point.refused = search.finding;
       return point;
     }
     vehicle.voltage = search.voltage;
   }
   const SteadyFlapping orbit = find_steady_flapping(vehicle, steady, start_up);
   point.status = sweep_status(orbit.status);
-  point.detail = orbit.detail;
+  point.evidence = orbit.evidence;
   if (orbit.status != FlappingStatus::flapping) return point;
   point.metrics = orbit.metrics;
   point.domain_excess = domain_excess(vehicle, orbit.metrics);

@@ -7,13 +7,10 @@
 
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/root.hpp"
-#include "wingbeat/core/text.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {
 namespace {
-
-using detail::format;
 
 /// What is integrated over the charge drawn.
 enum Total { time, electrical, internal, aerodynamic, lift, total_count };
@@ -45,7 +42,7 @@ struct Piece {
 struct State {
   bool flaps = false;
   FlappingStatus status = FlappingStatus::stalled;
-  std::string detail;
+  StatusEvidence evidence;
   Metrics<double> metrics;
   DomainStatus domain = {};
 };
@@ -64,17 +61,16 @@ class Flight {
     const double first = battery_.charge;
     const State start = solve(first, start_up_in_time());
     result_.status = start.status;
-    if (!start.flaps) {
-      result_.detail = format("the battery cannot start the vehicle at a charge of %.4g (%.4g V without load): %s",
-                              first, open_circuit_voltage(battery_, first), start.detail.c_str());
-      return std::move(result_);
-    }
+    result_.evidence = start.evidence;
+    result_.first_charge = first;
+    result_.first_voltage = open_circuit_voltage(battery_, first);
+    if (battery_.cutoff_voltage) result_.cutoff_voltage = battery_.cells * *battery_.cutoff_voltage;
+    if (!start.flaps) return std::move(result_);
     known_[first] = start;
     const double last = last_charge();
     std::optional<double> hover;
     if (std::isfinite(steady_.reporting.mass)) hover = hover_charge(last);
     discharge(last, hover);
-    describe();
     return std::move(result_);
   }
 
@@ -87,7 +83,7 @@ class Flight {
     vehicle_.voltage = voltage;
     const SteadyFlapping found = find_steady_flapping(vehicle_, steady_, start_up);
     const bool flaps = found.status == FlappingStatus::flapping;
-    return {flaps, found.status, found.detail, found.metrics,
+    return {flaps, found.status, found.evidence, found.metrics,
             flaps ? domain_of(vehicle_, found.metrics) : DomainStatus()};
   }
 
@@ -306,35 +302,6 @@ class Flight {
       }
       result_.rows.push_back(row(charges[n], sum));
       if (hover && charges[n] == *hover) result_.hover_lost = result_.rows.back();
-    }
-  }
-
-  void describe() {
-    const EnduranceRow& last = result_.rows.back();
-    const double v = last.metrics[Metric::voltage];
-    switch (result_.end) {
-      case EnduranceEnd::empty:
-        result_.detail = last.time > 0.0 ? format("the battery is empty after %.4g s", last.time)
-                                         : std::string("the battery is empty from the start");
-        break;
-      case EnduranceEnd::cutoff:
-        result_.detail = last.time > 0.0
-                             ? format(
-                                   "the terminal voltage falls to the cut-off voltage, %.4g V in all, after %.4g s, at "
-                                   "a charge of %.4g",
-                                   battery_.cells * *battery_.cutoff_voltage, last.time, last.charge)
-                             : format(
-                                   "the terminal voltage of %.4g V is not above the cut-off voltage, %.4g V in all, "
-                                   "from the start",
-                                   v, battery_.cells * *battery_.cutoff_voltage);
-        break;
-      case EnduranceEnd::stops:
-        result_.detail = format(
-            "after %.4g s, at a charge of %.4g and %.4g V at the terminals, the battery no longer "
-            "turns the crank",
-            last.time, last.charge, v);
-        break;
-      case EnduranceEnd::never_starts: break;
     }
   }
 

@@ -11,7 +11,7 @@
 namespace wingbeat {
 namespace {
 
-using Kind = FitFinding::Kind;
+using FindingKind = FitFinding::Kind;
 /// Relative standard errors from which a direction counts as left free, and as known only roughly.
 constexpr double free_error = 1.0, rough_error = 0.2;
 
@@ -103,10 +103,10 @@ void assess_identifiability(const BenchFit& fit, BenchFitter& fitter, const std:
         for (Eigen::Index k = 0; k < count; ++k) {
           if (std::abs(full[k]) > 0.1) loose[std::size_t(k)] = true;
         }
-        free_directions.push_back(direction_finding(Kind::left_free, fit.parameters, full, error));
+        free_directions.push_back(direction_finding(FindingKind::left_free, fit.parameters, full, error));
       } else {
         if (error > rough_error) {
-          rough_directions.push_back(direction_finding(Kind::known_roughly, fit.parameters, full, error));
+          rough_directions.push_back(direction_finding(FindingKind::known_roughly, fit.parameters, full, error));
         }
         inverse += error * error * eigen.eigenvectors().col(d) * eigen.eigenvectors().col(d).transpose();
       }
@@ -213,13 +213,13 @@ void assess_identifiability(const BenchFit& fit, BenchFitter& fitter, const std:
   };
   std::vector<FitFinding>& findings = result.findings;
   const auto unheard = keys_where([&](std::size_t k) { return insensitive[k]; });
-  if (!unheard.empty()) findings.push_back({.kind = Kind::without_influence, .parameters = unheard});
+  if (!unheard.empty()) findings.push_back({.kind = FindingKind::without_influence, .parameters = unheard});
   findings.insert(findings.end(), free_directions.begin(), free_directions.end());
   findings.insert(findings.end(), rough_directions.begin(), rough_directions.end());
   if (free_directions.empty() && m > 0) {
     const auto known = keys_where([&](std::size_t k) { return result.parameters[k].value.has_value(); });
-    findings.push_back({.kind = Kind::determined, .parameters = known});
-    FitFinding alike{.kind = Kind::most_correlated, .numbers = {0.0}};
+    findings.push_back({.kind = FindingKind::determined, .parameters = known});
+    FitFinding alike{.kind = FindingKind::most_correlated, .numbers = {0.0}};
     for (std::size_t a = 0; a < std::size_t(count); ++a) {
       for (std::size_t b = 0; b < a; ++b) {
         const double r = result.correlation[a][b];
@@ -232,8 +232,8 @@ void assess_identifiability(const BenchFit& fit, BenchFitter& fitter, const std:
   }
   for (const ConditionShare& c : result.conditions) {
     if (result.conditions.size() < 2) break;
-    FitFinding lost{.kind = Kind::determined_by, .condition = c.name};
-    FitFinding wider{.kind = Kind::narrowed_by, .condition = c.name};
+    FitFinding lost{.kind = FindingKind::determined_by, .condition = c.name};
+    FitFinding wider{.kind = FindingKind::narrowed_by, .condition = c.name};
     for (std::size_t k = 0; k < std::size_t(count); ++k) {
       const FittedParameter& p = result.parameters[k];
       if (!p.value) continue;
@@ -248,7 +248,7 @@ void assess_identifiability(const BenchFit& fit, BenchFitter& fitter, const std:
     if (!wider.parameters.empty()) findings.push_back(wider);
   }
   const auto product = keys_where([&](std::size_t k) { return fit.parameters[k].parameter.key == "friction.radius"; });
-  if (!product.empty()) findings.push_back({.kind = Kind::product_of_friction, .parameters = product});
+  if (!product.empty()) findings.push_back({.kind = FindingKind::product_of_friction, .parameters = product});
 }
 
 }  // namespace wingbeat

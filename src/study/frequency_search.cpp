@@ -6,14 +6,16 @@
 #include <optional>
 
 #include "study/voltage_trials.hpp"
-#include "wingbeat/core/text.hpp"
 
 namespace wingbeat {
 namespace {
 
-using detail::format;
 using detail::VoltageTrial;
 using detail::VoltageTrials;
+using Finding = SearchFinding::Kind;
+using Place = SearchFinding::Place;
+
+Place frequency_at(const VoltageTrial& t) { return {t.voltage, t.frequency}; }
 
 /// Widest bracket of the lowest voltage at which a vehicle flaps, relative.
 constexpr double onset_width = 1e-5;
@@ -70,11 +72,10 @@ class Search {
     // At the last bits of the voltage a smooth frequency is as close as its own rounding allows.
     const double gap = high_->frequency - low_->frequency;
     if (gap < (10.0 * trials_.accuracy() + 2.0 * trials_.closeness()) * target_) return reached(*high_);
-    return conclude(
-        FrequencyOutcome::jumps, *high_,
-        format("at %.5g V the flapping frequency jumps from %.5g Hz to %.5g Hz: %.5g Hz in between cannot be "
-               "held",
-               high_->voltage, low_->frequency, high_->frequency, target_));
+    SearchFinding finding = found(Finding::jumps);
+    finding.at = frequency_at(*high_);
+    finding.least = frequency_at(*low_);
+    return conclude(FrequencyOutcome::jumps, *high_, finding);
   }
 
   double next() {
@@ -106,58 +107,61 @@ class Search {
 
   /// The trial flaps outside the range, no faster than wanted: how fast does it flap inside?
   FrequencySearch outside_domain(const VoltageTrial& trial) {
-    const std::string why = trials_.range() == SearchRange::domain
-                                ? trial.limits
-                                : format("the angle of attack falls below %.4g deg", extrapolation_angle_deg);
-    std::string text = format("%.5g Hz cannot be reached%s: at %.4g V, where it flaps at %.4g Hz, %s", target_,
-                              trials_.where(), trial.voltage, trial.frequency, why.c_str());
+    SearchFinding finding = found(Finding::out_of_range);
+    finding.at = frequency_at(trial);
+    finding.limits = trial.limits;
     VoltageTrial outside = trial, inside = trial;
     for (int n = 0; n < 40 && inside.flaps && !inside.inside; ++n) {
       outside = inside;
       inside = trials_.at(0.7 * inside.voltage);
     }
-    if (!inside.flaps || !inside.inside) return conclude(FrequencyOutcome::outside_domain, trial, text);
+    if (!inside.flaps || !inside.inside) return conclude(FrequencyOutcome::outside_domain, trial, finding);
     while (outside.voltage - inside.voltage > 1e-4 * outside.voltage) {
       const VoltageTrial middle = trials_.at(0.5 * (inside.voltage + outside.voltage));
       if (!middle.flaps) break;
       (middle.inside ? inside : outside) = middle;
     }
-    text += format("; inside it flaps at %.4g Hz at most, at %.4g V", inside.frequency, inside.voltage);
-    return conclude(FrequencyOutcome::outside_domain, inside, text);
+    finding.most = frequency_at(inside);
+    return conclude(FrequencyOutcome::outside_domain, inside, finding);
   }
 
   FrequencySearch reached(const VoltageTrial& t) {
     if (!t.inside) return outside_domain(t);
-    return {FrequencyOutcome::reached, t.voltage, t.status, t.detail, trials_.count(), absent, absent};
+    SearchFinding finding = found(Finding::reached);
+    finding.status = t.status;
+    finding.evidence = t.evidence;
+    return {FrequencyOutcome::reached, t.voltage, t.status, finding, trials_.count(), absent, absent};
   }
   FrequencySearch never_flaps() {
-    return conclude(FrequencyOutcome::never_flaps, *low_,
-                    format("it flaps at no voltage up to %.4g V; there it is %s: %s", low_->voltage,
-                           name_of(low_->status), low_->detail.c_str()));
+    SearchFinding finding = found(Finding::never_flaps);
+    finding.last_voltage = low_->voltage;
+    finding.status = low_->status;
+    finding.evidence = low_->evidence;
+    return conclude(FrequencyOutcome::never_flaps, *low_, finding);
   }
   FrequencySearch too_high() {
-    const VoltageTrial& last = ceiling_ ? *ceiling_ : *low_;
-    return conclude(FrequencyOutcome::too_high, *low_,
-                    format("%.5g Hz cannot be reached: up to %.4g V it flaps at %.4g Hz at most, at %.4g V", target_,
-                           last.voltage, low_->frequency, low_->voltage));
+    SearchFinding finding = found(Finding::too_high);
+    finding.last_voltage = (ceiling_ ? *ceiling_ : *low_).voltage;
+    finding.most = frequency_at(*low_);
+    return conclude(FrequencyOutcome::too_high, *low_, finding);
   }
   FrequencySearch too_low() {
-    if (!low_) {
-      return conclude(
-          FrequencyOutcome::too_low, *high_,
-          format("%.5g Hz cannot be reached: at %.4g V, the lowest voltage tried, it flaps at %.4g Hz already", target_,
-                 high_->voltage, high_->frequency));
+    SearchFinding finding = found(low_ ? Finding::too_low_at_onset : Finding::too_low_at_first);
+    finding.at = frequency_at(*high_);
+    if (low_) {
+      finding.status = low_->status;
+      finding.evidence = low_->evidence;
     }
-    FrequencySearch result =
-        conclude(FrequencyOutcome::too_low, *high_,
-                 format("%.5g Hz cannot be reached: from rest it flaps only above %.4g V, and there at %.4g Hz already",
-                        target_, high_->voltage, high_->frequency) +
-                     detail::describe_below(*low_));
-    result.status = low_->status;
+    FrequencySearch result = conclude(FrequencyOutcome::too_low, *high_, finding);
+    if (low_) result.status = low_->status;
     return result;
   }
-  FrequencySearch conclude(FrequencyOutcome outcome, const VoltageTrial& closest, const std::string& text) const {
-    return {outcome,          absent, closest.status, text, trials_.count(), closest.flaps ? closest.voltage : absent,
+  SearchFinding found(Finding kind) const {
+    return {.kind = kind, .sought = Sought::frequency, .target = target_, .range = trials_.range()};
+  }
+  FrequencySearch conclude(FrequencyOutcome outcome, const VoltageTrial& closest, const SearchFinding& finding) const {
+    return {outcome,          absent,          closest.status,
+            finding,          trials_.count(), closest.flaps ? closest.voltage : absent,
             closest.frequency};
   }
 
@@ -174,6 +178,22 @@ class Search {
 
 }  // namespace
 
+bool SearchFinding::inside_domain_only() const {
+  if (range != SearchRange::domain) return false;
+  switch (kind) {
+    case Finding::out_of_range:
+    case Finding::beyond_any_voltage: return true;
+    case Finding::too_low_at_first:
+    case Finding::too_low_at_onset:
+    case Finding::too_high: return sought == Sought::lift;
+    case Finding::reached:
+    case Finding::never_flaps:
+    case Finding::no_wings_in_air:
+    case Finding::jumps: break;
+  }
+  return false;
+}
+
 double highest_frequency(const Vehicle<double>& v, SearchRange range) {
   const BladeElement<double>& w = v.wings;
   if (!drive_of(v).stroke_is_fixed || !(w.air_density > 0.0) || !(w.s2 > 0.0 || w.s3 > 0.0)) return infinity;
@@ -188,16 +208,15 @@ double highest_frequency(const Vehicle<double>& v, SearchRange range) {
 }
 
 FrequencySearch refuse_frequency(const Vehicle<double>& vehicle, double frequency, SearchRange range) {
-  const bool domain = range == SearchRange::domain;
   FrequencySearch result;
   result.outcome = FrequencyOutcome::outside_domain;
   result.status = FlappingStatus::flapping;
-  result.detail = format(
-      "%.5g Hz cannot be reached %s: at a stroke amplitude of %.4g deg, whatever the voltage, wings that "
-      "flap at more than %.4g Hz pass %s",
-      frequency, domain ? "inside the domain of validity" : "in the range that is searched",
-      degrees_per_radian * stroke_amplitude(vehicle.transmission), highest_frequency(vehicle, range),
-      domain ? "an angle of attack of 0 deg or Mach 0.3" : "an angle of attack of -360 deg or Mach 3");
+  result.finding = {.kind = Finding::beyond_any_voltage,
+                    .sought = Sought::frequency,
+                    .target = frequency,
+                    .range = range,
+                    .stroke_amplitude = stroke_amplitude(vehicle.transmission),
+                    .highest_frequency = highest_frequency(vehicle, range)};
   return result;
 }
 

@@ -2,20 +2,20 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <string>
 
 #include "study/voltage_trials.hpp"
 #include "wingbeat/core/root.hpp"
-#include "wingbeat/core/text.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
 
 namespace wingbeat {
 namespace {
 
-using detail::format;
 using detail::Hermite;
 using detail::VoltageTrial;
 using detail::VoltageTrials;
+using Finding = SearchFinding::Kind;
+
+SearchFinding::Place lift_at(const VoltageTrial& t) { return {t.voltage, t.lift}; }
 
 /// The lift coefficient is a wave in the angle of attack: between two trials the smallest angle changes by no more than
 /// this share of a radian of the wave, so that no more than an eighth of it passes unseen.
@@ -250,7 +250,10 @@ class LiftTrace {
       if (!outside_root_) outside_root_ = t;
       return std::nullopt;
     }
-    return FrequencySearch{FrequencyOutcome::reached, t.voltage, t.status, t.detail, trials_.count(), absent, absent};
+    SearchFinding finding = found(Finding::reached);
+    finding.status = t.status;
+    finding.evidence = t.evidence;
+    return FrequencySearch{FrequencyOutcome::reached, t.voltage, t.status, finding, trials_.count(), absent, absent};
   }
 
   /// Where the range ends between a and b: the lift may be largest there.
@@ -265,59 +268,62 @@ class LiftTrace {
     }
   }
 
+  SearchFinding found(Finding kind) const {
+    return {.kind = kind, .sought = Sought::lift, .target = target_, .range = where_.range};
+  }
+
   FrequencySearch refuse(const VoltageTrial& last) const {
-    const std::string cannot = format("%.5g N cannot be reached%s", target_, trials_.where());
-    const auto conclude = [&](FrequencyOutcome outcome, const VoltageTrial& closest, const std::string& text) {
+    const auto conclude = [&](FrequencyOutcome outcome, const VoltageTrial& closest, const SearchFinding& finding) {
       return FrequencySearch{outcome,     absent,          closest.status,
-                             text,        trials_.count(), closest.flaps ? closest.voltage : absent,
+                             finding,     trials_.count(), closest.flaps ? closest.voltage : absent,
                              closest.lift};
     };
     if (!first_) {
-      return conclude(FrequencyOutcome::never_flaps, last,
-                      format("it flaps at no voltage up to %.4g V; there it is %s: %s", last.voltage,
-                             name_of(last.status), last.detail.c_str()));
+      SearchFinding finding = found(Finding::never_flaps);
+      finding.last_voltage = last.voltage;
+      finding.status = last.status;
+      finding.evidence = last.evidence;
+      return conclude(FrequencyOutcome::never_flaps, last, finding);
     }
     if (!max_) {
-      return conclude(FrequencyOutcome::outside_domain, *first_,
-                      cannot +
-                          format(": it leaves it at every voltage at which it flaps; at %.4g V ", first_->voltage) +
-                          first_->limits);
+      SearchFinding finding = found(Finding::out_of_range);
+      finding.at = lift_at(*first_);
+      finding.limits = first_->limits;
+      return conclude(FrequencyOutcome::outside_domain, *first_, finding);
     }
     if (jump_low_) {
-      return conclude(FrequencyOutcome::jumps, *jump_high_,
-                      format("at %.5g V the mean lift jumps from %.5g N to %.5g N: %.5g N in between cannot be held",
-                             jump_high_->voltage, jump_low_->lift, jump_high_->lift, target_));
+      SearchFinding finding = found(Finding::jumps);
+      finding.at = lift_at(*jump_high_);
+      finding.least = lift_at(*jump_low_);
+      return conclude(FrequencyOutcome::jumps, *jump_high_, finding);
     }
     if (outside_root_) {
-      return conclude(
-          FrequencyOutcome::outside_domain, *max_,
-          cannot + format(": at %.4g V, where it lifts so much, %s; inside it lifts from %.4g N, at %.4g V, to "
-                          "%.4g N, at %.4g V",
-                          outside_root_->voltage, outside_root_->limits.c_str(), min_->lift, min_->voltage, max_->lift,
-                          max_->voltage));
+      SearchFinding finding = found(Finding::out_of_range);
+      finding.at = lift_at(*outside_root_);
+      finding.limits = outside_root_->limits;
+      finding.least = lift_at(*min_);
+      finding.most = lift_at(*max_);
+      return conclude(FrequencyOutcome::outside_domain, *max_, finding);
+    }
+    if (min_->lift > target_ && !below_) {
+      SearchFinding finding = found(Finding::too_low_at_first);
+      finding.at = lift_at(*min_);
+      return conclude(FrequencyOutcome::too_low, *min_, finding);
     }
     if (min_->lift > target_) {
-      if (!below_) {
-        return conclude(FrequencyOutcome::too_low, *min_,
-                        cannot + format(": at %.4g V, the lowest voltage tried, it lifts %.4g N already", min_->voltage,
-                                        min_->lift));
-      }
-      FrequencySearch result =
-          conclude(FrequencyOutcome::too_low, *first_,
-                   cannot +
-                       format(": from rest it flaps only above %.4g V, and there lifts %.4g N already", first_->voltage,
-                              first_->lift) +
-                       detail::describe_below(*below_));
+      SearchFinding finding = found(Finding::too_low_at_onset);
+      finding.at = lift_at(*first_);
+      finding.status = below_->status;
+      finding.evidence = below_->evidence;
+      FrequencySearch result = conclude(FrequencyOutcome::too_low, *first_, finding);
       result.status = below_->status;
       return result;
     }
-    std::string text = cannot + format(": it lifts %.4g N at most, at %.4g V", max_->lift, max_->voltage);
-    if (last.beyond && where_.range == SearchRange::domain) {
-      text += format("; at %.4g V %s", last.voltage, last.limits.c_str());
-    } else {
-      text += format(" (voltages up to %.4g V)", last.voltage);
-    }
-    return conclude(FrequencyOutcome::too_high, *max_, text);
+    SearchFinding finding = found(Finding::too_high);
+    finding.most = lift_at(*max_);
+    finding.last_voltage = last.voltage;
+    if (last.beyond && where_.range == SearchRange::domain) finding.limits = last.limits;
+    return conclude(FrequencyOutcome::too_high, *max_, finding);
   }
 
   VoltageTrials trials_;
@@ -343,10 +349,9 @@ FrequencySearch find_voltage_for_lift(const Vehicle<double>& vehicle, double lif
   if (!(w.air_density > 0.0 && w.s2 > 0.0)) {
     const VoltageTrial t = trials.at(where.nominal);
     const FrequencyOutcome outcome = t.flaps ? FrequencyOutcome::too_high : FrequencyOutcome::never_flaps;
-    return {outcome,        absent,
-            t.status,       format("%.5g N cannot be reached: without wings in air there is no lift", lift),
-            trials.count(), t.flaps ? t.voltage : absent,
-            t.lift};
+    const SearchFinding finding{
+        .kind = Finding::no_wings_in_air, .sought = Sought::lift, .target = lift, .range = where.range};
+    return {outcome, absent, t.status, finding, trials.count(), t.flaps ? t.voltage : absent, t.lift};
   }
   return LiftTrace(std::move(trials), lift, where).run();
 }

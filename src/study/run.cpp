@@ -115,7 +115,7 @@ FrequencySearch find_voltage(const Vehicle<double>& vehicle, const Supply<double
   if (supply.voltage > 0.0) where.nominal = supply.voltage;
   FrequencySearch search = find_voltage_for_lift(vehicle, *options.lift, steady, start_up_in_time(), where);
   if (supply.type == SupplyType::pwm && search.closest_voltage > supply.voltage) {
-    search.detail += format("; a duty of 1 gives %.4g V", supply.voltage);
+    search.finding.full_duty_voltage = supply.voltage;
   }
   return search;
 }
@@ -126,15 +126,12 @@ void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunRes
   steady.reporting = reporting_of(result.design);
   const SteadyFlapping found = find_steady_flapping(vehicle, steady, start_up_in_time());
   result.status = found.status;
-  result.detail = found.detail;
+  result.evidence = found.evidence;
   result.metrics = found.metrics;
   result.settled = found.status != FlappingStatus::undecided;
   result.orbit = found.summary;
   result.simulated_cycle = found.simulated.has_value();
-  if (result.design.supply.type == SupplyType::pwm) {
-    result.detail += format("; the orbit sees the mean voltage of the pwm supply, %.4g V", vehicle.voltage);
-    if (options.lift) result.detail += format(", at a duty of %.6g", result.design.supply.duty);
-  }
+  if (result.design.supply.type == SupplyType::pwm) result.mean_voltage = vehicle.voltage;
   if (options.waveform_rows > 1 && !found.record.empty()) {
     result.cycle = found.record.waveform(options.waveform_rows);
   } else if (options.waveform_rows > 1 && found.simulated) {
@@ -160,7 +157,7 @@ void run_transient(const Vehicle<double>& vehicle, const RunOptions& options, Ru
   result.start_up = simulate_start_up(vehicle, transient);
   const TransientResult& found = *result.start_up;
   result.status = found.status;
-  result.detail = found.detail;
+  result.evidence = found.evidence;
   result.settled = found.settled;
   if (found.metrics && found.status == FlappingStatus::flapping) {
     result.metrics = *found.metrics;
@@ -175,9 +172,8 @@ void run_transient(const Vehicle<double>& vehicle, const RunOptions& options, Ru
 void note_domain(const Vehicle<double>& vehicle, RunResult& result) {
   if (result.status != FlappingStatus::flapping || !std::isfinite(result.metrics[Metric::frequency])) return;
   result.domain = domain_of(vehicle, result.metrics);
-  result.domain_detail = describe_domain(vehicle, result.metrics);
-  const std::string warning = residual_warning(vehicle, result.metrics);
-  if (!warning.empty()) result.warnings.push_back(warning);
+  result.domain_evidence = domain_evidence(vehicle, result.metrics);
+  result.residual_share = notable_residual(vehicle, result.metrics);
 }
 
 }  // namespace
@@ -209,7 +205,6 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
     result.search = find_voltage(vehicle, supply, options);
     if (result.search->outcome != FrequencyOutcome::reached) {
       result.status = result.search->status;
-      result.detail = result.search->detail;
       result.settled = result.status != FlappingStatus::undecided;
       return result;
     }

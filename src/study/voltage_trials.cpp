@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "wingbeat/core/text.hpp"
 #include "wingbeat/cycle/orbit_gradient.hpp"
 
 namespace wingbeat::detail {
@@ -25,7 +24,7 @@ VoltageTrial VoltageTrials::at(double voltage) {
   trial.voltage = voltage;
   trial.status = found.status;
   trial.flaps = found.status == FlappingStatus::flapping;
-  trial.detail = found.detail;
+  trial.evidence = found.evidence;
   if (!trial.flaps) return trial;
 
   const Metrics<double>& m = found.metrics;
@@ -58,17 +57,13 @@ VoltageTrial VoltageTrials::at(double voltage) {
   trial.excess = -1.0;
   for (const double e : excess) trial.excess = std::isfinite(e) ? std::max(trial.excess, e) : 1.0;
   trial.inside = domain ? domain_of(excess).none() : !trial.beyond;
-  if (!trial.inside && domain) trial.limits = describe_domain(vehicle_, m);
+  if (!trial.inside && domain) trial.limits = domain_evidence(vehicle_, m);
   return trial;
 }
 
 double unloaded_voltage(const Vehicle<double>& v, double omega, double friction_torque) {
   const double K = v.motor.torque_constant;
   return K * omega + circuit_resistance(v) * (v.motor.viscous_damping * omega + friction_torque) / K;
-}
-
-std::string describe_below(const VoltageTrial& below) {
-  return format("; below, it is %s (%s)", name_of(below.status), below.detail.c_str());
 }
 
 }  // namespace wingbeat::detail

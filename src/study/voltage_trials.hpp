@@ -2,7 +2,7 @@
 #pragma once
 
 #include <optional>
-#include <string>
+#include <vector>
 
 #include "wingbeat/study/frequency_search.hpp"
 
@@ -12,18 +12,18 @@ struct VoltageTrial {
   double voltage = 0.0;
   bool flaps = false;
   FlappingStatus status = FlappingStatus::stalled;
-  std::string detail;
-  double frequency = absent;        ///< [Hz]
-  bool exact = false;               ///< both slopes; else 1 and 0 stand for them
-  double frequency_slope = absent;  ///< d ln f / d ln v
-  double lift = absent;             ///< mean [N]
-  double lift_peak = absent;        ///< [N]
-  double lift_slope = absent;       ///< d lift / d ln v [N]
-  double pitching = absent;         ///< 90 deg less the smallest angle of attack [deg]
-  double excess = absent;           ///< largest domain_excess()
-  bool inside = false;              ///< the range that is searched
-  bool beyond = false;              ///< so fast that no higher voltage can be inside
-  std::string limits;               ///< of the domain, where they are exceeded: describe_domain()
+  StatusEvidence evidence;
+  double frequency = absent;           ///< [Hz]
+  bool exact = false;                  ///< both slopes; else 1 and 0 stand for them
+  double frequency_slope = absent;     ///< d ln f / d ln v
+  double lift = absent;                ///< mean [N]
+  double lift_peak = absent;           ///< [N]
+  double lift_slope = absent;          ///< d lift / d ln v [N]
+  double pitching = absent;            ///< 90 deg less the smallest angle of attack [deg]
+  double excess = absent;              ///< largest domain_excess()
+  bool inside = false;                 ///< the range that is searched
+  bool beyond = false;                 ///< so fast that no higher voltage can be inside
+  std::vector<DomainEvidence> limits;  ///< of the domain, where they are exceeded
 };
 
 class VoltageTrials {
@@ -41,8 +41,6 @@ class VoltageTrials {
   double closeness() const { return closeness_; }
   /// Relative accuracy of a trial's values.
   double accuracy() const { return options_.tolerance; }
-  /// "" or " inside the domain of validity".
-  const char* where() const { return range_ == SearchRange::domain ? " inside the domain of validity" : ""; }
 
  private:
   Vehicle<double> vehicle_;
@@ -56,9 +54,6 @@ class VoltageTrials {
 
 /// Turns the motor at omega [rad/s] against constant friction [N m] and its own damping alone [V].
 double unloaded_voltage(const Vehicle<double>& vehicle, double omega, double friction_torque);
-
-/// "; below, it is locked (rests at ...)".
-std::string describe_below(const VoltageTrial& below);
 
 /// A cubic over 0 to 1 by its values and slopes at the ends.
 struct Hermite {

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "wingbeat/core/text.hpp"
-
 namespace wingbeat::detail {
 namespace {
 
@@ -68,8 +66,7 @@ bool CrankStartUp::swings_repeat() {
   result_.status = FlappingStatus::locked;
   result_.time_to_steady = now_.t;
   if (last_high_ - last_low_ < same_swing) result_.lock_angle = wrap_angle(0.5 * (last_low_ + last_high_));
-  result_.detail = format("does not rotate: the crank moves with the supply between %.4f and %.4f deg",
-                          last_low_ * degrees_per_radian, last_high_ * degrees_per_radian);
+  result_.evidence = {.kind = Evidence::swings, .range = AngleRange{last_low_, last_high_}};
   return true;
 }
 
@@ -94,19 +91,21 @@ void CrankStartUp::flap() {
   result_.time_to_steady = time_of_steadiness(period);
   if (model_.supply.type == SupplyType::constant) {
     result_.settled = true;
-    result_.detail = format("flaps steadily at %.6g Hz from %.4g s on; after %d cycles they repeat to %.1g%s",
-                            1.0 / period, result_.time_to_steady, int(crossings_.size()), change_,
-                            jumped_      ? " (slow convergence, extrapolated)"
-                            : turns_ > 1 ? format(" every %d cycles", int(turns_)).c_str()
-                                         : "");
+    result_.evidence = {.kind = Evidence::settled_cycles,
+                        .frequency = 1.0 / period,
+                        .time = result_.time_to_steady,
+                        .change = change_,
+                        .cycles = int(crossings_.size()),
+                        .repeats_after = int(turns_),
+                        .extrapolated = jumped_};
     return;
   }
   result_.settled = result_.cycle_scatter < cycle_spread_settled;
-  result_.detail = format(
-      "flaps at %.6g Hz, averaged over %d cycles whose durations differ by up to %.2g %% from their "
-      "mean%s",
-      1.0 / period, result_.averaged_cycles, 100.0 * result_.cycle_scatter,
-      result_.settled ? "" : "; cycles and supply share no period");
+  result_.evidence = {.kind = Evidence::averaged_cycles,
+                      .frequency = 1.0 / period,
+                      .change = result_.cycle_scatter,
+                      .cycles = result_.averaged_cycles,
+                      .incommensurate = !result_.settled};
 }
 
 void CrankStartUp::rest(double theta, bool held_by_friction) {
@@ -124,26 +123,23 @@ void CrankStartUp::rest(double theta, bool held_by_friction) {
   result_.lock_angle = angle;
   result_.torque_margin = held_by_friction ? std::max(0.0, model_.holding_torque(theta) - load) : 0.0;
   result_.time_to_steady = now_.t;
-  const double degrees = angle * degrees_per_radian;
   if (stall_torque <= model_.constant_friction) {
     result_.status = FlappingStatus::stalled;
-    result_.detail = format(
-        "the motor cannot turn: stall torque %.4g N m does not exceed the constant friction of "
-        "%.4g N m (crank at %.4f deg)",
-        stall_torque, model_.constant_friction, degrees);
+    result_.evidence = {.kind = Evidence::stalled_crank,
+                        .angle = angle,
+                        .torque = stall_torque,
+                        .friction_torque = model_.constant_friction};
     return;
   }
   result_.status = FlappingStatus::locked;
-  result_.detail =
-      held_by_friction
-          ? format(
-                "rests at crank angle %.4f deg: friction holds %.4g N m there, %.4g N m more than motor and springs "
-                "apply",
-                degrees, model_.holding_torque(theta), *result_.torque_margin)
-          : format(
-                "rests at crank angle %.4f deg: the springs balance the stall torque of %.4g N m in a stable "
-                "equilibrium",
-                degrees, stall_torque);
+  if (held_by_friction) {
+    result_.evidence = {.kind = Evidence::friction_holds,
+                        .angle = angle,
+                        .friction_torque = model_.holding_torque(theta),
+                        .torque_margin = *result_.torque_margin};
+  } else {
+    result_.evidence = {.kind = Evidence::springs_balance, .angle = angle, .torque = stall_torque};
+  }
 }
 
 void CrankStartUp::jam(double theta) {
@@ -154,21 +150,16 @@ void CrankStartUp::jam(double theta) {
   result_.jam_angle = wrap_angle(theta);
   result_.time_to_steady = now_.t;
   const CrankKinematics<double> k = model_.kinematics(theta);
-  const double degrees = *result_.jam_angle * degrees_per_radian;
   if (k.wing_lever <= 2.0 * CrankModel::smallest_margin * typical_lever(model_.vehicle.transmission)) {
-    result_.detail = format("jams at crank angle %.4f deg: the rod force loses its lever on the wings (g = %.2g m)",
-                            degrees, k.wing_lever);
+    result_.evidence = {.kind = Evidence::lever_vanishes, .angle = *result_.jam_angle, .lever = k.wing_lever};
     return;
   }
   const double inertia =
       std::min(effective_inertia(model_.vehicle, k, 1.0), effective_inertia(model_.vehicle, k, -1.0));
-  result_.detail = format(
-      "jams at crank angle %.4f deg: rotor inertia and rod-force friction leave no unique "
-      "acceleration (J + A (h - mu r_e) = %.2g kg m2)",
-      degrees, inertia);
+  result_.evidence = {.kind = Evidence::inertia_vanishes, .angle = *result_.jam_angle, .inertia = inertia};
 }
 
-void CrankStartUp::give_up(const std::string& why) {
+void CrankStartUp::give_up(StatusEvidence why) {
   done_ = true;
   result_.settled = false;
   const std::size_t n = crossings_.size();
@@ -179,11 +170,11 @@ void CrankStartUp::give_up(const std::string& why) {
     if (measuring_ && measured_cycles_ > 0 && model_.supply.type != SupplyType::constant) {
       result_.cycle_scatter = cycle_scatter(std::size_t(measured_cycles_));
     }
-    result_.detail = format("%s; it flaps at %.6g Hz then", why.c_str(), 1.0 / cycle_time(n - 1));
+    why.frequency = 1.0 / cycle_time(n - 1);
   } else {
-    result_.detail = format("%s; the crank makes no forward revolutions then, it has been between %.4g and %.4g deg",
-                            why.c_str(), swing_low_ * degrees_per_radian, swing_high_ * degrees_per_radian);
+    why.range = AngleRange{swing_low_, swing_high_};
   }
+  result_.evidence = std::move(why);
 }
 
 }  // namespace wingbeat::detail

@@ -30,8 +30,7 @@ bool CrankStartUp::cycle_done() {
   next_cycle_ += two_pi;
   const bool restart = model_.supply.type == SupplyType::constant ? cycle_done_constant() : cycle_done_averaging();
   if (!done_ && int(crossings_.size()) >= options_.max_cycles) {
-    give_up(
-        format("successive cycles still differ by %.2g of their speed after %d cycles", change_, options_.max_cycles));
+    give_up({.kind = Evidence::cycles_differ, .change = change_, .cycles = options_.max_cycles});
   }
   return restart;
 }

@@ -135,16 +135,13 @@ TransientResult CrankStartUp::run() {
 bool CrankStartUp::out_of_budget() {
   ++result_.steps;
   if (result_.steps > options_.max_steps) {
-    give_up(format("no decision within %ld integration steps", options_.max_steps));
+    give_up({.kind = Evidence::out_of_steps, .steps = options_.max_steps});
   } else if (options_.cancel && result_.steps % 512 == 0 && options_.cancel()) {
-    give_up("cancelled");
+    give_up({.kind = Evidence::cancelled});
   } else if (std::abs(now_.omega) > runaway_speed_) {
-    give_up(
-        format("the crank speeds up without bound (%.3g rad/s): this transmission formulation does not conserve "
-               "power and feeds it",
-               now_.omega));
+    give_up({.kind = Evidence::runs_away, .crank_speed = now_.omega});
   } else if (now_.t >= end_time_) {
-    give_up(format("no decision within %.6g s", end_time_));
+    give_up({.kind = Evidence::out_of_time, .time = end_time_});
   }
   return done_;
 }
@@ -329,7 +326,7 @@ void CrankStartUp::slide() {
     return;
   }
   if (!steps.restart(now_.t, directions, std::min(model_.time_scale, stop - now_.t), stop)) {
-    give_up("the integrator could not be started");
+    give_up({.kind = Evidence::integrator_not_started});
     return;
   }
   int branch_steps = 0;
@@ -342,8 +339,7 @@ void CrankStartUp::slide() {
         now_.force_branch_known = true;
         return;
       }
-      give_up(format("the integrator failed at t = %.6g s, crank angle %.4f deg", now_.t,
-                     wrap_angle(now_.theta) * degrees_per_radian));
+      give_up({.kind = Evidence::integrator_failed, .angle = wrap_angle(now_.theta), .time = now_.t});
       return;
     }
     now_.t = steps.time();

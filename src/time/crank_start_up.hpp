@@ -5,7 +5,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "time/crank_model.hpp"
@@ -24,6 +23,7 @@ class CrankStartUp {
 
  private:
   using Kind = TransientEvent::Kind;
+  using Evidence = StatusEvidence::Kind;
 
   // What the integrator asks for.
   void root_values(double t, const double* y, double* values, bool measuring);
@@ -62,7 +62,7 @@ class CrankStartUp {
   void rest(double theta, bool held_by_friction);
   void jam(double theta);
   void flap();
-  void give_up(const std::string& why);
+  void give_up(StatusEvidence why);
 
   TransientOptions options_;
   TransientResult result_;

@@ -14,7 +14,8 @@
 namespace wingbeat::detail {
 namespace {
 
-using Kind = TransientEvent::Kind;
+using Event = TransientEvent::Kind;
+using Evidence = StatusEvidence::Kind;
 
 constexpr int sticking_pieces = 512;     // of a period: how often a stuck shaft is looked at
 constexpr int creep_periods = 8;         // of ever shorter slips in one direction, that end at rest
@@ -37,14 +38,14 @@ class DirectStartUp {
   WaveformRow row(double t, const double* y) const;
   void add_variation();
   void period_done();
-  void settle(double closure, double change, const std::string& more);
+  void settle(double closure, double change);
   bool rests_for_good();
   bool creeps_to_rest();
   void begin_measuring();
   void take_metrics();
   bool out_of_budget();
-  void give_up(const std::string& why);
-  void event(Kind kind) { result_.events.push_back({now_.t, now_.y[0], kind}); }
+  void give_up(StatusEvidence why);
+  void event(Event kind) { result_.events.push_back({now_.t, now_.y[0], kind}); }
 
   const TransientOptions& options_;
   TransientResult result_;
@@ -126,7 +127,7 @@ std::unique_ptr<Integrator> DirectStartUp::integrator(bool measuring) {
 void DirectStartUp::come_to_rest() {
   const bool was_stuck = now_.stuck;
   model_.come_to_rest();
-  if (was_stuck && !now_.stuck) event(Kind::breakaway);
+  if (was_stuck && !now_.stuck) event(Event::breakaway);
 }
 
 /// Integrates to an event or to the time `until`.
@@ -144,7 +145,7 @@ void DirectStartUp::advance(double until) {
   if (measuring_) std::copy(q_, q_ + quadrature_count, y + model_.coupled);
   auto directions = model_.directions();
   if (!steps.restart(now_.t, directions.data(), std::min(model_.period, until - now_.t), until)) {
-    give_up("the integrator could not be started");
+    give_up({.kind = Evidence::integrator_not_started});
     return;
   }
   while (!done_) {
@@ -155,7 +156,7 @@ void DirectStartUp::advance(double until) {
         relative_tolerance_ = tightest_ = 10.0 * relative_tolerance_;
         return;
       }
-      give_up(format("the integrator failed at t = %.6g s", now_.t));
+      give_up({.kind = Evidence::integrator_failed, .angle = now_.y[0], .time = now_.t});
       return;
     }
     now_.t = steps.time();
@@ -168,9 +169,9 @@ void DirectStartUp::advance(double until) {
       if (steps.found(DirectModel::motion_ends)) {
         if (now_.stuck) {
           model_.break_away();
-          event(Kind::breakaway);
+          event(Event::breakaway);
         } else {
-          event(Kind::standstill);
+          event(Event::standstill);
           come_to_rest();
         }
         return;
@@ -261,11 +262,12 @@ bool DirectStartUp::rests_for_good() {
   result_.time_to_steady = now_.t;
   result_.lock_angle = now_.y[0];
   result_.torque_margin = now_.stuck ? model_.holding_torque - held : 0.0;
-  result_.detail = now_.stuck ? format(
-                                    "rests at stroke angle %.4f deg: the constant friction %.4g N m holds %.4g N m, "
-                                    "all that supply and springs apply at most",
-                                    now_.y[0] * degrees_per_radian, model_.holding_torque, held)
-                              : std::string("no voltage: nothing moves the wings");
+  if (now_.stuck) {
+    result_.evidence = {
+        .kind = Evidence::held_shaft, .angle = now_.y[0], .torque = held, .friction_torque = model_.holding_torque};
+  } else {
+    result_.evidence = {.kind = Evidence::no_voltage};
+  }
   return true;
 }
 
@@ -286,15 +288,16 @@ bool DirectStartUp::creeps_to_rest() {
   result_.time_to_steady = now_.t;
   result_.lock_angle = now_.y[0];
   result_.torque_margin = model_.holding_torque - model_.drive_torque;
-  result_.detail = format(
-      "creeps to rest near stroke angle %.4f deg, the last period by %.2g deg: the supply gives a torque "
-      "of %.4g N m at most, which does not exceed the constant friction %.4g N m",
-      now_.y[0] * degrees_per_radian, travel * degrees_per_radian, model_.drive_torque, model_.holding_torque);
+  result_.evidence = {.kind = Evidence::creeping_shaft,
+                      .angle = now_.y[0],
+                      .torque = model_.drive_torque,
+                      .friction_torque = model_.holding_torque,
+                      .travel = travel};
   return true;
 }
 
 /// The decision that it flaps, with the metrics taken: how far periods are from the orbit, and from each other.
-void DirectStartUp::settle(double closure, double change, const std::string& more) {
+void DirectStartUp::settle(double closure, double change) {
   done_ = true;
   result_.closure = closure;
   result_.settled = true;
@@ -305,15 +308,16 @@ void DirectStartUp::settle(double closure, double change, const std::string& mor
   result_.crank_speed = now_.y[1];
   result_.current = model_.current_of(now_.t, now_.y);
   result_.stroke_angle = now_.y[0];
-  result_.detail = format(
-      "flaps steadily at the supply's %.6g Hz from %.4g s on; after %d periods they repeat to "
-      "%.1g%s",
-      model_.vehicle.drive_frequency, result_.time_to_steady, result_.cycles, change, more.c_str());
+  result_.evidence = {.kind = Evidence::settled_periods,
+                      .frequency = model_.vehicle.drive_frequency,
+                      .time = result_.time_to_steady,
+                      .change = change,
+                      .cycles = result_.cycles};
 }
 
 void DirectStartUp::period_done() {
   ++result_.cycles;
-  event(Kind::revolution);
+  event(Event::revolution);
   swings_.push_back(swing_);
   swing_ = std::abs(now_.y[0]);
   if (rests_for_good() || creeps_to_rest()) return;
@@ -350,7 +354,7 @@ void DirectStartUp::period_done() {
         before && (tightest || relative_tolerance_ < 0.2 * measured_with_) && apart < 0.3 * options_.tolerance;
     periods_at_tightest_ += tightest && change < 10.0 * noise;
     if (((close || change < noise) && agree) || periods_at_tightest_ > 40) {
-      settle(std::min(off, change / (1.0 - std::min(rate, 0.999))), change, "");
+      settle(std::min(off, change / (1.0 - std::min(rate, 0.999))), change);
       return;
     }
     last_metrics_ = std::exchange(result_.metrics, std::nullopt);
@@ -365,7 +369,7 @@ void DirectStartUp::period_done() {
   }
   if (close || change < noise || measuring_) begin_measuring();
   if (result_.cycles >= options_.max_cycles) {
-    give_up(format("successive periods still differ by %.2g after %d periods", change, options_.max_cycles));
+    give_up({.kind = Evidence::cycles_differ, .change = change, .cycles = options_.max_cycles});
   }
 }
 
@@ -374,25 +378,26 @@ bool DirectStartUp::out_of_budget() {
   if (result_.steps > options_.max_steps && last_metrics_ && last_off_ < nearly_settled) {
     // That it flaps is beyond doubt, its metrics are as good as the steps allowed make them.
     result_.metrics = last_metrics_;
-    settle(last_off_, changes_.back(),
-           format(", metrics to about %.1g: the %ld integration steps allowed are used up", last_apart_,
-                  options_.max_steps));
+    settle(last_off_, changes_.back());
+    result_.evidence.accuracy = last_apart_;
+    result_.evidence.steps = options_.max_steps;
   } else if (result_.steps > options_.max_steps) {
-    give_up(format("no decision within %ld integration steps", options_.max_steps));
+    give_up({.kind = Evidence::out_of_steps, .steps = options_.max_steps});
   } else if (options_.cancel && result_.steps % 512 == 0 && options_.cancel()) {
-    give_up("cancelled");
+    give_up({.kind = Evidence::cancelled});
   } else if (options_.max_time > 0.0 && now_.t >= options_.max_time) {
-    give_up(format("no decision within %.6g s", options_.max_time));
+    give_up({.kind = Evidence::out_of_time, .time = options_.max_time});
   }
   return done_;
 }
 
-void DirectStartUp::give_up(const std::string& why) {
+void DirectStartUp::give_up(StatusEvidence why) {
   done_ = true;
   result_.settled = false;
   result_.status = FlappingStatus::undecided;
   result_.time_to_steady = now_.t;
-  result_.detail = why;
+  why.direct = true;
+  result_.evidence = std::move(why);
 }
 
 TransientResult DirectStartUp::run() {

@@ -16,7 +16,7 @@ StartUp start_up_in_time(double tolerance, TimeIntegrator integrator) {
     options.tolerance = std::max(tolerance, tightest);
     options.metrics = false;
     const TransientResult r = simulate_start_up(vehicle, options);
-    StartUpOutcome outcome{r.status, r.settled, r.detail, r.crank_speed, r.current, r.stroke_angle, {}};
+    StartUpOutcome outcome{r.status, r.settled, r.evidence, r.crank_speed, r.current, r.stroke_angle, {}};
     if (r.status != FlappingStatus::flapping || !r.settled) return outcome;
     outcome.cycle = [vehicle, integrator, state = outcome](double wanted, const Reporting& reporting) {
       TransientOptions onward;

@@ -6,7 +6,6 @@
 #include <iterator>
 
 #include "wingbeat/core/minimise.hpp"
-#include "wingbeat/core/text.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 
 namespace wingbeat::detail {

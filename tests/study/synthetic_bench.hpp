@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "wingbeat/files/design_parameter.hpp"
+#include "wingbeat/report/describe.hpp"
 #include "wingbeat/study/bench_fit.hpp"
 #include "wingbeat/study/run.hpp"
 
@@ -30,7 +31,7 @@ inline BenchLog bench_log(Design<double> design, Condition condition, bool sprin
     options.method = Method::transient;
     options.tolerance = 1e-8;
     const RunResult run = run_design(design, options);
-    if (run.status != FlappingStatus::flapping) throw std::runtime_error("does not flap: " + run.detail);
+    if (run.status != FlappingStatus::flapping) throw std::runtime_error("does not flap: " + describe(run));
     BenchRow row{int(log.rows.size()) + 2, given == Given::voltage ? v : run.metrics[Metric::frequency], 0.0, {}};
     for (const Metric m : metrics) row.values.push_back(run.metrics[m]);
     log.rows.push_back(row);

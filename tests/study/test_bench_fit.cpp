@@ -6,6 +6,7 @@
 
 #include "study/synthetic_bench.hpp"
 #include "vehicle/reference_vehicle.hpp"
+#include "wingbeat/report/describe.hpp"
 #include "wingbeat/report/fit_report.hpp"
 
 namespace wingbeat {
@@ -223,7 +224,7 @@ TEST(BenchFit, RowsThatTheModelCannotReachAreNamed) {
   ASSERT_EQ(r.unreached.size(), 1U);
   EXPECT_EQ(r.unreached[0].row, 0U);
   EXPECT_EQ(r.unreached[0].status, FlappingStatus::stalled);
-  EXPECT_THAT(r.unreached[0].detail, HasSubstr("stall torque"));
+  EXPECT_THAT(describe(r.unreached[0]), HasSubstr("stall torque"));
   EXPECT_TRUE(std::isnan(r.points[0].fitted));
   EXPECT_EQ(r.degrees_of_freedom, 3 * 4 - 3);
 }

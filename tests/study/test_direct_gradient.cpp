@@ -25,7 +25,7 @@ void expect_gradients(const Design<double>& design, double tolerance) {
   }
   ASSERT_GT(parameters.size(), 12u);
   const SteadyFlapping orbit = orbit_of(design);
-  ASSERT_EQ(orbit.status, FlappingStatus::flapping) << orbit.detail;
+  ASSERT_EQ(orbit.status, FlappingStatus::flapping) << describe(orbit.evidence);
   const MetricGradients gradients = metric_gradients(design, Condition::air, orbit, parameters);
   ASSERT_TRUE(gradients.regular);
   for (std::size_t p = 0; p < parameters.size(); ++p) {

@@ -9,6 +9,7 @@
 
 #include "vehicle/reference_vehicle.hpp"
 #include "wingbeat/files/design_file.hpp"
+#include "wingbeat/report/describe.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {
@@ -43,7 +44,7 @@ double chemical_energy(const Battery<double>& b, double from, double to) {
 TEST(Endurance, EnergyAtTheTerminalsIsChemicalEnergyLessTheInternalLoss) {
   const Design<double> d = hovering_design();
   const EnduranceResult r = simulate_discharge(d);
-  ASSERT_EQ(r.end, EnduranceEnd::empty) << r.detail;
+  ASSERT_EQ(r.end, EnduranceEnd::empty) << describe(r);
   const EnduranceRow& last = r.rows.back();
   const double chemical = chemical_energy(d.supply.battery, 1.0, 0.0);
   EXPECT_NEAR(last.energy_electrical, chemical - last.energy_internal, 1e-9 * chemical);
@@ -179,7 +180,9 @@ TEST(Endurance, CutoffEndsTheFlight) {
   ASSERT_EQ(r.end, EnduranceEnd::cutoff);
   EXPECT_NEAR(r.rows.back().metrics[Metric::voltage], 5.4, 1e-9);
   EXPECT_GT(r.rows.back().charge, 0.0);
-  EXPECT_THAT(r.detail, testing::HasSubstr("falls to the cut-off voltage, 5.4 V in all"));
+  EXPECT_THAT(describe(r), testing::HasSubstr("falls to the cut-off voltage, 5.4 V in all"));
+  ASSERT_TRUE(r.cutoff_voltage);
+  EXPECT_DOUBLE_EQ(*r.cutoff_voltage, 5.4);
   // The account closes up to there, too.
   const double chemical = chemical_energy(d.supply.battery, 1.0, r.rows.back().charge);
   EXPECT_NEAR(r.rows.back().energy_electrical + r.rows.back().energy_internal, chemical, 1e-9 * chemical);
@@ -187,7 +190,7 @@ TEST(Endurance, CutoffEndsTheFlight) {
   const EnduranceResult none = simulate_discharge(d);
   EXPECT_EQ(none.end, EnduranceEnd::cutoff);
   EXPECT_EQ(none.endurance(), 0.0);
-  EXPECT_THAT(none.detail, testing::HasSubstr("from the start"));
+  EXPECT_THAT(describe(none), testing::HasSubstr("from the start"));
 }
 
 // Constant friction: the crank turns while K i exceeds it.
@@ -200,9 +203,9 @@ TEST(Endurance, EndsWhereTheCrankStops) {
   b.internal_resistance = 1.0;
   b.capacity = 100.0;
   const EnduranceResult r = simulate_discharge(d, {.condition = Condition::wingless});
-  ASSERT_EQ(r.end, EnduranceEnd::stops) << r.detail;
+  ASSERT_EQ(r.end, EnduranceEnd::stops) << describe(r);
   EXPECT_NEAR(r.rows.back().open_circuit_voltage, 2e-3 * 10.0 / 0.01, 2e-2);
-  EXPECT_THAT(r.detail, testing::HasSubstr("no longer turns the crank"));
+  EXPECT_THAT(describe(r), testing::HasSubstr("no longer turns the crank"));
 }
 
 TEST(Endurance, SaysWhyItDoesNotStart) {
@@ -214,7 +217,11 @@ TEST(Endurance, SaysWhyItDoesNotStart) {
   EXPECT_EQ(r.status, FlappingStatus::stalled);
   EXPECT_TRUE(r.rows.empty());
   EXPECT_EQ(r.endurance(), 0.0);
-  EXPECT_THAT(r.detail,
+  EXPECT_EQ(r.first_charge, 1.0);
+  EXPECT_DOUBLE_EQ(r.first_voltage, 7.2);
+  EXPECT_EQ(r.evidence.kind, StatusEvidence::Kind::weak_motor);
+  EXPECT_EQ(r.evidence.friction_torque, breakaway_torque(resolve(d)));
+  EXPECT_THAT(describe(r),
               testing::HasSubstr("the battery cannot start the vehicle at a charge of 1 (7.2 V without load)"));
 }
 
@@ -224,7 +231,7 @@ TEST(Endurance, EmptyFromTheStart) {
   const EnduranceResult r = simulate_discharge(d);
   EXPECT_EQ(r.end, EnduranceEnd::empty);
   EXPECT_EQ(r.endurance(), 0.0);
-  EXPECT_EQ(r.detail, "the battery is empty from the start");
+  EXPECT_EQ(describe(r), "the battery is empty from the start");
 }
 
 TEST(Endurance, RefusesOtherSuppliesAndOptions) {

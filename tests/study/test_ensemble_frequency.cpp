@@ -6,6 +6,7 @@
 #include <random>
 
 #include "vehicle/random_vehicle.hpp"
+#include "wingbeat/report/describe.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {
@@ -38,7 +39,7 @@ TEST(EnsembleFrequency, FindsTheVoltagesThatTheSearchOfOneFinds) {
   int reached = 0;
   for (std::size_t n = 0; n < members.size(); ++n) {
     const FrequencySearch one = find_voltage_for_frequency(members[n].vehicle, frequencies[n], {}, start_up_in_time());
-    ASSERT_EQ(results.reached[n], one.outcome) << n << ": " << one.detail;
+    ASSERT_EQ(results.reached[n], one.outcome) << n << ": " << describe(one.finding);
     const EnsembleOutcome& out = results.outcomes[n];
     if (one.outcome != FrequencyOutcome::reached) {
       EXPECT_EQ(out.status, one.status);

@@ -14,8 +14,6 @@
 namespace wingbeat {
 namespace {
 
-using Outcome = OptimiseResult::Outcome;
-
 OptimiseStudy study_of(std::vector<OptimisedParameter> parameters) {
   OptimiseStudy study;
   study.design = read_design(std::string(WINGBEAT_DATA) + "/designs/friction2022-springs.toml");
@@ -59,7 +57,7 @@ TEST(Optimise, FindsTheOptimumOfADenseSweep) {
   OptimiseStudy study = study_of({between("supply.voltage", 3.0, 8.0), between("spring.stiffness", 0.0, 4e-3)});
   study.constraints = {{Metric::lift_to_weight, true, 1.0}};
   const OptimiseResult r = optimise(study, start_up_in_time());
-  ASSERT_EQ(r.outcome, Outcome::found);
+  ASSERT_EQ(r.outcome, OptimiseResult::Outcome::found);
   const double power = r.point.metrics[Metric::power_electrical];
   EXPECT_NEAR(r.point.metrics[Metric::lift_to_weight], 1.0, 1e-5);
   const double grid = best_of_grid(study, 71);
@@ -81,7 +79,7 @@ TEST(Optimise, MaximumInsideTheBounds) {
   study.objective = Metric::efficiency_system;
   study.maximise = true;
   const OptimiseResult r = optimise(study, start_up_in_time());
-  ASSERT_EQ(r.outcome, Outcome::found);
+  ASSERT_EQ(r.outcome, OptimiseResult::Outcome::found);
   study.objective = Metric::power_electrical;
   const auto efficiency = [&](double radius) {
     Design<double> d = study.design;
@@ -107,7 +105,7 @@ TEST(Optimise, AFlatDirectionIsReportedFlat) {
   study.objective = Metric::efficiency_system;
   study.maximise = true;
   const OptimiseResult r = optimise(study, start_up_in_time());
-  ASSERT_EQ(r.outcome, Outcome::found);
+  ASSERT_EQ(r.outcome, OptimiseResult::Outcome::found);
   ASSERT_EQ(r.directions.size(), 2U);
   EXPECT_TRUE(r.directions[0].flat);
   EXPECT_NEAR(r.directions[0].curvature, 0.0, 1e-6);
@@ -123,7 +121,7 @@ TEST(Optimise, AFlatDirectionUnderAConstraint) {
   study.design.supply.voltage = 5.0;
   study.constraints = {{Metric::lift_to_weight, true, 1.0}};
   const OptimiseResult r = optimise(study, start_up_in_time());
-  ASSERT_EQ(r.outcome, Outcome::found);
+  ASSERT_EQ(r.outcome, OptimiseResult::Outcome::found);
   ASSERT_FALSE(r.directions.empty());
   EXPECT_TRUE(r.directions[0].flat);
 }
@@ -131,7 +129,7 @@ TEST(Optimise, AFlatDirectionUnderAConstraint) {
 TEST(Optimise, SaysThatNothingFlaps) {
   const OptimiseStudy study = study_of({between("supply.voltage", 0.1, 0.6)});
   const OptimiseResult r = optimise(study, start_up_in_time());
-  EXPECT_EQ(r.outcome, Outcome::nothing_flaps);
+  EXPECT_EQ(r.outcome, OptimiseResult::Outcome::nothing_flaps);
   EXPECT_EQ(describe(nothing_found(study, r)), "none of 256 designs within the bounds flaps: 256 locked");
   EXPECT_EQ(r.screen.status[std::size_t(SweepStatus::locked)], 256U);
 }
@@ -140,7 +138,7 @@ TEST(Optimise, SaysThatNothingIsFeasible) {
   OptimiseStudy study = study_of({between("supply.voltage", 2.0, 4.0)});
   study.constraints = {{Metric::lift_to_weight, true, 1.0}};
   const OptimiseResult r = optimise(study, start_up_in_time());
-  EXPECT_EQ(r.outcome, Outcome::infeasible);
+  EXPECT_EQ(r.outcome, OptimiseResult::Outcome::infeasible);
   EXPECT_EQ(r.screen.feasible, 0U);
   EXPECT_EQ(r.screen.violated[0], r.screen.status[0]);
   EXPECT_NEAR(r.screen.closest[0], 0.62, 0.01);  // at 4 V; see wingbeat run
@@ -162,7 +160,7 @@ TEST(Optimise, AHeldFrequencyGivesTheVoltage) {
   OptimiseStudy study = study_of({between("spring.stiffness", 0.0, 4e-3)});
   study.options.frequency = 22.0;
   const OptimiseResult r = optimise(study, start_up_in_time());
-  ASSERT_EQ(r.outcome, Outcome::found);
+  ASSERT_EQ(r.outcome, OptimiseResult::Outcome::found);
   const RunResult run = run_design(r.design);
   EXPECT_NEAR(run.metrics[Metric::frequency], 22.0, 1e-4);
   EXPECT_NEAR(run.metrics[Metric::power_electrical], r.point.metrics[Metric::power_electrical], 1e-5);

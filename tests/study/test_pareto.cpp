@@ -18,8 +18,6 @@ extern "C" const wingbeat::Evolve wingbeat_evolution_module;
 namespace wingbeat {
 namespace {
 
-using Outcome = ParetoResult::Outcome;
-
 TEST(Front, HypervolumeOfBoxes) {
   EXPECT_DOUBLE_EQ(hypervolume(std::vector<ObjectivePoint>{{1, 2}}, {3, 3}), 2.0);
   EXPECT_DOUBLE_EQ(hypervolume(std::vector<ObjectivePoint>{{2, 1}, {1, 2}, {1, 2}, {4, 0}, {2, 2}}, {3, 3}), 3.0);
@@ -163,7 +161,7 @@ TEST_P(Methods, DominateAtLeastWhatADenseSweepDoes) {
   ParetoStudy study = lift_against_power();
   study.evolution.method = GetParam();
   const ParetoResult r = pareto_front(study, wingbeat_evolution_module, start_up_in_time());
-  ASSERT_EQ(r.outcome, Outcome::found);
+  ASSERT_EQ(r.outcome, ParetoResult::Outcome::found);
 
   Sweep sweep;
   const std::size_t each = 71;
@@ -233,7 +231,7 @@ TEST(Pareto, DesignsRunAsTheyWereFound) {
   study.frequency = 20.0;
   study.parameters = {between("transmission.crank_radius", 3e-3, 8e-3), between("spring.stiffness", 0.0, 5e-3)};
   const ParetoResult r = pareto_front(study, wingbeat_evolution_module, start_up_in_time());
-  ASSERT_EQ(r.outcome, Outcome::found);
+  ASSERT_EQ(r.outcome, ParetoResult::Outcome::found);
   for (const std::size_t n : {r.picks.ends[0], r.picks.ends[1], r.picks.knee}) {
     const Metrics<double> m = run_design(vehicle_of(study, r.front[n])).metrics;
     EXPECT_NEAR(m[Metric::frequency], 20.0, 1e-5);
@@ -253,7 +251,7 @@ TEST(Pareto, ChoosesFromListsAndVehicles) {
   study.choices = {{design_parameter("spring.stiffness"), {0.0, 1e-3, 3e-3}}};
   study.evolution.generations = 15;
   const ParetoResult r = pareto_front(study, wingbeat_evolution_module, start_up_in_time());
-  ASSERT_EQ(r.outcome, Outcome::found);
+  ASSERT_EQ(r.outcome, ParetoResult::Outcome::found);
   const auto leaky = [](const std::vector<ParetoDesign>& designs) {
     return std::count_if(designs.begin(), designs.end(), [](const ParetoDesign& d) { return d.vehicle == 1; });
   };
@@ -268,14 +266,14 @@ TEST(Pareto, SaysThatNothingFlapsOrFits) {
   ParetoStudy study = lift_against_power();
   study.parameters = {between("supply.voltage", 0.1, 0.6)};
   const ParetoResult none = pareto_front(study, wingbeat_evolution_module, start_up_in_time());
-  EXPECT_EQ(none.outcome, Outcome::nothing_flaps);
+  EXPECT_EQ(none.outcome, ParetoResult::Outcome::nothing_flaps);
   EXPECT_THAT(describe(nothing_found(study, none)),
               testing::StartsWith("none of 256 designs within the bounds flaps: "));
   study = lift_against_power();
   study.constraints = {{Metric::lift_to_weight, true, 9.0}};
   study.evolution.generations = 3;
   const ParetoResult heavy = pareto_front(study, wingbeat_evolution_module, start_up_in_time());
-  EXPECT_EQ(heavy.outcome, Outcome::infeasible);
+  EXPECT_EQ(heavy.outcome, ParetoResult::Outcome::infeasible);
   EXPECT_TRUE(heavy.front.empty());
   EXPECT_EQ(heavy.screen.violated[0], heavy.screen.status[0]);
 }

@@ -8,6 +8,7 @@
 
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/design_parameter.hpp"
+#include "wingbeat/report/describe.hpp"
 #include "wingbeat/run/sweep_run.hpp"
 #include "wingbeat/study/run.hpp"
 
@@ -186,12 +187,12 @@ TEST(DesignPoint, GradientsAgreeWithCentralDifferences) {
 TEST(DesignPoint, SaysWhyAVehicleDoesNotFlap) {
   const DesignPoint locked = design_point(flapper(0.8), {}, {}, start_up_in_time());
   EXPECT_EQ(locked.status, SweepStatus::locked);
-  EXPECT_THAT(locked.detail, testing::HasSubstr("crank angle"));
+  EXPECT_THAT(describe(locked), testing::HasSubstr("crank angle"));
   Design<double> bad = flapper(3.0);
   bad.motor.constants.inertia = -1.0;
   const DesignPoint invalid = design_point(bad, {}, {}, {});
   EXPECT_EQ(invalid.status, SweepStatus::invalid);
-  EXPECT_THAT(invalid.detail, testing::HasSubstr("motor.inertia"));
+  EXPECT_THAT(describe(invalid), testing::HasSubstr("motor.inertia"));
 }
 
 // ---- Studies of a vehicle

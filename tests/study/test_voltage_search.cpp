@@ -8,6 +8,7 @@
 
 #include "vehicle/random_vehicle.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/report/describe.hpp"
 #include "wingbeat/study/ensemble_frequency.hpp"
 #include "wingbeat/study/run.hpp"
 
@@ -53,7 +54,7 @@ TEST(LiftSearch, TakesTheLowestVoltageNotOneBehindTheNegativeLift) {
   const double weight = 9e-3 * standard_gravity;
   for (const bool extrapolate : {false, true}) {
     const RunResult hover = with_lift(d, weight, extrapolate);
-    ASSERT_EQ(hover.search->outcome, FrequencyOutcome::reached) << hover.detail;
+    ASSERT_EQ(hover.search->outcome, FrequencyOutcome::reached) << describe(hover);
     EXPECT_NEAR(hover.metrics[Metric::lift_mean] / weight, 1.0, 1e-6);
     EXPECT_NEAR(hover.metrics[Metric::voltage], 9.5, 0.01);
     EXPECT_NEAR(hover.metrics[Metric::power_electrical], 0.97, 0.005);
@@ -64,7 +65,7 @@ TEST(LiftSearch, TakesTheLowestVoltageNotOneBehindTheNegativeLift) {
 TEST(LiftSearch, RefusesWhatLiesAboveThePeakAndSaysWhereItIs) {
   const Design<double> d = tutorial_design();
   const RunResult over = with_lift(d, 0.1);
-  ASSERT_EQ(over.search->outcome, FrequencyOutcome::too_high) << over.detail;
+  ASSERT_EQ(over.search->outcome, FrequencyOutcome::too_high) << describe(over);
   EXPECT_EQ(over.status, FlappingStatus::flapping);
   double peak = 0.0, where = 0.0;
   for (double v = 9.0; v < 12.0; v += 0.02) {
@@ -75,16 +76,29 @@ TEST(LiftSearch, RefusesWhatLiesAboveThePeakAndSaysWhereItIs) {
   }
   EXPECT_NEAR(over.search->closest_value / peak, 1.0, 1e-5);
   EXPECT_NEAR(over.search->closest_voltage, where, 0.02);
-  EXPECT_NE(over.detail.find("0.1 N cannot be reached inside the domain of validity: it lifts 0.09"), std::string::npos)
-      << over.detail;
+  EXPECT_NE(describe(over).find("0.1 N cannot be reached inside the domain of validity: it lifts 0.09"),
+            std::string::npos)
+      << describe(over);
+  const SearchFinding& found = over.search->finding;
+  EXPECT_EQ(found.kind, SearchFinding::Kind::too_high);
+  EXPECT_EQ(found.sought, Sought::lift);
+  EXPECT_EQ(found.target, 0.1);
+  ASSERT_TRUE(found.most);
+  EXPECT_EQ(found.most->value, over.search->closest_value);
+  EXPECT_EQ(found.most->voltage, over.search->closest_voltage);
+  EXPECT_GT(found.last_voltage, found.most->voltage);
+  ASSERT_FALSE(found.limits.empty());
+  EXPECT_EQ(found.limits[0].limit, DomainLimit::angle_of_attack);
+  EXPECT_LT(found.limits[0].value, 0.0);
+  EXPECT_TRUE(found.inside_domain_only());
   // Just below the peak there are two answers; the lower voltage is taken.
   const RunResult top = with_lift(d, 0.99999 * peak);
-  ASSERT_EQ(top.search->outcome, FrequencyOutcome::reached) << top.detail;
+  ASSERT_EQ(top.search->outcome, FrequencyOutcome::reached) << describe(top);
   EXPECT_LT(top.metrics[Metric::voltage], over.search->closest_voltage);
   EXPECT_EQ(with_lift(d, 1.00002 * peak).search->outcome, FrequencyOutcome::too_high);
   // Far outside the domain the lift of the formulas grows without end.
   const RunResult beyond = with_lift(d, 0.1, true);
-  ASSERT_EQ(beyond.search->outcome, FrequencyOutcome::reached) << beyond.detail;
+  ASSERT_EQ(beyond.search->outcome, FrequencyOutcome::reached) << describe(beyond);
   EXPECT_LT(beyond.metrics[Metric::angle_of_attack_min], -90.0);
 }
 
@@ -92,7 +106,7 @@ TEST(LiftSearch, APwmSupplyReachesItByItsDuty) {
   Design<double> d = tutorial_design();
   d.supply = {SupplyType::pwm, 12.0, 20e3, 0.3};
   const RunResult hover = with_lift(d, 9e-3 * standard_gravity);
-  ASSERT_EQ(hover.search->outcome, FrequencyOutcome::reached) << hover.detail;
+  ASSERT_EQ(hover.search->outcome, FrequencyOutcome::reached) << describe(hover);
   EXPECT_NEAR(hover.design.supply.duty, 9.5 / 12.0, 1e-3);
   EXPECT_EQ(hover.design.supply.voltage, 12.0);
 }
@@ -102,18 +116,26 @@ TEST(LiftSearch, TheOnsetIsARefusalThatSaysWhatItLifts) {
   d.spring.stiffness = 1.377e-3;
   for (const double lift : {0.5e-3, 45e-6}) {
     const RunResult small = with_lift(d, lift);
-    ASSERT_EQ(small.search->outcome, FrequencyOutcome::too_low) << small.detail;
+    ASSERT_EQ(small.search->outcome, FrequencyOutcome::too_low) << describe(small);
     EXPECT_EQ(small.status, FlappingStatus::locked);
     EXPECT_NEAR(small.search->closest_voltage, 1.2753, 2e-4);
     EXPECT_NEAR(small.search->closest_value, 1.093e-3, 1e-6);
     EXPECT_NE(
-        small.detail.find("from rest it flaps only above 1.275 V, and there lifts 0.001093 N already; below, it is "
-                          "locked"),
+        describe(small).find("from rest it flaps only above 1.275 V, and there lifts 0.001093 N already; below, it is "
+                             "locked"),
         std::string::npos)
-        << small.detail;
+        << describe(small);
+    const SearchFinding& onset = small.search->finding;
+    EXPECT_EQ(onset.kind, SearchFinding::Kind::too_low_at_onset);
+    ASSERT_TRUE(onset.at);
+    EXPECT_EQ(onset.at->voltage, small.search->closest_voltage);
+    EXPECT_EQ(onset.at->value, small.search->closest_value);
+    EXPECT_EQ(onset.status, FlappingStatus::locked);
+    EXPECT_EQ(onset.evidence.kind, StatusEvidence::Kind::friction_holds);
+    EXPECT_GT(onset.evidence.torque_margin, 0.0);
     // Outside the domain the lift falls through both again.
     const RunResult falling = with_lift(d, lift, true);
-    ASSERT_EQ(falling.search->outcome, FrequencyOutcome::reached) << falling.detail;
+    ASSERT_EQ(falling.search->outcome, FrequencyOutcome::reached) << describe(falling);
     EXPECT_NEAR(falling.metrics[Metric::lift_mean], lift, 1e-6 * falling.metrics[Metric::lift_peak]);
     EXPECT_LT(falling.metrics[Metric::angle_of_attack_min], 0.0);
   }
@@ -130,7 +152,7 @@ TEST(LiftSearch, ADirectDriveReachesItByItsAmplitude) {
   const double at_3 = run_design(d).metrics[Metric::lift_mean];
   ASSERT_GT(at_3, 0.0);
   const RunResult r = with_lift(d, at_3);
-  ASSERT_EQ(r.search->outcome, FrequencyOutcome::reached) << r.detail;
+  ASSERT_EQ(r.search->outcome, FrequencyOutcome::reached) << describe(r);
   EXPECT_NEAR(r.metrics[Metric::lift_mean] / at_3, 1.0, 1e-6);
   EXPECT_NEAR(r.design.supply.voltage, 3.0, 1e-4);
 }
@@ -199,32 +221,32 @@ TEST(LiftSearch, AgreesWithTwoHundredVoltagesOnRandomVehicles) {
       EXPECT_NEAR(there.metrics[Metric::lift_mean] / target, 1.0, 1e-6);
       EXPECT_TRUE(domain_of(at, there.metrics).none());
       if (crossing < t.voltages.size()) {
-        EXPECT_LE(found.voltage, t.voltages[crossing] * (1.0 + 1e-9)) << found.detail;
+        EXPECT_LE(found.voltage, t.voltages[crossing] * (1.0 + 1e-9)) << describe(found.finding);
       }
       continue;
     }
     if (crossing < t.voltages.size()) {
       // Both ends hold orbits from rest, but the lift may jump between them.
       EXPECT_EQ(found.outcome, FrequencyOutcome::jumps)
-          << target << " at " << t.voltages[crossing] << ": " << found.detail;
+          << target << " at " << t.voltages[crossing] << ": " << describe(found.finding);
     }
     if (found.outcome == FrequencyOutcome::too_high) {
       ++over;
-      EXPECT_LT(peak, target * (1.0 + 1e-6)) << found.detail;
-      EXPECT_GT(found.closest_value, peak * (1.0 - 1e-6)) << found.detail;
-      EXPECT_LT(found.closest_value, near_peak * 1.01) << found.detail;
+      EXPECT_LT(peak, target * (1.0 + 1e-6)) << describe(found.finding);
+      EXPECT_GT(found.closest_value, peak * (1.0 - 1e-6)) << describe(found.finding);
+      EXPECT_LT(found.closest_value, near_peak * 1.01) << describe(found.finding);
     } else if (found.outcome == FrequencyOutcome::too_low) {
       EXPECT_GT(least, target);
       ASSERT_LT(first, t.voltages.size());
-      EXPECT_LT(found.closest_voltage, t.voltages[first] * 1.001) << found.detail;
+      EXPECT_LT(found.closest_voltage, t.voltages[first] * 1.001) << describe(found.finding);
       if (first > 0) {
-        EXPECT_GT(found.closest_voltage, t.voltages[first - 1] * 0.999) << found.detail;
+        EXPECT_GT(found.closest_voltage, t.voltages[first - 1] * 0.999) << describe(found.finding);
       }
     } else if (found.outcome == FrequencyOutcome::never_flaps) {
-      EXPECT_EQ(first, t.voltages.size()) << found.detail;
+      EXPECT_EQ(first, t.voltages.size()) << describe(found.finding);
     } else if (found.outcome == FrequencyOutcome::outside_domain) {
       if (peak > 0.0) {
-        EXPECT_TRUE(peak < target || least > target) << found.detail;
+        EXPECT_TRUE(peak < target || least > target) << describe(found.finding);
       }
     }
   }
@@ -271,20 +293,43 @@ TEST(FrequencySearch, KeepsToTheDomainUnlessAsked) {
   RunOptions options;
   options.frequency = 60.0;
   const RunResult refused = run_design(d, options);
-  ASSERT_EQ(refused.search->outcome, FrequencyOutcome::outside_domain) << refused.detail;
+  ASSERT_EQ(refused.search->outcome, FrequencyOutcome::outside_domain) << describe(refused);
   EXPECT_EQ(refused.status, FlappingStatus::flapping);
-  EXPECT_NE(refused.detail.find("60 Hz cannot be reached inside the domain of validity: at "), std::string::npos)
-      << refused.detail;
+  EXPECT_NE(describe(refused).find("60 Hz cannot be reached inside the domain of validity: at "), std::string::npos)
+      << describe(refused);
+  const SearchFinding& outside = refused.search->finding;
+  EXPECT_EQ(outside.kind, SearchFinding::Kind::out_of_range);
+  EXPECT_EQ(outside.sought, Sought::frequency);
+  EXPECT_EQ(outside.target, 60.0);
+  ASSERT_TRUE(outside.at && outside.most);
+  EXPECT_LE(outside.at->value, 60.0 * (1.0 + 1e-6));
+  EXPECT_LT(outside.most->value, outside.at->value);
+  EXPECT_EQ(outside.most->value, refused.search->closest_value);
+  EXPECT_EQ(outside.most->voltage, refused.search->closest_voltage);
+  ASSERT_EQ(outside.limits.size(), 1u);
+  EXPECT_EQ(outside.limits[0].limit, DomainLimit::angle_of_attack);
+  EXPECT_LT(outside.limits[0].value, 0.0);
   // The fastest inside has its smallest angle of attack at 0 deg.
   options.frequency = refused.search->closest_value;
   const RunResult fastest = run_design(d, options);
-  ASSERT_EQ(fastest.search->outcome, FrequencyOutcome::reached) << fastest.detail;
+  ASSERT_EQ(fastest.search->outcome, FrequencyOutcome::reached) << describe(fastest);
   EXPECT_NEAR(fastest.metrics[Metric::angle_of_attack_min], 0.0, 0.05);
   options.frequency = 60.0;
   options.allow_extrapolation = true;
   const RunResult reached = run_design(d, options);
-  ASSERT_EQ(reached.search->outcome, FrequencyOutcome::reached) << reached.detail;
+  ASSERT_EQ(reached.search->outcome, FrequencyOutcome::reached) << describe(reached);
   EXPECT_LT(reached.metrics[Metric::angle_of_attack_min], 0.0);
+}
+
+TEST(FrequencySearch, AFrequencyBeyondAnyVoltageIsRefusedByTheStroke) {
+  const Vehicle<double> v = resolve(reference_design());
+  const double bound = highest_frequency(v, SearchRange::domain);
+  const FrequencySearch refused = find_voltage_for_frequency(v, 1.5 * bound, {}, {}, SearchRange::domain);
+  EXPECT_EQ(refused.finding.kind, SearchFinding::Kind::beyond_any_voltage);
+  EXPECT_EQ(refused.finding.target, 1.5 * bound);
+  EXPECT_EQ(refused.finding.highest_frequency, bound);
+  EXPECT_EQ(refused.finding.stroke_amplitude, stroke_amplitude(v.transmission));
+  EXPECT_EQ(refused.evaluations, 0);
 }
 
 TEST(FrequencySearch, ReachesTheToleranceAskedFor) {
@@ -293,7 +338,7 @@ TEST(FrequencySearch, ReachesTheToleranceAskedFor) {
     options.tolerance = tolerance;
     options.frequency = 22.0;
     const RunResult r = run_design(reference_design(), options);
-    ASSERT_EQ(r.search->outcome, FrequencyOutcome::reached) << r.detail;
+    ASSERT_EQ(r.search->outcome, FrequencyOutcome::reached) << describe(r);
     EXPECT_NEAR(r.metrics[Metric::frequency] / 22.0, 1.0, tolerance);
     EXPECT_LT(r.search->evaluations, 20);
   }

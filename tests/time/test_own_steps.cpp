@@ -23,7 +23,7 @@ TEST(OwnSteps, ReachTheKnownOrbits) {
       TransientOptions options;
       options.tolerance = tolerance;
       const TransientResult r = by_own_steps(reference_vehicle(orbit.springs), options);
-      ASSERT_TRUE(r.settled && r.metrics) << r.detail;
+      ASSERT_TRUE(r.settled && r.metrics) << describe(r.evidence);
       EXPECT_NEAR((*r.metrics)[Metric::frequency] / orbit.frequency, 1.0, tolerance);
       EXPECT_NEAR((*r.metrics)[Metric::lift_mean] / orbit.lift_mean, 1.0, tolerance);
       EXPECT_NEAR((*r.metrics)[Metric::rod_force_peak] / orbit.rod_force_peak, 1.0, tolerance);
@@ -38,7 +38,7 @@ TEST(OwnSteps, FollowAFreeDecay) {
     options.tolerance = 1e-10;
     options.crank_speed = omega_0;
     const TransientResult r = by_own_steps(exact.vehicle, options);
-    EXPECT_EQ(r.status, FlappingStatus::stalled) << r.detail;
+    EXPECT_EQ(r.status, FlappingStatus::stalled) << describe(r.evidence);
     EXPECT_NEAR(r.end_time / exact.end_time, 1.0, 1e-9);
     EXPECT_NEAR(r.end_crank_angle / exact.end_crank_angle, 1.0, 1e-9);
   }
@@ -52,7 +52,7 @@ TEST(OwnSteps, AreImplicitWhereStiff) {
   const TransientResult none = by_own_steps(v, options);
   v.motor.armature_inductance = 1e-8;  // L_a / R_a = 1 ns
   const TransientResult small = by_own_steps(v, options);
-  ASSERT_TRUE(none.metrics && small.metrics) << small.detail;
+  ASSERT_TRUE(none.metrics && small.metrics) << describe(small.evidence);
   EXPECT_FALSE(none.stiff);
   EXPECT_TRUE(small.stiff);
   EXPECT_LT(small.steps, 20000);
@@ -64,7 +64,7 @@ TEST(OwnSteps, AreImplicitWhereStiff) {
 TEST(OwnSteps, SeeEveryRevolutionOfAFreeMotor) {
   // Nothing bounds the steps of a motor at constant speed but the cycles.
   const TransientResult r = by_own_steps(wingless_vehicle());
-  ASSERT_EQ(r.status, FlappingStatus::flapping) << r.detail;
+  ASSERT_EQ(r.status, FlappingStatus::flapping) << describe(r.evidence);
   int revolutions = 0;
   for (const TransientEvent& e : r.events) {
     if (e.kind != TransientEvent::Kind::revolution) continue;

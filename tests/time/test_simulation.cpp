@@ -42,7 +42,7 @@ void meets(Model model, const Vehicle<double>& vehicle, TransientOptions options
     compare(model, s);
     ++compared;
   }
-  EXPECT_GT(compared, 10) << recorded.detail;
+  EXPECT_GT(compared, 10) << describe(recorded.evidence);
 }
 
 void crank_meets(const Vehicle<double>& vehicle, const Supply<double>& supply, double until) {

@@ -70,7 +70,7 @@ TEST(Accuracy, ShortDipsOfASwitchAreSeen) {
   for (int n = 0; n <= 424; ++n) vehicle = next_vehicle(WideBox::strong_springs, random);
   const SteadyFlapping found = find_steady_flapping(vehicle),
                        exact = find_steady_flapping(vehicle, {.tolerance = 1e-12});
-  ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+  ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
   EXPECT_LE(metrics_apart(found.metrics, exact.metrics), 1e-6);
 }
 
@@ -79,11 +79,11 @@ TEST(Accuracy, HeavyRotorsKeepTheTolerance) {
   Vehicle<double> vehicle = reference_vehicle();
   vehicle.motor.inertia = 1e-3;
   const SteadyFlapping exact = find_steady_flapping(vehicle, {.tolerance = 1e-12});
-  ASSERT_EQ(exact.status, FlappingStatus::flapping) << exact.detail;
+  ASSERT_EQ(exact.status, FlappingStatus::flapping) << describe(exact.evidence);
   EXPECT_GT(exact.metrics[Metric::floquet_multiplier_max], 0.99);
   for (const double tolerance : {1e-3, 1e-5, 1e-7}) {
     const SteadyFlapping found = find_steady_flapping(vehicle, {.tolerance = tolerance});
-    ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+    ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
     EXPECT_LE(metrics_apart(found.metrics, exact.metrics), tolerance);
   }
 }
@@ -95,9 +95,9 @@ double transient_off(const Vehicle<double>& vehicle, double tolerance, const cha
   const auto start = std::chrono::steady_clock::now();
   const TransientResult found = simulate_start_up(vehicle, options);
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5)) << of;
-  EXPECT_EQ(found.status, FlappingStatus::flapping) << of << ": " << found.detail;
+  EXPECT_EQ(found.status, FlappingStatus::flapping) << of << ": " << describe(found.evidence);
   const SteadyFlapping exact = find_steady_flapping(vehicle, {.tolerance = 1e-12, .stability = false});
-  EXPECT_EQ(exact.status, FlappingStatus::flapping) << of << ": " << exact.detail;
+  EXPECT_EQ(exact.status, FlappingStatus::flapping) << of << ": " << describe(exact.evidence);
   return found.metrics ? metrics_apart(*found.metrics, exact.metrics) / tolerance : INFINITY;
 }
 

@@ -6,6 +6,7 @@
 
 #include "vehicle/random_vehicle.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
+#include "wingbeat/report/describe.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {
@@ -114,7 +115,7 @@ TEST(BatteryVehicle, OrbitAgreesWithTheTransient) {
     const RunResult a = run_design(d, {.tolerance = 1e-8});
     const RunResult b = run_design(d, {.method = Method::transient, .tolerance = 1e-8});
     if (!b.settled) continue;
-    ASSERT_EQ(a.status, b.status) << n << ' ' << a.detail << " / " << b.detail;
+    ASSERT_EQ(a.status, b.status) << n << ' ' << describe(a) << " / " << describe(b);
     if (a.status != FlappingStatus::flapping) continue;
     ++compared;
     for (int k = 0; k < metric_count; ++k) {

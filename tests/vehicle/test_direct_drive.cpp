@@ -60,8 +60,9 @@ TEST(DirectDrive, OrbitAgreesWithTheSimulationOfRandomVehicles) {
     options.tolerance = 1e-7;
     options.reporting = reporting;
     const TransientResult transient = simulate_start_up(vehicle, options);
-    ASSERT_EQ(orbit.status, transient.status) << "vehicle " << n << ": " << orbit.detail << " / " << transient.detail;
-    ASSERT_TRUE(transient.settled) << "vehicle " << n << ": " << transient.detail;
+    ASSERT_EQ(orbit.status, transient.status)
+        << "vehicle " << n << ": " << describe(orbit.evidence) << " / " << describe(transient.evidence);
+    ASSERT_TRUE(transient.settled) << "vehicle " << n << ": " << describe(transient.evidence);
     if (orbit.status != FlappingStatus::flapping) continue;
     ++flapping;
     for (const TransientEvent& e : transient.events) {
@@ -82,10 +83,10 @@ TEST(DirectDrive, TightensToTheToleranceAskedFor) {
   for (int n = 0; n < 60; ++n) {
     const Vehicle<double> vehicle = resolve(random_direct_design(random, n % 2 == 1));
     const SteadyFlapping tight = find_steady_flapping(vehicle, {.tolerance = 1e-12});
-    ASSERT_EQ(tight.status, FlappingStatus::flapping) << n << ": " << tight.detail;
+    ASSERT_EQ(tight.status, FlappingStatus::flapping) << n << ": " << describe(tight.evidence);
     for (const double tolerance : {1e-4, 1e-6, 1e-9}) {
       const SteadyFlapping found = find_steady_flapping(vehicle, {.tolerance = tolerance});
-      ASSERT_EQ(found.status, FlappingStatus::flapping) << n << ": " << found.detail;
+      ASSERT_EQ(found.status, FlappingStatus::flapping) << n << ": " << describe(found.evidence);
       std::string where;
       EXPECT_LT(deviation(tight.metrics, found.metrics, where), 4.0 * tolerance) << "vehicle " << n << ", " << where;
     }
@@ -97,7 +98,7 @@ TEST(DirectDrive, EnergyBooksClose) {
   for (int n = 0; n < 60; ++n) {
     const Vehicle<double> vehicle = resolve(random_direct_design(random, n % 2 == 1));
     const SteadyFlapping found = find_steady_flapping(vehicle, {.tolerance = 1e-12});
-    ASSERT_EQ(found.status, FlappingStatus::flapping) << n << ": " << found.detail;
+    ASSERT_EQ(found.status, FlappingStatus::flapping) << n << ": " << describe(found.evidence);
     const EnergyAudit audit = energy_audit(found.metrics);
     EXPECT_LT(std::abs(audit.imbalance), 2e-12 * audit.electrical) << n;
     EXPECT_EQ(audit.residual, 0.0);
@@ -111,7 +112,7 @@ TEST(DirectDrive, WithoutAirTheResponseIsTheComplexImpedances) {
     d.friction = {FrictionLaw::viscous, 2e-6};
     const Vehicle<double> v = resolve(d, Condition::vacuum);
     const SteadyFlapping found = find_steady_flapping(v, {.tolerance = 1e-11});
-    ASSERT_EQ(found.status, FlappingStatus::flapping) << n << ": " << found.detail;
+    ASSERT_EQ(found.status, FlappingStatus::flapping) << n << ": " << describe(found.evidence);
     using Complex = std::complex<double>;
     const double w = two_pi * d.supply.frequency, K = v.motor.torque_constant, V = d.supply.voltage;
     const Complex j(0.0, 1.0), electrical = v.motor.armature_resistance + j * w * v.motor.armature_inductance;
@@ -135,7 +136,7 @@ TEST(DirectDrive, SmallAmplitudesResonateWithTotalInertia) {
   const auto peak = [&](double ratio) {
     d.supply_resonance_ratio = ratio;
     const SteadyFlapping found = find_steady_flapping(resolve(d), {.tolerance = 1e-11});
-    EXPECT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+    EXPECT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
     return found;
   };
   const SteadyFlapping at = peak(1.0);
@@ -206,7 +207,7 @@ TEST(DirectDrive, FreeSwingsLoseTwoFrictionAnglesEachAndStick) {
   }
   EXPECT_EQ(r.status, FlappingStatus::stalled);
   EXPECT_TRUE(r.settled);
-  EXPECT_THAT(r.detail, HasSubstr("rests at stroke angle"));
+  EXPECT_THAT(describe(r.evidence), HasSubstr("rests at stroke angle"));
   EXPECT_EQ(r.end_crank_angle, turns.back().crank_angle);
 }
 
@@ -216,7 +217,7 @@ TEST(DirectDrive, SticksExactlyAsLongAsFrictionHolds) {
   d.friction = {FrictionLaw::constant, 2.2e-3};
   const Vehicle<double> v = resolve(d);
   const SteadyFlapping found = find_steady_flapping(v, {.tolerance = 1e-9});
-  ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+  ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
   int stuck = 0, slipping = 0;
   for (const WaveformRow& row : found.record.waveform(2001)) {
     const double pull = v.motor.torque_constant * row.current - 2.0 * v.spring.stiffness * row.stroke_angle;
@@ -242,11 +243,12 @@ TEST(DirectDrive, ASupplyTooWeakToBreakAwayIsStalled) {
     const Vehicle<double> v = resolve(d);
     const SteadyFlapping found = find_steady_flapping(v);
     const TransientResult transient = simulate_start_up(v);
-    EXPECT_EQ(found.status, friction < drive ? FlappingStatus::flapping : FlappingStatus::stalled) << found.detail;
-    EXPECT_EQ(transient.status, found.status) << transient.detail;
+    EXPECT_EQ(found.status, friction < drive ? FlappingStatus::flapping : FlappingStatus::stalled)
+        << describe(found.evidence);
+    EXPECT_EQ(transient.status, found.status) << describe(transient.evidence);
     EXPECT_TRUE(transient.settled);
     if (friction < drive) continue;
-    EXPECT_THAT(found.detail, HasSubstr("the motor never breaks away: at 22 Hz"));
+    EXPECT_THAT(describe(found.evidence), HasSubstr("the motor never breaks away: at 22 Hz"));
     EXPECT_TRUE(std::isnan(found.metrics[Metric::frequency]));
   }
   d.friction = {FrictionLaw::none, 0.0};
@@ -257,7 +259,7 @@ TEST(DirectDrive, ASupplyTooWeakToBreakAwayIsStalled) {
 TEST(DirectDrive, WithoutWingsTheRotorSwingsAlone) {
   const Vehicle<double> v = resolve(direct_design(), Condition::wingless);
   const SteadyFlapping found = find_steady_flapping(v, {.tolerance = 1e-9});
-  ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+  ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
   const double w = two_pi * 22.0;
   const std::complex<double> j(0.0, 1.0), electrical = 9.0 + j * w * 29e-3;
   const auto speed = 0.01 * 3.0 / (electrical * (3.6e-6 + j * w * 1.5e-7) + 1e-4);
@@ -351,7 +353,7 @@ TEST(PitchStop, OrbitOfCranksAgreesWithTheSimulation) {
     options.tolerance = 1e-7;
     options.reporting = reporting;
     const TransientResult transient = simulate_start_up(vehicle, options);
-    ASSERT_EQ(transient.status, FlappingStatus::flapping) << n << ": " << transient.detail;
+    ASSERT_EQ(transient.status, FlappingStatus::flapping) << n << ": " << describe(transient.evidence);
     ++flapping;
     const double least = degrees_per_radian * *design.aerodynamics.angle_of_attack_min;
     EXPECT_GE(orbit.metrics[Metric::angle_of_attack_min], least * (1.0 - 1e-15));

@@ -36,7 +36,8 @@ Vehicle<double> in(Condition condition) { return resolve(reference_design(), con
 TEST(Domain, OrdinaryCycleIsInside) {
   EXPECT_TRUE(domain_of(reference_vehicle(), ordinary_metrics()).none());
   EXPECT_EQ(name_of(domain_of(reference_vehicle(), ordinary_metrics())), "inside");
-  EXPECT_EQ(describe_domain(reference_vehicle(), ordinary_metrics()), "");
+  EXPECT_TRUE(domain_evidence(reference_vehicle(), ordinary_metrics()).empty());
+  EXPECT_EQ(describe(std::span<const DomainEvidence>{}), "");
 }
 
 TEST(Domain, AngleOfAttack) {
@@ -126,17 +127,81 @@ TEST(Domain, SentenceNamesTheNumbers) {
   m[Metric::angle_of_attack_min] = -103.2;
   m[Metric::power_residual] = -0.123;
   EXPECT_EQ(name_of(domain_of(reference_vehicle(), m)), "angle_of_attack, formulation_residual");
-  EXPECT_EQ(describe_domain(reference_vehicle(), m),
+  EXPECT_EQ(describe(domain_evidence(reference_vehicle(), m)),
             "the angle of attack falls to -103.2 deg (the coefficients hold from 0 to 90 deg); the formulation "
             "fails to conserve 12.3 % of the input power (at most 5 %)");
 }
 
+TEST(Domain, EvidenceIsEachLimitWithItsValueAndBounds) {
+  using Quantity = DomainEvidence::Quantity;
+  const double radius = 1.048e-7 / 2.457e-6;
+  Metrics<double> m = ordinary_metrics();
+  m[Metric::angle_of_attack_min] = -103.2;
+  m[Metric::power_residual] = -0.123;
+  m[Metric::power_motor] = 1.25;
+  m[Metric::power_aerodynamic] = -0.25;
+  m[Metric::flapping_velocity_peak] = 120.0 / radius;
+  const DomainEvidence expected[] = {
+      {DomainLimit::angle_of_attack, Quantity::angle_of_attack_min, -103.2, 0.0, 90.0},
+      {DomainLimit::formulation_residual, Quantity::residual_share, 0.123, 0.0, 0.05},
+      {DomainLimit::mechanism_efficiency, Quantity::mechanism_efficiency, -0.2, 0.0, 1.0},
+      {DomainLimit::motor_efficiency, Quantity::motor_efficiency, 1.25, 0.0, 1.0},
+      {DomainLimit::flow_speed, Quantity::flow_speed, 120.0, 0.0, 103.0},
+  };
+  const std::vector<DomainEvidence> found = domain_evidence(reference_vehicle(), m);
+  ASSERT_EQ(found.size(), std::size(expected));
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    EXPECT_EQ(found[k].limit, expected[k].limit) << k;
+    EXPECT_EQ(found[k].quantity, expected[k].quantity) << k;
+    EXPECT_DOUBLE_EQ(found[k].value, expected[k].value) << k;
+    EXPECT_DOUBLE_EQ(found[k].lowest, expected[k].lowest) << k;
+    EXPECT_DOUBLE_EQ(found[k].highest, expected[k].highest) << k;
+  }
+  EXPECT_EQ(
+      describe(found),
+      "the angle of attack falls to -103.2 deg (the coefficients hold from 0 to 90 deg); the formulation fails to "
+      "conserve 12.3 % of the input power (at most 5 %); the mechanism efficiency is -20 % (0 to 100 %); the motor "
+      "efficiency is 125 % (0 to 100 %); the wings reach 120 m/s (incompressible flow to 103 m/s)");
+}
+
+TEST(Domain, EvidenceOfOtherDrivesAndWithoutPower) {
+  using Quantity = DomainEvidence::Quantity;
+  const auto only = [](const Vehicle<double>& v, const Metrics<double>& m) {
+    const std::vector<DomainEvidence> rows = domain_evidence(v, m);
+    EXPECT_EQ(rows.size(), 1u) << describe(rows);
+    return rows.at(0);
+  };
+  Metrics<double> m = ordinary_metrics();
+  m[Metric::power_electrical] = -0.5;
+  const DomainEvidence input = only(reference_vehicle(), m);
+  EXPECT_EQ(input.quantity, Quantity::input_power);
+  EXPECT_EQ(input.value, -0.5);
+  EXPECT_EQ(describe(std::span(&input, 1)), "the input power is -0.5 W (positive where the motor drives)");
+
+  Design<double> direct = reference_design();
+  direct.transmission = {};
+  direct.transmission.type = TransmissionType::direct;
+  direct.supply = {SupplyType::sine, 3.0, 22.0, 1.0};
+  direct.friction = {FrictionLaw::none, 0.0};
+  m = ordinary_metrics();
+  m[Metric::stroke_amplitude] = 200.0 / degrees_per_radian;
+  const DomainEvidence amplitude = only(resolve(direct), m);
+  EXPECT_EQ(amplitude.limit, DomainLimit::stroke);
+  EXPECT_EQ(amplitude.quantity, Quantity::stroke_amplitude);
+  EXPECT_DOUBLE_EQ(amplitude.value, 200.0);
+  EXPECT_EQ(amplitude.highest, 180.0);
+  EXPECT_EQ(describe(std::span(&amplitude, 1)), "the stroke amplitude is 200 deg (at most 180 deg)");
+}
+
 TEST(Domain, RodForceWarnsAboveOnePerCent) {
   Metrics<double> m = ordinary_metrics();
-  EXPECT_EQ(residual_warning(reference_vehicle(), m),
+  const std::optional<double> share = notable_residual(reference_vehicle(), m);
+  ASSERT_TRUE(share);
+  EXPECT_DOUBLE_EQ(*share, 0.02);
+  EXPECT_EQ(residual_warning(*share),
             "the formulation rod-force fails to conserve 2 % of the input power; virtual-work conserves it");
   m[Metric::power_residual] = -0.0099;
-  EXPECT_EQ(residual_warning(reference_vehicle(), m), "");
+  EXPECT_FALSE(notable_residual(reference_vehicle(), m));
 }
 
 TEST(Domain, SlopesAgreeWithDifferences) {

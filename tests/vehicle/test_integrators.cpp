@@ -9,7 +9,7 @@
 namespace wingbeat {
 namespace {
 
-using Kind = TransientEvent::Kind;
+using Event = TransientEvent::Kind;
 
 TransientResult simulated(const Vehicle<double>& vehicle, TransientOptions options, TimeIntegrator integrator) {
   options.integrator = integrator;
@@ -28,7 +28,8 @@ TEST(Integrators, AgreeInWideBoxes) {
       }
       const TransientResult theirs = simulated(vehicle, {}, TimeIntegrator::sundials);
       const TransientResult ours = simulated(vehicle, {}, TimeIntegrator::own_steps);
-      SCOPED_TRACE(testing::Message() << wide_boxes[box] << " " << n << ": " << theirs.detail << "; " << ours.detail);
+      SCOPED_TRACE(testing::Message() << wide_boxes[box] << " " << n << ": " << describe(theirs.evidence) << "; "
+                                      << describe(ours.evidence));
       EXPECT_EQ(ours.status, theirs.status);
       EXPECT_EQ(ours.settled, theirs.settled);
       ASSERT_EQ(ours.metrics.has_value(), theirs.metrics.has_value());
@@ -50,7 +51,8 @@ TEST(Integrators, AgreeOnAnyStart) {
     const auto [vehicle, options] = any_start(seed);
     const TransientResult theirs = simulated(vehicle, options, TimeIntegrator::sundials);
     const TransientResult ours = simulated(vehicle, options, TimeIntegrator::own_steps);
-    SCOPED_TRACE(testing::Message() << "seed " << seed << ": " << theirs.detail << "; " << ours.detail);
+    SCOPED_TRACE(testing::Message() << "seed " << seed << ": " << describe(theirs.evidence) << "; "
+                                    << describe(ours.evidence));
     if (theirs.steps > options.max_steps || ours.steps > options.max_steps) continue;
     EXPECT_EQ(ours.status, theirs.status);
     ++compared;
@@ -70,7 +72,7 @@ TEST(Integrators, SineSuppliesAgree) {
     options.supply = Supply<double>{SupplyType::sine, 3.0, frequency, 1.0};
     const TransientResult theirs = simulated(reference_vehicle(true), options, TimeIntegrator::sundials);
     const TransientResult ours = simulated(reference_vehicle(true), options, TimeIntegrator::own_steps);
-    EXPECT_EQ(ours.status, theirs.status) << ours.detail << "; " << theirs.detail;
+    EXPECT_EQ(ours.status, theirs.status) << describe(ours.evidence) << "; " << describe(theirs.evidence);
   }
 }
 
@@ -87,7 +89,7 @@ TEST(Integrators, EventsAgree) {
     options.tolerance = 1e-9;
     const TransientResult theirs = simulated(vehicle, options, TimeIntegrator::sundials);
     const TransientResult ours = simulated(vehicle, options, TimeIntegrator::own_steps);
-    EXPECT_EQ(ours.status, theirs.status) << ours.detail << "; " << theirs.detail;
+    EXPECT_EQ(ours.status, theirs.status) << describe(ours.evidence) << "; " << describe(theirs.evidence);
     const std::size_t events = std::min(ours.events.size(), theirs.events.size());
     EXPECT_GT(events, 0u);
     for (std::size_t k = 0; k < events; ++k) {

@@ -34,7 +34,7 @@ TEST(FourBarVehicle, FlapsToEitherSideWithAClosedEnergyBalance) {
   validate(d);
   for (const double tolerance : {1e-6, 1e-10}) {
     const SteadyFlapping found = orbit_of(resolve(d), tolerance);
-    ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+    ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
     const EnergyAudit audit = energy_audit(found.metrics);
     EXPECT_NEAR(audit.imbalance, 0.0, tolerance * audit.electrical);
     EXPECT_NEAR(audit.residual, 0.0, 1e-14 * audit.electrical);  // conserves power by construction
@@ -62,8 +62,8 @@ TEST(FourBarVehicle, LongRockerFlapsAsASliderCrankByVirtualWork) {
     bars.transmission.swing_ratio = p / H;
     bars.transmission.mid_angle = pi - std::atan(l / p);
     const SteadyFlapping one = orbit_of(resolve(slider), 1e-9), other = orbit_of(resolve(bars), 1e-9);
-    ASSERT_EQ(one.status, FlappingStatus::flapping) << one.detail;
-    ASSERT_EQ(other.status, FlappingStatus::flapping) << other.detail;
+    ASSERT_EQ(one.status, FlappingStatus::flapping) << describe(one.evidence);
+    ASSERT_EQ(other.status, FlappingStatus::flapping) << describe(other.evidence);
     double off = 0.0;
     for (const Metric m : {Metric::frequency, Metric::power_electrical, Metric::power_friction, Metric::lift_mean,
                            Metric::rod_force_peak, Metric::power_aerodynamic, Metric::stroke_amplitude}) {
@@ -92,14 +92,14 @@ TEST(TabulatedVehicle, FlapsAsTheLawThatItSamples) {
   v.transmission.type = TransmissionType::tabulated;
   v.transmission.tabulated = {std::make_shared<const StrokeCurve>(rows), 1.0, law.radius};
   const SteadyFlapping found = orbit_of(v, 1e-8);
-  ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+  ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
   using System = CrankSystem<double, 2, StrokeLawVehicle<double>>;
   const double speed = 0.6 * no_load_speed(exact);
   const System system(exact, 1e-4 * no_load_speed(exact), exact.voltage / circuit_resistance(exact));
   solver::Iterate<System> cycle;
   const auto summary = solver::solve_periodic(system, {speed, algebraic_current(exact, exact.voltage, speed)},
                                               {.tolerance = 1e-10}, cycle);
-  ASSERT_EQ(summary.status, solver::PeriodicStatus::converged) << summary.message;
+  ASSERT_EQ(summary.status, solver::PeriodicStatus::converged) << describe(summary.status);
   EXPECT_NEAR(found.metrics[Metric::frequency] * cycle_integrals(cycle)[std::size_t(Integral::time)], 1.0, 1e-7);
 }
 
@@ -114,7 +114,7 @@ TEST_P(WideMechanism, OrbitAndSimulationInTimeAgree) {
     TransientOptions options;
     options.tolerance = 1e-7;
     const TransientResult time = simulate_start_up(v, options);
-    ASSERT_EQ(orbit.status, time.status) << n << ": " << orbit.detail << " / " << time.detail;
+    ASSERT_EQ(orbit.status, time.status) << n << ": " << describe(orbit.evidence) << " / " << describe(time.evidence);
     if (orbit.status != FlappingStatus::flapping) {
       ++others;
       continue;

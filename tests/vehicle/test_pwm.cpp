@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "vehicle/reference_vehicle.hpp"
+#include "wingbeat/report/describe.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {
@@ -22,7 +23,7 @@ TEST(Pwm, RippleApproachesItsClosedFormAsTheFrequencyGrows) {
     for (const double duty : {0.3, 0.6}) {
       const Design<double> d = pwm_design(5.0, frequency, duty);
       const RunResult r = run_design(d, {.method = Method::transient});
-      ASSERT_EQ(r.status, FlappingStatus::flapping) << r.detail;
+      ASSERT_EQ(r.status, FlappingStatus::flapping) << describe(r);
       ASSERT_TRUE(r.start_up->current_ripple);
       const double L = d.motor.constants.armature_inductance, R = d.motor.constants.armature_resistance;
       const double expected = 5.0 * duty * (1.0 - duty) / (L * frequency);
@@ -51,7 +52,7 @@ TEST(Pwm, WithoutInductanceTheCurrentSwitchesByItsFullHeight) {
   Design<double> d = pwm_design(5.0, 2000.0, 0.7);
   d.motor.constants.armature_inductance = 0.0;
   const RunResult r = run_design(d, {.method = Method::transient});
-  ASSERT_TRUE(r.start_up->current_ripple) << r.detail;
+  ASSERT_TRUE(r.start_up->current_ripple) << describe(r);
   EXPECT_NEAR(*r.start_up->current_ripple, 5.0 / 9.0, 0.02 * 5.0 / 9.0);
 }
 
@@ -77,7 +78,7 @@ TEST(Pwm, MeanCurrentApproachesTheAveragedModel) {
 TEST(Pwm, DutyForALift) {
   Design<double> d = pwm_design(6.0, 10000.0, 0.0);  // the duty given does not matter
   const RunResult r = run_design(d, {.lift = 20e-3});
-  ASSERT_EQ(r.status, FlappingStatus::flapping) << r.detail;
+  ASSERT_EQ(r.status, FlappingStatus::flapping) << describe(r);
   EXPECT_NEAR(r.metrics[Metric::lift_mean], 20e-3, 1e-6 * 20e-3);
   EXPECT_EQ(r.design.supply.voltage, 6.0);
   EXPECT_NEAR(r.design.supply.duty, r.metrics[Metric::voltage] / 6.0, 1e-12);
@@ -106,8 +107,9 @@ TEST(Pwm, LiftOutOfReach) {
   }
   const RunResult most = run_design(reference_design(), {.lift = 10.0});
   EXPECT_EQ(most.search->outcome, FrequencyOutcome::too_high);
-  EXPECT_NE(most.detail.find("10 N cannot be reached inside the domain of validity: it lifts 0.06"), std::string::npos)
-      << most.detail;
+  EXPECT_NE(describe(most).find("10 N cannot be reached inside the domain of validity: it lifts 0.06"),
+            std::string::npos)
+      << describe(most);
   // Just below the peak over the voltage, which lies between the voltages tried first, a lift can be reached.
   double peak = 0.0;
   for (double v = 9.0; v < 12.0; v += 0.05) {
@@ -116,13 +118,13 @@ TEST(Pwm, LiftOutOfReach) {
     peak = std::max(peak, run_design(d).metrics[Metric::lift_mean]);
   }
   const RunResult top = run_design(reference_design(), {.lift = 0.9999 * peak});
-  ASSERT_EQ(top.search->outcome, FrequencyOutcome::reached) << top.detail;
+  ASSERT_EQ(top.search->outcome, FrequencyOutcome::reached) << describe(top);
   EXPECT_NEAR(top.metrics[Metric::lift_mean], 0.9999 * peak, 1e-6 * peak);
   EXPECT_EQ(run_design(reference_design(), {.lift = 1.001 * peak}).search->outcome, FrequencyOutcome::too_high);
   Design<double> held = reference_design();
   held.motor.constants.friction_torque = 1.0;
   const RunResult high = run_design(held, {.lift = 20e-3});
-  ASSERT_EQ(high.search->outcome, FrequencyOutcome::reached) << high.detail;
+  ASSERT_EQ(high.search->outcome, FrequencyOutcome::reached) << describe(high);
   EXPECT_GT(high.metrics[Metric::voltage], 9.0 / 0.01);  // R_a T_c / K, where the motor starts at all
   Design<double> jams = reference_design();
   jams.motor.constants.inertia = 1e-9;

@@ -7,6 +7,7 @@
 
 #include "vehicle/wide_boxes.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/report/describe.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {
@@ -73,13 +74,13 @@ TEST(Statuses, FlapsWhereStartUpFlaps) {
     options.method = Method::transient;
     options.waveform_rows = 61;
     const RunResult in_time = run_design(design, options);
-    ASSERT_EQ(in_time.status, FlappingStatus::flapping) << in_time.detail;
+    ASSERT_EQ(in_time.status, FlappingStatus::flapping) << describe(in_time);
     EXPECT_NEAR(in_time.metrics[Metric::frequency], frequency, 0.005);
     options.method = Method::orbit;
     const RunResult orbit = run_design(design, options);
-    ASSERT_EQ(orbit.status, FlappingStatus::flapping) << orbit.detail;
+    ASSERT_EQ(orbit.status, FlappingStatus::flapping) << describe(orbit);
     for (const Metric m : {Metric::frequency, Metric::power_electrical, Metric::rod_force_peak}) {
-      EXPECT_NEAR(orbit.metrics[m] / in_time.metrics[m], 1.0, 3e-6) << metric_info(m).key << ", " << orbit.detail;
+      EXPECT_NEAR(orbit.metrics[m] / in_time.metrics[m], 1.0, 3e-6) << metric_info(m).key << ", " << describe(orbit);
     }
     ASSERT_EQ(orbit.cycle.size(), 61u);
     EXPECT_NEAR(orbit.cycle.back().time * orbit.metrics[Metric::frequency], 1.0, 1e-4);
@@ -94,9 +95,9 @@ TEST(Statuses, ACrankThatStopsWithinEachTurnIsReportedFromItsSimulatedCycle) {
   // Number 22: friction holds the crank for a moment in every turn.
   const WideVehicle v = wide_vehicle(FarBox::crank_near_rod, 22);
   const SteadyFlapping found = orbit_of(v.design);
-  ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+  ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
   ASSERT_TRUE(found.simulated);
-  EXPECT_THAT(found.detail, HasSubstr("from its cycle simulated in time"));
+  EXPECT_THAT(describe(found.evidence), HasSubstr("from its cycle simulated in time"));
   EXPECT_GE(found.simulated->error_estimate, 1e-6);
   EXPECT_LT(found.metrics[Metric::crank_speed_min], 1e-6);
   EXPECT_TRUE(found.record.empty());
@@ -107,7 +108,7 @@ TEST(Statuses, OfSeveralOrbitsTheOneReachedFromRest) {
   for (const double tolerance : {1e-3, 1e-6, 1e-9}) {
     for (const bool stability : {true, false}) {
       const SteadyFlapping found = orbit_of(design, tolerance, stability);
-      ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+      ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
       EXPECT_NEAR(found.metrics[Metric::frequency], 47.20, 0.05) << tolerance << ' ' << stability;
     }
   }
@@ -126,9 +127,9 @@ TEST(Statuses, HeavyRotorsSettleByExtrapolation) {
   RunOptions options;
   options.method = Method::transient;
   const RunResult in_time = run_design(d, options);
-  ASSERT_EQ(in_time.status, FlappingStatus::flapping) << in_time.detail;
+  ASSERT_EQ(in_time.status, FlappingStatus::flapping) << describe(in_time);
   EXPECT_LT(in_time.start_up->cycles, 1500);
-  EXPECT_THAT(in_time.detail, HasSubstr("extrapolated"));
+  EXPECT_THAT(describe(in_time), HasSubstr("extrapolated"));
   const SteadyFlapping exact = orbit_of(d, 1e-9);
   EXPECT_NEAR(in_time.metrics[Metric::frequency] / exact.metrics[Metric::frequency], 1.0, 1e-5);
   // Towards a speed of balance omega' = -(omega - omega_0)/T: within 1 % of it after several T = J R/K^2.
@@ -159,7 +160,7 @@ TEST(Statuses, ADirectDriveThatCreepsToRestIsStalled) {
   options.method = Method::transient;
   const RunResult in_time = run_design(d, options);
   EXPECT_EQ(in_time.status, FlappingStatus::stalled);
-  EXPECT_THAT(in_time.detail, HasSubstr("creeps to rest near stroke angle"));
+  EXPECT_THAT(describe(in_time), HasSubstr("creeps to rest near stroke angle"));
   EXPECT_LT(in_time.start_up->steps, 1000000);
   EXPECT_EQ(orbit_of(d).status, FlappingStatus::stalled);
   EXPECT_EQ(batched(d).status, FlappingStatus::stalled);
@@ -196,9 +197,9 @@ TEST(Statuses, AgreeOnWideVehicles) {
       orbits.push_back(run_design(v.design, options));
       options.method = Method::transient;
       const RunResult in_time = run_design(v.design, options);
-      EXPECT_EQ(orbits.back().status, in_time.status)
-          << far_box_names[std::size_t(box)] << ' ' << n << ": " << orbits.back().detail << " / " << in_time.detail;
-      EXPECT_NE(in_time.status, FlappingStatus::undecided) << in_time.detail;
+      EXPECT_EQ(orbits.back().status, in_time.status) << far_box_names[std::size_t(box)] << ' ' << n << ": "
+                                                      << describe(orbits.back()) << " / " << describe(in_time);
+      EXPECT_NE(in_time.status, FlappingStatus::undecided) << describe(in_time);
       (in_time.status == FlappingStatus::flapping ? flapping : others) += 1;
       if (in_time.status == FlappingStatus::flapping && v.design.supply.type != SupplyType::pwm) {
         EXPECT_NEAR(orbits.back().metrics[Metric::frequency] / in_time.metrics[Metric::frequency], 1.0, 1e-3);
@@ -223,7 +224,7 @@ TEST(Statuses, DoNotDependOnTheTolerance) {
       const FlappingStatus expected = orbit_of(v.design, 1e-6).status;
       for (const double tolerance : {1e-2, 1e-4, 1e-9, 1e-11}) {
         const SteadyFlapping found = orbit_of(v.design, tolerance);
-        EXPECT_EQ(found.status, expected) << n << " at " << tolerance << ": " << found.detail;
+        EXPECT_EQ(found.status, expected) << n << " at " << tolerance << ": " << describe(found.evidence);
       }
     }
   }

@@ -40,7 +40,7 @@ TEST(SteadyFlapping, ReproducesKnownOrbitsToTheToleranceAskedFor) {
     const Vehicle<double> vehicle = reference_vehicle(known.springs);
     for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10, tightest}) {
       const SteadyFlapping found = find_steady_flapping(vehicle, {.tolerance = tolerance});
-      ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+      ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
       const auto near = [&](double value, double expected) {
         EXPECT_NEAR(value / expected, 1.0, tolerance) << "tolerance " << tolerance << ", springs " << known.springs;
       };
@@ -103,7 +103,7 @@ TEST(SteadyFlapping, WinglessSpeedIsTheClosedForm) {
     Vehicle<double> vehicle = wingless_vehicle();
     vehicle.motor.armature_inductance = inductance;
     const SteadyFlapping found = find_steady_flapping(vehicle, {.tolerance = tightest});
-    ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+    ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
     const double omega = no_load_speed(vehicle.motor, vehicle.voltage);
     EXPECT_NEAR(found.metrics[Metric::frequency] * two_pi / omega, 1.0, 1e-11);
     EXPECT_NEAR(found.metrics[Metric::current_mean] / (vehicle.motor.viscous_damping * omega / 0.01), 1.0, 1e-10);
@@ -119,7 +119,7 @@ TEST(SteadyFlapping, VacuumWithoutFrictionCostsMotorLossesOnly) {
   vehicle.friction.radius = 0.0;
   vehicle.wings.air_density = 0.0;
   const SteadyFlapping found = find_steady_flapping(vehicle, {.tolerance = tightest});
-  ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+  ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
   const EnergyAudit audit = energy_audit(found.metrics);
   EXPECT_NEAR((audit.copper + audit.viscous) / audit.electrical, 1.0, 1e-11);
   EXPECT_EQ(audit.aerodynamic, 0.0);
@@ -179,7 +179,7 @@ TEST(SteadyFlapping, StiffVehiclesApproachTheAlgebraicCurrent) {
   for (const double inductance : {1e-5, 1e-7, 1e-9}) {
     vehicle.motor.armature_inductance = inductance;
     const SteadyFlapping found = find_steady_flapping(vehicle, {.tolerance = 1e-11});
-    ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+    ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
     const double apart = std::abs(found.metrics[Metric::power_copper] / algebraic.metrics[Metric::power_copper] - 1.0);
     EXPECT_LT(apart, 0.02 * before) << "first order in the inductance";
     before = apart;
@@ -234,7 +234,7 @@ TEST(NotFlapping, StalledByTheMotorsOwnFriction) {
   vehicle.motor.friction_torque = 0.0034;
   const SteadyFlapping found = find_steady_flapping(vehicle);
   EXPECT_EQ(found.status, FlappingStatus::stalled);
-  EXPECT_EQ(found.detail,
+  EXPECT_EQ(describe(found.evidence),
             "the motor never starts: its stall torque 0.003333 N m does not exceed the constant friction 0.0034 N m");
   for (const double value : found.metrics.values) EXPECT_TRUE(std::isnan(value));
   EXPECT_TRUE(found.record.empty());
@@ -250,10 +250,10 @@ TEST(NotFlapping, LockedBehindAStrongSpring) {
   Vehicle<double> vehicle = reference_vehicle(true);
   vehicle.spring.stiffness *= 10.0;
   const SteadyFlapping found = find_steady_flapping(vehicle, {}, start_up_in_time());
-  EXPECT_EQ(found.status, FlappingStatus::locked) << found.detail;
-  EXPECT_THAT(found.detail, HasSubstr("deg"));
+  EXPECT_EQ(found.status, FlappingStatus::locked) << describe(found.evidence);
+  EXPECT_THAT(describe(found.evidence), HasSubstr("deg"));
   const SteadyFlapping by_statics = find_steady_flapping(vehicle);
-  EXPECT_EQ(by_statics.status, FlappingStatus::locked) << by_statics.detail;
+  EXPECT_EQ(by_statics.status, FlappingStatus::locked) << describe(by_statics.evidence);
   const std::vector<LockInterval> locks = lock_intervals(vehicle);
   ASSERT_FALSE(locks.empty());
   for (const LockInterval& lock : locks) {
@@ -267,10 +267,10 @@ TEST(NotFlapping, JammedWithALightRotorAndStrongFriction) {
   Vehicle<double> vehicle = reference_vehicle();
   vehicle.motor.inertia = 2e-9;
   const SteadyFlapping found = find_steady_flapping(vehicle, {}, start_up_in_time());
-  EXPECT_EQ(found.status, FlappingStatus::jammed) << found.detail;
+  EXPECT_EQ(found.status, FlappingStatus::jammed) << describe(found.evidence);
   const SteadyFlapping by_statics = find_steady_flapping(vehicle);
   EXPECT_EQ(by_statics.status, FlappingStatus::jammed);
-  EXPECT_THAT(by_statics.detail, HasSubstr("lose their unique solution at crank angle"));
+  EXPECT_THAT(describe(by_statics.evidence), HasSubstr("lose their unique solution at crank angle"));
 }
 
 TEST(NotFlapping, SaysSoWhereARotatingOrbitAndALockExist) {
@@ -286,9 +286,9 @@ TEST(NotFlapping, SaysSoWhereARotatingOrbitAndALockExist) {
     if (orbit_alone.status != FlappingStatus::flapping) continue;
     seen = true;
     if (found.status == FlappingStatus::locked) {
-      EXPECT_THAT(found.detail, HasSubstr("a rotating orbit at"));
+      EXPECT_THAT(describe(found.evidence), HasSubstr("a rotating orbit at"));
     } else {
-      EXPECT_THAT(found.detail, HasSubstr("the crank also locks at crank angles"));
+      EXPECT_THAT(describe(found.evidence), HasSubstr("the crank also locks at crank angles"));
     }
   }
   EXPECT_TRUE(seen);
@@ -308,8 +308,9 @@ TEST(OrbitAgainstTransient, RandomVehiclesAgree) {
     options.tolerance = 2e-7;
     options.reporting = reporting;
     const TransientResult transient = simulate_start_up(vehicle, options);
-    ASSERT_EQ(orbit.status, transient.status) << "vehicle " << n << ": " << orbit.detail << " / " << transient.detail;
-    ASSERT_TRUE(transient.settled) << "vehicle " << n << ": " << transient.detail;
+    ASSERT_EQ(orbit.status, transient.status)
+        << "vehicle " << n << ": " << describe(orbit.evidence) << " / " << describe(transient.evidence);
+    ASSERT_TRUE(transient.settled) << "vehicle " << n << ": " << describe(transient.evidence);
     if (orbit.status != FlappingStatus::flapping) {
       ++resting;
       continue;

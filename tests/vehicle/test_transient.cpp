@@ -15,7 +15,7 @@ namespace wingbeat {
 namespace {
 
 using testing::HasSubstr;
-using Kind = TransientEvent::Kind;
+using Event = TransientEvent::Kind;
 
 void expect_relative(double value, double expected, double tolerance, const char* what) {
   EXPECT_NEAR(value / expected, 1.0, tolerance) << what << ": " << value << ", expected " << expected;
@@ -41,7 +41,7 @@ TEST_P(KnownOrbits, IsReachedFromRest) {
   TransientOptions options = with_tolerance(1e-9);
   options.record = true;
   const TransientResult r = simulate_start_up(reference_vehicle(orbit.springs), options);
-  ASSERT_EQ(r.status, FlappingStatus::flapping) << r.detail;
+  ASSERT_EQ(r.status, FlappingStatus::flapping) << describe(r.evidence);
   EXPECT_TRUE(r.settled);
   ASSERT_TRUE(r.metrics);
   const Metrics<double>& m = *r.metrics;
@@ -68,7 +68,7 @@ TEST_P(KnownOrbits, IsReachedFromRest) {
 
   int kinks = 0;
   for (const TransientEvent& e : r.events) {
-    if (e.kind != Kind::force_sign_change || e.crank_angle < two_pi * (r.cycles - 1)) continue;
+    if (e.kind != Event::force_sign_change || e.crank_angle < two_pi * (r.cycles - 1)) continue;
     ++kinks;
     const double angle = wrap_angle(e.crank_angle);
     EXPECT_LT(std::min(std::abs(angle - orbit.kinks[0]), std::abs(angle - orbit.kinks[1])), 1e-8);
@@ -80,7 +80,7 @@ TEST_P(KnownOrbits, ErrorsStayBelowTheToleranceAskedFor) {
   const KnownOrbit& orbit = GetParam();
   for (const double tolerance : {1e-3, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10}) {
     const TransientResult r = simulate_start_up(reference_vehicle(orbit.springs), with_tolerance(tolerance));
-    ASSERT_TRUE(r.settled && r.metrics) << r.detail;
+    ASSERT_TRUE(r.settled && r.metrics) << describe(r.evidence);
     const Metrics<double>& m = *r.metrics;
     expect_relative(m[Metric::frequency], orbit.frequency, tolerance, "frequency");
     expect_relative(m[Metric::power_electrical], orbit.power_electrical, tolerance, "electrical power");
@@ -98,7 +98,7 @@ TEST_P(KnownOrbits, IsItsOwnContinuation) {
   options.crank_speed = first.crank_speed;
   options.current = first.current;
   const TransientResult again = simulate_start_up(v, options);
-  ASSERT_TRUE(again.settled) << again.detail;
+  ASSERT_TRUE(again.settled) << describe(again.evidence);
   EXPECT_EQ(again.time_to_steady, 0.0);
   expect_relative(again.crank_speed, first.crank_speed, 2e-9, "speed");
   expect_relative(again.current, first.current, 2e-9, "current");
@@ -111,7 +111,7 @@ TEST(Transient, VirtualWorkHasNoResidualPower) {
   Vehicle<double> v = reference_vehicle(true);
   v.transmission.slider_crank.formulation = Formulation::virtual_work;
   const TransientResult r = simulate_start_up(v, with_tolerance(1e-9));
-  ASSERT_TRUE(r.settled && r.metrics) << r.detail;
+  ASSERT_TRUE(r.settled && r.metrics) << describe(r.evidence);
   EXPECT_NEAR((*r.metrics)[Metric::power_residual], 0.0, 1e-14);
   EXPECT_NEAR(audit_residual(*r.metrics), 0.0, 1e-9);
 }
@@ -148,7 +148,7 @@ TEST(Transient, WinglessReachesTheNoLoadSpeed) {
     Vehicle<double> v = wingless_vehicle();
     v.motor.armature_inductance = inductance;
     const TransientResult r = simulate_start_up(v, with_tolerance(1e-9));
-    ASSERT_TRUE(r.settled && r.metrics) << r.detail;
+    ASSERT_TRUE(r.settled && r.metrics) << describe(r.evidence);
     const double omega = no_load_speed(v.motor, v.voltage);
     expect_relative(two_pi * (*r.metrics)[Metric::frequency], omega, 2e-9, "speed");
     expect_relative((*r.metrics)[Metric::crank_speed_min], omega, 1e-8, "lowest speed");
@@ -162,14 +162,14 @@ TEST(Transient, SmallInductanceApproachesNone) {
   Vehicle<double> v = reference_vehicle(true);
   v.motor.armature_inductance = 0.0;
   const TransientResult none = simulate_start_up(v, with_tolerance(1e-8));
-  ASSERT_TRUE(none.settled && none.metrics) << none.detail;
+  ASSERT_TRUE(none.settled && none.metrics) << describe(none.evidence);
   EXPECT_FALSE(none.stiff);
   EXPECT_NEAR(audit_residual(*none.metrics), 0.0, 1e-8);
   EXPECT_DOUBLE_EQ(none.inrush_current, v.voltage / v.motor.armature_resistance);
 
   v.motor.armature_inductance = 1e-8;  // L_a / R_a = 1 ns
   const TransientResult small = simulate_start_up(v, with_tolerance(1e-8));
-  ASSERT_TRUE(small.settled && small.metrics) << small.detail;
+  ASSERT_TRUE(small.settled && small.metrics) << describe(small.evidence);
   EXPECT_TRUE(small.stiff);
   EXPECT_LT(small.steps, 50000);
   for (const Metric metric : {Metric::frequency, Metric::power_electrical, Metric::lift_mean, Metric::rod_force_peak}) {
@@ -186,8 +186,8 @@ TEST(Transient, WeakDampingConverges) {
   TransientOptions options = with_tolerance(1e-8);
   options.record = true;  // no extrapolation then
   const TransientResult patient = simulate_start_up(v, options);
-  ASSERT_TRUE(jumped.settled && jumped.metrics) << jumped.detail;
-  ASSERT_TRUE(patient.settled && patient.metrics) << patient.detail;
+  ASSERT_TRUE(jumped.settled && jumped.metrics) << describe(jumped.evidence);
+  ASSERT_TRUE(patient.settled && patient.metrics) << describe(patient.evidence);
   EXPECT_LT(jumped.cycles, patient.cycles);
   for (const Metric metric : {Metric::frequency, Metric::power_electrical, Metric::lift_mean, Metric::rod_force_peak}) {
     expect_relative((*jumped.metrics)[metric], (*patient.metrics)[metric], 2e-8,
@@ -202,7 +202,7 @@ TEST(Transient, StallsWhereFrictionExceedsTheStallTorque) {
   const TransientResult r = simulate_start_up(v);
   EXPECT_EQ(r.status, FlappingStatus::stalled);
   EXPECT_TRUE(r.settled);
-  EXPECT_THAT(r.detail, HasSubstr("0.003333"));
+  EXPECT_THAT(describe(r.evidence), HasSubstr("0.003333"));
   EXPECT_EQ(r.cycles, 0);
   EXPECT_FALSE(r.metrics);
   ASSERT_TRUE(r.lock_angle && r.torque_margin);
@@ -211,10 +211,10 @@ TEST(Transient, StallsWhereFrictionExceedsTheStallTorque) {
 
   v.motor.friction_torque = 3.3e-3;
   const TransientResult starts = simulate_start_up(v);
-  EXPECT_NE(starts.status, FlappingStatus::stalled) << starts.detail;
+  EXPECT_NE(starts.status, FlappingStatus::stalled) << describe(starts.evidence);
   // The current must first rise to the friction torque: i(t) = v / R_a (1 - exp(-t R_a / L_a)).
   ASSERT_FALSE(starts.events.empty());
-  EXPECT_EQ(starts.events[0].kind, Kind::breakaway);
+  EXPECT_EQ(starts.events[0].kind, Event::breakaway);
   EXPECT_NEAR(starts.events[0].time, -29e-3 / 9.0 * std::log1p(-3.3e-3 / (0.01 * 3.0 / 9.0)), 1e-12);
 }
 
@@ -242,7 +242,7 @@ TEST(Transient, LocksAgainstStrongSpringsAndFriction) {
   Vehicle<double> v = reference_vehicle();
   v.spring.stiffness = 0.02;
   const TransientResult r = simulate_start_up(v);
-  ASSERT_EQ(r.status, FlappingStatus::locked) << r.detail;
+  ASSERT_EQ(r.status, FlappingStatus::locked) << describe(r.evidence);
   EXPECT_TRUE(r.settled);
   ASSERT_TRUE(r.lock_angle && r.torque_margin);
   const CrankKinematics<double> k = crank_kinematics(v.transmission, std::sin(*r.lock_angle), std::cos(*r.lock_angle));
@@ -250,7 +250,7 @@ TEST(Transient, LocksAgainstStrongSpringsAndFriction) {
   const double margin = v.friction.radius * std::abs(F_s) - std::abs(static_torque(v, *r.lock_angle, 3.0 / 9.0));
   EXPECT_GT(margin, 0.0);
   EXPECT_NEAR(*r.torque_margin, margin, 1e-12);
-  EXPECT_THAT(r.detail, HasSubstr("rests at crank angle"));
+  EXPECT_THAT(describe(r.evidence), HasSubstr("rests at crank angle"));
 }
 
 TEST(Transient, SpiralsIntoAnEquilibriumWithoutFriction) {
@@ -260,11 +260,11 @@ TEST(Transient, SpiralsIntoAnEquilibriumWithoutFriction) {
     v.motor.armature_inductance = inductance;
     v.spring.stiffness = 0.02;
     const TransientResult r = simulate_start_up(v);
-    ASSERT_EQ(r.status, FlappingStatus::locked) << r.detail;
+    ASSERT_EQ(r.status, FlappingStatus::locked) << describe(r.evidence);
     EXPECT_TRUE(r.settled);
     ASSERT_TRUE(r.lock_angle);
     EXPECT_NEAR(static_torque(v, *r.lock_angle, 3.0 / 9.0), 0.0, 1e-10);
-    EXPECT_THAT(r.detail, HasSubstr("stable equilibrium"));
+    EXPECT_THAT(describe(r.evidence), HasSubstr("stable equilibrium"));
   }
 }
 
@@ -274,7 +274,7 @@ TEST(Transient, CreepingToRestIsRecognised) {
   v.spring.stiffness = 0.02;
   v.friction.damping = 1e-2;
   const TransientResult r = simulate_start_up(v);
-  ASSERT_EQ(r.status, FlappingStatus::locked) << r.detail;
+  ASSERT_EQ(r.status, FlappingStatus::locked) << describe(r.evidence);
   EXPECT_TRUE(r.settled);
   EXPECT_NEAR(*r.torque_margin, 0.0, 1e-9);
 }
@@ -284,13 +284,13 @@ TEST(Transient, JamsWhereTheRotorIsTooLight) {
   v.motor.inertia = 1e-9;
   v.friction.radius = 3e-3;
   const TransientResult r = simulate_start_up(v);
-  ASSERT_EQ(r.status, FlappingStatus::jammed) << r.detail;
+  ASSERT_EQ(r.status, FlappingStatus::jammed) << describe(r.evidence);
   EXPECT_TRUE(r.settled);
   ASSERT_TRUE(r.jam_angle);
   const CrankKinematics<double> k = crank_kinematics(v.transmission, std::sin(*r.jam_angle), std::cos(*r.jam_angle));
   EXPECT_NEAR(effective_inertia(v, k, -1.0) / v.motor.inertia, 0.0, 1e-5);
-  EXPECT_EQ(r.events.back().kind, Kind::jam);
-  EXPECT_THAT(r.detail, HasSubstr("jams at crank angle"));
+  EXPECT_EQ(r.events.back().kind, Event::jam);
+  EXPECT_THAT(describe(r.evidence), HasSubstr("jams at crank angle"));
   EXPECT_GT(r.end_time, 0.0);
 
   v.friction.radius = 6e-3;  // longer than the crank: jammed where it stands
@@ -305,7 +305,7 @@ TEST(Transient, FreeDecayAgainstConstantFriction) {
     TransientOptions options = with_tolerance(1e-10);
     options.crank_speed = omega_0;
     const TransientResult r = simulate_start_up(exact.vehicle, options);
-    EXPECT_EQ(r.status, FlappingStatus::stalled) << r.detail;
+    EXPECT_EQ(r.status, FlappingStatus::stalled) << describe(r.evidence);
     EXPECT_TRUE(r.settled);
     EXPECT_NEAR(r.end_time / exact.end_time, 1.0, 1e-9);
     EXPECT_NEAR(r.end_crank_angle / exact.end_crank_angle, 1.0, 1e-9);
@@ -319,7 +319,7 @@ TEST(Transient, FastPwmApproachesItsMeanVoltage) {
     TransientOptions options;
     options.supply = Supply<double>{SupplyType::pwm, 4.0, frequency, 0.75};
     const TransientResult r = simulate_start_up(reference_vehicle(true), options);
-    ASSERT_EQ(r.status, FlappingStatus::flapping) << r.detail;
+    ASSERT_EQ(r.status, FlappingStatus::flapping) << describe(r.evidence);
     EXPECT_TRUE(r.settled);
     ASSERT_TRUE(r.metrics);
     EXPECT_GT(r.averaged_cycles, 1);
@@ -337,7 +337,7 @@ TEST(Transient, PwmWithoutInductanceSwitchesTheCurrent) {
   options.supply = Supply<double>{SupplyType::pwm, 4.0, 2000.0, 0.75};
   options.record = true;
   const TransientResult r = simulate_start_up(v, options);
-  ASSERT_EQ(r.status, FlappingStatus::flapping) << r.detail;
+  ASSERT_EQ(r.status, FlappingStatus::flapping) << describe(r.evidence);
   EXPECT_NEAR(r.inrush_current, 4.0 / 9.0, 1e-12);
   // While switched off, the motor brakes: its current is -K omega / R_a.
   double lowest = 0.0;
@@ -350,7 +350,7 @@ TEST(Transient, SineOnACrankEndsHonestly) {
     TransientOptions options;
     options.supply = Supply<double>{SupplyType::sine, 3.0, frequency, 1.0};
     const TransientResult r = simulate_start_up(reference_vehicle(true), options);
-    EXPECT_FALSE(r.detail.empty());
+    EXPECT_FALSE(describe(r.evidence).empty());
     EXPECT_TRUE(std::isfinite(r.end_crank_angle));
     EXPECT_LE(r.steps, 1000001);
   }
@@ -369,8 +369,8 @@ TEST(Transient, ASineBreaksTheCrankAwayBetweenTwoLooks) {
   options.record_interval = 1e-4;
   options.max_time = 0.05;
   const TransientResult r = simulate_start_up(v, options);
-  const auto breakaway =
-      std::find_if(r.events.begin(), r.events.end(), [](const TransientEvent& e) { return e.kind == Kind::breakaway; });
+  const auto breakaway = std::find_if(r.events.begin(), r.events.end(),
+                                      [](const TransientEvent& e) { return e.kind == Event::breakaway; });
   ASSERT_NE(breakaway, r.events.end());
   // Without springs and inductance K v(t) / R_a = T_c.
   EXPECT_NEAR(breakaway->time, std::asin(0.4) / (two_pi * frequency), 1e-12);
@@ -392,7 +392,7 @@ TEST(Transient, BudgetsEndUnsettled) {
   const TransientResult short_time = simulate_start_up(reference_vehicle(), options);
   EXPECT_FALSE(short_time.settled);
   EXPECT_DOUBLE_EQ(short_time.end_time, 0.02);
-  EXPECT_THAT(short_time.detail, HasSubstr("no decision within 0.02 s"));
+  EXPECT_THAT(describe(short_time.evidence), HasSubstr("no decision within 0.02 s"));
 
   options = {};
   options.max_cycles = 2;
@@ -403,13 +403,13 @@ TEST(Transient, BudgetsEndUnsettled) {
 
   options = {};
   options.max_steps = 100;
-  EXPECT_THAT(simulate_start_up(reference_vehicle(), options).detail, HasSubstr("100 integration steps"));
+  EXPECT_THAT(describe(simulate_start_up(reference_vehicle(), options).evidence), HasSubstr("100 integration steps"));
 
   options = {};
   options.cancel = [] { return true; };
   const TransientResult cancelled = simulate_start_up(reference_vehicle(), options);
   EXPECT_FALSE(cancelled.settled);
-  EXPECT_THAT(cancelled.detail, HasSubstr("cancelled"));
+  EXPECT_THAT(describe(cancelled.evidence), HasSubstr("cancelled"));
 }
 
 TEST(Transient, RunawayIsNamed) {
@@ -426,7 +426,7 @@ TEST(Transient, RunawayIsNamed) {
   options.crank_speed = -499.0;
   const TransientResult r = simulate_start_up(v, options);
   EXPECT_FALSE(r.settled);
-  EXPECT_THAT(r.detail, HasSubstr("speeds up without bound"));
+  EXPECT_THAT(describe(r.evidence), HasSubstr("speeds up without bound"));
 }
 
 TEST(Transient, SamplesAtTheIntervalAskedFor) {
@@ -466,8 +466,8 @@ TEST(Transient, AnyVehicleEndsWithFiniteNumbers) {
   for (unsigned seed = 0; seed < 100; ++seed) {
     const auto [v, options] = any_start(seed);
     const TransientResult r = simulate_start_up(v, options);
-    SCOPED_TRACE(testing::Message() << "seed " << seed << ": " << r.detail);
-    EXPECT_FALSE(r.detail.empty());
+    SCOPED_TRACE(testing::Message() << "seed " << seed << ": " << describe(r.evidence));
+    EXPECT_FALSE(describe(r.evidence).empty());
     EXPECT_LE(r.steps, options.max_steps + 1);
     for (const double x : {r.end_time, r.end_crank_angle, r.time_to_steady, r.inrush_current, r.inrush_current_time,
                            r.crank_speed, r.current, r.cycle_scatter}) {

@@ -89,7 +89,7 @@ Orbit<N> orbit_of(const StrokeLawVehicle<double>& v, double tolerance) {
   guess[0] = 0.6 * no_load;
   if constexpr (N == 2) guess[1] = algebraic_current(v, v.voltage, guess[0]);
   orbit.summary = solver::solve_periodic(orbit.recorded.system, guess, {.tolerance = tolerance}, orbit.recorded.cycle);
-  EXPECT_EQ(orbit.summary.status, solver::PeriodicStatus::converged) << orbit.summary.message;
+  EXPECT_EQ(orbit.summary.status, solver::PeriodicStatus::converged) << describe(orbit.summary.status);
   const auto extremes = cycle_extremes(orbit.recorded.system, orbit.recorded.cycle, tolerance);
   orbit.metrics =
       cycle_metrics(v, cycle_integrals(orbit.recorded.cycle), extremes, orbit.summary.floquet_multiplier_max, {});

@@ -18,6 +18,7 @@
 
 #include "vehicle/wide_boxes.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/report/describe.hpp"
 #include "wingbeat/study/run.hpp"
 
 using namespace wingbeat;
@@ -67,7 +68,7 @@ Answer by_run(const WideVehicle& vehicle, Method method, double tolerance_wanted
   answer.decided = result.status != FlappingStatus::undecided;
   answer.status = result.status;
   answer.metrics = result.metrics;
-  answer.detail = result.detail;
+  answer.detail = describe(result);
   return answer;
 }
 

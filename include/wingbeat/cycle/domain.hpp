@@ -3,7 +3,10 @@
 
 #include <array>
 #include <bitset>
+#include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
@@ -74,11 +77,37 @@ DomainStatus domain_of(const DomainExcess& excess);
 /// "inside", or the limits that are exceeded, as "angle_of_attack, stroke".
 std::string name_of(DomainStatus status);
 
-/// One clause for each limit that is exceeded, with its number: "the angle of attack falls to -103 deg (the
-/// coefficients hold from 0 to 90 deg)"; empty inside.
-std::string describe_domain(const Vehicle<double>& vehicle, const Metrics<double>& metrics);
+/// A limit that a cycle exceeds: what lies outside which bounds. In words: describe().
+struct DomainEvidence {
+  enum class Quantity {
+    angle_of_attack_min,    ///< smallest of the cycle [deg]
+    angle_of_attack_range,  ///< the same [deg], where the coefficients end before the 90 deg of the reversals
+    stroke_angle,           ///< largest to either side, by the mechanism's geometry [deg]
+    stroke_amplitude,       ///< of a direct drive [deg]
+    residual_share,         ///< |P_residual / P_e| [1]
+    mechanism_efficiency,   ///< P_aero / P_m [1]
+    aerodynamic_power,      ///< P_aero [W] where the motor gives nothing; at most P_m
+    motor_efficiency,       ///< P_m / P_e [1]
+    input_power,            ///< P_e [W]
+    flow_speed              ///< largest at the radius S_3/S_2 [m/s]
+  };
+  DomainLimit limit;
+  Quantity quantity;
+  double value;            ///< in the quantity's unit
+  double lowest, highest;  ///< bounds, in the same
+};
 
-/// A sentence where `rod-force` fails to conserve more than formulation_residual_warn of the input power; else empty.
-std::string residual_warning(const Vehicle<double>& vehicle, const Metrics<double>& metrics);
+/// The limits that a flapping vehicle exceeds, in the order of DomainLimit; empty inside.
+std::vector<DomainEvidence> domain_evidence(const Vehicle<double>& vehicle, const Metrics<double>& metrics);
+
+/// One clause for each limit: "the angle of attack falls to -103 deg (the coefficients hold from 0 to 90 deg)"; empty
+/// inside.
+std::string describe(std::span<const DomainEvidence> evidence);
+
+/// The share of the input power that `rod-force` fails to conserve [1], where it exceeds formulation_residual_warn.
+std::optional<double> notable_residual(const Vehicle<double>& vehicle, const Metrics<double>& metrics);
+
+/// The sentence that says so.
+std::string residual_warning(double share);
 
 }  // namespace wingbeat

@@ -2,10 +2,8 @@
 #pragma once
 
 #include <cmath>
-#include <string>
 #include <utility>
 
-#include "wingbeat/core/text.hpp"
 #include "wingbeat/cycle/extremes.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
 
@@ -16,9 +14,7 @@ SteadyFlapping find_direct_flapping(const Vehicle<double>& vehicle, const Steady
                                     const StartUp& start_up);
 
 /// Takes the metrics of a vehicle that flaps, but on no orbit found, from its simulated cycle; undecided without one.
-/// `variable`: in which the orbit was sought.
-void fill_simulated(const StartUpOutcome& outcome, const SteadyOptions& options, const char* variable,
-                    SteadyFlapping& result);
+void fill_simulated(const StartUpOutcome& outcome, const SteadyOptions& options, bool direct, SteadyFlapping& result);
 
 /// Searches for a periodic orbit and fills the result from it.
 template <class System>

@@ -4,12 +4,12 @@
 
 #include <functional>
 #include <optional>
-#include <string>
 
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/cycle/record.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
+#include "wingbeat/cycle/status_evidence.hpp"
 #include "wingbeat/solve/periodic.hpp"
 
 namespace wingbeat {
@@ -24,8 +24,8 @@ struct SimulatedCycle {
 /// What a vehicle does when it is switched on at rest at stroke angle zero; the transient solver supplies it.
 struct StartUpOutcome {
   FlappingStatus status = FlappingStatus::flapping;
-  bool settled = false;       ///< false: undecided within the solver's limits
-  std::string detail;         ///< the evidence, one sentence
+  bool settled = false;  ///< false: undecided within the solver's limits
+  StatusEvidence evidence;
   double crank_speed = 0.0;   ///< flapping: omega at crank angle 0 (direct drive: phase 0 of the supply) [rad/s]
   double current = 0.0;       ///< flapping: i there [A]
   double stroke_angle = 0.0;  ///< flapping, direct drive: beta there [rad]
@@ -43,7 +43,7 @@ struct SteadyOptions {
 
 struct SteadyFlapping {
   FlappingStatus status = FlappingStatus::stalled;
-  std::string detail;               ///< one sentence: what was found, with the evidence
+  StatusEvidence evidence;          ///< what shows it; in words: describe()
   solver::PeriodicSummary summary;  ///< of the orbit search
   StaticBalance balance{};
   Metrics<double> metrics;  ///< all absent unless flapping

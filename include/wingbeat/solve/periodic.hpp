@@ -10,7 +10,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <string>
 #include <tuple>
 #include <utility>
 
@@ -31,16 +30,28 @@ struct PeriodicOptions {
 };
 
 enum class PeriodicStatus {
+  not_tried,  ///< nothing was searched for
   converged,
   barrier,         ///< iterates run into the edge of the admissible region: no orbit was found
   too_many_steps,  ///< an iterate needs more steps than allowed
   not_converged    ///< iterates neither settle nor fail within max_iterates
 };
 
+/// The same in words; empty where nothing was searched for.
+constexpr const char* describe(PeriodicStatus status) {
+  switch (status) {
+    case PeriodicStatus::not_tried: break;
+    case PeriodicStatus::converged: return "orbit closed";
+    case PeriodicStatus::barrier: return "an iterate ran into the edge of the admissible region";
+    case PeriodicStatus::too_many_steps: return "an iterate needs more steps than allowed";
+    case PeriodicStatus::not_converged: return "iterates did not close";
+  }
+  return "";
+}
+
 /// How a search for an orbit ended, in the manner of Ceres and SUNDIALS.
 struct PeriodicSummary {
-  PeriodicStatus status = PeriodicStatus::not_converged;
-  std::string message;
+  PeriodicStatus status = PeriodicStatus::not_tried;
   int iterates = 0;  ///< iterates integrated, those with derivatives included
   int newton_steps = 0;
   int steps = 0;                ///< integration steps of the final iterate
@@ -185,11 +196,10 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   double closed = 0.1 * options.tolerance;
 
   PeriodicSummary summary;
+  summary.status = PeriodicStatus::not_converged;
   const auto failed = [&](IterateStatus status) {
     summary.stop = iterate.stop;
     summary.status = status == IterateStatus::barrier ? PeriodicStatus::barrier : PeriodicStatus::too_many_steps;
-    summary.message = status == IterateStatus::barrier ? "an iterate ran into the edge of the admissible region"
-                                                       : "an iterate needs more steps than allowed";
     return summary;
   };
   iterate.switches.clear();
@@ -317,11 +327,7 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   }
   summary.residual = off;
   summary.steps = int(iterate.steps.size());
-  if (summary.status != PeriodicStatus::converged) {
-    summary.message = "iterates did not close";
-    return summary;
-  }
-  summary.message = "orbit closed";
+  if (summary.status != PeriodicStatus::converged) return summary;
   // Estimates of single steps are pessimistic.
   summary.error_estimate = 0.4 * amplification * cancellation * iterate.error_sum + cancellation * off;
   if (options.stability) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "wingbeat/cycle/orbit_gradient.hpp"
+#include "wingbeat/study/frequency_search.hpp"
 
 namespace wingbeat {
 
@@ -139,11 +140,12 @@ struct FitPoint {
   double residual() const { return (measured - fitted) / deviation; }
 };
 
-/// A row that the fitted model does not reach.
+/// A row that the fitted model does not reach; in words: describe() of report/describe.hpp.
 struct UnreachedRow {
   std::size_t log, row;
   FlappingStatus status;
-  std::string detail;
+  StatusEvidence evidence;               ///< what shows the status, unless a frequency is refused
+  std::optional<SearchFinding> refused;  ///< why the frequency cannot be reached
 };
 
 /// What one condition contributes.

@@ -19,13 +19,15 @@ struct DesignPointOptions {
   bool peaks = true;                     ///< differentiate metrics that are peaks
 };
 
-/// What a design does, and how its metrics change with parameters.
+/// What a design does, and how its metrics change with parameters; in words: describe() of report/describe.hpp.
 struct DesignPoint {
   SweepStatus status = SweepStatus::invalid;
-  std::string detail;            ///< one sentence: why it does not flap
-  Metrics<double> metrics;       ///< all absent unless flapping
-  DomainStatus domain;           ///< limits of the model that are exceeded; none unless flapping
-  DomainExcess domain_excess{};  ///< by how much; only where flapping
+  StatusEvidence evidence;               ///< what shows the status, unless one of the next two does
+  std::optional<SearchFinding> refused;  ///< why the frequency cannot be held
+  std::string error;                     ///< what() of the ParameterError of an invalid design
+  Metrics<double> metrics;               ///< all absent unless flapping
+  DomainStatus domain;                   ///< limits of the model that are exceeded; none unless flapping
+  DomainExcess domain_excess{};          ///< by how much; only where flapping
   /// Derivatives of domain_excess by each parameter, the stroke of a crank excepted (see stroke_excess); as
   /// `gradients`.
   std::vector<DomainExcess> domain_slopes;

@@ -7,7 +7,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "wingbeat/cycle/domain.hpp"
@@ -53,10 +52,14 @@ struct EnduranceRow {
   DomainStatus domain = {};           ///< limits of the model that are exceeded there
 };
 
+/// In words: describe() of report/describe.hpp.
 struct EnduranceResult {
   EnduranceEnd end = EnduranceEnd::never_starts;
   FlappingStatus status = FlappingStatus::stalled;  ///< at the first charge
-  std::string detail;                               ///< one sentence: how it ends, or why it does not start
+  StatusEvidence evidence;                          ///< what shows it
+  double first_charge = absent;                     ///< state of charge at the start [1]
+  double first_voltage = absent;                    ///< open-circuit voltage of the whole battery there [V]
+  std::optional<double> cutoff_voltage;             ///< of the whole battery [V]
   Hover hover = Hover::unknown;
   std::optional<EnduranceRow> hover_lost;  ///< the moment of Hover::lost: lift equals weight, or the domain is left
   std::vector<EnduranceRow> rows;          ///< from the first to the last charge; empty if it never starts

@@ -1,7 +1,8 @@
 // The voltage at which a vehicle flaps at a wanted frequency, or with a wanted lift; docs/targets.md.
 #pragma once
 
-#include <string>
+#include <optional>
+#include <vector>
 
 #include "wingbeat/cycle/domain.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
@@ -30,13 +31,51 @@ enum class FrequencyOutcome {
   outside_domain  ///< it flaps, but inside the domain of validity at no voltage, or not at the one that would do
 };
 
+enum class Sought { frequency, lift };
+
+/// How a search ended, in numbers; in words: describe() of report/describe.hpp. Behind each kind stand the members that
+/// belong to it beside sought, target and range.
+struct SearchFinding {
+  enum class Kind {
+    reached,             ///< evidence
+    never_flaps,         ///< at no voltage up to last_voltage; there status with evidence
+    no_wings_in_air,     ///< a lift without any
+    out_of_range,        ///< `at` lies outside by `limits`; inside from least (of a lift) to most, if anywhere
+    beyond_any_voltage,  ///< a frequency: stroke_amplitude, highest_frequency
+    jumps,               ///< the value jumps past the target: from least to `at`
+    too_low_at_first,    ///< at the lowest voltage tried, `at`, the value is above the target already
+    too_low_at_onset,    ///< the same where it starts to flap; below, status with evidence
+    too_high             ///< most; last_voltage; of a lift `limits`, where they end the search there
+  };
+  struct Place {
+    double voltage;  ///< [V]
+    double value;    ///< of what is sought [Hz or N]
+  };
+  Kind kind = Kind::never_flaps;
+  Sought sought = Sought::frequency;
+  double target = absent;  ///< [Hz or N]
+  SearchRange range = SearchRange::domain;
+  std::optional<Place> at = {}, least = {}, most = {};
+  double last_voltage = absent;                     ///< highest tried [V]
+  double stroke_amplitude = absent;                 ///< [rad]
+  double highest_frequency = absent;                ///< [Hz]: highest_frequency()
+  std::vector<DomainEvidence> limits = {};          ///< of the domain, exceeded; none in SearchRange::extrapolation
+  FlappingStatus status = FlappingStatus::stalled;  ///< with `evidence`
+  StatusEvidence evidence = {};
+  /// Pwm supply: the mean voltage at a duty of 1 [V], if that is below the voltage closest to the answer.
+  std::optional<double> full_duty_voltage = {};
+
+  /// The answer is refused for the sake of the domain, or known for its inside alone.
+  bool inside_domain_only() const;
+};
+
 struct FrequencySearch {
   FrequencyOutcome outcome = FrequencyOutcome::never_flaps;
   double voltage = absent;  ///< reached: [V]
   /// Not reached: what the vehicle does at the voltage closest to the answer; flapping for too_high, jumps and
   /// outside_domain.
   FlappingStatus status = FlappingStatus::stalled;
-  std::string detail;  ///< one sentence: what was found, or which frequencies can be reached
+  SearchFinding finding;  ///< what was found, or which frequencies can be reached
   int evaluations = 0;
   /// Not reached: where the vehicle comes closest in the range, such as the peak of the lift or its onset: voltage [V]
   /// and what it reaches there [Hz or N]. Absent where no cycle of the range was computed.

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "wingbeat/cycle/domain.hpp"
@@ -33,21 +32,23 @@ struct RunOptions {
   int waveform_rows = 0;             ///< instants of one cycle to return, both ends included; 0: none
 };
 
+/// In words: describe() of report/describe.hpp.
 struct RunResult {
   FlappingStatus status = FlappingStatus::stalled;
-  std::string detail;  ///< one sentence with the evidence
+  StatusEvidence evidence;  ///< what shows the status, unless `search` says why nothing was computed
   /// False: no steady state was shown within the solvers' limits; the status is undecided, or the metrics are averages
   /// over cycles that still differ.
   bool settled = true;
   bool simulated_cycle = false;  ///< Method::orbit found flapping in time only: the metrics are the simulated cycle's
   Metrics<double> metrics;       ///< all absent unless flapping
   DomainStatus domain;           ///< limits of the model that the cycle exceeds; none unless flapping
-  std::string domain_detail;     ///< the same in words with numbers; empty inside
-  std::vector<std::string> warnings;  ///< what a reader of the metrics should know beside the domain
+  std::vector<DomainEvidence> domain_evidence;  ///< the same with numbers
+  std::optional<double> residual_share;         ///< notable_residual(), of a vehicle that flaps
   std::vector<WaveformRow> cycle;
   solver::PeriodicSummary orbit;            ///< of Method::orbit
   std::optional<TransientResult> start_up;  ///< of Method::transient
   std::optional<FrequencySearch> search;    ///< where a frequency or a lift was asked for
+  std::optional<double> mean_voltage;       ///< of a pwm supply, which Method::orbit took for constant [V]
   Design<double> design;                    ///< as computed: with the voltage or duty that was found
 };
 

@@ -6,7 +6,6 @@
 
 #include <functional>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "wingbeat/core/status.hpp"
@@ -71,7 +70,7 @@ struct TransientResult {
   /// The decision is final. False: time, cycles or steps ran out first and the status is undecided; or it flaps, but
   /// cycles share no period with the supply.
   bool settled = false;
-  std::string detail;  ///< one sentence with the evidence
+  StatusEvidence evidence;  ///< what shows the status; in words: describe()
 
   double end_time = 0.0;         ///< time simulated [s]
   double end_crank_angle = 0.0;  ///< theta then, not wrapped [rad]

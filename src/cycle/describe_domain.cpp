@@ -1,0 +1,51 @@
+// The limits of the domain that a cycle exceeds, in words.
+#include "wingbeat/core/text.hpp"
+#include "wingbeat/cycle/domain.hpp"
+
+namespace wingbeat {
+namespace {
+
+using detail::format;
+
+std::string describe(const DomainEvidence& e) {
+  using Quantity = DomainEvidence::Quantity;
+  switch (e.quantity) {
+    case Quantity::angle_of_attack_min:
+      return format("the angle of attack falls to %.4g deg (the coefficients hold from %.4g to %.4g deg)", e.value,
+                    e.lowest, e.highest);
+    case Quantity::angle_of_attack_range:
+      return format("the angle of attack runs from %.4g to 90 deg (the coefficients hold from %.4g to %.4g deg)",
+                    e.value, e.lowest, e.highest);
+    case Quantity::stroke_angle:
+      return format("the stroke angle reaches %.4g deg (the mechanism's law holds to %.4g deg)", e.value, e.highest);
+    case Quantity::stroke_amplitude:
+      return format("the stroke amplitude is %.4g deg (at most %.4g deg)", e.value, e.highest);
+    case Quantity::residual_share:
+      return format("the formulation fails to conserve %.3g %% of the input power (at most %.3g %%)", 100.0 * e.value,
+                    100.0 * e.highest);
+    case Quantity::mechanism_efficiency:
+      return format("the mechanism efficiency is %.4g %% (0 to 100 %%)", 100.0 * e.value);
+    case Quantity::aerodynamic_power:
+      return format("the wings take %.3g W from a motor output of %.3g W", e.value, e.highest);
+    case Quantity::motor_efficiency: return format("the motor efficiency is %.4g %% (0 to 100 %%)", 100.0 * e.value);
+    case Quantity::input_power: return format("the input power is %.3g W (positive where the motor drives)", e.value);
+    case Quantity::flow_speed:
+      return format("the wings reach %.4g m/s (incompressible flow to %.4g m/s)", e.value, e.highest);
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string describe(std::span<const DomainEvidence> evidence) {
+  std::string text;
+  for (const DomainEvidence& e : evidence) text += (text.empty() ? "" : "; ") + describe(e);
+  return text;
+}
+
+std::string residual_warning(double share) {
+  return format("the formulation rod-force fails to conserve %.3g %% of the input power; virtual-work conserves it",
+                100.0 * share);
+}
+
+}  // namespace wingbeat

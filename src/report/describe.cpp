@@ -1,0 +1,155 @@
+#include "wingbeat/report/describe.hpp"
+
+#include <fmt/format.h>
+
+namespace wingbeat {
+namespace {
+
+using Finding = SearchFinding::Kind;
+
+/// "; below, it is locked (rests at ...)".
+std::string below(const SearchFinding& f) {
+  return fmt::format("; below, it is {} ({})", name_of(f.status), describe(f.evidence));
+}
+
+std::string describe_frequency(const SearchFinding& f, const char* inside) {
+  const std::string cannot = fmt::format("{:.5g} Hz cannot be reached", f.target);
+  switch (f.kind) {
+    case Finding::out_of_range: {
+      const std::string why = f.range == SearchRange::domain
+                                  ? describe(f.limits)
+                                  : fmt::format("the angle of attack falls below {:.4g} deg", extrapolation_angle_deg);
+      std::string text = fmt::format("{}{}: at {:.4g} V, where it flaps at {:.4g} Hz, {}", cannot, inside,
+                                     f.at->voltage, f.at->value, why);
+      if (f.most)
+        text += fmt::format("; inside it flaps at {:.4g} Hz at most, at {:.4g} V", f.most->value, f.most->voltage);
+      return text;
+    }
+    case Finding::beyond_any_voltage: {
+      const bool domain = f.range == SearchRange::domain;
+      return fmt::format(
+          "{} {}: at a stroke amplitude of {:.4g} deg, whatever the voltage, wings that flap at more than {:.4g} Hz "
+          "pass {}",
+          cannot, domain ? "inside the domain of validity" : "in the range that is searched",
+          degrees_per_radian * f.stroke_amplitude, f.highest_frequency,
+          domain ? "an angle of attack of 0 deg or Mach 0.3" : "an angle of attack of -360 deg or Mach 3");
+    }
+    case Finding::jumps:
+      return fmt::format(
+          "at {:.5g} V the flapping frequency jumps from {:.5g} Hz to {:.5g} Hz: {:.5g} Hz in between cannot be held",
+          f.at->voltage, f.least->value, f.at->value, f.target);
+    case Finding::too_low_at_first:
+      return fmt::format("{}: at {:.4g} V, the lowest voltage tried, it flaps at {:.4g} Hz already", cannot,
+                         f.at->voltage, f.at->value);
+    case Finding::too_low_at_onset:
+      return fmt::format("{}: from rest it flaps only above {:.4g} V, and there at {:.4g} Hz already", cannot,
+                         f.at->voltage, f.at->value) +
+             below(f);
+    case Finding::too_high:
+      return fmt::format("{}: up to {:.4g} V it flaps at {:.4g} Hz at most, at {:.4g} V", cannot, f.last_voltage,
+                         f.most->value, f.most->voltage);
+    default: return "";
+  }
+}
+
+std::string describe_lift(const SearchFinding& f, const char* inside) {
+  const std::string cannot = fmt::format("{:.5g} N cannot be reached", f.target);
+  switch (f.kind) {
+    case Finding::no_wings_in_air: return cannot + ": without wings in air there is no lift";
+    case Finding::out_of_range:
+      if (!f.most) {
+        return fmt::format("{}{}: it leaves it at every voltage at which it flaps; at {:.4g} V {}", cannot, inside,
+                           f.at->voltage, describe(f.limits));
+      }
+      return fmt::format(
+          "{}{}: at {:.4g} V, where it lifts so much, {}; inside it lifts from {:.4g} N, at {:.4g} V, to {:.4g} N, at "
+          "{:.4g} V",
+          cannot, inside, f.at->voltage, describe(f.limits), f.least->value, f.least->voltage, f.most->value,
+          f.most->voltage);
+    case Finding::jumps:
+      return fmt::format(
+          "at {:.5g} V the mean lift jumps from {:.5g} N to {:.5g} N: {:.5g} N in between cannot be held",
+          f.at->voltage, f.least->value, f.at->value, f.target);
+    case Finding::too_low_at_first:
+      return fmt::format("{}{}: at {:.4g} V, the lowest voltage tried, it lifts {:.4g} N already", cannot, inside,
+                         f.at->voltage, f.at->value);
+    case Finding::too_low_at_onset:
+      return fmt::format("{}{}: from rest it flaps only above {:.4g} V, and there lifts {:.4g} N already", cannot,
+                         inside, f.at->voltage, f.at->value) +
+             below(f);
+    case Finding::too_high:
+      return fmt::format("{}{}: it lifts {:.4g} N at most, at {:.4g} V", cannot, inside, f.most->value,
+                         f.most->voltage) +
+             (f.limits.empty() ? fmt::format(" (voltages up to {:.4g} V)", f.last_voltage)
+                               : fmt::format("; at {:.4g} V {}", f.last_voltage, describe(f.limits)));
+    default: return "";
+  }
+}
+
+}  // namespace
+
+std::string describe(const SearchFinding& f) {
+  const char* inside = f.range == SearchRange::domain ? " inside the domain of validity" : "";
+  std::string text;
+  if (f.kind == Finding::reached) {
+    text = describe(f.evidence);
+  } else if (f.kind == Finding::never_flaps) {
+    text = fmt::format("it flaps at no voltage up to {:.4g} V; there it is {}: {}", f.last_voltage, name_of(f.status),
+                       describe(f.evidence));
+  } else {
+    text = f.sought == Sought::lift ? describe_lift(f, inside) : describe_frequency(f, inside);
+  }
+  if (f.full_duty_voltage) text += fmt::format("; a duty of 1 gives {:.4g} V", *f.full_duty_voltage);
+  return text;
+}
+
+std::string describe(const RunResult& r) {
+  if (r.search && r.search->outcome != FrequencyOutcome::reached) return describe(r.search->finding);
+  std::string text = describe(r.evidence);
+  if (r.mean_voltage) {
+    text += fmt::format("; the orbit sees the mean voltage of the pwm supply, {:.4g} V", *r.mean_voltage);
+    if (r.search && r.search->finding.sought == Sought::lift) {
+      text += fmt::format(", at a duty of {:.6g}", r.design.supply.duty);
+    }
+  }
+  return text;
+}
+
+std::string describe(const DesignPoint& point) {
+  if (!point.error.empty()) return point.error;
+  return point.refused ? describe(*point.refused) : describe(point.evidence);
+}
+
+std::string describe(const UnreachedRow& row) { return row.refused ? describe(*row.refused) : describe(row.evidence); }
+
+std::string describe(const EnduranceResult& r) {
+  if (r.end == EnduranceEnd::never_starts) {
+    return fmt::format("the battery cannot start the vehicle at a charge of {:.4g} ({:.4g} V without load): {}",
+                       r.first_charge, r.first_voltage, describe(r.evidence));
+  }
+  const EnduranceRow& last = r.rows.back();
+  const double v = last.metrics[Metric::voltage];
+  switch (r.end) {
+    case EnduranceEnd::empty:
+      return last.time > 0.0 ? fmt::format("the battery is empty after {:.4g} s", last.time)
+                             : "the battery is empty from the start";
+    case EnduranceEnd::cutoff:
+      return last.time > 0.0
+                 ? fmt::format(
+                       "the terminal voltage falls to the cut-off voltage, {:.4g} V in all, after {:.4g} s, at a "
+                       "charge of {:.4g}",
+                       *r.cutoff_voltage, last.time, last.charge)
+                 : fmt::format(
+                       "the terminal voltage of {:.4g} V is not above the cut-off voltage, {:.4g} V in all, from the "
+                       "start",
+                       v, *r.cutoff_voltage);
+    case EnduranceEnd::stops:
+      return fmt::format(
+          "after {:.4g} s, at a charge of {:.4g} and {:.4g} V at the terminals, the battery no longer turns the crank",
+          last.time, last.charge, v);
+    case EnduranceEnd::never_starts: break;
+  }
+  return "";
+}
+
+}  // namespace wingbeat
