@@ -74,6 +74,11 @@ void validate(const Design<double>& d) {
                                                  : "give one of stiffness and resonance, not both");
   }
   validate(d.wing.planform);
+  const Planform<double>& planform = d.wing.planform;
+  if (d.aerodynamics.added_mass != AddedMass::none && planform.shape == PlanformShape::moments && !planform.s22) {
+    throw ParameterError("aerodynamics.added_mass",
+                         "needs the wing's outline: give wing.planform.s22, or a planform with a shape");
+  }
 
   const Vehicle<double> v = resolve(d);
   if (drive_of(d).rotates) validate(v.transmission);

@@ -26,6 +26,7 @@ Vehicle<double> generic_vehicle(Formulation formulation) {
   v.spring.stiffness = 1.1e-3;
   v.source_resistance = 1.7;
   v.wings.angle_of_attack_min = 0.2;
+  v.wings.added_inertia = 4e-8;
   v.drive_frequency = 22.0;
   return v;
 }

@@ -118,10 +118,12 @@ struct AerodynamicsDesign {
   std::string coefficients_name = "translational-2022";  ///< the named set, or "custom" or "table"
   ForceCoefficients<S> coefficients;
   std::optional<S> angle_of_attack_min;  ///< stop of the passive pitching [rad]; none unless given
+  AddedMass added_mass = AddedMass::none;
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
-    return use(of.air_density, of.pitch_coefficient, of.coefficients_name, of.coefficients, of.angle_of_attack_min);
+    return use(of.air_density, of.pitch_coefficient, of.coefficients_name, of.coefficients, of.angle_of_attack_min,
+               of.added_mass);
   }
 };
 

@@ -110,6 +110,10 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
   v.wings.s3 = wings ? moments.s3 : S(0.0);
   v.wings.coefficients = design.aerodynamics.coefficients;
   if (design.aerodynamics.angle_of_attack_min) v.wings.angle_of_attack_min = *design.aerodynamics.angle_of_attack_min;
+  if (design.aerodynamics.added_mass == AddedMass::strip_theory && wings) {
+    const S s22 = squared_chord_moment(design.wing.planform, design.wing.count);
+    v.wings.added_inertia = added_inertia_of(v.wings.air_density, s22);
+  }
   return v;
 }
 
@@ -141,11 +145,12 @@ struct Motion {
   S stored_moment;        ///< N_w J_w beta'' + N_w k beta [N m]
 };
 
-/// J + A (h + s mu r_e) [kg m2], the divisor of omega' on the branch s (model.md section 2). The equations have one
-/// solution while it is positive for s = +1 and s = -1 and the lever g is positive.
+/// J + A (h + s mu r_e) [kg m2], the divisor of omega' on the branch s (model.md section 2), with all of the added mass
+/// that there may be: that at rest. The equations have one solution while it is positive for s = +1 and s = -1 and the
+/// lever g is positive.
 template <template <Scalar> class V, Scalar S>
 S effective_inertia(const V<S>& v, const CrankKinematics<S>& k, const S& s) {
-  const S A = v.wing_count * v.wing_inertia * k.stroke_slope / k.wing_lever;
+  const S A = (v.wing_count * v.wing_inertia + v.wings.added_inertia) * k.stroke_slope / k.wing_lever;
   return v.motor.inertia + A * (k.crank_lever + s * v.friction.radius);
 }
 
@@ -191,7 +196,7 @@ template <template <Scalar> class V, Scalar S>
   at.drive = at.motor.torque - at.motor.drag_torque - at.load_free;
 
   // F = A omega' + C of model.md, both sides times g, which saves dividing by it twice.
-  const S N_J = v.wing_count * v.wing_inertia;
+  const S N_J = v.wing_count * v.wing_inertia + at.aero.added_inertia;
   at.A_g = N_J * k.stroke_slope;
   at.C_g = N_J * k.stroke_curve * square(omega) + at.aero.moment + at.spring_moment;
   at.force_switch = v.motor.inertia * at.C_g + at.A_g * at.drive;
@@ -272,7 +277,7 @@ S no_load_speed(const V<S>& v) {
   return K * v.voltage / (K * K + circuit_resistance(v) * v.motor.viscous_damping);
 }
 
-/// Kinetic energy of all wings and elastic energy of all hinge springs [J].
+/// Kinetic energy of all wings, without the air that moves with them, and elastic energy of all hinge springs [J].
 template <template <Scalar> class V, Scalar S>
 S wing_energy(const V<S>& v, const CrankKinematics<S>& k, const S& stroke_velocity) {
   const S kinetic = S(0.5) * v.wing_count * v.wing_inertia * square(stroke_velocity);
