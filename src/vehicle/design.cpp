@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "wingbeat/core/text.hpp"
 #include "wingbeat/vehicle/drive.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
@@ -45,6 +46,29 @@ void validate_direct(const Design<double>& d) {
   }
 }
 
+/// Added mass takes inertia away where the wings pitch fast (model.md section 10): what is left must stay positive at
+/// every angle of attack from 0 to 90 deg, or the equations of motion have no unique solution.
+void validate_added_mass(const Design<double>& d, const Vehicle<double>& v) {
+  const double J_a = v.wings.added_inertia;
+  if (!(J_a > 0.0)) return;
+  if (d.aerodynamics.angle_of_attack_min) {
+    throw ParameterError("aerodynamics.added_mass",
+                         "the wings' inertia would jump where their pitching meets its stop: not with "
+                         "angle_of_attack_min");
+  }
+  if (!(v.wings.pitch_coefficient > 0.0)) return;
+  constexpr double x = 1.2278223736171916;  // C_alpha |beta'| where the share is least: 1.5 sin(2 x) + x cos(2 x) = 0
+  const double share = square(std::cos(x)) - x * std::sin(x) * std::cos(x);
+  const double own = v.wing_count * v.wing_inertia + (drive_of(d).rotates ? 0.0 : v.motor.inertia);
+  if (own + share * J_a > 0.0) return;
+  throw ParameterError(
+      "aerodynamics.added_mass",
+      detail::format(
+          "the air's inertia of %.4g kg m2 is too large beside that of the wings, %.4g kg m2: at an angle of "
+          "attack of %.1f deg %.3f of it counts, and no inertia is left",
+          J_a, own, 90.0 - degrees_per_radian * x, share));
+}
+
 }  // namespace
 
 void validate(const Design<double>& d) {
@@ -84,6 +108,7 @@ void validate(const Design<double>& d) {
   if (drive_of(d).rotates) validate(v.transmission);
   validate(v.spring);
   validate(v.wings);
+  validate_added_mass(d, v);
   if (d.supply_resonance_ratio && !(v.drive_frequency > 0.0)) {
     throw ParameterError("supply.resonance_ratio", "the springs' stiffness is 0: nothing resonates");
   }
