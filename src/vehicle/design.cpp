@@ -26,6 +26,11 @@ void validate_direct(const Design<double>& d) {
   if (d.supply.type != SupplyType::sine) {
     throw ParameterError("supply.type", "a direct drive swings as its supply does: expected sine");
   }
+  if (d.motor.gear_efficiency && *d.motor.gear_efficiency < 1.0) {
+    throw ParameterError("motor.gear_efficiency",
+                         "a direct drive's load changes the direction of power twice a stroke, where such a gearbox "
+                         "would stick: expected 1");
+  }
   if (d.friction.law == FrictionLaw::load_proportional) {
     throw ParameterError("friction.type",
                          "load-proportional friction follows the rod force, and a direct drive has no "

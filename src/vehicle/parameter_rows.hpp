@@ -109,6 +109,10 @@ std::span<const Parameter<S>> parameter_table() {
       number<S, Geared>({"motor.gear_damping", "N m s/rad", range::not_negative, "0 N m s/rad",
                          "b_G, viscous damping of the gearbox at the output shaft"},
                         [](auto& d) -> auto& { return d.motor.gear_damping; }),
+      number<S>(row(motor_key::gear_efficiency, "1",
+                    "eta, torque behind the gearbox over torque before it while the motor drives; 1/eta while the load "
+                    "drives"),
+                [](auto& d) -> auto& { return d.motor.gear_efficiency; }),
       number<S>(row(motor_key::armature_resistance, "required", "R_a, armature resistance", {}, "9 ohm"),
                 [](auto& d) -> auto& { return d.motor.constants.armature_resistance; }),
       number<S>(row(motor_key::armature_inductance, "required",

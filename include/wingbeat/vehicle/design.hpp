@@ -33,12 +33,13 @@ template <Scalar S>
 struct MotorDesign {
   std::optional<S> gear_ratio;  ///< given: the constants below are the motor shaft's
   Motor<S> constants;
-  S gear_inertia = S(0);  ///< J_G [kg m2], only with gear_ratio
-  S gear_damping = S(0);  ///< b_G [N m s/rad], only with gear_ratio
+  S gear_inertia = S(0);                  ///< J_G [kg m2], only with gear_ratio
+  S gear_damping = S(0);                  ///< b_G [N m s/rad], only with gear_ratio
+  std::optional<S> gear_efficiency = {};  ///< eta [1]; 1 unless given
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
-    return use(of.gear_ratio, of.constants, of.gear_inertia, of.gear_damping);
+    return use(of.gear_ratio, of.constants, of.gear_inertia, of.gear_damping, of.gear_efficiency);
   }
 };
 
