@@ -20,6 +20,7 @@ const std::array<MetricInfo, metric_count>& metric_table() {
       {"power_reactive_w", "W", "mean absolute reactive power"},
       {"power_copper_w", "W", "mean copper loss of the motor"},
       {"power_viscous_w", "W", "mean viscous loss of the motor"},
+      {"power_gear_w", "W", "mean loss of the gearbox under load"},
       {"power_loss_w", "W", "mean total loss"},
       {"power_residual_w", "W", "mean power the transmission formulation fails to conserve"},
       {"lift_mean_n", "N", "mean lift"},
@@ -52,6 +53,7 @@ double error_scale(const Metrics<double>& metrics, Metric which) {
   const double size = std::abs(metrics[which]);
   switch (which) {
     case Metric::angle_of_attack_min: return std::max(size, 90.0);
+    case Metric::power_gear:
     case Metric::power_residual: return std::max(size, std::abs(metrics[Metric::power_electrical]));
     case Metric::lift_mean: return std::max(size, 1e-3 * metrics[Metric::lift_peak]);
     case Metric::lift_to_weight:

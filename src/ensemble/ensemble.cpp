@@ -111,7 +111,7 @@ class EnsembleRun {
     for (std::size_t n = 0; n < members_.size(); ++n) {
       const Vehicle<double>& v = members_[n].vehicle;
       if (options_.scalar_only || !has_packs || v.wings.coefficients.table || has_pitch_stop(v.wings) ||
-          v.transmission.type != TransmissionType::slider_crank) {
+          has_gear_loss(v.motor) || v.transmission.type != TransmissionType::slider_crank) {
         solve_by_scalar(n);
       } else if (stall_torque(v) <= breakaway_torque(v)) {
         settle(n, FlappingStatus::stalled);

@@ -65,6 +65,7 @@ class Reader {
     read_choice("wing.planform.shape", d.wing.planform.shape);
     check_alternatives();
     attempt([&] { read_coefficients(d.aerodynamics); });
+    attempt([&] { read_added_mass(d.aerodynamics); });
     read_numbers(d);
     attempt([&] {
       if (d.supply.type == SupplyType::battery) read_discharge_curve(d.supply.battery);
@@ -215,6 +216,11 @@ class Reader {
               "rod-force or virtual-work: virtual-work conserves power and is the choice for a new vehicle, "
               "rod-force is equation (1) of the 2022 paper as printed");
     }
+  }
+
+  void read_added_mass(AerodynamicsDesign<double>& a) const {
+    const std::string_view path = "aerodynamics.added_mass";
+    if (document_.find(path)) a.added_mass = choice<AddedMass>(path);
   }
 
   void read_numbers(Design<double>& d) {

@@ -25,6 +25,7 @@ void validate(const Planform<double>& p) {
   if (p.shape == PlanformShape::moments) {
     require(planform_key::s2, p.s2);
     require(planform_key::s3, p.s3);
+    if (p.s22) require(planform_key::s22, *p.s22);
     return;
   }
   require(planform_key::hub_offset, p.hub_offset);

@@ -44,12 +44,11 @@ std::string motor_section(const MotorIdentification& motor, const MotorDatasheet
                                  sheet.name.empty() ? "Motor of a data sheet" : one_line(sheet.name, 100), made_by);
   for (const Contradiction& c : motor.contradictions) text += fmt::format("# On the sheet, {}.\n", sentence(c));
   for (const std::string& remark : motor.remarks) text += fmt::format("# {}.\n", remark);
-  if (sheet.gear_efficiency)
-    text += fmt::format("# Of the sheet, not of this section: gear_efficiency = {}\n", *sheet.gear_efficiency);
   text += "\n[motor]\n";
   for (const Constant& c : constants) {
     text += fmt::format("{} = \"{} {}\"\n", c.key, *(motor.*c.value).value, c.unit);
   }
+  if (sheet.gear_efficiency) text += fmt::format("gear_efficiency = {}\n", *sheet.gear_efficiency);
   return text;
 }
 

@@ -108,11 +108,16 @@ void plot_powers(std::span<const PowerBar> bars, const std::string& title, PlotF
     bool light;    ///< needs dark text
     double key_x;  ///< where its key starts, fraction of the page
   };
-  constexpr Part parts[] = {{"copper", &EnergyAudit::copper, "#d55e00", false, 0.04},
-                            {"viscous", &EnergyAudit::viscous, "#f0e442", true, 0.216},
-                            {"friction", &EnergyAudit::friction, "#56b4e9", true, 0.398},
-                            {"aerodynamic", &EnergyAudit::aerodynamic, "#00507c", false, 0.575},
-                            {"residual", &EnergyAudit::residual, "#bbbbbb", true, 0.829}};
+  std::vector<Part> parts = {{"copper", &EnergyAudit::copper, "#d55e00", false, 0.04},
+                             {"viscous", &EnergyAudit::viscous, "#f0e442", true, 0.216},
+                             {"friction", &EnergyAudit::friction, "#56b4e9", true, 0.398},
+                             {"aerodynamic", &EnergyAudit::aerodynamic, "#00507c", false, 0.575},
+                             {"residual", &EnergyAudit::residual, "#bbbbbb", true, 0.829}};
+  if (std::any_of(bars.begin(), bars.end(), [](const PowerBar& bar) { return bar.audit.gear != 0.0; })) {
+    parts.insert(parts.begin() + 2, {"gearbox", &EnergyAudit::gear, "#009e73", false, 0.0});
+    constexpr double key_x[] = {0.03, 0.174, 0.326, 0.492, 0.64, 0.862};
+    for (std::size_t n = 0; n < parts.size(); ++n) parts[n].key_x = key_x[n];
+  }
 
   double most = 0.0;
   for (const PowerBar& bar : bars) most = std::max(most, bar.audit.electrical);

@@ -90,6 +90,7 @@ void power_group(Table& table, const Metrics<double>& m) {
   power("electrical input", a.electrical, "v i");
   power("  copper loss", a.copper, "R_a i^2");
   power("  viscous loss of the motor", a.viscous, "b omega^2");
+  if (a.gear != 0.0) power("  gearbox", a.gear, "(1 - e) T_g omega");
   power("  friction", a.friction, "T_f omega");
   power("  aerodynamic", a.aerodynamic, "M_aero beta'");
   power("  formulation residual", a.residual, "F (h omega - g beta')");

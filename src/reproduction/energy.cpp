@@ -12,11 +12,13 @@
 namespace wingbeat {
 
 EnergyFlow energy_flow(const EnergyAudit& a) {
-  return {a.electrical,
-          a.electrical - a.copper - a.viscous,
-          {{"copper", a.copper}, {"motor viscous", a.viscous}},
-          {{"friction", a.friction}, {"form. residual", a.residual}},
-          a.aerodynamic};
+  EnergyFlow flow{a.electrical,
+                  a.electrical - a.copper - a.viscous,
+                  {{"copper", a.copper}, {"motor viscous", a.viscous}},
+                  {{"friction", a.friction}, {"form. residual", a.residual}},
+                  a.aerodynamic};
+  if (a.gear != 0.0) flow.transmission.insert(flow.transmission.begin(), {"gearbox", a.gear});
+  return flow;
 }
 
 namespace reproduction {

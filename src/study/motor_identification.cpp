@@ -152,15 +152,13 @@ void take_inductance(const MotorDatasheet& s, const MotorFit& fit, std::optional
 void remark_on_gear(const MotorDatasheet& s, MotorIdentification& result) {
   if (s.gear_efficiency && s.shaft == Shaft::output) {
     result.remarks.push_back(
-        format("the gear efficiency of %.4g served to read the sheet's torques at the output; the "
-               "[motor] section holds no gear efficiency, so that a vehicle with this motor has an "
-               "ideal gearbox: its losses under load are not in any result",
+        format("the gear efficiency of %.4g served to read the sheet's torques at the output, and the [motor] "
+               "section holds it: a vehicle with this motor loses as much under load",
                *s.gear_efficiency));
   } else if (s.gear_efficiency) {
     result.remarks.push_back(
-        format("the gear efficiency of %.4g is NOT USED: the sheet's values stand for the motor shaft, "
-               "and the [motor] section holds no gear efficiency, so that a vehicle with this motor "
-               "has an ideal gearbox: its losses under load are not in any result",
+        format("the sheet's values stand for the motor shaft, before the gearbox: its efficiency of %.4g serves no "
+               "reading, and the [motor] section holds it: a vehicle with this motor loses as much under load",
                *s.gear_efficiency));
   }
 }

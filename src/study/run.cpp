@@ -21,9 +21,17 @@ Motion<double> motion_of(const Vehicle<double>& vehicle, double crank_angle, dou
   Motion<double> m = motion_at(vehicle, s, c, omega, i, v_t, branch);
   branch.pitching = sign_of(m.aero.pitch_margin);
   if (branch.pitching < 0.0) m = motion_at(vehicle, s, c, omega, i, v_t, branch);
-  if (m.force_switch >= 0.0) return m;
-  branch.force = -1.0;
-  return motion_at(vehicle, s, c, omega, i, v_t, branch);
+  // The signs of rod force and gear torque may depend on each other: on one of their four branches both agree.
+  for (const double gear : {1.0, -1.0}) {
+    for (const double force : {1.0, -1.0}) {
+      branch.gear = gear;
+      branch.force = force;
+      m = motion_at(vehicle, s, c, omega, i, v_t, branch);
+      const bool force_agrees = force > 0.0 ? m.force_switch >= 0.0 : m.force_switch < 0.0;
+      if (force_agrees && gear * m.gear_torque >= 0.0) return m;
+    }
+  }
+  return m;
 }
 
 /// The last whole cycle of a simulation, sampled evenly in time. The simulation is repeated with samples about as dense

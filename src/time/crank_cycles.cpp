@@ -281,6 +281,14 @@ void CrankStartUp::take_metrics(int cycles) {
   for (int k = 0; k < quadrature_count; ++k) integrals[std::size_t(quadratures[k])] = q_[k] / cycles;
   integrals[std::size_t(Integral::time)] = (now_.t - start) / cycles;
   integrals[std::size_t(Integral::reactive_work)] = variation_ / cycles;
+  const Motor<double>& m = model_.vehicle.motor;
+  if (has_gear_loss(m)) {
+    // What the motor gives less what comes out, which over whole cycles is what the gearbox loses.
+    const auto total = [&](Integral which) { return integrals[std::size_t(which)]; };
+    integrals[std::size_t(Integral::gear_work)] =
+        total(Integral::electrical_work) - m.armature_resistance * total(Integral::current_square) -
+        m.viscous_damping * total(Integral::speed_square) - total(Integral::motor_work);
+  }
   result_.metrics = cycle_metrics(model_.vehicle, integrals, extremes_, absent, options_.reporting);
   result_.averaged_cycles = cycles;
   if (ripple_count_ > 0) result_.current_ripple = ripple_sum_ / double(ripple_count_);

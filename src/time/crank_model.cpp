@@ -72,11 +72,21 @@ Motion<double> CrankModel::motion(double t, const double* y, Branch<double>* use
   Branch<double> branch = now.branch;
   branch.stroke = sign_of(stroke_velocity);
   branch.pitching = sign_of(pitch_margin(vehicle.wings, std::abs(stroke_velocity)));
-  if (used) *used = branch;
   const double i = current_of(t, y), v_t = terminal_voltage(vehicle, voltage(t), i);
-  const Instant<double> at =
-      instant_at(vehicle, k, spring_moment(vehicle, k), y[1], i, v_t, branch.stroke, branch.direction, branch.pitching);
-  return motion_on(vehicle, at, i, v_t, branch);
+  const double N_k_beta = spring_moment(vehicle, k);
+  const auto on_branch = [&] {
+    const Instant<double> at =
+        instant_at(vehicle, k, N_k_beta, y[1], i, v_t, branch.stroke, branch.direction, branch.pitching, branch.gear);
+    return motion_on(vehicle, at, i, v_t, branch);
+  };
+  branch.gear = 1.0;
+  Motion<double> m = on_branch();
+  if (m.gear_torque < 0.0) {
+    branch.gear = -1.0;
+    m = on_branch();
+  }
+  if (used) *used = branch;
+  return m;
 }
 
 bool CrankModel::rates(double t, const double* y, double* dy, bool quadrature) const {
@@ -102,15 +112,30 @@ double CrankModel::static_force(const CrankKinematics<double>& k) const {
   return wingbeat::static_rod_force(k, spring_moment(vehicle, k));
 }
 
-/// K i - F_s h [N m]: what would turn the crank at rest.
+/// K i - F_s h [N m]: what would turn the crank at rest. Behind a gearbox that loses torque, from the middle of the
+/// standing torques.
 double CrankModel::net_static_torque(double theta, double i) const {
+  if (has_gear_loss(vehicle.motor)) {
+    const StandingTorques<double> at = standing_torques(theta);
+    return vehicle.motor.torque_constant * i - 0.5 * (at.low + at.high);
+  }
   const CrankKinematics<double> k = kinematics(theta);
   return vehicle.motor.torque_constant * i - static_force(k) * k.crank_lever;
 }
 
-/// mu r_e |F_s| + T_c [N m]: what friction can hold at rest.
+/// mu r_e |F_s| + T_c [N m]: what friction, and the gearbox with it, can hold at rest.
 double CrankModel::holding_torque(double theta) const {
+  if (has_gear_loss(vehicle.motor)) {
+    const StandingTorques<double> at = standing_torques(theta);
+    return 0.5 * (at.high - at.low);
+  }
   return wingbeat::holding_torque(vehicle, static_force(kinematics(theta)));
+}
+
+/// Torques of the motor [N m] between which the crank stands.
+StandingTorques<double> CrankModel::standing_torques(double theta) const {
+  const CrankKinematics<double> k = kinematics(theta);
+  return wingbeat::standing_torques(vehicle, k, static_force(k));
 }
 
 double CrankModel::wing_energy() const {

@@ -64,6 +64,7 @@ class CrankModel {
   double static_force(const CrankKinematics<double>& k) const;
   double net_static_torque(double theta, double i) const;
   double holding_torque(double theta) const;
+  StandingTorques<double> standing_torques(double theta) const;
   double wing_energy() const;
   double current_slope(double t, const double* y, const double* rates) const;
   double uniqueness(double theta) const;

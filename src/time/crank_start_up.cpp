@@ -148,9 +148,16 @@ bool CrankStartUp::out_of_budget() {
 
 /// At a standstill: rests for good, waits for the current to break it away, or moves on in the direction of the torque.
 void CrankStartUp::stand() {
-  const CrankKinematics<double> k = model_.kinematics(now_.theta);
-  const double load = model_.static_force(k) * k.crank_lever;
-  const double hold = model_.vehicle.friction.radius * std::abs(model_.static_force(k)) + model_.constant_friction;
+  double load, hold;
+  if (has_gear_loss(model_.vehicle.motor)) {
+    const StandingTorques<double> at = model_.standing_torques(now_.theta);
+    load = 0.5 * (at.low + at.high);
+    hold = 0.5 * (at.high - at.low);
+  } else {
+    const CrankKinematics<double> k = model_.kinematics(now_.theta);
+    load = model_.static_force(k) * k.crank_lever;
+    hold = model_.vehicle.friction.radius * std::abs(model_.static_force(k)) + model_.constant_friction;
+  }
   const double K = model_.vehicle.motor.torque_constant;
   if (!model_.inductive) now_.i = model_.voltage(now_.t) / circuit_resistance(model_.vehicle);
   const double net = K * now_.i - load;

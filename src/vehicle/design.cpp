@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "wingbeat/core/text.hpp"
 #include "wingbeat/vehicle/drive.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
@@ -25,6 +26,11 @@ void validate_direct(const Design<double>& d) {
   if (d.supply.type != SupplyType::sine) {
     throw ParameterError("supply.type", "a direct drive swings as its supply does: expected sine");
   }
+  if (d.motor.gear_efficiency && *d.motor.gear_efficiency < 1.0) {
+    throw ParameterError("motor.gear_efficiency",
+                         "a direct drive's load changes the direction of power twice a stroke, where such a gearbox "
+                         "would stick: expected 1");
+  }
   if (d.friction.law == FrictionLaw::load_proportional) {
     throw ParameterError("friction.type",
                          "load-proportional friction follows the rod force, and a direct drive has no "
@@ -43,6 +49,29 @@ void validate_direct(const Design<double>& d) {
                          "needs springs to resonate with; give spring.stiffness or "
                          "spring.resonance");
   }
+}
+
+/// Added mass takes inertia away where the wings pitch fast (model.md section 10): what is left must stay positive at
+/// every angle of attack from 0 to 90 deg, or the equations of motion have no unique solution.
+void validate_added_mass(const Design<double>& d, const Vehicle<double>& v) {
+  const double J_a = v.wings.added_inertia;
+  if (!(J_a > 0.0)) return;
+  if (d.aerodynamics.angle_of_attack_min) {
+    throw ParameterError("aerodynamics.added_mass",
+                         "the wings' inertia would jump where their pitching meets its stop: not with "
+                         "angle_of_attack_min");
+  }
+  if (!(v.wings.pitch_coefficient > 0.0)) return;
+  constexpr double x = 1.2278223736171916;  // C_alpha |beta'| where the share is least: 1.5 sin(2 x) + x cos(2 x) = 0
+  const double share = square(std::cos(x)) - x * std::sin(x) * std::cos(x);
+  const double own = v.wing_count * v.wing_inertia + (drive_of(d).rotates ? 0.0 : v.motor.inertia);
+  if (own + share * J_a > 0.0) return;
+  throw ParameterError(
+      "aerodynamics.added_mass",
+      detail::format(
+          "the air's inertia of %.4g kg m2 is too large beside that of the wings, %.4g kg m2: at an angle of "
+          "attack of %.1f deg %.3f of it counts, and no inertia is left",
+          J_a, own, 90.0 - degrees_per_radian * x, share));
 }
 
 }  // namespace
@@ -74,11 +103,17 @@ void validate(const Design<double>& d) {
                                                  : "give one of stiffness and resonance, not both");
   }
   validate(d.wing.planform);
+  const Planform<double>& planform = d.wing.planform;
+  if (d.aerodynamics.added_mass != AddedMass::none && planform.shape == PlanformShape::moments && !planform.s22) {
+    throw ParameterError("aerodynamics.added_mass",
+                         "needs the wing's outline: give wing.planform.s22, or a planform with a shape");
+  }
 
   const Vehicle<double> v = resolve(d);
   if (drive_of(d).rotates) validate(v.transmission);
   validate(v.spring);
   validate(v.wings);
+  validate_added_mass(d, v);
   if (d.supply_resonance_ratio && !(v.drive_frequency > 0.0)) {
     throw ParameterError("supply.resonance_ratio", "the springs' stiffness is 0: nothing resonates");
   }

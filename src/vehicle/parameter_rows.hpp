@@ -109,6 +109,10 @@ std::span<const Parameter<S>> parameter_table() {
       number<S, Geared>({"motor.gear_damping", "N m s/rad", range::not_negative, "0 N m s/rad",
                          "b_G, viscous damping of the gearbox at the output shaft"},
                         [](auto& d) -> auto& { return d.motor.gear_damping; }),
+      number<S>(row(motor_key::gear_efficiency, "1",
+                    "eta, torque behind the gearbox over torque before it while the motor drives; 1/eta while the load "
+                    "drives"),
+                [](auto& d) -> auto& { return d.motor.gear_efficiency; }),
       number<S>(row(motor_key::armature_resistance, "required", "R_a, armature resistance", {}, "9 ohm"),
                 [](auto& d) -> auto& { return d.motor.constants.armature_resistance; }),
       number<S>(row(motor_key::armature_inductance, "required",
@@ -271,6 +275,8 @@ std::span<const Parameter<S>> parameter_table() {
                          [](auto& d) -> auto& { return d.wing.planform.s2; }),
       number<S, Moments>(row(planform_key::s3, "required", "S_3 = N_w integral c r^3 dr of all wings"),
                          [](auto& d) -> auto& { return d.wing.planform.s3; }),
+      number<S, Moments>(row(planform_key::s22, "none", "S_22 = N_w integral c^2 r^2 dr of all wings, for added mass"),
+                         [](auto& d) -> auto& { return d.wing.planform.s22; }),
 
       number<S>(row(aerodynamics_key::air_density, "required", "rho, air density", {}, "1.225 kg/m3"),
                 [](auto& d) -> auto& { return d.aerodynamics.air_density; }),
@@ -280,6 +286,15 @@ std::span<const Parameter<S>> parameter_table() {
       number<S>(
           row(aerodynamics_key::angle_of_attack_min, "none", "stop of the passive pitching: alpha falls no lower"),
           [](auto& d) -> auto& { return d.aerodynamics.angle_of_attack_min; }),
+      text<S>({"aerodynamics.added_mass",
+               "",
+               {wingbeat::listed_names<AddedMass>()},
+               "none",
+               "air accelerated with the wings: J_a = pi/4 rho S_22 by strip theory; takes no mean power"},
+              [](const D& d) {
+                const AddedMass kind = d.aerodynamics.added_mass;
+                return kind == AddedMass::none ? std::string() : std::string(name_of(kind));
+              }),
       text<S>({"aerodynamics.coefficients",
                "",
                {"translational-2022, or a table of the keys below"},

@@ -94,6 +94,8 @@ TEST(Motor, RefusesConstantsOutOfRange) {
             "motor.viscous_damping: must be >= 0 [N m s/rad], got -1e-06");
   EXPECT_EQ(refusal(reference_motor, [](M& m) { m.friction_torque = -2.5; }),
             "motor.friction_torque: must be >= 0 [N m], got -2.5");
+  EXPECT_EQ(refusal(reference_motor, [](M& m) { m.gear_efficiency = 1.2; }),
+            "motor.gear_efficiency: must be > 0 and <= 1 [1], got 1.2");
   EXPECT_EQ(refusal(reference_motor, [](M& m) { m.inertia = std::nan(""); }),
             "motor.inertia: must be > 0 [kg m2], got nan");
   EXPECT_EQ(refusal(reference_motor, [](M& m) { m.torque_constant = std::numeric_limits<double>::infinity(); }),

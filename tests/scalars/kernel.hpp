@@ -64,7 +64,7 @@ inline constexpr int step_size = 2 + integral_count;
 /// of the states; `out` holds zero for it.
 template <Scalar S>
 std::array<S, step_size> crank_step(const Vehicle<S>& v, const S& theta, const std::array<S, 2>& state, const S& h,
-                                    const std::array<S, 4>& signs) {
+                                    const typename CrankSystem<S, 2>::Signs& signs) {
   std::array<S, step_size> out;
   const auto take = [&](const auto& system, const auto& start) {
     const auto first = system.template rates<true>(theta, start, signs);

@@ -45,8 +45,8 @@ class Batches : public testing::TestWithParam<InstructionSet> {
 std::array<double, outputs> scalar_outputs(const Case& c) {
   const auto at = instant<double>(
       c.vehicle, {std::sin(c.theta), std::cos(c.theta), c.omega, c.current, c.voltage, c.force, c.force});
-  const auto step =
-      crank_step<double>(c.vehicle, c.theta, {120.0 + std::abs(c.omega), c.current}, 0.1, {c.force, 1.0, 1.0, 1.0});
+  const auto step = crank_step<double>(c.vehicle, c.theta, {120.0 + std::abs(c.omega), c.current}, 0.1,
+                                       {c.force, 1.0, 1.0, 1.0, 1.0});
   std::array<double, outputs> out;
   std::copy(at.begin(), at.end(), out.begin());
   std::copy(step.begin(), step.end(), out.begin() + instant_size);

@@ -18,6 +18,7 @@ namespace {
 Vehicle<double> generic_vehicle(Formulation formulation) {
   Vehicle<double> v = resolve(reference_design());
   v.motor.friction_torque = 2e-4;
+  v.motor.gear_efficiency = 0.85;
   v.transmission.slider_crank.mid_stroke_height = 20.7e-3;
   v.transmission.slider_crank.formulation = formulation;
   v.transmission.four_bar = {5e-3, 20e-3, 8e-3, 20.5e-3, 1.6, 1.8};
@@ -26,6 +27,7 @@ Vehicle<double> generic_vehicle(Formulation formulation) {
   v.spring.stiffness = 1.1e-3;
   v.source_resistance = 1.7;
   v.wings.angle_of_attack_min = 0.2;
+  v.wings.added_inertia = 4e-8;
   v.drive_frequency = 22.0;
   return v;
 }
@@ -140,7 +142,8 @@ struct StepOf {
   template <Scalar S>
   std::array<S, step_size> operator()(const Inputs<S>& in) const {
     const std::array<S, 2> state = {in.omega, in.current};
-    const std::array<S, 4> signs = {S(1.0), S(1.0), S(1.0), S(1.0)};
+    typename CrankSystem<S, 2>::Signs signs;
+    signs.fill(S(1.0));
     if (!implicit) return crank_step<S>(in.vehicle, in.theta, state, S(0.3), signs);
     const CrankSystem<S, 2> system{in.vehicle, S(0.0), S(1.0)};
     const auto first = system.template rates<true>(in.theta, state, signs);

@@ -17,6 +17,7 @@ namespace {
 
 using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 
 /// Rows of data/motors/motors.csv by column name; no field of it is quoted.
 std::vector<std::map<std::string, std::string>> motor_rows() {
@@ -265,16 +266,18 @@ TEST(MotorIdentification, GrossContradictionsAreRefused) {
   EXPECT_THAT(identify_motor(s).missing, testing::ElementsAre(HasSubstr(") and the rest of the sheet (")));
 }
 
-TEST(MotorIdentification, GearEfficiencyIsKeptOrSaidNotToBeUsed) {
+TEST(MotorIdentification, GearEfficiencyIsKept) {
   MotorDatasheet s = exact_sheet(motor, 3.0);
   s.gear_ratio = 20.0;
   s.gear_efficiency = 0.7;
   const MotorIdentification at_motor = identify_motor(s);
-  EXPECT_THAT(at_motor.remarks, Contains(HasSubstr("the gear efficiency of 0.7 is NOT USED")));
-  EXPECT_THAT(motor_section(at_motor, s, "made by a test"), HasSubstr("gear_efficiency = 0.7"));
+  EXPECT_THAT(at_motor.remarks, Contains(HasSubstr("its efficiency of 0.7 serves no reading")));
+  EXPECT_THAT(motor_section(at_motor, s, "made by a test"), HasSubstr("\"\ngear_efficiency = 0.7\n"));
   EXPECT_THAT(json_identification(at_motor, s), HasSubstr("\"gear_efficiency\": 0.7"));
   s.shaft = Shaft::output;
   EXPECT_THAT(identify_motor(s).remarks, Contains(HasSubstr("the gear efficiency of 0.7 served to read")));
+  s.gear_efficiency.reset();
+  EXPECT_THAT(motor_section(identify_motor(s), s, "made by a test"), Not(HasSubstr("gear_efficiency")));
 }
 
 TEST(MotorIdentification, GearReferredToTheOutput) {

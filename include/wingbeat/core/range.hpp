@@ -32,6 +32,7 @@ inline constexpr ParameterRange any{"any", "must be finite"};
 inline constexpr ParameterRange positive{"> 0", "must be > 0", 0.0, endless, true};
 inline constexpr ParameterRange not_negative{">= 0", "must be >= 0", 0.0};
 inline constexpr ParameterRange zero_to_one{"0 to 1", "must lie between 0 and 1", 0.0, 1.0};
+inline constexpr ParameterRange efficiency{"> 0, <= 1", "must be > 0 and <= 1", 0.0, 1.0, true};
 inline constexpr ParameterRange acute{"> 0, < pi/2", "must lie between 0 and pi/2", 0.0, pi / 2.0, true, true};
 inline constexpr ParameterRange zero_to_acute{">= 0, < pi/2", "must be >= 0 and < pi/2", 0.0, pi / 2.0, false, true};
 inline constexpr ParameterRange count{

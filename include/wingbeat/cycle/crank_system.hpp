@@ -21,15 +21,15 @@ struct CrankSystem {
   using Real = S;
   using State = std::array<S, N>;
   using Quadrature = CycleIntegrals<S>;
-  /// Signs, those of switches first: rod force, pitching, stored moment; stroke velocity.
-  enum Sign { force, pitching, stored, stroke };
-  using Switches = std::array<S, 3>;
-  static constexpr int state_switches = 2;  ///< the stored moment does not bend the solution
+  /// Signs, those of switches first: rod force, pitching, gear torque, stored moment; stroke velocity.
+  enum Sign { force, pitching, gear, stored, stroke };
+  using Switches = std::array<S, 4>;
+  static constexpr int state_switches = 3;  ///< the stored moment does not bend the solution
   /// Integrals whose error limits the steps. Not those that may vanish up to rounding.
   static constexpr std::array<std::size_t, 5> controlled_integrals = {
       std::size_t(Integral::time), std::size_t(Integral::friction_work), std::size_t(Integral::aero_work),
       std::size_t(Integral::reactive_work), std::size_t(Integral::lift)};
-  using Signs = std::array<S, 4>;
+  using Signs = std::array<S, 5>;
   static constexpr bool has_rod = true;
   /// What has an extreme that is a metric.
   static constexpr std::array extremes = {Extreme::current,         Extreme::lift,
@@ -55,7 +55,7 @@ struct CrankSystem {
 
   /// The reversals, where beta' changes sign. Of a system on plain numbers, which cycles are run on.
   std::span<const solver::FixedNode> fixed_nodes() const { return {nodes_.data(), node_count_}; }
-  Signs start_signs() const { return {S(1.0), S(1.0), S(1.0), S(first_stroke_)}; }
+  Signs start_signs() const { return {S(1.0), S(1.0), S(1.0), S(1.0), S(first_stroke_)}; }
 
   bool admissible(const State& y) const { return all<S>(y[0] > speed_floor); }
 
@@ -95,7 +95,7 @@ struct CrankSystem {
   }
 
   static Branch<S> branch(const Signs& signs) {
-    return {signs[stroke], signs[force], S(1.0), signs[stored] * signs[stroke], signs[pitching]};
+    return {signs[stroke], signs[force], S(1.0), signs[stored] * signs[stroke], signs[pitching], signs[gear]};
   }
   static const S& shaft_speed(const State& y) { return y[0]; }
   /// d theta / dt [rad/s].
@@ -122,7 +122,8 @@ struct CrankSystem {
     solver::Rates<CrankSystem> r;
     r.dy[0] = m.crank_acceleration * per_omega;
     if constexpr (N == 2) r.dy[1] = m.inductive_voltage / vehicle.motor.armature_inductance * per_omega;
-    r.switches = {m.force_switch, m.aero.pitch_margin, m.stored_moment};
+    const S gear_switch = has_gear_loss(vehicle.motor) ? m.gear_torque : S(1.0);
+    r.switches = {m.force_switch, m.aero.pitch_margin, gear_switch, m.stored_moment};
     if constexpr (quadratures) {
       const CycleIntegrals<S> in_time = integrands(m, y[0], branch(signs));
       for (std::size_t q = 0; q < in_time.size(); ++q) r.dq[q] = in_time[q] * per_omega;

@@ -32,9 +32,15 @@ class CycleGradient {
       : system_(recorded.system), cycle_(recorded.cycle), jets_(recorded.system.template cast<J>()) {
     jets_.vehicle = vehicle;
     sharpen();
-    for (auto& constant : inductance_slots_) constant = false;
+    for (auto& constant : absent_slots_) constant = false;
     if (!(recorded.system.vehicle.motor.armature_inductance > 0.0)) {
-      for (int k = 0; k < gradient_slots; ++k) inductance_slots_[k] = vehicle.motor.armature_inductance.v[k] != 0.0;
+      for (int k = 0; k < gradient_slots; ++k) absent_slots_[k] = vehicle.motor.armature_inductance.v[k] != 0.0;
+    }
+    // At 1 a gearbox's efficiency has a derivative to one side alone.
+    if (!has_gear_loss(recorded.system.vehicle.motor)) {
+      for (int k = 0; k < gradient_slots; ++k) {
+        absent_slots_[k] = absent_slots_[k] || vehicle.motor.gear_efficiency.v[k] != 0.0;
+      }
     }
   }
 
@@ -73,7 +79,7 @@ class CycleGradient {
   J total(J x) const {
     for (int k = N; k < gradient_slots; ++k) {
       for (int n = 0; n < N; ++n) x.v[k] += x.v[n] * start_change_[n][k];
-      if (inductance_slots_[k]) x.v[k] = absent;
+      if (absent_slots_[k]) x.v[k] = absent;
     }
     for (int n = 0; n < N; ++n) x.v[n] = 0.0;
     return x;
@@ -255,7 +261,7 @@ class CycleGradient {
   CycleIntegrals<J> totals_;
   std::vector<JetState> starts_;
   double start_change_[N][gradient_slots] = {};
-  bool inductance_slots_[gradient_slots];
+  bool absent_slots_[gradient_slots];
 };
 
 }  // namespace wingbeat

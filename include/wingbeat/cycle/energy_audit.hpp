@@ -5,11 +5,13 @@
 
 namespace wingbeat {
 
-/// Mean powers of a cycle [W]. P_e = copper + viscous + friction + aerodynamic + residual, to the solver's accuracy.
+/// Mean powers of a cycle [W]. P_e = copper + viscous + gear + friction + aerodynamic + residual, to the solver's
+/// accuracy.
 struct EnergyAudit {
   double electrical;   ///< P_e
   double copper;       ///< R_a mean(i^2)
   double viscous;      ///< b mean(omega^2)
+  double gear;         ///< mean((1 - e) T_g omega)
   double friction;     ///< mean(T_f omega)
   double aerodynamic;  ///< mean(M_aero beta')
   double residual;     ///< what the formulation fails to conserve; zero to rounding for virtual-work
@@ -17,14 +19,10 @@ struct EnergyAudit {
 };
 
 inline EnergyAudit energy_audit(const Metrics<double>& m) {
-  EnergyAudit a{m[Metric::power_electrical],
-                m[Metric::power_copper],
-                m[Metric::power_viscous],
-                m[Metric::power_friction],
-                m[Metric::power_aerodynamic],
-                m[Metric::power_residual],
-                0.0};
-  a.imbalance = a.electrical - a.copper - a.viscous - a.friction - a.aerodynamic - a.residual;
+  EnergyAudit a{
+      m[Metric::power_electrical], m[Metric::power_copper],      m[Metric::power_viscous],  m[Metric::power_gear],
+      m[Metric::power_friction],   m[Metric::power_aerodynamic], m[Metric::power_residual], 0.0};
+  a.imbalance = a.electrical - a.copper - a.viscous - a.gear - a.friction - a.aerodynamic - a.residual;
   return a;
 }
 

@@ -27,6 +27,7 @@ enum class Metric {
   power_reactive,
   power_copper,
   power_viscous,
+  power_gear,
   power_loss,
   power_residual,
   lift_mean,
@@ -72,8 +73,9 @@ struct Metrics {
 };
 
 /// What a metric's errors are a part of: its magnitude, or more where it may vanish. The angle of attack to 90 degrees,
-/// the residual power to the input, the mean lift and its ratio to the weight to a thousandth of the peak lift, the
-/// mean current of a direct drive, which alternates, to its peak. Not a number for a metric that is absent.
+/// the residual power and a gearbox's loss to the input, the mean lift and its ratio to the weight to a thousandth of
+/// the peak lift, the mean current of a direct drive, which alternates, to its peak. Not a number for a metric that is
+/// absent.
 double error_scale(const Metrics<double>& metrics, Metric which);
 
 /// Quantities integrated over the TIME of a cycle.
@@ -89,9 +91,10 @@ enum class Integral {
   reactive_work,    ///< |(N_w J_w beta'' + N_w k beta) beta'| [J] (eq 23)
   residual_work,    ///< F (h omega - g beta') [J]: what the formulation fails to conserve
   lift,             ///< lift [N s]
-  rod_force         ///< |F| [N s]
+  rod_force,        ///< |F| [N s]
+  gear_work         ///< (1 - e) T_g omega [J], lost in the gearbox
 };
-inline constexpr int integral_count = int(Integral::rod_force) + 1;
+inline constexpr int integral_count = int(Integral::gear_work) + 1;
 
 template <Scalar S>
 using CycleIntegrals = std::array<S, integral_count>;
@@ -111,7 +114,8 @@ CycleIntegrals<S> integrands(const Motion<S>& m, const S& omega, const Branch<S>
           branch.stored_power * m.stored_moment * m.stroke_velocity,
           m.rod_force * (m.kinematics.crank_lever * omega - m.kinematics.wing_lever * m.stroke_velocity),
           m.aero.lift,
-          branch.force * m.rod_force};
+          branch.force * m.rod_force,
+          m.gear_loss};
 }
 
 /// Quantities of which a cycle's extreme value is a metric.
@@ -182,6 +186,7 @@ Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, cons
   m[Metric::power_reactive] = f * total(Integral::reactive_work);
   m[Metric::power_copper] = v.motor.armature_resistance * current_square;
   m[Metric::power_viscous] = v.motor.viscous_damping * f * total(Integral::speed_square);
+  m[Metric::power_gear] = f * total(Integral::gear_work);
   m[Metric::power_loss] = m[Metric::power_electrical] - m[Metric::power_aerodynamic];
   m[Metric::power_residual] = f * total(Integral::residual_work);
   m[Metric::lift_mean] = f * total(Integral::lift);

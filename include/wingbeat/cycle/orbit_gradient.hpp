@@ -73,8 +73,8 @@ struct OrbitGradient {
 };
 
 /// Derivatives of every metric but floquet_multiplier_max (which needs second ones: absent), in SI like the metrics.
-/// Absent too: by the inductance of a vehicle without one. `orbit` must be flapping and `vehicle` the one it was found
-/// for; `orbit.record` is the cycle repeated.
+/// Absent too: by the inductance of a vehicle without one, by a gear efficiency of 1. `orbit` must be
+/// flapping and `vehicle` the one it was found for; `orbit.record` is the cycle repeated.
 OrbitGradient orbit_gradient(const SteadyFlapping& orbit, const GradientVehicle& vehicle,
                              const GradientOptions& options = {});
 

@@ -24,10 +24,10 @@ struct StaticBalance {
   double inertia_angle;     ///< crank angle of it [rad]
   double lever_min;         ///< least wing lever g over crank angle [m]; <= 0 jams
   double lever_angle;       ///< crank angle of it [rad]
-  double
-      advance_least;  ///< least K v/(R_a + R_i) - F_s h - mu r_e |F_s| - T_c over crank angle [N m]; <= 0: locks exist
-  double advance_angle;  ///< crank angle of it [rad]
-  bool has_wings;        ///< false: rod force zero, nothing can jam or lock
+  double advance_least;     ///< least K v/(R_a + R_i) - F_s h - mu r_e |F_s| - T_c over crank angle [N m]; <= 0: locks
+                            ///< exist (of a gearbox that loses torque: advance_torque())
+  double advance_angle;     ///< crank angle of it [rad]
+  bool has_wings;           ///< false: rod force zero, nothing can jam or lock
 
   bool stalled() const { return stall_torque <= breakaway_torque; }
   bool can_jam() const { return has_wings && (inertia_min <= 0.0 || lever_min <= 0.0); }
@@ -40,10 +40,11 @@ S stall_torque(const V<S>& v) {
   return v.motor.torque_constant * v.voltage / circuit_resistance(v);
 }
 
-/// T_c, the constant friction that holds the motor at rest, its own included [N m].
+/// T_c, the constant friction that holds the motor at rest, its own included [N m]; that of the mechanism as the motor
+/// meets it through the gearbox.
 template <template <Scalar> class V, Scalar S>
 S breakaway_torque(const V<S>& v) {
-  return v.friction.torque + v.motor.friction_torque;
+  return torque_before_gear(v.motor, v.friction.torque) + v.motor.friction_torque;
 }
 
 /// F_s = N_w k beta / g [N], the rod force at rest under the springs' moment N_w k beta [N m].
@@ -59,19 +60,41 @@ S holding_torque(const V<S>& v, const S& F_s) {
   return v.friction.radius * abs(F_s) + breakaway_torque(v);
 }
 
+/// Torques of the motor [N m] between which a crank stands. Behind a gearbox that loses torque the motor needs more
+/// than the load to start the crank either way, so that the gearbox helps to hold it (model.md section 9).
+template <Scalar S>
+struct StandingTorques {
+  S low, high;
+};
+template <template <Scalar> class V, Scalar S>
+StandingTorques<S> standing_torques(const V<S>& v, const CrankKinematics<S>& k, const S& F_s) {
+  using std::abs;
+  const S load = F_s * k.crank_lever, friction = v.friction.radius * abs(F_s) + v.friction.torque;
+  const S own = v.motor.friction_torque;
+  return {-torque_before_gear(v.motor, S(friction - load)) - own,
+          torque_before_gear(v.motor, S(load + friction)) + own};
+}
+
 /// Torque that would start the crank forward from rest, `torque` being the motor's: torque - F_s h - mu r_e |F_s| - T_c
-/// [N m].
+/// [N m]; behind a gearbox what the motor's torque exceeds the upper standing torque by.
 template <template <Scalar> class V, Scalar S>
 S advance_torque(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta, const S& torque) {
   const S F_s = static_rod_force(k, N_k_beta);
+  if (has_gear_loss(v.motor)) return torque - standing_torques(v, k, F_s).high;
   return torque - F_s * k.crank_lever - holding_torque(v, F_s);
 }
 
-/// mu r_e |F_s| + T_c - |torque - F_s h| [N m]: >= 0 where friction holds a crank at rest.
+/// mu r_e |F_s| + T_c - |torque - F_s h| [N m]: >= 0 where friction holds a crank at rest. Behind a gearbox: what the
+/// motor's torque lies within the standing torques by.
 template <template <Scalar> class V, Scalar S>
 S lock_margin(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta, const S& torque) {
   using std::abs;
+  using std::min;
   const S F_s = static_rod_force(k, N_k_beta);
+  if (has_gear_loss(v.motor)) {
+    const StandingTorques<S> at = standing_torques(v, k, F_s);
+    return min(S(at.high - torque), S(torque - at.low));
+  }
   return holding_torque(v, F_s) - abs(S(torque - F_s * k.crank_lever));
 }
 
@@ -126,8 +149,9 @@ S torque_surplus(const V<S>& v, std::span<const LoadPlace<S>> places, const S& o
     load = load + F * p.crank_lever + v.friction.radius * abs(F);
   }
   if (!places.empty()) load = load * S(1.0 / double(places.size()));
-  return v.motor.torque_constant * algebraic_current(v, v.voltage, omega) - v.motor.viscous_damping * omega -
-         v.motor.friction_torque - load_free_friction(v.friction, omega, S(1.0)) - load;
+  const S motor = v.motor.torque_constant * algebraic_current(v, v.voltage, omega) - v.motor.viscous_damping * omega -
+                  v.motor.friction_torque;
+  return gear_torque_ratio(v.motor, S(1.0)) * motor - load_free_friction(v.friction, omega, S(1.0)) - load;
 }
 
 /// Crank speeds at which the motor's torque balances the mean load of a cycle at constant speed.

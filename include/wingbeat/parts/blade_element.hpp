@@ -5,9 +5,11 @@
 #include <limits>
 #include <memory>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "wingbeat/core/math.hpp"
+#include "wingbeat/core/names.hpp"
 #include "wingbeat/core/range.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/core/status.hpp"
@@ -74,6 +76,18 @@ inline ForceCoefficients<double> translational_2022() {
   return {{0.225, 1.58, 2.13, -7.2 / degrees_per_radian}, {1.92, -1.55, 2.04, -9.82 / degrees_per_radian}, nullptr};
 }
 
+/// Whether air that is accelerated with the wings counts (model.md section 10).
+enum class AddedMass { none, strip_theory };
+template <>
+inline constexpr std::pair<const char*, AddedMass> names_of<AddedMass>[] = {{"none", AddedMass::none},
+                                                                            {"strip-theory", AddedMass::strip_theory}};
+
+/// J_a of all wings [kg m2] by strip theory: (pi/4) rho S_22.
+template <Scalar S>
+S added_inertia_of(const S& air_density, const S& s22) {
+  return S(0.25 * pi) * air_density * s22;
+}
+
 /// Aerodynamics of all wings. Positive stroke velocity beta' meets a positive moment that opposes it.
 template <Scalar S>
 struct BladeElement {
@@ -84,10 +98,12 @@ struct BladeElement {
   ForceCoefficients<S> coefficients;
   /// Stop of the passive pitching: alpha never falls below it [rad], 0 to pi/2; minus infinity where there is none.
   S angle_of_attack_min = S(-std::numeric_limits<double>::infinity());
+  S added_inertia = S(0);  ///< J_a of all wings, of the air that moves normal to the chord [kg m2], >= 0; 0 without
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
-    return use(of.air_density, of.pitch_coefficient, of.s2, of.s3, of.coefficients, of.angle_of_attack_min);
+    return use(of.air_density, of.pitch_coefficient, of.s2, of.s3, of.coefficients, of.angle_of_attack_min,
+               of.added_inertia);
   }
 };
 
@@ -155,7 +171,31 @@ struct AeroLoads {
   S lift;             ///< normal to the stroke plane [N] (eq 2)
   S moment;           ///< M_aero about the hinges, along beta' [N m] (eq 3); a positive one opposes a positive beta'
   S power;            ///< M_aero beta', what the air takes from the wings [W] (eq 19)
+  /// Of the added mass: its moment is this times beta'', the slope of its momentum J_a sin^2(alpha) beta' by beta'
+  /// [kg m2] (model.md section 10). It takes no mean power and is not in `moment` and `power`.
+  S added_inertia;
 };
+
+/// J_a (sin^2(alpha) - C_alpha |beta'| sin(alpha) cos(alpha)) [kg m2] at the angle of attack alpha = pi/2 - C_alpha
+/// |beta'| [rad]; J_a sin^2(alpha) where the pitching is at its stop. Even and smooth in beta'.
+template <Scalar S>
+S added_inertia(const BladeElement<S>& w, const S& alpha, const S& pitching) {
+  using std::cos;
+  using std::sin;
+  if (!any<S>(w.added_inertia > S(0.0))) return S(0.0);
+  const S s = sin(alpha), c = cos(alpha);
+  S share = s * s - (S(0.5 * pi) - alpha) * s * c;
+  if constexpr (ScalarTraits<S>::reads_tables) share = select(pitching >= S(0.0), share, s * s);
+  return w.added_inertia * share;
+}
+
+/// Kinetic energy of the air that moves with the wings, J_a sin^2(alpha) beta'^2 / 2 [J].
+template <Scalar S>
+S added_energy(const BladeElement<S>& w, const S& alpha, const S& stroke_velocity) {
+  using std::sin;
+  if (!any<S>(w.added_inertia > S(0.0))) return S(0.0);
+  return S(0.5) * w.added_inertia * square(S(sin(alpha) * stroke_velocity));
+}
 
 /// The loads at stroke velocity beta' [rad/s] of the sign `stroke`. `pitching` is the branch of the passive pitching:
 /// +1 free, -1 at the stop; as with tables, batches do not know the stop. Always inlined, with all that returns it
@@ -174,6 +214,7 @@ template <Scalar S>
   loads.lift = S(0.5) * w.air_density * C_L * square(speed) * w.s2;
   loads.moment = stroke * (S(0.5) * w.air_density * C_D * square(speed) * w.s3);
   loads.power = loads.moment * stroke_velocity;
+  loads.added_inertia = added_inertia(w, alpha, pitching);
   return loads;
 }
 

@@ -16,13 +16,37 @@ struct Motor {
   S inertia;                 ///< J = J_G + n^2 J_m [kg m2], > 0
   S viscous_damping;         ///< b = b_G + n^2 b_m [N m s/rad], >= 0
   S friction_torque = S(0);  ///< constant friction torque of the motor itself [N m], >= 0
+  S gear_efficiency = S(1);  ///< eta of the gearbox under load [1], > 0, <= 1; 1 without
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
     return use(of.armature_resistance, of.armature_inductance, of.torque_constant, of.inertia, of.viscous_damping,
-               of.friction_torque);
+               of.friction_torque, of.gear_efficiency);
   }
 };
+
+/// Whether a gearbox loses torque. Batches do not know it: such vehicles are left to the scalar solver.
+template <Scalar S>
+bool has_gear_loss(const Motor<S>& m) {
+  if constexpr (ScalarTraits<S>::reads_tables) return value_of(m.gear_efficiency) < 1.0;
+  return false;
+}
+
+/// e [1], the torque behind the gearbox over that before it (model.md section 9): eta where the motor drives the load,
+/// `gear` = +1, and 1/eta where the load drives the motor, -1.
+template <Scalar S>
+S gear_torque_ratio(const Motor<S>& m, const S& gear) {
+  if (!has_gear_loss(m)) return S(1.0);
+  return select<S>(gear > S(0.0), m.gear_efficiency, S(1.0) / m.gear_efficiency);
+}
+
+/// Torque before the gearbox [N m] that balances the torque `load` behind it while the shaft starts forward. For a
+/// start backward: the negative of it, of the negative load.
+template <Scalar S>
+S torque_before_gear(const Motor<S>& m, const S& load) {
+  if (!has_gear_loss(m)) return load;
+  return select<S>(load > S(0.0), load / m.gear_efficiency, load * m.gear_efficiency);
+}
 
 /// Motor-shaft constants with a gearbox of ratio n (motor turns per output turn).
 template <Scalar S>
@@ -49,7 +73,8 @@ Motor<S> at_output_shaft(const GearMotor<S>& geared) {
           n * m.torque_constant,
           geared.gear_inertia + n * n * m.inertia,
           geared.gear_damping + n * n * m.viscous_damping,
-          n * m.friction_torque};
+          n * m.friction_torque,
+          m.gear_efficiency};
 }
 
 /// Keys, units and ranges; the table of parameters has them from here.
@@ -60,6 +85,7 @@ inline constexpr ParameterKey torque_constant{"motor.torque_constant", "N m/A", 
 inline constexpr ParameterKey inertia{"motor.inertia", "kg m2", range::positive};
 inline constexpr ParameterKey viscous_damping{"motor.viscous_damping", "N m s/rad", range::not_negative};
 inline constexpr ParameterKey friction_torque{"motor.friction_torque", "N m", range::not_negative};
+inline constexpr ParameterKey gear_efficiency{"motor.gear_efficiency", "1", range::efficiency};
 }  // namespace motor_key
 
 /// Throws ParameterError unless every constant lies in its physical range.
@@ -70,6 +96,7 @@ inline void validate(const Motor<double>& m) {
   require(motor_key::inertia, m.inertia);
   require(motor_key::viscous_damping, m.viscous_damping);
   require(motor_key::friction_torque, m.friction_torque);
+  require(motor_key::gear_efficiency, m.gear_efficiency);
 }
 
 /// Electrical side of the motor at crank speed omega and current i.

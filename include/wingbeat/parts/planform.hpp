@@ -34,10 +34,11 @@ struct Planform {
   S s2 = S(0);                        ///< moments given outright: S_2 of all wings [m4], >= 0
   S s3 = S(0);                        ///< moments given outright: S_3 of all wings [m5], >= 0
   std::optional<S> chord_ratio = {};  ///< c_0 / R [1], > 0; given, root_chord follows from the length
+  std::optional<S> s22 = {};          ///< moments given outright: S_22 of all wings [m5], >= 0
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
-    return use(of.shape, of.length, of.root_chord, of.hub_offset, of.chord_table, of.s2, of.s3, of.chord_ratio);
+    return use(of.shape, of.length, of.root_chord, of.hub_offset, of.chord_table, of.s2, of.s3, of.chord_ratio, of.s22);
   }
 };
 
@@ -56,6 +57,7 @@ inline constexpr ParameterKey chord_ratio{"wing.planform.chord_ratio", "1", rang
 inline constexpr ParameterKey hub_offset{"wing.planform.hub_offset", "m", range::not_negative};
 inline constexpr ParameterKey s2{"wing.planform.s2", "m4", range::not_negative};
 inline constexpr ParameterKey s3{"wing.planform.s3", "m5", range::not_negative};
+inline constexpr ParameterKey s22{"wing.planform.s22", "m5", range::not_negative};
 }  // namespace planform_key
 
 void validate(const Planform<double>& planform);
@@ -110,6 +112,33 @@ ChordMoments<S> chord_moments(const Planform<S>& p, const S& count) {
   if (p.shape == PlanformShape::moments) return {p.s2, p.s3};
   const ChordMoments<S> one = one_wing_moments(p);
   return {count * one.s2, count * one.s3};
+}
+
+/// S_22 = N_w integral c^2 r^2 dr [m5] of all `count` wings, which added mass needs (model.md section 10); 0 where
+/// moments are given without it. Semi-ellipse without offset: (2/15) c_0^2 R^3 a wing.
+template <Scalar S>
+S squared_chord_moment(const Planform<S>& p, const S& count) {
+  if (p.shape == PlanformShape::moments) return p.s22 ? *p.s22 : S(0.0);
+  const S R = p.length, d = p.hub_offset;
+  const S c2 = square(p.chord_ratio ? S(*p.chord_ratio * p.length) : p.root_chord);
+  // Moments of c^2 about the root, shifted to the hinge: q_2 + 2 d q_1 + d^2 q_0.
+  if (p.shape == PlanformShape::semi_ellipse) {
+    return count * c2 * R * (S(2.0 / 15.0) * R * R + S(0.5) * d * R + S(2.0 / 3.0) * d * d);
+  }
+  if (p.shape == PlanformShape::rectangle) return count * c2 * R * (R * R / 3.0 + d * R + d * d);
+  S sum(0.0);
+  for (std::size_t row = 1; row < p.chord_table.size(); ++row) {
+    const auto [x0, c0] = p.chord_table[row - 1];
+    const auto [x1, c1] = p.chord_table[row];
+    // Of fourth degree where the chord is linear: three-point Gauss is exact.
+    const double half = 0.5 * (x1 - x0), mid = 0.5 * (x0 + x1);
+    constexpr double node = 0.77459666924148337704;  // sqrt(3/5)
+    for (const auto& [at, weight] : {std::pair{-node, 5.0 / 9.0}, {0.0, 8.0 / 9.0}, {node, 5.0 / 9.0}}) {
+      const double x = mid + half * at, chord = c0 + (c1 - c0) * (x - x0) / (x1 - x0);
+      sum = sum + S(weight * half * chord * chord) * square(S(S(x) + d));
+    }
+  }
+  return count * sum;
 }
 
 }  // namespace wingbeat

@@ -33,12 +33,13 @@ template <Scalar S>
 struct MotorDesign {
   std::optional<S> gear_ratio;  ///< given: the constants below are the motor shaft's
   Motor<S> constants;
-  S gear_inertia = S(0);  ///< J_G [kg m2], only with gear_ratio
-  S gear_damping = S(0);  ///< b_G [N m s/rad], only with gear_ratio
+  S gear_inertia = S(0);                  ///< J_G [kg m2], only with gear_ratio
+  S gear_damping = S(0);                  ///< b_G [N m s/rad], only with gear_ratio
+  std::optional<S> gear_efficiency = {};  ///< eta [1]; 1 unless given
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
-    return use(of.gear_ratio, of.constants, of.gear_inertia, of.gear_damping);
+    return use(of.gear_ratio, of.constants, of.gear_inertia, of.gear_damping, of.gear_efficiency);
   }
 };
 
@@ -118,10 +119,12 @@ struct AerodynamicsDesign {
   std::string coefficients_name = "translational-2022";  ///< the named set, or "custom" or "table"
   ForceCoefficients<S> coefficients;
   std::optional<S> angle_of_attack_min;  ///< stop of the passive pitching [rad]; none unless given
+  AddedMass added_mass = AddedMass::none;
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
-    return use(of.air_density, of.pitch_coefficient, of.coefficients_name, of.coefficients, of.angle_of_attack_min);
+    return use(of.air_density, of.pitch_coefficient, of.coefficients_name, of.coefficients, of.angle_of_attack_min,
+               of.added_mass);
   }
 };
 

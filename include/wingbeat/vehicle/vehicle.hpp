@@ -69,6 +69,7 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
   const MotorDesign<S>& m = design.motor;
   v.motor = m.gear_ratio ? at_output_shaft(GearMotor<S>{*m.gear_ratio, m.constants, m.gear_inertia, m.gear_damping})
                          : m.constants;
+  if (m.gear_efficiency) v.motor.gear_efficiency = *m.gear_efficiency;
 
   const bool direct = design.transmission.type == TransmissionType::direct;
   v.transmission = transmission_of(design.transmission);
@@ -110,6 +111,10 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
   v.wings.s3 = wings ? moments.s3 : S(0.0);
   v.wings.coefficients = design.aerodynamics.coefficients;
   if (design.aerodynamics.angle_of_attack_min) v.wings.angle_of_attack_min = *design.aerodynamics.angle_of_attack_min;
+  if (design.aerodynamics.added_mass == AddedMass::strip_theory && wings) {
+    const S s22 = squared_chord_moment(design.wing.planform, design.wing.count);
+    v.wings.added_inertia = added_inertia_of(v.wings.air_density, s22);
+  }
   return v;
 }
 
@@ -121,6 +126,7 @@ struct Branch {
   S direction;          ///< sign of omega; +1 in steady flapping
   S stored_power;       ///< sign of (N_w J_w beta'' + N_w k beta) beta', for the reactive power (eq 23) alone
   S pitching = S(1.0);  ///< -1 where the angle of attack is at its lower bound
+  S gear = S(1.0);      ///< sign of T_g omega: -1 where the load drives the motor
 };
 
 /// Everything that acts at one instant.
@@ -138,15 +144,19 @@ struct Motion {
   AeroLoads<S> aero;      ///< of all wings
   S friction_torque;      ///< T_f on the crank, the motor's own friction included [N m]
   S motor_torque;         ///< T_m = F h + T_f [N m] (eq 5)
+  S gear_torque;          ///< T_g that the gearbox takes from the motor, along omega [N m] (model.md section 9)
+  S gear_loss;            ///< (1 - e) T_g omega [W]
   S stored_moment;        ///< N_w J_w beta'' + N_w k beta [N m]
 };
 
-/// J + A (h + s mu r_e) [kg m2], the divisor of omega' on the branch s (model.md section 2). The equations have one
-/// solution while it is positive for s = +1 and s = -1 and the lever g is positive.
+/// J + A (h + s mu r_e) [kg m2], the divisor of omega' on the branch s (model.md section 2), with all of the added mass
+/// that there may be: that at rest; eta J behind a gearbox that loses torque. The equations have one solution while it
+/// is positive for s = +1 and s = -1 and the lever g is positive.
 template <template <Scalar> class V, Scalar S>
 S effective_inertia(const V<S>& v, const CrankKinematics<S>& k, const S& s) {
-  const S A = v.wing_count * v.wing_inertia * k.stroke_slope / k.wing_lever;
-  return v.motor.inertia + A * (k.crank_lever + s * v.friction.radius);
+  const S A = (v.wing_count * v.wing_inertia + v.wings.added_inertia) * k.stroke_slope / k.wing_lever;
+  const S J = has_gear_loss(v.motor) ? S(v.motor.gear_efficiency * v.motor.inertia) : v.motor.inertia;
+  return J + A * (k.crank_lever + s * v.friction.radius);
 }
 
 /// Moment of all hinge springs, N_w k beta [N m].
@@ -167,19 +177,22 @@ struct Instant {
   AeroLoads<S> aero;  ///< of all wings
   S spring_moment;    ///< N_w k beta [N m]
   S load_free;        ///< friction on the crank that does not depend on F [N m]
-  S drive;            ///< K i - b omega - load_free [N m]
+  S drive;            ///< K i - b omega - load_free [N m]; behind a gearbox, which the motor's share of it passes
+  S gear_ratio;       ///< e, torque behind the gearbox over torque before it [1]
+  S inertia;          ///< e J [kg m2]
   S A_g;              ///< A g of F = A omega' + C [kg m2]
   S C_g;              ///< C g [N m]
-  S force_switch;     ///< J C_g + A_g drive: has the sign of F on either branch while there is one solution [N m kg m2]
+  S force_switch;  ///< e J C_g + A_g drive: has the sign of F on either branch while there is one solution [N m kg m2]
 };
 
 /// The instant at crank speed omega [rad/s] and current i [A] under the terminal voltage v_t [V], N_k_beta being the
-/// spring_moment() there; `stroke` and `direction` are the signs of beta' and omega (model.md section 2), `pitching` as
-/// in Branch.
+/// spring_moment() there; `stroke` and `direction` are the signs of beta' and omega (model.md section 2), `pitching`
+/// and `gear` as in Branch.
 template <template <Scalar> class V, Scalar S>
 [[gnu::always_inline]] inline Instant<S> instant_at(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta,
                                                     const S& omega, const S& i, const S& v_t, const S& stroke,
-                                                    const S& direction, const S& pitching = S(1.0)) {
+                                                    const S& direction, const S& pitching = S(1.0),
+                                                    const S& gear = S(1.0)) {
   Instant<S> at;
   at.kinematics = k;
   at.omega = omega;
@@ -187,14 +200,22 @@ template <template <Scalar> class V, Scalar S>
   at.stroke_velocity = k.stroke_slope * omega;
   at.aero = aero_loads(v.wings, at.stroke_velocity, stroke, pitching);
   at.spring_moment = N_k_beta;
-  at.load_free = load_free_friction(v.friction, omega, direction) + direction * v.motor.friction_torque;
+  // The motor's own friction acts before the gearbox.
+  const S mechanism = load_free_friction(v.friction, omega, direction), own = direction * v.motor.friction_torque;
+  at.load_free = mechanism + own;
+  at.gear_ratio = gear_torque_ratio(v.motor, gear);
+  at.inertia = v.motor.inertia;
   at.drive = at.motor.torque - at.motor.drag_torque - at.load_free;
+  if (has_gear_loss(v.motor)) {
+    at.inertia = at.gear_ratio * v.motor.inertia;
+    at.drive = at.gear_ratio * (at.motor.torque - at.motor.drag_torque - own) - mechanism;
+  }
 
   // F = A omega' + C of model.md, both sides times g, which saves dividing by it twice.
-  const S N_J = v.wing_count * v.wing_inertia;
+  const S N_J = v.wing_count * v.wing_inertia + at.aero.added_inertia;
   at.A_g = N_J * k.stroke_slope;
   at.C_g = N_J * k.stroke_curve * square(omega) + at.aero.moment + at.spring_moment;
-  at.force_switch = v.motor.inertia * at.C_g + at.A_g * at.drive;
+  at.force_switch = at.inertia * at.C_g + at.A_g * at.drive;
   return at;
 }
 
@@ -205,7 +226,7 @@ template <template <Scalar> class V, Scalar S>
   Motion<S> m;
   m.kinematics = at.kinematics;
   const CrankKinematics<S>& k = m.kinematics;
-  const S J = v.motor.inertia;
+  const S J = at.inertia;
   const S g = k.wing_lever;
   const S omega2 = square(at.omega);
   // mu r_e |F| sign(omega) = s mu r_e F with s = sign(F) sign(omega), on this branch.
@@ -223,6 +244,13 @@ template <template <Scalar> class V, Scalar S>
   m.stroke_acceleration = k.stroke_slope * m.crank_acceleration + k.stroke_curve * omega2;
   m.friction_torque = load_friction(v.friction, branch.force * m.rod_force, branch.direction) + at.load_free;
   m.motor_torque = m.rod_force * k.crank_lever + m.friction_torque;
+  m.gear_torque = m.gear_loss = S(0.0);
+  if (has_gear_loss(v.motor)) {
+    m.gear_torque =
+        branch.direction * (at.motor.torque - at.motor.drag_torque - v.motor.inertia * m.crank_acceleration) -
+        v.motor.friction_torque;
+    m.gear_loss = (S(1.0) - at.gear_ratio) * m.gear_torque * branch.direction * at.omega;
+  }
   m.stored_moment = v.wing_count * v.wing_inertia * m.stroke_acceleration + at.spring_moment;
   m.inductive_voltage = at.motor.inductive_voltage;
   return m;
@@ -242,7 +270,8 @@ template <template <Scalar> class V, Scalar S>
                                                   const S& i, const S& v_t, const Branch<S>& branch) {
   const CrankKinematics<S> k = crank_kinematics(v.transmission, sin_theta, cos_theta);
   const S N_k_beta = spring_moment(v, k);
-  const Instant<S> at = instant_at(v, k, N_k_beta, omega, i, v_t, branch.stroke, branch.direction, branch.pitching);
+  const Instant<S> at =
+      instant_at(v, k, N_k_beta, omega, i, v_t, branch.stroke, branch.direction, branch.pitching, branch.gear);
   return motion_on(v, at, i, v_t, branch);
 }
 
@@ -272,7 +301,7 @@ S no_load_speed(const V<S>& v) {
   return K * v.voltage / (K * K + circuit_resistance(v) * v.motor.viscous_damping);
 }
 
-/// Kinetic energy of all wings and elastic energy of all hinge springs [J].
+/// Kinetic energy of all wings, without the air that moves with them, and elastic energy of all hinge springs [J].
 template <template <Scalar> class V, Scalar S>
 S wing_energy(const V<S>& v, const CrankKinematics<S>& k, const S& stroke_velocity) {
   const S kinetic = S(0.5) * v.wing_count * v.wing_inertia * square(stroke_velocity);

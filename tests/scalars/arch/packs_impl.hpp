@@ -38,7 +38,7 @@ void evaluate(const Case* cases, int count, double* out) {
     const auto at = instant<B>(vehicle, point);
     // Steps start a little off rest, as a crank speed of zero ends a cycle.
     const auto step = crank_step<B>(vehicle, gather([](const Case& c) { return c.theta; }),
-                                    {B(120.0) + abs(omega), current}, B(0.1), {force, B(1.0), B(1.0), B(1.0)});
+                                    {B(120.0) + abs(omega), current}, B(0.1), {force, B(1.0), B(1.0), B(1.0), B(1.0)});
     for (int n = 0; n < outputs; ++n) {
       (n < instant_size ? at[std::size_t(n)] : step[std::size_t(n - instant_size)]).store(numbers);
       for (int lane = 0; lane < size && start + lane < count; ++lane) {

@@ -1,0 +1,284 @@
+// A gearbox that loses torque: closed forms, statics, energy balance, orbit against simulation in time, derivatives.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "vehicle/random_vehicle.hpp"
+#include "wingbeat/cycle/energy_audit.hpp"
+#include "wingbeat/cycle/orbit_gradient.hpp"
+#include "wingbeat/cycle/static_balance.hpp"
+#include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/time/transient.hpp"
+
+namespace wingbeat {
+namespace {
+
+Vehicle<double> with_gear(double efficiency, bool springs = false) {
+  Vehicle<double> v = reference_vehicle(springs);
+  v.motor.gear_efficiency = efficiency;
+  return v;
+}
+
+SteadyFlapping orbit_of(const Vehicle<double>& v, double tolerance) {
+  return find_steady_flapping(v, {.tolerance = tolerance}, start_up_in_time());
+}
+
+/// Largest deviation of metrics beside their error_scale().
+double apart(const Metrics<double>& a, const Metrics<double>& b, std::string& where) {
+  double worst = 0.0;
+  for (int n = 0; n < metric_count; ++n) {
+    const Metric m = Metric(n);
+    if (m == Metric::floquet_multiplier_max) continue;
+    // A crank may all but stop on its way, a gearbox all but idle.
+    double size = error_scale(b, m);
+    if (m == Metric::crank_speed_min) size = b[Metric::crank_speed_max];
+    if (m == Metric::power_gear) size = b[Metric::power_electrical];
+    const double off = std::abs(a[m] - b[m]);
+    if (off > worst * size) worst = off / size, where = metric_info(m).key;
+  }
+  return worst;
+}
+
+// Of the four branches exactly one agrees with itself, and there the gearbox passes e times the motor's torque.
+TEST(GearEfficiency, OneBranchHoldsAndTheGearboxOnlyTakes) {
+  std::mt19937_64 random(91);
+  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  int driven = 0, states = 0;
+  for (int n = 0; n < 4000; ++n) {
+    Vehicle<double> v = resolve(random_design(random));
+    v.motor.gear_efficiency = uniform(0.4, 1.0);
+    const double theta = uniform(0.0, two_pi), omega = uniform(5.0, 400.0), i = uniform(-0.2, 0.5);
+    const CrankKinematics<double> k = crank_kinematics(v.transmission, std::sin(theta), std::cos(theta));
+    if (!(min_inertia(v, k) > 0.0) || !(k.wing_lever > 0.0)) continue;
+    ++states;
+    int agree = 0;
+    for (const double gear : {1.0, -1.0}) {
+      for (const double force : {1.0, -1.0}) {
+        const Branch<double> branch{sign_of(k.stroke_slope), force, 1.0, 1.0, 1.0, gear};
+        const Motion<double> m = motion_at(v, std::sin(theta), std::cos(theta), omega, i, 3.0, branch);
+        if (m.force_switch * force < 0.0 || m.gear_torque * gear < 0.0) continue;
+        ++agree;
+        driven += gear < 0.0 ? 1 : 0;
+        const Motor<double>& motor = v.motor;
+        const double T_g = motor.torque_constant * i - motor.viscous_damping * omega - motor.friction_torque -
+                           motor.inertia * m.crank_acceleration;
+        const double e = gear > 0.0 ? motor.gear_efficiency : 1.0 / motor.gear_efficiency;
+        const double behind = m.motor_torque - motor.friction_torque;
+        const double size = std::abs(T_g) + std::abs(m.rod_force * k.crank_lever) + std::abs(m.friction_torque);
+        EXPECT_NEAR(m.gear_torque, T_g, 1e-12 * size);
+        EXPECT_NEAR(behind, e * T_g, 1e-11 * size);
+        EXPECT_NEAR(m.gear_loss, (T_g - behind) * omega, 1e-11 * size * omega);
+        EXPECT_GE(m.gear_loss, 0.0);
+      }
+    }
+    EXPECT_EQ(agree, 1) << n;
+  }
+  EXPECT_GT(states, 2000);
+  EXPECT_GT(driven, 300);
+}
+
+// Wings away, the motor turns viscous friction of the mechanism through the gearbox at constant speed.
+TEST(GearEfficiency, ConstantSpeedIsTheClosedForm) {
+  for (const double eta : {1.0, 0.8, 0.5}) {
+    Vehicle<double> v = wingless_vehicle();
+    const double K = v.motor.torque_constant, R = v.motor.armature_resistance, b = v.motor.viscous_damping;
+    const double b_f = 4e-6, T_own = 2e-4;
+    v.friction = {};
+    v.friction.damping = b_f;
+    v.motor.friction_torque = T_own;
+    v.motor.gear_efficiency = eta;
+    const double omega = (K * v.voltage / R - T_own) / (K * K / R + b + b_f / eta);
+    const SteadyFlapping found = orbit_of(v, 1e-10);
+    ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+    EXPECT_NEAR(two_pi * found.metrics[Metric::frequency] / omega, 1.0, 1e-9);
+    EXPECT_NEAR(found.metrics[Metric::power_gear], (1.0 / eta - 1.0) * b_f * square(omega), 1e-9);
+    EXPECT_NEAR(energy_audit(found.metrics).imbalance, 0.0, 1e-9 * found.metrics[Metric::power_electrical]);
+  }
+}
+
+TEST(GearEfficiency, ApproachesTheIdealGearbox) {
+  for (const bool springs : {false, true}) {
+    const SteadyFlapping ideal = orbit_of(reference_vehicle(springs), 1e-10);
+    EXPECT_EQ(ideal.metrics[Metric::power_gear], 0.0);
+    std::string where;
+    EXPECT_EQ(apart(orbit_of(with_gear(1.0, springs), 1e-10).metrics, ideal.metrics, where), 0.0) << where;
+    double before = 0.0;
+    for (const double loss : {1e-2, 1e-4, 1e-6}) {
+      const double off = apart(orbit_of(with_gear(1.0 - loss, springs), 1e-10).metrics, ideal.metrics, where);
+      EXPECT_GT(off, 0.1 * loss);
+      EXPECT_LT(off, 10.0 * loss) << where;
+      if (before > 0.0) {
+        EXPECT_NEAR(off / before, 1e-2, 2e-3);
+      }
+      before = off;
+    }
+  }
+}
+
+TEST(GearEfficiency, OrbitsOfRandomVehiclesAgreeWithTheSimulationAndCloseTheEnergyBalance) {
+  std::mt19937_64 random(92);
+  int flapping = 0, others = 0;
+  for (int n = 0; n < 120; ++n) {
+    Vehicle<double> v = resolve(random_design(random, 1.5));
+    v.motor.gear_efficiency = std::uniform_real_distribution<double>(0.5, 1.0)(random);
+    const SteadyFlapping orbit = orbit_of(v, 1e-8);
+    TransientOptions options;
+    options.tolerance = 1e-7;
+    const TransientResult time = simulate_start_up(v, options);
+    ASSERT_EQ(orbit.status, time.status) << n << ": " << orbit.detail << " / " << time.detail;
+    if (orbit.status != FlappingStatus::flapping) {
+      ++others;
+      continue;
+    }
+    ++flapping;
+    std::string where;
+    EXPECT_LT(apart(orbit.metrics, *time.metrics, where), 1e-6) << "vehicle " << n << ", " << where;
+    const EnergyAudit audit = energy_audit(orbit.metrics);
+    EXPECT_NEAR(audit.imbalance, 0.0, 1e-7 * audit.electrical) << n;
+    EXPECT_GE(audit.gear, 0.0) << n;
+    // Before the gearbox: what the motor gives is what it passes on and loses.
+    EXPECT_NEAR(audit.electrical - audit.copper - audit.viscous - audit.gear, orbit.metrics[Metric::power_motor],
+                1e-7 * audit.electrical)
+        << n;
+  }
+  EXPECT_GE(flapping, 70);
+  EXPECT_GE(others, 3);
+}
+
+TEST(GearEfficiency, EnergyBalanceTightensWithTheTolerance) {
+  for (const bool springs : {false, true}) {
+    for (const double tolerance : {1e-6, 1e-10}) {
+      const SteadyFlapping found = orbit_of(with_gear(0.7, springs), tolerance);
+      ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+      const EnergyAudit audit = energy_audit(found.metrics);
+      EXPECT_NEAR(audit.imbalance, 0.0, tolerance * audit.electrical);
+      EXPECT_GT(audit.gear, 0.02 * audit.electrical);
+    }
+  }
+}
+
+// From rest the motor's torque passes at eta. The gearbox adds to what holds the crank either way, but a load alone
+// always drives the motor back.
+TEST(GearEfficiency, Statics) {
+  Vehicle<double> v = reference_vehicle();
+  v.friction = {};
+  v.friction.torque = 0.8 * stall_torque(v);
+  EXPECT_FALSE(static_balance(v).stalled());
+  v.motor.gear_efficiency = 0.79;
+  EXPECT_TRUE(static_balance(v).stalled());
+  EXPECT_EQ(orbit_of(v, 1e-6).status, FlappingStatus::stalled);
+  EXPECT_EQ(simulate_start_up(v).status, FlappingStatus::stalled);
+
+  v = with_gear(0.8, true);
+  v.friction = {};
+  int uphill = 0, downhill = 0;
+  for (int n = 0; n < 360; ++n) {
+    const double theta = two_pi * n / 360.0;
+    const CrankKinematics<double> k = crank_kinematics(v.transmission, std::sin(theta), std::cos(theta));
+    const double F_s = static_rod_force(k, spring_moment(v, k)), load = F_s * k.crank_lever;
+    const StandingTorques<double> at = standing_torques(v, k, F_s);
+    EXPECT_NEAR(at.high, load > 0.0 ? load / 0.8 : 0.8 * load, 1e-18);
+    EXPECT_NEAR(at.low, load > 0.0 ? 0.8 * load : load / 0.8, 1e-18);
+    EXPECT_LE(at.low, at.high);
+    ++(load > 0.0 ? uphill : downhill);
+  }
+  EXPECT_GT(uphill, 100);
+  EXPECT_GT(downhill, 100);
+
+  // A voltage at which springs are passed without the gearbox and lock with it.
+  v.voltage = 1.0;
+  while (static_balance(v).can_lock()) v.voltage *= 1.02;
+  v.motor.gear_efficiency = 0.6;
+  ASSERT_TRUE(static_balance(v).can_lock());
+  for (const LockInterval& lock : lock_intervals(v)) {
+    EXPECT_NEAR(lock_margin(v, lock.from), 0.0, 1e-12);
+    EXPECT_NEAR(lock_margin(v, lock.to), 0.0, 1e-12);
+    EXPECT_GT(lock.margin, 0.0);
+  }
+}
+
+TEST(GearEfficiency, DerivativesAgreeWithDifferences) {
+  for (const bool springs : {false, true}) {
+    Design<double> d = reference_design();
+    if (springs) d.spring.stiffness = 1.377e-3;
+    d.motor.gear_efficiency = 0.75;
+    d.motor.constants.friction_torque = 1e-4;
+    const auto orbit = [](const Design<double>& of) {
+      return find_steady_flapping(resolve(of), {.tolerance = 1e-12, .stability = false});
+    };
+    const auto parameters = [](auto& of) {
+      return std::array{&*of.motor.gear_efficiency, &of.motor.constants.inertia, &of.motor.constants.friction_torque,
+                        &of.friction.coefficient, &of.wing.inertia};
+    };
+    Design<GradientJet> seeded = cast<GradientJet>(d);
+    const auto jets = parameters(seeded);
+    for (std::size_t k = 0; k < jets.size(); ++k) *jets[k] = gradient_seed(value_of(*jets[k]), int(k));
+    const OrbitGradient g = orbit_gradient(orbit(d), gradient_vehicle(seeded, Condition::air));
+    ASSERT_TRUE(g.regular);
+    for (std::size_t k = 0; k < jets.size(); ++k) {
+      const double value = value_of(*jets[k]), h = 2e-4 * value;
+      std::array<Metrics<double>, 4> at;
+      const double steps[] = {-2.0, -1.0, 1.0, 2.0}, weights[] = {1.0 / 12.0, -8.0 / 12.0, 8.0 / 12.0, -1.0 / 12.0};
+      for (std::size_t n = 0; n < 4; ++n) {
+        Design<double> moved = d;
+        *parameters(moved)[k] = value + steps[n] * h;
+        at[n] = orbit(moved).metrics;
+      }
+      for (const Metric m : {Metric::frequency, Metric::power_electrical, Metric::power_friction, Metric::power_gear,
+                             Metric::lift_mean, Metric::rod_force_peak, Metric::crank_speed_min}) {
+        double difference = 0.0;
+        for (std::size_t n = 0; n < 4; ++n) difference += weights[n] * at[n][m] / h;
+        EXPECT_NEAR(g.metrics[m].v[gradient_first_slot + Eigen::Index(k)], difference,
+                    1e-6 * std::abs(value_of(g.metrics[m]) / value))
+            << metric_info(m).key << " by parameter " << k;
+      }
+    }
+  }
+  // At 1 there is none to both sides.
+  Design<GradientJet> seeded = cast<GradientJet>(reference_design());
+  seeded.motor.gear_efficiency = gradient_seed(1.0, 0);
+  const OrbitGradient g =
+      orbit_gradient(find_steady_flapping(reference_vehicle()), gradient_vehicle(seeded, Condition::air));
+  EXPECT_TRUE(std::isnan(g.metrics[Metric::frequency].v[gradient_first_slot]));
+}
+
+TEST(GearEfficiency, EnsemblesLeaveItToTheScalarSolver) {
+  std::array<EnsembleMember, 2> members = {{{with_gear(1.0), {}}, {with_gear(0.8), {}}}};
+  std::array<EnsembleOutcome, 2> outcomes;
+  solve_ensemble(members, {}, start_up_in_time(), outcomes);
+  EXPECT_EQ(outcomes[0].scalar, !has_packs);
+  EXPECT_TRUE(outcomes[1].scalar);
+  std::string where;
+  EXPECT_LT(apart(outcomes[1].metrics, orbit_of(with_gear(0.8), 1e-9).metrics, where), 1e-5) << where;
+  EXPECT_LT(outcomes[1].metrics[Metric::frequency], 0.95 * outcomes[0].metrics[Metric::frequency]);
+}
+
+TEST(GearEfficiency, BadInputIsNamed) {
+  const auto refused = [](auto change) -> std::string {
+    Design<double> d = reference_design();
+    change(d);
+    try {
+      validate(d);
+    } catch (const ParameterError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refused([](auto& d) { d.motor.gear_efficiency = 1.0; }), "");
+  EXPECT_EQ(refused([](auto& d) { d.motor.gear_efficiency = 0.0; }),
+            "motor.gear_efficiency: must be > 0 and <= 1 [1], got 0");
+  EXPECT_EQ(refused([](auto& d) { d.motor.gear_efficiency = 1.01; }),
+            "motor.gear_efficiency: must be > 0 and <= 1 [1], got 1.01");
+  EXPECT_EQ(refused([](auto& d) {
+              d.motor.gear_efficiency = 0.8;
+              d.transmission = {};
+              d.transmission.type = TransmissionType::direct;
+              d.supply = {SupplyType::sine, 3.0, 22.0, 1.0};
+              d.friction = {};
+            }),
+            "motor.gear_efficiency: a direct drive's load changes the direction of power twice a stroke, where such a "
+            "gearbox would stick: expected 1");
+}
+
+}  // namespace
+}  // namespace wingbeat
