@@ -27,6 +27,18 @@ constexpr Constant constants[] = {
     {"viscous_damping", "viscous damping", "N m s/rad", &MotorIdentification::viscous_damping},
     {"friction_torque", "friction torque", "N m", &MotorIdentification::friction_torque}};
 
+/// What [motor] has from the sheet as it stands there.
+struct SheetValue {
+  std::string_view key, unit;
+  std::optional<double> MotorDatasheet::* value;
+};
+constexpr SheetValue thermal_values[] = {
+    {"thermal_resistance_winding", "K/W", &MotorDatasheet::thermal_resistance_winding},
+    {"thermal_resistance_case", "K/W", &MotorDatasheet::thermal_resistance_case},
+    {"winding_temperature_max", "K", &MotorDatasheet::winding_temperature_max},
+    {"thermal_time_constant_winding", "s", &MotorDatasheet::thermal_time_constant_winding},
+    {"thermal_time_constant_case", "s", &MotorDatasheet::thermal_time_constant_case}};
+
 std::string percent(double x) { return fmt::format("{:.{}f} %", 100.0 * x, std::abs(x) < 0.1 ? 1 : 0); }
 
 std::string sentence(const Contradiction& c) {
@@ -53,6 +65,9 @@ std::string motor_section(const MotorIdentification& motor, const MotorDatasheet
   text += "\n[motor]\n";
   for (const Constant& c : constants) {
     text += fmt::format("{} = \"{} {}\"\n", c.key, *(motor.*c.value).value, c.unit);
+  }
+  for (const SheetValue& v : thermal_values) {
+    if (sheet.*v.value) text += fmt::format("{} = \"{} {}\"\n", v.key, *(sheet.*v.value), v.unit);
   }
   return text;
 }

@@ -8,6 +8,7 @@
 #include "wingbeat/parts/blade_element.hpp"
 #include "wingbeat/parts/friction.hpp"
 #include "wingbeat/parts/motor.hpp"
+#include "wingbeat/parts/motor_thermal.hpp"
 #include "wingbeat/parts/spring.hpp"
 #include "wingbeat/vehicle/design.hpp"
 #include "wingbeat/vehicle/drive.hpp"
@@ -30,11 +31,12 @@ struct Vehicle {
   BladeElement<S> wings;
   S source_resistance = S(0);  ///< R_i inside the supply [ohm], >= 0: the terminals see v - R_i i
   S drive_frequency = S(0);    ///< of a sine supply, whose amplitude is `voltage` [Hz]; else 0
+  MotorThermal<S> thermal;     ///< what changes `motor` where it heats up; see with_motor_at()
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
     return use(of.voltage, of.motor, of.transmission, of.friction, of.spring, of.wing_count, of.wing_inertia, of.wings,
-               of.source_resistance, of.drive_frequency);
+               of.source_resistance, of.drive_frequency, of.thermal);
   }
 };
 
@@ -60,7 +62,24 @@ AnyTransmission<S> transmission_of(const TransmissionDesign<S>& t) {
   return of;
 }
 
-/// The vehicle that a design describes, in a condition. Does not check ranges: validate(design) does.
+/// What a design says of its motor's temperatures.
+template <Scalar S>
+MotorThermal<S> motor_thermal_of(const MotorThermalDesign<S>& t) {
+  MotorThermal<S> of;
+  if (!t.resistance_winding || !t.resistance_case) return of;
+  of = {*t.resistance_winding,
+        *t.resistance_case,
+        t.ambient_temperature,
+        t.reference_temperature,
+        t.copper_temperature_coefficient,
+        t.magnet_temperature_coefficient,
+        of.winding_temperature_max};
+  if (t.winding_temperature_max) of.winding_temperature_max = *t.winding_temperature_max;
+  return of;
+}
+
+/// The vehicle that a design describes, in a condition, its motor's constants as stated, at the reference temperature.
+/// Does not check ranges: validate(design) does.
 template <Scalar S>
 Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air) {
   Vehicle<S> v;
@@ -69,6 +88,7 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
   const MotorDesign<S>& m = design.motor;
   v.motor = m.gear_ratio ? at_output_shaft(GearMotor<S>{*m.gear_ratio, m.constants, m.gear_inertia, m.gear_damping})
                          : m.constants;
+  v.thermal = motor_thermal_of(m.thermal);
 
   const bool direct = design.transmission.type == TransmissionType::direct;
   v.transmission = transmission_of(design.transmission);
@@ -111,6 +131,19 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
   v.wings.coefficients = design.aerodynamics.coefficients;
   if (design.aerodynamics.angle_of_attack_min) v.wings.angle_of_attack_min = *design.aerodynamics.angle_of_attack_min;
   return v;
+}
+
+/// The vehicle with its motor, stated at the reference temperature, at other temperatures [K].
+template <template <Scalar> class V, Scalar S>
+V<S> with_motor_at(V<S> vehicle, const MotorTemperatures<S>& temperatures) {
+  vehicle.motor = at_temperatures(vehicle.motor, vehicle.thermal, temperatures);
+  return vehicle;
+}
+
+/// The vehicle as it is switched on: the motor as warm as its surroundings.
+template <template <Scalar> class V, Scalar S>
+V<S> switched_on(const V<S>& v) {
+  return heats_up(v.thermal) ? with_motor_at(v, {v.thermal.ambient_temperature, v.thermal.ambient_temperature}) : v;
 }
 
 /// Which smooth branch of the kinked equations holds, each +-1.
