@@ -81,6 +81,8 @@ bool ThermalEquilibrium::advance(bool flaps, const Metrics<double>& metrics) {
   (heats ? heating_ : cooling_) = last;
 
   MotorTemperatures<double> next = secant(last);
+  // Where it heats it is hotter that it settles, if at all: a secant says otherwise under runaway.
+  if (heats ? !(next.winding > at_.winding) : !(next.winding < at_.winding)) next = last.leads_to;
   const auto within = [&](double T) { return std::clamp(T, thermal_.ambient_temperature, copper_melting_point); };
   next = {within(next.winding), within(next.casing)};
   before_ = last;
