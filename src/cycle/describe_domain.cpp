@@ -31,6 +31,11 @@ std::string describe(const DomainEvidence& e) {
     case Quantity::input_power: return format("the input power is %.3g W (positive where the motor drives)", e.value);
     case Quantity::flow_speed:
       return format("the wings reach %.4g m/s (incompressible flow to %.4g m/s)", e.value, e.highest);
+    case Quantity::winding_temperature:
+      return format("the winding heats up to %.4g degC (at most %.4g degC)", e.value, e.highest);
+    case Quantity::thermal_runaway:
+      return format("thermal runaway: the losses do not settle before copper melts at %.4g degC (at most %.4g degC)",
+                    copper_melting_point - zero_celsius, e.highest);
   }
   return "";
 }

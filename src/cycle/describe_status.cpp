@@ -181,6 +181,9 @@ std::string describe_doubt(const StatusEvidence& e) {
           "it rotates when simulated in time, but neither a periodic orbit in %s (%s) nor a simulated "
           "cycle was found that it settles on",
           phase_of(e), describe(e.search));
+    case StatusEvidence::Kind::no_steady_temperature:
+      return format("it flaps, but no steady winding temperature was found, at last near %.4g degC",
+                    e.winding_temperature);
     default: break;
   }
   const std::string why = describe_giving_up(e);
@@ -201,6 +204,10 @@ std::string describe(const StatusEvidence& e) {
                                                      : describe_doubt(e);
   if (std::isfinite(e.faster_orbit)) {
     text += format("; a rotating orbit at %.4g Hz exists for a faster start", e.faster_orbit);
+  }
+  if (std::isfinite(e.winding_temperature) && e.kind != Kind::no_steady_temperature) {
+    text += format("; while the motor is colder it flaps, and heats up until the winding is at %.4g degC",
+                   e.winding_temperature);
   }
   return text;
 }

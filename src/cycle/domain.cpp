@@ -37,6 +37,11 @@ double stroke_reach_deg(const Vehicle<double>& v) { return degrees_per_radian * 
 /// Radius at which the speed of the wings is compared [m].
 double reference_radius(const Vehicle<double>& v) { return v.wings.s2 > 0.0 ? v.wings.s3 / v.wings.s2 : 0.0; }
 
+/// Largest temperature allowed to the winding [K]; what the vehicle does not limit, copper does.
+double winding_temperature_max(const MotorThermal<double>& t) {
+  return std::isnan(t.winding_temperature_max) ? copper_melting_point : t.winding_temperature_max;
+}
+
 /// For double and dual numbers.
 template <class S>
 std::array<S, domain_limit_count> excess_of(const Vehicle<double>& v, const Metrics<S>& m) {
@@ -62,6 +67,11 @@ std::array<S, domain_limit_count> excess_of(const Vehicle<double>& v, const Metr
     at(DomainLimit::stroke) = S(stroke_excess(v));
   } else {
     at(DomainLimit::stroke) = m[Metric::stroke_amplitude] * S(degrees_per_radian / other_stroke_max_deg) - S(1.0);
+  }
+
+  if (heats_up(v.thermal)) {
+    at(DomainLimit::winding_temperature) =
+        (m[Metric::winding_temperature] + S(zero_celsius)) / S(winding_temperature_max(v.thermal)) - S(1.0);
   }
 
   const S& P_e = m[Metric::power_electrical];
@@ -100,6 +110,9 @@ const std::array<DomainLimitInfo, domain_limit_count>& domain_limit_table() {
       {"motor_efficiency", "motor efficiency from 0 to 1"},
       {"input_power", "input power positive and finite"},
       {"flow_speed", "speed of the wings at S_3/S_2 up to 103 m/s (Mach 0.3)"},
+      {"winding_temperature",
+       "winding temperature of a motor with thermal resistances up to motor.winding_temperature_max, at the "
+       "most to copper's melting point"},
   }};
   return table;
 }
@@ -132,9 +145,9 @@ DomainExcess domain_excess_slopes(const Vehicle<double>& vehicle, const Metrics<
 
 std::bitset<metric_count> domain_metrics() {
   std::bitset<metric_count> needed;
-  for (const Metric m :
-       {Metric::power_electrical, Metric::power_motor, Metric::power_aerodynamic, Metric::power_residual,
-        Metric::angle_of_attack_min, Metric::stroke_amplitude, Metric::flapping_velocity_peak}) {
+  for (const Metric m : {Metric::power_electrical, Metric::power_motor, Metric::power_aerodynamic,
+                         Metric::power_residual, Metric::angle_of_attack_min, Metric::stroke_amplitude,
+                         Metric::flapping_velocity_peak, Metric::winding_temperature}) {
     needed.set(std::size_t(m));
   }
   return needed;
@@ -189,6 +202,10 @@ std::vector<DomainEvidence> domain_evidence(const Vehicle<double>& v, const Metr
   add(DomainLimit::input_power, Quantity::input_power, P_e, 0.0, std::numeric_limits<double>::infinity());
   add(DomainLimit::flow_speed, Quantity::flow_speed, m[Metric::flapping_velocity_peak] * reference_radius(v), 0.0,
       flow_speed_max);
+  const double T_w = m[Metric::winding_temperature], T_max = winding_temperature_max(v.thermal) - zero_celsius;
+  const bool runaway = T_w > copper_melting_point - zero_celsius;
+  add(DomainLimit::winding_temperature, runaway ? Quantity::thermal_runaway : Quantity::winding_temperature, T_w,
+      -zero_celsius, T_max);
   return rows;
 }
 

@@ -37,6 +37,9 @@ const std::array<MetricInfo, metric_count>& metric_table() {
       {"efficiency_mechanism", "1", "mechanism efficiency"},
       {"floquet_multiplier_max", "1", "largest modulus of the orbit's Floquet multipliers"},
       {"lift_to_weight", "1", "mean lift over weight"},
+      {"winding_temperature_degc", "degC", "winding temperature of the motor"},
+      {"case_temperature_degc", "degC", "case temperature of the motor"},
+      {"winding_temperature_margin_k", "K", "largest winding temperature allowed, less the winding temperature"},
   }};
   return table;
 }
@@ -47,6 +50,19 @@ int metric_index(std::string_view key) {
     if (key == table[std::size_t(m)].key) return m;
   }
   return metric_count;
+}
+
+const char* lacking_of_heat(Metric metric, const Design<double>& design) {
+  const MotorThermalDesign<double>& thermal = design.motor.thermal;
+  switch (metric) {
+    case Metric::winding_temperature_margin:
+      if (!thermal.winding_temperature_max) return motor_thermal_key::winding_temperature_max.path;
+      [[fallthrough]];
+    case Metric::winding_temperature:
+    case Metric::case_temperature:
+      return thermal.resistance_winding ? nullptr : motor_thermal_key::resistance_winding.path;
+    default: return nullptr;
+  }
 }
 
 double error_scale(const Metrics<double>& metrics, Metric which) {
@@ -60,6 +76,9 @@ double error_scale(const Metrics<double>& metrics, Metric which) {
       return std::max(size, 1e-3 * metrics[Metric::lift_peak] * std::abs(metrics[which] / metrics[Metric::lift_mean]));
     case Metric::current_mean:
       return std::isnan(metrics[Metric::rod_force_mean]) ? std::max(size, metrics[Metric::current_peak]) : size;
+    case Metric::winding_temperature:
+    case Metric::case_temperature:
+    case Metric::winding_temperature_margin: return size + zero_celsius;
     default: return size;
   }
 }

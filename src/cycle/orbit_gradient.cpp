@@ -19,15 +19,22 @@ constexpr Metric peak_metrics[] = {Metric::current_peak,           Metric::lift_
 
 void make_absent(J& x) { x.v.setConstant(absent); }
 
+/// All numbers of a gradient.
+template <class Visit>
+void for_each_jet(OrbitGradient& g, const Visit& visit) {
+  for (J& m : g.metrics.values) visit(m);
+  for (GradientInstant& at : g.instants) {
+    for (J* x : {&at.crank_speed, &at.current, &at.flapping_velocity, &at.lift, &at.rod_force, &at.motor_torque}) {
+      visit(*x);
+    }
+  }
+}
+
+/// Derivatives with the motor's constants at the temperatures of `vehicle`.
 template <class System>
-OrbitGradient differentiate(const SteadyFlapping& orbit, const RecordedCycle<System>& recorded,
-                            const GradientVehicle& given, const GradientOptions& options) {
-  Vehicle<J> vehicle = given.vehicle;
-  vehicle.voltage.a = recorded.system.vehicle.voltage;
-  vehicle.drive_frequency.a = recorded.system.vehicle.drive_frequency;
-  // A direct drive's frequency is its supply's: no voltage follows it, and its slot is a third state's.
+OrbitGradient repeat(const SteadyFlapping& orbit, const RecordedCycle<System>& recorded, const Vehicle<J>& vehicle,
+                     const GradientVehicle& given, const GradientOptions& options) {
   const bool voltage_varies = drive_of(vehicle).voltage_sets_frequency;
-  if (voltage_varies) vehicle.voltage.v[gradient_voltage_slot] = 1.0;
   CycleGradient<System> cycle(recorded, vehicle);
   OrbitGradient g;
   g.regular = cycle.run();
@@ -40,6 +47,57 @@ OrbitGradient differentiate(const SteadyFlapping& orbit, const RecordedCycle<Sys
       two_pi * bench * g.metrics[Metric::frequency] * g.metrics[Metric::current_mean];
   g.metrics[Metric::lift_to_weight] = g.metrics[Metric::lift_mean] / (given.mass * standard_gravity);
   for (const double theta : options.crank_angles) g.instants.push_back(cycle.instant(theta));
+  return g;
+}
+
+/// Lets the motor's temperatures follow: they are the fixed point T = G(T, p), so dT/dp = (I - dG/dT)^-1 dG/dp, and
+/// what they change comes on top of the derivatives `g` at given temperatures.
+template <class System>
+void follow_temperatures(const SteadyFlapping& orbit, const RecordedCycle<System>& recorded, Vehicle<J> constant,
+                         const GradientVehicle& given, const GradientOptions& options, OrbitGradient& g) {
+  for_each_number(constant, [](J& x) { x.v.setZero(); });
+  constexpr int w = gradient_first_slot, c = gradient_first_slot + 1;
+  const Vehicle<J> seeded = with_motor_at(
+      constant, {gradient_seed(orbit.temperatures.winding, 0), gradient_seed(orbit.temperatures.casing, 1)});
+  GradientVehicle beside = given;
+  for (J* x : {&beside.mass, &beside.bench_torque_constant}) x->v.setZero();
+  OrbitGradient by_temperature = repeat(orbit, recorded, seeded, beside, options);
+  g.regular = g.regular && by_temperature.regular;
+
+  const J T_w = by_temperature.metrics[Metric::winding_temperature];
+  const J T_c = by_temperature.metrics[Metric::case_temperature];
+  const J G_w = g.metrics[Metric::winding_temperature], G_c = g.metrics[Metric::case_temperature];
+  std::array<std::array<double, 2>, slots> change{};
+  for (int k = gradient_voltage_slot; k < slots; ++k) {
+    double matrix[4] = {1.0 - T_w.v[w], -T_w.v[c], -T_c.v[w], 1.0 - T_c.v[c]};
+    double dT[2] = {G_w.v[k], G_c.v[k]};
+    if (!solver::solve_linear(2, matrix, dT)) g.regular = false;
+    change[std::size_t(k)] = {dT[0], dT[1]};
+  }
+  std::vector<J> slopes;
+  for_each_jet(by_temperature, [&](const J& x) { slopes.push_back(x); });
+  std::size_t n = 0;
+  for_each_jet(g, [&](J& x) {
+    const J& slope = slopes[n++];
+    for (int k = gradient_voltage_slot; k < slots; ++k) {
+      x.v[k] += slope.v[w] * change[std::size_t(k)][0] + slope.v[c] * change[std::size_t(k)][1];
+    }
+  });
+}
+
+template <class System>
+OrbitGradient differentiate(const SteadyFlapping& orbit, const RecordedCycle<System>& recorded,
+                            const GradientVehicle& given, const GradientOptions& options) {
+  Vehicle<J> vehicle = given.vehicle;
+  vehicle.voltage.a = recorded.system.vehicle.voltage;
+  vehicle.drive_frequency.a = recorded.system.vehicle.drive_frequency;
+  // A direct drive's frequency is its supply's: no voltage follows it, and its slot is a third state's.
+  const bool voltage_varies = drive_of(vehicle).voltage_sets_frequency;
+  if (voltage_varies) vehicle.voltage.v[gradient_voltage_slot] = 1.0;
+  const MotorTemperatures<J> at{J(orbit.temperatures.winding), J(orbit.temperatures.casing)};
+  const bool warm = heats_up(vehicle.thermal);
+  OrbitGradient g = repeat(orbit, recorded, warm ? with_motor_at(vehicle, at) : vehicle, given, options);
+  if (warm) follow_temperatures(orbit, recorded, vehicle, given, options, g);
 
   if (options.held == Held::frequency && voltage_varies) {
     const J f = g.metrics[Metric::frequency];
@@ -50,12 +108,7 @@ OrbitGradient differentiate(const SteadyFlapping& orbit, const RecordedCycle<Sys
       }
       x.v[gradient_voltage_slot] = 0.0;
     };
-    for (J& m : g.metrics.values) follow(m);
-    for (GradientInstant& at : g.instants) {
-      for (J* x : {&at.crank_speed, &at.current, &at.flapping_velocity, &at.lift, &at.rod_force, &at.motor_torque}) {
-        follow(*x);
-      }
-    }
+    for_each_jet(g, follow);
   }
   make_absent(g.metrics[Metric::floquet_multiplier_max]);
   if (!options.peaks) {

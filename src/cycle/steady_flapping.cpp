@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "wingbeat/cycle/orbit_search.hpp"
+#include "wingbeat/cycle/thermal_equilibrium.hpp"
 
 namespace wingbeat {
 namespace {
@@ -145,11 +146,17 @@ void detail::fill_simulated(const StartUpOutcome& outcome, const SteadyOptions& 
   result.evidence.repeats_after = result.simulated->cycles;
 }
 
-SteadyFlapping find_steady_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
-                                    const StartUp& start_up) {
+SteadyFlapping detail::find_flapping_as_it_is(const Vehicle<double>& vehicle, const SteadyOptions& options,
+                                              const StartUp& start_up) {
   if (!drive_of(vehicle).rotates) return detail::find_direct_flapping(vehicle, options, start_up);
   return vehicle.motor.armature_inductance > 0.0 ? search<2>(vehicle, options, start_up)
                                                  : search<1>(vehicle, options, start_up);
+}
+
+SteadyFlapping find_steady_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
+                                    const StartUp& start_up) {
+  return heats_up(vehicle.thermal) ? detail::find_warm_flapping(vehicle, options, start_up)
+                                   : detail::find_flapping_as_it_is(vehicle, options, start_up);
 }
 
 }  // namespace wingbeat

@@ -12,7 +12,7 @@ TransientResult simulate(const Design<double>& design, TransientOptions options,
   validate(design);
   options.reporting = reporting_of(design);
   if (!drive_of(design).alternating && !options.supply) options.supply = design.supply;
-  return simulate_start_up(resolve(design, condition), options);
+  return simulate_start_up(switched_on(resolve(design, condition)), options);
 }
 
 DesignPoint gradient(const Design<double>& design, std::span<const std::string> keys,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "wingbeat/cycle/static_balance.hpp"
+#include "wingbeat/cycle/thermal_equilibrium.hpp"
 #include "wingbeat/ensemble/pack_blocks.hpp"
 #include "wingbeat/solve/collocation.hpp"
 
@@ -106,10 +107,13 @@ class EnsembleRun {
         results_(members.size()),
         rotates_(members.size()) {}
 
-  void solve() {
+  /// Solves the members that `takes(vehicle)` says are to be, their motors as they are.
+  template <class Takes>
+  void solve(const Takes& takes) {
     std::array<std::vector<std::size_t>, kinds> by_kind;
     for (std::size_t n = 0; n < members_.size(); ++n) {
       const Vehicle<double>& v = members_[n].vehicle;
+      if (!takes(v)) continue;
       if (options_.scalar_only || !has_packs || v.wings.coefficients.table || has_pitch_stop(v.wings) ||
           has_gear_loss(v.motor) || v.transmission.type != TransmissionType::slider_crank) {
         solve_by_scalar(n);
@@ -203,8 +207,9 @@ class EnsembleRun {
     steady.reporting = members_[n].reporting;
     const StartUp known = [](const Vehicle<double>&) { return StartUpOutcome{}; };
     SteadyFlapping found;
-    if (start_up_is_known(n)) found = find_steady_flapping(members_[n].vehicle, steady, known);
-    if (found.status != FlappingStatus::flapping) found = find_steady_flapping(members_[n].vehicle, steady, start_up_);
+    if (start_up_is_known(n)) found = detail::find_flapping_as_it_is(members_[n].vehicle, steady, known);
+    if (found.status != FlappingStatus::flapping)
+      found = detail::find_flapping_as_it_is(members_[n].vehicle, steady, start_up_);
     const bool flaps = found.status == FlappingStatus::flapping;
     outcomes_[n] = {found.status, true, flaps ? found.summary.error_estimate : absent, found.metrics,
                     flaps ? domain(n, found.metrics) : DomainStatus()};
@@ -221,6 +226,47 @@ class EnsembleRun {
   std::vector<PackResult> results_;
   std::vector<char> rotates_;  ///< from rest, as lanes have shown in time
 };
+
+/// Members whose motors heat up: all of them are solved at a temperature each, again and again until it settles.
+void solve_warm(std::span<const EnsembleMember> members, const std::vector<std::size_t>& which,
+                const EnsembleOptions& options, const StartUp& start_up, std::span<EnsembleOutcome> outcomes) {
+  EnsembleOptions within = options;
+  within.tolerance = tolerance_within_equilibrium(options.tolerance);
+  within.metrics.set(std::size_t(Metric::winding_temperature)).set(std::size_t(Metric::case_temperature));
+  struct Search {
+    std::size_t member;
+    ThermalEquilibrium equilibrium;
+  };
+  std::vector<Search> active;
+  for (const std::size_t n : which) {
+    active.push_back({n, ThermalEquilibrium(members[n].vehicle.thermal, options.tolerance)});
+  }
+  std::vector<EnsembleMember> trials;
+  std::vector<EnsembleOutcome> results;
+  while (!active.empty()) {
+    trials.clear();
+    for (const auto& [n, equilibrium] : active) {
+      trials.push_back({with_motor_at(members[n].vehicle, equilibrium.at()), members[n].reporting});
+    }
+    results.resize(trials.size());
+    EnsembleRun(trials, within, start_up, results).solve([](const Vehicle<double>&) { return true; });
+    std::size_t left = 0;
+    for (std::size_t k = 0; k < active.size(); ++k) {
+      auto& [n, equilibrium] = active[k];
+      if (equilibrium.advance(results[k].status == FlappingStatus::flapping, results[k].metrics)) {
+        outcomes[n] = results[k];
+        if (equilibrium.outcome() == ThermalOutcome::does_not_settle) {
+          outcomes[n] = {FlappingStatus::undecided, results[k].scalar, absent, {}};
+          outcomes[n].metrics.values.fill(absent);
+        }
+        keep_wanted(options.metrics, outcomes[n].metrics);
+      } else {
+        active[left++] = active[k];
+      }
+    }
+    active.erase(active.begin() + std::ptrdiff_t(left), active.end());
+  }
+}
 
 }  // namespace
 
@@ -251,7 +297,14 @@ void solve_ensemble(std::span<const EnsembleMember> members, const EnsembleOptio
   require(options.tolerance >= 1e-12 && options.tolerance <= 1e-2, "tolerance", "must lie between 1e-12 and 1e-2", "1",
           options.tolerance);
   if (!is_available(options.isa)) throw ParameterError("isa", "this processor lacks the instruction set");
-  EnsembleRun(members, options, start_up, outcomes).solve();
+  std::vector<std::size_t> warm;
+  for (std::size_t n = 0; n < members.size(); ++n) {
+    if (heats_up(members[n].vehicle.thermal)) warm.push_back(n);
+  }
+  EnsembleRun(members, options, start_up, outcomes).solve([](const Vehicle<double>& v) {
+    return !heats_up(v.thermal);
+  });
+  solve_warm(members, warm, options, start_up, outcomes);
 }
 
 }  // namespace wingbeat

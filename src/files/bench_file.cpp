@@ -175,6 +175,10 @@ class BenchReader {
       if (q.metric == Metric::lift_to_weight && !fit.design.mass) {
         l.refuse(l.at("file"), "file", "lift_to_weight needs [vehicle] mass in the vehicle file");
       }
+      if (const char* lacks = lacking_of_heat(q.metric, fit.design)) {
+        l.refuse(l.at("file"), "file",
+                 fmt::format("{} needs {} in the vehicle file", metric_info(q.metric).key, lacks));
+      }
       if (q.metric == Metric::floquet_multiplier_max)
         l.refuse(l.at("file"), "file", "a Floquet multiplier cannot be fitted");
     }
@@ -196,6 +200,7 @@ class BenchReader {
       section.refuse(node, key, "an absolute deviation belongs to one column");
     } else {
       d = {Deviation::Kind::absolute, unit == "degree" ? degrees_per_radian * *form.quantity("absolute", "rad")
+                                      : unit == "degC" ? *form.quantity("absolute", "K")
                                                        : *form.quantity("absolute", unit)};
     }
     if (!(d.value > 0.0)) section.refuse(node, key, "must be > 0");

@@ -19,7 +19,7 @@ using detail::ColumnName, detail::metric_columns, detail::waveform_quantities;
 namespace {
 
 std::string base_name(std::string_view key) {
-  for (const std::string_view suffix : {"_rad_per_s", "_v", "_hz", "_a", "_w", "_n", "_rad", "_deg"}) {
+  for (const std::string_view suffix : {"_rad_per_s", "_v", "_hz", "_a", "_w", "_n", "_rad", "_deg", "_degc", "_k"}) {
     if (key.ends_with(suffix)) return std::string(key.substr(0, key.size() - suffix.size()));
   }
   return std::string(key);
@@ -27,6 +27,10 @@ std::string base_name(std::string_view key) {
 
 /// SI value of a number in a column: value * factor.
 double column_factor(const std::string& unit, const std::string& expected) {
+  if (expected == "degC") {  // it has a zero of its own
+    if (unit == expected || unit == "degc") return 1.0;
+    throw UnitError("expected degC");
+  }
   if (expected == "degree") return degrees_per_radian * unit_factor(unit, "rad");
   return unit_factor(unit.empty() ? "1" : unit, expected);
 }
@@ -223,7 +227,8 @@ const std::vector<ColumnName>& detail::metric_columns() {
       const Metric metric = Metric(m);
       const bool negative = metric == Metric::lift_mean || metric == Metric::lift_peak ||
                             metric == Metric::power_residual || metric == Metric::angle_of_attack_min ||
-                            metric == Metric::power_aerodynamic || metric == Metric::lift_to_weight;
+                            metric == Metric::power_aerodynamic || metric == Metric::lift_to_weight ||
+                            lacking_of_heat(metric, {}) != nullptr;
       all.push_back({base_name(info.key), info.key, info.unit, {false, metric, {}}, negative});
     }
     return all;

@@ -33,6 +33,12 @@ constexpr Field fields[] = {{"voltage", "V", &MotorDatasheet::voltage},
                             {"mechanical_time_constant", "s", &MotorDatasheet::mechanical_time_constant},
                             {"rotor_diameter", "m", &MotorDatasheet::rotor_diameter},
                             {"rotor_length", "m", &MotorDatasheet::rotor_length}};
+constexpr Field thermal_fields[] = {
+    {"thermal_resistance_winding", "K/W", &MotorDatasheet::thermal_resistance_winding},
+    {"thermal_resistance_case", "K/W", &MotorDatasheet::thermal_resistance_case},
+    {"winding_temperature_max", "K", &MotorDatasheet::winding_temperature_max},
+    {"thermal_time_constant_winding", "s", &MotorDatasheet::thermal_time_constant_winding},
+    {"thermal_time_constant_case", "s", &MotorDatasheet::thermal_time_constant_case}};
 constexpr Field point_fields[] = {{"voltage", "V", nullptr},
                                   {"torque", "N m", nullptr},
                                   {"speed", "rad/s", nullptr},
@@ -51,6 +57,7 @@ MotorDatasheet parse_datasheet(std::string_view text, const std::string& file_na
   if (!sheet) root.refuse("datasheet", "missing section [datasheet] with what the maker publishes");
   std::vector<std::string_view> known = {"name", "source", "note", "shaft", "gear_ratio", "gear_efficiency", "point"};
   for (const Field& f : fields) known.push_back(f.key);
+  for (const Field& f : thermal_fields) known.push_back(f.key);
   errors.attempt([&] { sheet->known_keys(known); });
 
   MotorDatasheet s;
@@ -61,6 +68,7 @@ MotorDatasheet parse_datasheet(std::string_view text, const std::string& file_na
   s.gear_ratio = sheet->quantity("gear_ratio", "1").value_or(1.0);
   s.gear_efficiency = sheet->quantity("gear_efficiency", "1");
   for (const Field& f : fields) errors.attempt([&] { s.*f.value = sheet->quantity(f.key, f.unit); });
+  for (const Field& f : thermal_fields) errors.attempt([&] { s.*f.value = sheet->quantity(f.key, f.unit); });
   errors.attempt([&] {
     if (s.shaft == Shaft::output && !sheet->has("gear_ratio")) {
       sheet->refuse("gear_ratio", "missing; values at the output shaft need the ratio (1 without a gearbox)");

@@ -53,7 +53,8 @@ std::optional<std::string> in_unit_of(std::string_view quantity, double si, std:
   const std::string unit = end;
   if (end == given.c_str()) return std::nullopt;
   try {
-    const double one = parse_quantity("1" + unit, si_unit);
+    const double zero = parse_quantity("0" + unit, si_unit);  // of a temperature not 0
+    const double one = parse_quantity("1" + unit, si_unit) - zero;
     std::optional<std::string> best;
     double least = rounding * std::abs(si);
     const auto attempt = [&](const std::string& number) {
@@ -64,7 +65,7 @@ std::optional<std::string> in_unit_of(std::string_view quantity, double si, std:
       }
       return error == 0.0;
     };
-    double x = si / one;
+    double x = (si - zero) / one;
     for (int digits = 1; digits <= 17; ++digits) {
       if (attempt(fmt::format("{}", std::strtod(fmt::format("{:.{}g}", x, digits).c_str(), nullptr)))) return best;
     }

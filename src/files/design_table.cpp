@@ -44,7 +44,7 @@ Column column_of(std::string_view cell, const std::function<SweptQuantity(const 
     refuse(fmt::format("{} names no unit; expected a heading such as \"{} [{}]\"", q.key, q.key, q.unit));
   }
   try {
-    unit_factor(unit, q.unit);
+    require_unit(unit, q.unit);
   } catch (const UnitError& error) {
     refuse(fmt::format("{}: {}", q.key, error.what()));
   }

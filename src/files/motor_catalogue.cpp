@@ -30,6 +30,13 @@ MotorCandidate candidate(const std::string& model, const Number& number, double 
   const auto resistance = number("resistance_ohm"), constant = number("torque_constant_Nm_per_A");
   const auto inertia = number("rotor_inertia_kgm2"), inductance = number("inductance_H");
   const auto mass = number("mass_kg");
+  // Heat is a choice of the vehicle; the resistances are the motor's own.
+  MotorThermalDesign<double>& thermal = motor.design.motor.thermal;
+  const bool heats = thermal.resistance_winding.has_value();
+  if (heats) {
+    thermal.resistance_winding = number("Rth1_K_per_W");
+    thermal.resistance_case = number("Rth2_K_per_W");
+  }
   std::string lacks;
   const auto need_value = [&](const std::optional<double>& x, const char* what) {
     if (!x) lacks += fmt::format("{}{}", lacks.empty() ? "" : ", ", what);
@@ -38,6 +45,10 @@ MotorCandidate candidate(const std::string& model, const Number& number, double 
   need_value(constant, "torque constant");
   need_value(inertia, "rotor inertia");
   need_value(inductance, "inductance");
+  if (heats) {
+    need_value(thermal.resistance_winding, "thermal resistance of the winding");
+    need_value(thermal.resistance_case, "thermal resistance of the case");
+  }
   const bool weighed = rest || design.masses.motor;
   if (weighed) need_value(mass, "mass");
   if (!lacks.empty()) {

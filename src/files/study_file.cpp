@@ -66,6 +66,9 @@ class StudyReader : public detail::StudySections {
     places_.study = place_of(*study_);
     if (const auto voltage = set_.find("supply.voltage"); voltage != set_.end()) places_.set_voltage = voltage->second;
     detail::complete_sweep(study.sweep, *this, places_, input);
+    const bool heats = std::any_of(study.sweep.variants.begin(), study.sweep.variants.end(),
+                                   [](const auto& v) { return v.design.motor.thermal.resistance_winding.has_value(); });
+    if (!heats) leave_out_heat(study.sweep.options);
     return study;
   }
 

@@ -245,6 +245,13 @@ void StudySections::read_metrics(EnsembleOptions& options) const {
   }
 }
 
+void StudySections::leave_out_heat(EnsembleOptions& options) const {
+  if (study_->find("metrics")) return;
+  for (const Metric m : {Metric::winding_temperature, Metric::case_temperature, Metric::winding_temperature_margin}) {
+    options.metrics.reset(std::size_t(m));
+  }
+}
+
 std::string StudySections::read_title() const {
   const TomlNode* title = study_->find("title");
   return title ? text_of(*title, "study.title", "a text") : "";

@@ -76,6 +76,8 @@ class StudySections : public TomlReader {
 
   void read_tolerance(EnsembleOptions& options) const;
   void read_metrics(EnsembleOptions& options) const;
+  /// Of vehicles whose motor does not heat up: its temperatures are no metrics unless the study names them.
+  void leave_out_heat(EnsembleOptions& options) const;
   std::string read_title() const;
   /// The vehicle with [set], its file being sought in that folder.
   Design<double> read_vehicle(const std::filesystem::path& folder) const;

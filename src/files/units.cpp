@@ -30,6 +30,9 @@ struct FreeUnit {
 struct FreeSystem {
   void operator()(ut_system* system) const { ut_free_system(system); }
 };
+struct FreeConverter {
+  void operator()(cv_converter* converter) const { cv_free(converter); }
+};
 using Unit = std::unique_ptr<ut_unit, FreeUnit>;
 
 /// A unit taken apart: `scale` times a product of powers of base units, the radian counted on its own.
@@ -85,6 +88,18 @@ class UnitSystem {
     return system;
   }
 
+  /// A temperature in another unit, their zeros taken into account; empty where one of the units is none of
+  /// temperature.
+  std::optional<double> temperature(double value, const std::string& unit, const std::string& wanted) {
+    const std::lock_guard lock(mutex_);
+    const Unit from(ut_parse(system_.get(), unit.c_str(), UT_UTF8));
+    const Unit to(ut_parse(system_.get(), wanted.c_str(), UT_UTF8));
+    if (!from || !to) return std::nullopt;
+    const std::unique_ptr<cv_converter, FreeConverter> converter(ut_get_converter(from.get(), to.get()));
+    if (!converter) return std::nullopt;
+    return cv_convert_double(converter.get(), value);
+  }
+
   std::optional<Anatomy> dissect(const std::string& unit) {
     const std::lock_guard lock(mutex_);
     Unit parsed(ut_parse(system_.get(), unit.c_str(), UT_UTF8));
@@ -132,6 +147,9 @@ class UnitSystem {
   std::mutex mutex_;
   std::unique_ptr<ut_system, FreeSystem> system_;
 };
+
+/// Units of what is asked for that have a zero of their own to be converted to.
+bool is_temperature(std::string_view unit) { return unit == "K" || unit == "degC"; }
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -300,12 +318,24 @@ std::string quantity_example(std::string_view unit) {
       {"N m s2/rad2", "a quadratic damping such as \"2e-8 N m s2/rad2\""},
       {"kg/m", "a mass over a length such as \"2 g/m\""},
       {"kg/m3", "a density such as \"1.225 kg/m3\""},
+      {"K", "a temperature such as \"25 degC\""},
+      {"degC", "a temperature such as \"25 degC\""},
+      {"K/W", "a thermal resistance such as \"20 K/W\""},
+      {"1/K", "a temperature coefficient such as \"0.0039 1/K\""},
       {"m4", "a chord moment such as \"2.5e-6 m4\""},
       {"m5", "a chord moment such as \"1e-7 m5\""}};
   for (const auto& [known, example] : examples) {
     if (known == unit) return std::string(example);
   }
   return fmt::format("a quantity in {}", unit);
+}
+
+void require_unit(std::string_view unit, std::string_view expected_unit) {
+  if (is_temperature(expected_unit)) {
+    parse_quantity("0 " + std::string(unit), expected_unit);
+  } else {
+    unit_factor(unit, expected_unit);
+  }
 }
 
 double unit_factor(std::string_view unit, std::string_view expected_unit) {
@@ -332,6 +362,10 @@ double parse_quantity(std::string_view text, std::string_view expected_unit, Spe
   const std::string_view mantissa = number.substr(0, std::size_t(end - number.data()));
   const std::string unit(detail::trimmed(number.substr(mantissa.size())));
   if (unit.starts_with(',')) return fail("; write a decimal point, not a comma");
+  if (is_temperature(expected_unit) && !unit.empty() && unit.size() <= longest_unit && !has_stray_number(unit)) {
+    const auto kelvin_or_celsius = UnitSystem::instance().temperature(value, unit, std::string(expected_unit));
+    if (kelvin_or_celsius && std::isfinite(*kelvin_or_celsius)) return *kelvin_or_celsius;
+  }
   const Factor factor = factor_for(unit, expected_unit);
   if (factor.of_reciprocal) {
     const double reciprocal = 1.0 / scaled(mantissa, value, factor.value);

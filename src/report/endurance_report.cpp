@@ -70,6 +70,8 @@ Json metrics_json(const Metrics<double>& metrics) {
   return json;
 }
 
+bool heated(const Flight& f) { return std::isfinite(f.last.metrics[Metric::winding_temperature]); }
+
 std::string duration(double seconds) {
   if (!std::isfinite(seconds)) return "-";
   return seconds < 100.0 ? readable(seconds, "s") : fmt::format("{:.1f} s", seconds);
@@ -134,9 +136,10 @@ std::string json_endurance(const EnduranceResult& result) {
     for (const Column& c : columns) {
       for (const EnduranceRow& row : f.rows) history[c.key].push_back(number_or_null(row.*c.value));
     }
-    for (const Metric m :
-         {Metric::voltage, Metric::current_mean, Metric::frequency, Metric::power_electrical, Metric::power_aerodynamic,
-          Metric::lift_mean, Metric::lift_to_weight, Metric::efficiency_system}) {
+    for (const Metric m : {Metric::voltage, Metric::current_mean, Metric::frequency, Metric::power_electrical,
+                           Metric::power_aerodynamic, Metric::lift_mean, Metric::lift_to_weight,
+                           Metric::efficiency_system, Metric::winding_temperature, Metric::case_temperature}) {
+      if (lacking_of_heat(m, {}) && !heated(f)) continue;
       const char* key = metric_info(m).key;
       for (const EnduranceRow& row : f.rows) history[key].push_back(number_or_null(row.metrics[m]));
     }
@@ -225,6 +228,13 @@ std::string text_endurance(const Design<double>& design, const EnduranceResult& 
                    first.metrics[Metric::lift_to_weight], f.lift / weight, f.last.metrics[Metric::lift_to_weight]);
   }
   course("flapping frequency", Metric::frequency, "Hz", absent);
+  for (const Metric m : {Metric::winding_temperature, Metric::case_temperature}) {
+    if (!heated(f)) break;
+    const auto degrees = [&](const EnduranceRow& row) { return fmt::format("{:.1f} degC", row.metrics[m]); };
+    fmt::format_to(out, "  {:<22}{:>14}{:>14}{:>14}\n",
+                   m == Metric::winding_temperature ? "winding temperature" : "case temperature", degrees(first), "-",
+                   degrees(f.last));
+  }
   return text;
 }
 

@@ -104,6 +104,17 @@ void power_group(Table& table, const Metrics<double>& m) {
   power("reactive, mean magnitude", m[Metric::power_reactive], "");
 }
 
+void heat_group(Table& table, const Metrics<double>& m) {
+  if (!std::isfinite(m[Metric::winding_temperature])) return;
+  table.group("Heat of the motor, settled");
+  const double margin = m[Metric::winding_temperature_margin];
+  table.line("winding temperature", fmt::format("{:.1f} degC", m[Metric::winding_temperature]),
+             std::isfinite(margin)
+                 ? fmt::format("{:.1f} K {} the largest allowed", std::abs(margin), margin < 0.0 ? "above" : "below")
+                 : "");
+  table.line("case temperature", fmt::format("{:.1f} degC", m[Metric::case_temperature]));
+}
+
 void start_up_group(Table& table, const TransientResult& s, bool flapping) {
   using Kind = TransientEvent::Kind;
   auto counts = event_counts(s);
@@ -232,6 +243,7 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
   table.metric("peak current", Metric::current_peak, "A");
   table.metric("rms current", Metric::current_rms, "A");
   power_group(table, m);
+  heat_group(table, m);
 
   table.group("Efficiency");
   table.percent("system", Metric::efficiency_system, "aerodynamic / electrical");

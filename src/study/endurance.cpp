@@ -5,8 +5,10 @@
 #include <cmath>
 #include <map>
 
+#include "study/flight_path.hpp"
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/root.hpp"
+#include "wingbeat/cycle/thermal_equilibrium.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {
@@ -50,7 +52,11 @@ struct State {
 class Flight {
  public:
   Flight(const Design<double>& design, const EnduranceOptions& options)
-      : battery_(design.supply.battery), options_(options), vehicle_(resolve(design, options.condition)) {
+      : battery_(design.supply.battery),
+        options_(options),
+        vehicle_(resolve(design, options.condition)),
+        winding_time_(design.motor.thermal.time_constant_winding),
+        case_time_(design.motor.thermal.time_constant_case) {
     steady_.tolerance = std::max(0.01 * options.tolerance, 1e-12);
     steady_.stability = false;
     steady_.reporting = reporting_of(design);
@@ -59,13 +65,20 @@ class Flight {
 
   EnduranceResult run() {
     const double first = battery_.charge;
-    const State start = solve(first, start_up_in_time());
+    const bool warms_up = heats_up(vehicle_.thermal) && winding_time_;
+    const double T_amb = vehicle_.thermal.ambient_temperature;
+    const State start = warms_up ? solve_at(open_circuit_voltage(battery_, first), {T_amb, T_amb}, start_up_in_time())
+                                 : solve(first, start_up_in_time());
     result_.status = start.status;
     result_.evidence = start.evidence;
     result_.first_charge = first;
     result_.first_voltage = open_circuit_voltage(battery_, first);
     if (battery_.cutoff_voltage) result_.cutoff_voltage = battery_.cells * *battery_.cutoff_voltage;
     if (!start.flaps) return std::move(result_);
+    if (warms_up) {
+      discharge_warming_up(start);
+      return std::move(result_);
+    }
     known_[first] = start;
     const double last = last_charge();
     std::optional<double> hover;
@@ -85,6 +98,22 @@ class Flight {
     const bool flaps = found.status == FlappingStatus::flapping;
     return {flaps, found.status, found.evidence, found.metrics,
             flaps ? domain_of(vehicle_, found.metrics) : DomainStatus()};
+  }
+
+  /// The vehicle at an instant of a flight on which its motor has not settled: temperatures and domain are that
+  /// instant's.
+  State solve_at(double voltage, const MotorTemperatures<double>& T, const StartUp& start_up) {
+    ++result_.evaluations;
+    vehicle_.voltage = voltage;
+    const SteadyFlapping found = detail::find_flapping_as_it_is(with_motor_at(vehicle_, T), steady_, start_up);
+    State state{found.status == FlappingStatus::flapping, found.status, found.evidence, found.metrics, {}};
+    if (!state.flaps) return state;
+    Metrics<double>& m = state.metrics;
+    m[Metric::winding_temperature] = T.winding - zero_celsius;
+    m[Metric::case_temperature] = T.casing - zero_celsius;
+    m[Metric::winding_temperature_margin] = vehicle_.thermal.winding_temperature_max - T.winding;
+    state.domain = domain_of(vehicle_, m);
+    return state;
   }
 
   /// The turning vehicle at a charge: no start from rest is asked for.
@@ -162,8 +191,7 @@ class Flight {
   Totals at_voltage(double voltage) {
     const Metrics<double> m = solve_at(voltage, {}).metrics;
     const double per_current = battery_.capacity / m[Metric::current_mean];
-    const double internal_power =
-        m[Metric::power_copper] * vehicle_.source_resistance / vehicle_.motor.armature_resistance;
+    const double internal_power = vehicle_.source_resistance * square(m[Metric::current_rms]);
     return {per_current, m[Metric::power_electrical] * per_current, internal_power * per_current,
             m[Metric::power_aerodynamic] * per_current, m[Metric::lift_mean] * per_current};
   }
@@ -305,9 +333,112 @@ class Flight {
     }
   }
 
+  /// Totals over the flight with the motor's two temperatures as states of their own, from the surroundings on: winding
+  /// over case with tau_w, case over air with tau_c, each towards what the losses of the moment lead to.
+  void discharge_warming_up(const State& start) {
+    enum { over_case = total_count, casing, state_count };
+    using Path = std::array<double, state_count>;
+    const MotorThermal<double>& thermal = vehicle_.thermal;
+    const double first = battery_.charge, T_amb = thermal.ambient_temperature;
+    const auto state_at = [&](double drawn, const Path& y) {
+      return solve_at(open_circuit_voltage(battery_, std::max(first - drawn, 0.0)),
+                      {y[casing] + y[over_case], y[casing]}, {});
+    };
+    const auto rates = [&](double drawn, const Path& y) -> std::optional<Path> {
+      const State s = state_at(drawn, y);
+      if (!s.flaps) return std::nullopt;
+      const Metrics<double>& m = s.metrics;
+      const double per_charge = battery_.capacity / m[Metric::current_mean];
+      const double P_cu = m[Metric::power_copper], P_visc = m[Metric::power_viscous];
+      const MotorTemperatures<double> target = settled_temperatures(thermal, P_cu, P_visc);
+      return Path{per_charge,
+                  m[Metric::power_electrical] * per_charge,
+                  vehicle_.source_resistance * square(m[Metric::current_rms]) * per_charge,
+                  m[Metric::power_aerodynamic] * per_charge,
+                  m[Metric::lift_mean] * per_charge,
+                  (target.winding - target.casing - y[over_case]) / *winding_time_ * per_charge,
+                  (target.casing - y[casing]) / *case_time_ * per_charge};
+    };
+    const auto row_at = [&](double drawn, const Path& y, const State& s) {
+      const double charge = std::max(first - drawn, 0.0);
+      return EnduranceRow{y[time],       charge,      open_circuit_voltage(battery_, charge),
+                          y[electrical], y[internal], y[aerodynamic],
+                          y[lift],       s.metrics,   s.domain};
+    };
+    const auto lifts = [](const State& s) { return s.metrics[Metric::lift_to_weight] >= 1.0; };
+    const auto hovers = [&](const State& s) {
+      return s.flaps && lifts(s) && (options_.allow_extrapolation || s.domain.none());
+    };
+
+    // Errors are a part of what a whole discharge gives at the first moment's rates.
+    Path y{}, scale{};
+    y[casing] = T_amb;
+    result_.rows.push_back(row_at(0.0, y, start));
+    result_.end = EnduranceEnd::stops;
+    const std::optional<Path> at_start = rates(0.0, y);
+    if (!at_start) return;
+    for (std::size_t q = 0; q < total_count; ++q) scale[q] = std::max(std::abs((*at_start)[q]) * first, 1e-300);
+    scale[over_case] = scale[casing] = 100.0;
+    detail::FlightPath<state_count, decltype(rates)> path(rates, scale, options_.tolerance, 0.01 * first);
+
+    double drawn = 0.0;
+    if (!above_cutoff(start)) {
+      result_.end = EnduranceEnd::cutoff;
+      return;
+    }
+    const bool weighed = std::isfinite(steady_.reporting.mass);
+    if (weighed) result_.hover = hovers(start) ? Hover::kept : lifts(start) ? Hover::outside : Hover::never;
+    result_.end = EnduranceEnd::empty;
+    const std::vector<double> charges = grid(0.0);
+    for (std::size_t n = 1; n < charges.size(); ++n) {
+      const double end = first - charges[n];
+      while (drawn < end) {
+        const auto step = path.advance(drawn, y, end);
+        if (!step) {
+          result_.end = EnduranceEnd::stops;
+          return end_here(row_at(drawn, y, state_at(drawn, y)));
+        }
+        const auto [length, next] = *step;
+        const State state = state_at(drawn + length, next);
+        // The last moment of this step at which something still holds: its row.
+        const auto last_row = [&](const auto& holds) {
+          EnduranceRow row = result_.rows.back();
+          bisect(
+              [&](double h) {
+                const auto part = path.take(drawn, y, h);
+                if (!part) return false;
+                const State s = state_at(drawn + h, part->y);
+                if (holds(s)) row = row_at(drawn + h, part->y, s);
+                return holds(s);
+              },
+              0.0, length, [&](const Bracket<double>& h) { return h.after - h.before <= 1e-13 * first; });
+          return row;
+        };
+        if (result_.hover == Hover::kept && !hovers(state)) {
+          result_.hover = Hover::lost;
+          result_.hover_lost = last_row(hovers);
+          end_here(*result_.hover_lost);
+        }
+        const auto goes_on = [&](const State& s) { return s.flaps && above_cutoff(s); };
+        if (!goes_on(state)) {
+          result_.end = state.flaps ? EnduranceEnd::cutoff : EnduranceEnd::stops;
+          return end_here(last_row(goes_on));
+        }
+        drawn = length < end - drawn ? drawn + length : end;
+        y = next;
+        if (drawn == end) result_.rows.push_back(row_at(drawn, y, state));
+      }
+    }
+  }
+
+  void end_here(const EnduranceRow& last) {
+    // Not twice at the same charge.
+    if (result_.rows.back().charge != last.charge) result_.rows.push_back(last);
+  }
   Battery<double> battery_;
   EnduranceOptions options_;
   Vehicle<double> vehicle_;
+  std::optional<double> winding_time_, case_time_;  ///< tau_w, tau_c [s]
   SteadyOptions steady_;
   std::map<double, State> known_;
   std::vector<Piece> pieces_;  ///< in the order of voltages

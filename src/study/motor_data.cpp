@@ -4,6 +4,7 @@
 
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/core/text.hpp"
+#include "wingbeat/parts/motor_thermal.hpp"
 
 namespace wingbeat::detail {
 namespace {
@@ -30,6 +31,23 @@ void validate(const MotorDatasheet& s) {
   check_range("mechanical_time_constant", "s", s.mechanical_time_constant);
   check_range("rotor_diameter", "m", s.rotor_diameter);
   check_range("rotor_length", "m", s.rotor_length);
+  check_range("thermal_resistance_winding", "K/W", s.thermal_resistance_winding, true);
+  check_range("thermal_resistance_case", "K/W", s.thermal_resistance_case, true);
+  check_range("thermal_time_constant_winding", "s", s.thermal_time_constant_winding);
+  check_range("thermal_time_constant_case", "s", s.thermal_time_constant_case);
+  if (s.winding_temperature_max) {
+    const ParameterRange& allowed = motor_thermal_key::winding_temperature_max.range;
+    require(allowed.holds(*s.winding_temperature_max), "winding_temperature_max", allowed.expected, "K",
+            *s.winding_temperature_max);
+  }
+  if (s.thermal_resistance_winding.has_value() != s.thermal_resistance_case.has_value()) {
+    throw ParameterError(s.thermal_resistance_winding ? "thermal_resistance_case" : "thermal_resistance_winding",
+                         "missing: give both thermal resistances, of winding and case, or neither");
+  }
+  if (!s.thermal_resistance_winding &&
+      (s.winding_temperature_max || s.thermal_time_constant_winding || s.thermal_time_constant_case)) {
+    throw ParameterError("thermal_resistance_winding", "missing: nothing can be said of the motor's heat without it");
+  }
   require(s.gear_ratio > 0.0, "gear_ratio", "must be > 0", "1", s.gear_ratio);
   if (s.gear_efficiency) {
     require(*s.gear_efficiency > 0.0 && *s.gear_efficiency <= 1.0, "gear_efficiency", "must be > 0 and <= 1", "1",

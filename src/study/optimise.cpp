@@ -69,6 +69,7 @@ std::string bound_of(DomainLimit limit, TransmissionType transmission) {
     case DomainLimit::motor_efficiency: return "motor_efficiency <= 1";
     case DomainLimit::input_power: return "input_power > 0";
     case DomainLimit::flow_speed: return "flow_speed <= " + number(flow_speed_max) + " m/s";
+    case DomainLimit::winding_temperature: return "winding_temperature <= its maximum";
   }
   return "unknown";
 }

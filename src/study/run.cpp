@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "wingbeat/core/text.hpp"
+#include "wingbeat/cycle/thermal_equilibrium.hpp"
 
 namespace wingbeat {
 namespace {
@@ -143,26 +144,48 @@ void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunRes
   if (options.waveform_rows > 1 && !found.record.empty()) {
     result.cycle = found.record.waveform(options.waveform_rows);
   } else if (options.waveform_rows > 1 && found.simulated) {
+    const Vehicle<double> warm = heats_up(vehicle.thermal) ? with_motor_at(vehicle, found.temperatures) : vehicle;
     TransientOptions transient;
     transient.tolerance = std::max(options.tolerance, transient_tightest);
     transient.cycle_rows = options.waveform_rows;
     if (!drive_of(vehicle).rotates) {
-      result.cycle = simulate_start_up(vehicle, transient).cycle;
+      result.cycle = simulate_start_up(warm, transient).cycle;
     } else {
-      last_cycle(vehicle, {SupplyType::constant, vehicle.voltage, 0.0, 1.0, {}}, transient, options.waveform_rows,
-                 result);
+      last_cycle(warm, {SupplyType::constant, vehicle.voltage, 0.0, 1.0, {}}, transient, options.waveform_rows, result);
     }
   }
 }
 
-void run_transient(const Vehicle<double>& vehicle, const RunOptions& options, RunResult& result) {
+/// Simulates start-ups until the motor is as warm as its losses in the settled cycle make it. `vehicle` is then that
+/// one.
+TransientResult simulate_warm(Vehicle<double>& vehicle, TransientOptions transient) {
+  const Vehicle<double> stated = vehicle;
+  ThermalEquilibrium equilibrium(stated.thermal, transient.tolerance);
+  transient.tolerance = std::max(tolerance_within_equilibrium(transient.tolerance), transient_tightest);
+  TransientResult found;
+  bool flaps = false;
+  Metrics<double> nothing;
+  nothing.values.fill(absent);
+  do {
+    vehicle = with_motor_at(stated, equilibrium.at());
+    found = simulate_start_up(vehicle, transient);
+    flaps = found.status == FlappingStatus::flapping && found.metrics;
+  } while (!equilibrium.advance(flaps, flaps ? *found.metrics : nothing));
+  if (equilibrium.outcome() == ThermalOutcome::stops) {
+    found.evidence.winding_temperature = equilibrium.stops_at() - zero_celsius;
+  }
+  return found;
+}
+
+void run_transient(Vehicle<double> vehicle, const RunOptions& options, RunResult& result) {
   TransientOptions transient;
   transient.tolerance = std::max(options.tolerance, transient_tightest);
   transient.reporting = reporting_of(result.design);
   const Drive drive = drive_of(vehicle);
   if (!drive.alternating) transient.supply = result.design.supply;
   transient.cycle_rows = !drive.rotates && options.waveform_rows > 1 ? options.waveform_rows : 0;
-  result.start_up = simulate_start_up(vehicle, transient);
+  result.start_up =
+      heats_up(vehicle.thermal) ? simulate_warm(vehicle, transient) : simulate_start_up(vehicle, transient);
   const TransientResult& found = *result.start_up;
   result.status = found.status;
   result.evidence = found.evidence;

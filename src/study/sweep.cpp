@@ -38,7 +38,7 @@ void next(const Sweep& sweep, std::span<std::uint64_t> place) {
   }
 }
 
-static_assert(domain_limit_count <= 7, "bits of a signed byte");
+static_assert(domain_limit_count <= 8, "bits of a byte");
 
 }  // namespace
 

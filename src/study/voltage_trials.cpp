@@ -52,7 +52,8 @@ VoltageTrial VoltageTrials::at(double voltage) {
   const bool domain = range_ == SearchRange::domain;
   const double alpha = m[Metric::angle_of_attack_min];
   const double flow = excess[std::size_t(DomainLimit::flow_speed)];
-  trial.beyond = domain ? alpha < angle_of_attack_lowest_deg || flow > 0.0
+  const double heat = excess[std::size_t(DomainLimit::winding_temperature)];
+  trial.beyond = domain ? alpha < angle_of_attack_lowest_deg || flow > 0.0 || heat > 0.0
                         : alpha < extrapolation_angle_deg || flow > extrapolation_flow_speed / flow_speed_max - 1.0;
   trial.excess = -1.0;
   for (const double e : excess) trial.excess = std::isfinite(e) ? std::max(trial.excess, e) : 1.0;

@@ -108,10 +108,22 @@ void validate(const Design<double>& d) {
     throw ParameterError("aerodynamics.added_mass",
                          "needs the wing's outline: give wing.planform.s22, or a planform with a shape");
   }
+  const MotorThermalDesign<double>& thermal = d.motor.thermal;
+  if (thermal.resistance_winding.has_value() != thermal.resistance_case.has_value()) {
+    throw ParameterError(thermal.resistance_winding ? motor_thermal_key::resistance_case.path
+                                                    : motor_thermal_key::resistance_winding.path,
+                         "missing: give both thermal resistances, of winding and case, or neither");
+  }
 
   const Vehicle<double> v = resolve(d);
   if (drive_of(d).rotates) validate(v.transmission);
+  if (thermal.time_constant_winding.has_value() != thermal.time_constant_case.has_value()) {
+    throw ParameterError(thermal.time_constant_winding ? motor_thermal_key::time_constant_case.path
+                                                       : motor_thermal_key::time_constant_winding.path,
+                         "missing: give both thermal time constants, of winding and case, or neither");
+  }
   validate(v.spring);
+  validate(v.thermal);
   validate(v.wings);
   validate_added_mass(d, v);
   if (d.supply_resonance_ratio && !(v.drive_frequency > 0.0)) {

@@ -65,6 +65,10 @@ struct Geared {
   static constexpr std::string_view text = "motor.gear_ratio";
   static constexpr bool holds(const auto& d) { return d.motor.gear_ratio.has_value(); }
 };
+struct Heated {
+  static constexpr std::string_view text = "motor.thermal_resistance_winding";
+  static constexpr bool holds(const auto& d) { return d.motor.thermal.resistance_winding.has_value(); }
+};
 struct Weighed {
   static constexpr std::string_view text = "vehicle.mass";
   static constexpr bool holds(const auto& d) { return d.mass.has_value(); }

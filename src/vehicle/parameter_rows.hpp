@@ -15,9 +15,9 @@ std::span<const Parameter<S>> parameter_table() {
   using D = Design<S>;
   using detail::alternative, detail::battery_voltage, detail::choice, detail::friction_number, detail::number,
       detail::replaceable, detail::row, detail::table, detail::text, detail::wave_number;
-  using detail::FormulationChoice, detail::FrictionChoice, detail::Geared, detail::ShapeChoice, detail::ShapeIs,
-      detail::SupplyChoice, detail::SupplyIs, detail::TransmissionChoice, detail::TransmissionIs, detail::Weighed,
-      detail::WeighedSprings;
+  using detail::FormulationChoice, detail::FrictionChoice, detail::Geared, detail::Heated, detail::ShapeChoice,
+      detail::ShapeIs, detail::SupplyChoice, detail::SupplyIs, detail::TransmissionChoice, detail::TransmissionIs,
+      detail::Weighed, detail::WeighedSprings;
   using enum PlanformShape;
   using Powered = SupplyIs<SupplyType::constant, SupplyType::pwm>;
   using Sine = SupplyIs<SupplyType::sine>;
@@ -135,6 +135,33 @@ std::span<const Parameter<S>> parameter_table() {
       number<S, Weighed>({"motor.mass", "kg", range::not_negative, "none: in vehicle.mass",
                           "mass of the motor with its gearbox, in addition to vehicle.mass"},
                          [](auto& d) -> auto& { return d.masses.motor; }),
+
+      number<S>(row(motor_thermal_key::resistance_winding, "none: constants the same at any load",
+                    "R_th1, thermal resistance from winding to case; given, the constants follow the temperatures"),
+                [](auto& d) -> auto& { return d.motor.thermal.resistance_winding; }),
+      number<S, Heated>(
+          row(motor_thermal_key::resistance_case, "required", "R_th2, thermal resistance from case to air"),
+          [](auto& d) -> auto& { return d.motor.thermal.resistance_case; }),
+      number<S, Heated>(row(motor_thermal_key::ambient_temperature, "298.15 K", "T_amb, of the air about the motor"),
+                        [](auto& d) -> auto& { return d.motor.thermal.ambient_temperature; }),
+      number<S, Heated>(row(motor_thermal_key::reference_temperature, "298.15 K",
+                            "T_0 at which armature_resistance and torque_constant are stated"),
+                        [](auto& d) -> auto& { return d.motor.thermal.reference_temperature; }),
+      number<S, Heated>(row(motor_thermal_key::copper_temperature_coefficient, "0.0039 1/K",
+                            "a_Cu: R_a grows as 1 + a_Cu (T_winding - T_0)"),
+                        [](auto& d) -> auto& { return d.motor.thermal.copper_temperature_coefficient; }),
+      number<S, Heated>(row(motor_thermal_key::magnet_temperature_coefficient, "0 1/K",
+                            "a_B: K falls as 1 + a_B (T_case - T_0), about -0.001 1/K of NdFeB"),
+                        [](auto& d) -> auto& { return d.motor.thermal.magnet_temperature_coefficient; }),
+      number<S, Heated>(row(motor_thermal_key::winding_temperature_max, "none",
+                            "largest temperature allowed to the winding: beyond, a result is outside the domain"),
+                        [](auto& d) -> auto& { return d.motor.thermal.winding_temperature_max; }),
+      number<S, Heated>(row(motor_thermal_key::time_constant_winding, "none",
+                            "tau_w, of the winding over the case, for `wingbeat endurance`"),
+                        [](auto& d) -> auto& { return d.motor.thermal.time_constant_winding; }),
+      number<S, Heated>(row(motor_thermal_key::time_constant_case, "none",
+                            "tau_c, of the case over the air, for `wingbeat endurance`"),
+                        [](auto& d) -> auto& { return d.motor.thermal.time_constant_case; }),
 
       choice<S, TransmissionChoice>(
           "kind of mechanism between motor and wings; direct: the motor shaft is the wing hinge"),

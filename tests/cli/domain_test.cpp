@@ -135,7 +135,7 @@ TEST_F(Domain, SweepsFlagItAndTheBestIsInside) {
   nc_close(id);
   EXPECT_EQ(meanings,
             "angle_of_attack stroke formulation_residual mechanism_efficiency motor_efficiency input_power "
-            "flow_speed");
+            "flow_speed winding_temperature");
 
   // Most lift anywhere is far outside; it is best only where that is asked for, on the command or in the study.
   const Outcome free = run({"sweep", file, "-o", path("free.nc"), "--allow-extrapolation"});

@@ -25,6 +25,17 @@ TEST_F(IdentifyMotor, WritesAMotorThatAVehicleFileTakes) {
   EXPECT_EQ(run({"run", path("vehicle.toml"), "--condition", "wingless"}).status, 0);
 }
 
+TEST_F(IdentifyMotor, HandsOnWhatTheSheetSaysOfHeat) {
+  const std::string heat = "thermal_resistance_winding = \"20 K/W\"\n", rest = "thermal_resistance_case = \"48 K/W\"\n";
+  std::ofstream(path("sheet.toml")) << read(faulhaber) << heat << rest << "winding_temperature_max = \"85 degC\"\n";
+  EXPECT_EQ(run({"identify-motor", path("sheet.toml"), "-o", path("motor.toml")}).status, 0);
+  EXPECT_THAT(read(path("motor.toml")),
+              HasSubstr("thermal_resistance_winding = \"20 K/W\"\nthermal_resistance_case = \"48 K/W\"\n"
+                        "winding_temperature_max = \"358.15 K\"\n"));
+  std::ofstream(path("half.toml")) << read(faulhaber) << heat;
+  EXPECT_THAT(run({"identify-motor", path("half.toml")}).err, HasSubstr("give both thermal resistances"));
+}
+
 TEST_F(IdentifyMotor, JsonHoldsConstantsAndContradictions) {
   const Json json = run({"identify-motor", faulhaber, "--json"}).json();
   EXPECT_EQ(json["complete"], true);

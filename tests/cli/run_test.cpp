@@ -56,7 +56,10 @@ const std::vector<std::string> contract_keys = {"status",
                                                 "efficiency_motor",
                                                 "efficiency_mechanism",
                                                 "floquet_multiplier_max",
-                                                "lift_to_weight"};
+                                                "lift_to_weight",
+                                                "winding_temperature_degc",
+                                                "case_temperature_degc",
+                                                "winding_temperature_margin_k"};
 
 void expect_same_metrics(const Json& a, const Json& b, double tolerance) {
   for (const std::string& key : contract_keys) {

@@ -69,6 +69,20 @@ TEST(Units, Angles) {
   EXPECT_EQ(refusal("5 deg", "1"), "expected a number such as 2, got \"5 deg\"");
 }
 
+TEST(Units, TemperaturesHaveAZero) {
+  EXPECT_DOUBLE_EQ(parse_quantity("25 degC", "K"), 298.15);
+  EXPECT_DOUBLE_EQ(parse_quantity("-40 degF", "K"), 233.15);
+  EXPECT_EQ(parse_quantity("300 K", "K"), 300.0);
+  EXPECT_EQ(parse_quantity("300", "K"), 300.0);
+  EXPECT_DOUBLE_EQ(parse_quantity("373.15 K", "degC"), 100.0);
+  EXPECT_EQ(parse_quantity("100", "degC"), 100.0);
+  EXPECT_EQ(parse_quantity("20 K/W", "K/W"), 20.0);
+  EXPECT_EQ(parse_quantity("-0.001 K-1", "1/K"), -0.001);
+  EXPECT_THROW(parse_quantity("25 degC 2", "K"), UnitError);
+  EXPECT_THROW(parse_quantity("25 mm", "K"), UnitError);
+  EXPECT_THROW(parse_quantity("25 degC", "1/K"), UnitError);
+}
+
 TEST(Units, RefusesWhatIsNotTheQuantity) {
   EXPECT_EQ(refusal("5 kg", "m"), "expected a length such as \"5 mm\", got \"5 kg\"");
   EXPECT_EQ(refusal("5 s", "Hz"), "expected a frequency such as \"22 Hz\", got \"5 s\"");

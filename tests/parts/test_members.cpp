@@ -63,11 +63,12 @@ struct Offsets {
 template <class Part>
 class Members : public testing::Test {};
 
-using Parts = testing::Types<Battery<double>, CoefficientWave<double>, ForceCoefficients<double>, BladeElement<double>,
-                             Friction<double>, Motor<double>, GearMotor<double>, Planform<double>, SliderCrank<double>,
-                             HingeSpring<double>, Supply<double>, Vehicle<double>, MotorDesign<double>,
-                             TransmissionDesign<double>, FrictionDesign<double>, SpringDesign<double>,
-                             WingDesign<double>, AerodynamicsDesign<double>, ItemMasses<double>, Design<double>>;
+using Parts =
+    testing::Types<Battery<double>, CoefficientWave<double>, ForceCoefficients<double>, BladeElement<double>,
+                   Friction<double>, Motor<double>, MotorThermal<double>, MotorThermalDesign<double>, GearMotor<double>,
+                   Planform<double>, SliderCrank<double>, HingeSpring<double>, Supply<double>, Vehicle<double>,
+                   MotorDesign<double>, TransmissionDesign<double>, FrictionDesign<double>, SpringDesign<double>,
+                   WingDesign<double>, AerodynamicsDesign<double>, ItemMasses<double>, Design<double>>;
 TYPED_TEST_SUITE(Members, Parts);
 
 TYPED_TEST(Members, AreAllListedInTheOrderOfDeclaration) {

@@ -96,6 +96,23 @@ std::vector<EnsembleMember> mixed_members(int count, std::uint64_t seed) {
   return members;
 }
 
+/// Box designs with an 0816-size motor between -10 and 50 degC.
+std::vector<EnsembleMember> warm_members(int count, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::vector<EnsembleMember> members;
+  for (int n = 0; n < count; ++n) {
+    Design<double> d = box_design(random);
+    d.motor.thermal.resistance_winding = 10.0 + 20.0 * uniform(random);
+    d.motor.thermal.resistance_case = 30.0 + 40.0 * uniform(random);
+    d.motor.thermal.ambient_temperature = 263.0 + 60.0 * uniform(random);
+    d.motor.thermal.magnet_temperature_coefficient = n % 2 == 0 ? 0.0 : -0.0015 * uniform(random);
+    d.motor.thermal.winding_temperature_max = 360.0;
+    members.push_back(member_of(d));
+  }
+  return members;
+}
+
 struct Agreement {
   int flapping = 0, by_packs = 0, outside = 0;
 };
@@ -356,6 +373,42 @@ TEST(Ensemble, RefusesOptionsOutOfRange) {
   options.tolerance = 0.5;
   EXPECT_THAT(message(options), testing::HasSubstr("tolerance"));
   EXPECT_EQ(message({}), "");
+}
+
+/// Motors that heat up: packs settle at the temperatures of the scalar solver, whatever they are solved with.
+TEST(Ensemble, WarmMotors) {
+  std::vector<EnsembleMember> members = warm_members(1500, 816);
+  const StartUp start_up = start_up_in_time();
+  const auto got = solve(members, {.tolerance = 1e-6}, start_up);
+  int flapping = 0, by_packs = 0, too_hot = 0;
+  for (std::size_t n = 0; n < members.size(); n += 5) {
+    const SteadyFlapping expected =
+        find_steady_flapping(members[n].vehicle, {.tolerance = 1e-9, .reporting = members[n].reporting}, start_up);
+    ASSERT_EQ(got[n].status, expected.status) << n << " " << describe(expected.evidence);
+    if (expected.status != FlappingStatus::flapping) continue;
+    ++flapping;
+    by_packs += !got[n].scalar;
+    too_hot += got[n].domain[std::size_t(DomainLimit::winding_temperature)];
+    EXPECT_EQ(got[n].domain, domain_of(members[n].vehicle, expected.metrics)) << n;
+    for (int k = 0; k < metric_count; ++k) {
+      const Metric m = Metric(k);
+      if (m == Metric::floquet_multiplier_max || std::isnan(expected.metrics[m])) continue;
+      EXPECT_NEAR(got[n].metrics[m], expected.metrics[m], 2e-6 * error_scale(expected.metrics, m))
+          << n << " " << metric_info(m).key;
+    }
+  }
+  EXPECT_GT(flapping, 250);
+  EXPECT_GT(by_packs, 0.95 * flapping);
+  EXPECT_GT(too_hot, 10);
+  // Neither the neighbours nor their number matter.
+  const auto alone = solve({members[7]}, {.tolerance = 1e-6}, start_up);
+  EXPECT_TRUE(same_bits(alone[0], got[7]));
+  // Metrics that were not asked for are absent, the domain is known all the same.
+  const auto lift = solve(members, {.metrics = MetricSet().set(std::size_t(Metric::lift_mean))}, start_up);
+  for (std::size_t n = 0; n < members.size(); ++n) {
+    EXPECT_EQ(lift[n].domain, got[n].domain) << n;
+    EXPECT_TRUE(std::isnan(lift[n].metrics[Metric::winding_temperature]));
+  }
 }
 
 }  // namespace

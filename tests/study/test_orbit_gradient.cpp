@@ -244,6 +244,27 @@ TEST_P(OrbitGradients, MassesThatAreStatedForThemselves) {
   EXPECT_NEAR(weighed - by_rod(), -orbit.metrics[Metric::lift_to_weight] * 5e-3 / mass, 1e-9);
 }
 
+TEST_P(OrbitGradients, MotorsThatHeatUp) {
+  Design<double> d = reference_design();
+  d.supply.voltage = 4.0;
+  MotorThermalDesign<double>& thermal = d.motor.thermal;
+  thermal.resistance_winding = 20.0;
+  thermal.resistance_case = 48.0;
+  thermal.ambient_temperature = 310.0;
+  thermal.magnet_temperature_coefficient = -0.0011;
+  thermal.winding_temperature_max = 358.0;
+  Worst worst;
+  compare_gradients(d, Condition::air, GetParam(), worst);
+  EXPECT_GT(worst.compared, 600);
+  EXPECT_LT(worst.error, 1e-6) << worst.where;
+  // A motor that heats up loses more lift by its resistance, and some by the heat of the day.
+  const DesignParameter by[] = {design_parameter("motor.ambient_temperature")};
+  const SteadyFlapping orbit = orbit_of(d, Condition::air);
+  const MetricGradients g = metric_gradients(d, Condition::air, orbit, by);
+  EXPECT_LT(g.by_parameter[0][std::size_t(Metric::lift_mean)], 0.0);
+  EXPECT_GT(g.by_parameter[0][std::size_t(Metric::winding_temperature)], 0.5);
+}
+
 TEST_P(OrbitGradients, RandomVehicles) {
   std::mt19937_64 random(4);
   Worst worst;

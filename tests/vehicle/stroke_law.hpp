@@ -86,11 +86,12 @@ struct StrokeLawVehicle {
   BladeElement<S> wings;
   S source_resistance = S(0);
   S drive_frequency = S(0);
+  MotorThermal<S> thermal;
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
     return use(of.voltage, of.motor, of.transmission, of.friction, of.spring, of.wing_count, of.wing_inertia, of.wings,
-               of.source_resistance, of.drive_frequency);
+               of.source_resistance, of.drive_frequency, of.thermal);
   }
 };
 

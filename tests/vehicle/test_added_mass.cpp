@@ -92,7 +92,7 @@ TEST(AddedMass, EnergyBalanceClosesToTheToleranceAndTakesNoMeanPower) {
       Design<double> d = with_added_mass(springs);
       d.transmission.formulation = Formulation::virtual_work;
       const SteadyFlapping found = find_steady_flapping(resolve(d), {.tolerance = tolerance});
-      ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+      ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
       const EnergyAudit audit = energy_audit(found.metrics);
       EXPECT_NEAR(audit.imbalance, 0.0, tolerance * audit.electrical);
       EXPECT_NEAR(audit.residual, 0.0, 1e-13 * audit.electrical);
@@ -108,7 +108,7 @@ TEST(AddedMass, MeanPowerAndMeanRotationalLiftOverAnOrbitVanish) {
   for (const bool springs : {false, true}) {
     const Vehicle<double> v = resolve(with_added_mass(springs));
     const SteadyFlapping found = find_steady_flapping(v, {.tolerance = 1e-9});
-    ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+    ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
     std::vector<double> velocities;
     for (const WaveformRow& row : found.record.waveform(721)) {
       if (!velocities.empty() && velocities.back() * row.flapping_velocity < 0.0) velocities.push_back(0.0);
@@ -142,7 +142,7 @@ TEST(AddedMass, DerivativesAgreeWithDifferences) {
     const Design<double> d = with_added_mass(springs);
     const auto metrics_of = [](const Design<double>& of) {
       const SteadyFlapping found = find_steady_flapping(resolve(of), {.tolerance = 1e-12, .stability = false});
-      EXPECT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+      EXPECT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
       return found;
     };
     const auto parameters = [](auto& of) {
@@ -205,13 +205,13 @@ TEST(AddedMass, OrbitsOfRandomVehiclesAgreeWithTheSimulationAndWithPacks) {
     TransientOptions options;
     options.tolerance = 1e-7;
     const TransientResult time = simulate_start_up(v, options);
-    ASSERT_EQ(orbit.status, time.status) << n << ": " << orbit.detail << " / " << time.detail;
+    ASSERT_EQ(orbit.status, time.status) << n << ": " << describe(orbit.evidence) << " / " << describe(time.evidence);
     const std::array<EnsembleMember, 1> member = {{{v, {}}}};
     std::array<EnsembleOutcome, 1> pack;
     EnsembleOptions pack_options;
     pack_options.tolerance = 1e-7;
     solve_ensemble(member, pack_options, start_up_in_time(), pack);
-    ASSERT_EQ(orbit.status, pack[0].status) << n << ": " << orbit.detail;
+    ASSERT_EQ(orbit.status, pack[0].status) << n << ": " << describe(orbit.evidence);
     if (orbit.status != FlappingStatus::flapping) continue;
     ++(crank ? flapping : direct);
     packs += pack[0].scalar ? 0 : 1;

@@ -89,7 +89,7 @@ TEST(GearEfficiency, ConstantSpeedIsTheClosedForm) {
     v.motor.gear_efficiency = eta;
     const double omega = (K * v.voltage / R - T_own) / (K * K / R + b + b_f / eta);
     const SteadyFlapping found = orbit_of(v, 1e-10);
-    ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+    ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
     EXPECT_NEAR(two_pi * found.metrics[Metric::frequency] / omega, 1.0, 1e-9);
     EXPECT_NEAR(found.metrics[Metric::power_gear], (1.0 / eta - 1.0) * b_f * square(omega), 1e-9);
     EXPECT_NEAR(energy_audit(found.metrics).imbalance, 0.0, 1e-9 * found.metrics[Metric::power_electrical]);
@@ -125,7 +125,7 @@ TEST(GearEfficiency, OrbitsOfRandomVehiclesAgreeWithTheSimulationAndCloseTheEner
     TransientOptions options;
     options.tolerance = 1e-7;
     const TransientResult time = simulate_start_up(v, options);
-    ASSERT_EQ(orbit.status, time.status) << n << ": " << orbit.detail << " / " << time.detail;
+    ASSERT_EQ(orbit.status, time.status) << n << ": " << describe(orbit.evidence) << " / " << describe(time.evidence);
     if (orbit.status != FlappingStatus::flapping) {
       ++others;
       continue;
@@ -149,7 +149,7 @@ TEST(GearEfficiency, EnergyBalanceTightensWithTheTolerance) {
   for (const bool springs : {false, true}) {
     for (const double tolerance : {1e-6, 1e-10}) {
       const SteadyFlapping found = orbit_of(with_gear(0.7, springs), tolerance);
-      ASSERT_EQ(found.status, FlappingStatus::flapping) << found.detail;
+      ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
       const EnergyAudit audit = energy_audit(found.metrics);
       EXPECT_NEAR(audit.imbalance, 0.0, tolerance * audit.electrical);
       EXPECT_GT(audit.gear, 0.02 * audit.electrical);

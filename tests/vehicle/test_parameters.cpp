@@ -41,6 +41,7 @@ std::vector<Design<double>> designs_of_every_kind() {
         d.wing.planform.shape = shape;
         d.mass = 1e-3;
         d.motor.gear_ratio = 4.0;
+        d.motor.thermal.resistance_winding = 20.0;
         d.spring.stiffness = 1e-3;
         designs.push_back(d);
       }

@@ -21,9 +21,10 @@ enum class DomainLimit {
   mechanism_efficiency,  ///< P_aero/P_m from 0 to 1, in air
   motor_efficiency,      ///< P_m/P_e from 0 to 1; with the above, so is the system efficiency
   input_power,           ///< P_e positive and finite
-  flow_speed             ///< wings below Mach 0.3: the coefficients are those of incompressible flow
+  flow_speed,            ///< wings below Mach 0.3: the coefficients are those of incompressible flow
+  winding_temperature    ///< of a motor that heats up: as the vehicle states, at the most copper's melting point
 };
-inline constexpr int domain_limit_count = int(DomainLimit::flow_speed) + 1;
+inline constexpr int domain_limit_count = int(DomainLimit::winding_temperature) + 1;
 
 /// Indexed by DomainLimit. A set bit: that limit is exceeded; none(): inside.
 using DomainStatus = std::bitset<domain_limit_count>;
@@ -52,8 +53,8 @@ const std::array<DomainLimitInfo, domain_limit_count>& domain_limit_table();
 /// apply. NaN counts as outside.
 using DomainExcess = std::array<double, domain_limit_count>;
 /// Of a flapping vehicle. From what the vehicle is and what its cycle gives, by whichever solver; of the metrics it
-/// needs the four powers, the residual, the smallest angle of attack, the stroke amplitude and the peak flapping
-/// velocity.
+/// needs the four powers, the residual, the smallest angle of attack, the stroke amplitude, the peak flapping
+/// velocity and the winding temperature.
 DomainExcess domain_excess(const Vehicle<double>& vehicle, const Metrics<double>& metrics);
 
 /// Derivative of domain_excess() where the metrics change at the rates `slopes`, the vehicle itself held: that of
@@ -89,7 +90,9 @@ struct DomainEvidence {
     aerodynamic_power,      ///< P_aero [W] where the motor gives nothing; at most P_m
     motor_efficiency,       ///< P_m / P_e [1]
     input_power,            ///< P_e [W]
-    flow_speed              ///< largest at the radius S_3/S_2 [m/s]
+    flow_speed,             ///< largest at the radius S_3/S_2 [m/s]
+    winding_temperature,    ///< of a motor that heats up [degC]
+    thermal_runaway         ///< the same [degC], where the losses do not settle before copper melts
   };
   DomainLimit limit;
   Quantity quantity;

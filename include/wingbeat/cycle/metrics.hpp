@@ -43,9 +43,12 @@ enum class Metric {
   efficiency_motor,
   efficiency_mechanism,
   floquet_multiplier_max,
-  lift_to_weight
+  lift_to_weight,
+  winding_temperature,
+  case_temperature,
+  winding_temperature_margin
 };
-inline constexpr int metric_count = int(Metric::lift_to_weight) + 1;
+inline constexpr int metric_count = int(Metric::winding_temperature_margin) + 1;
 
 /// How a metric is named outside the program.
 struct MetricInfo {
@@ -74,8 +77,8 @@ struct Metrics {
 
 /// What a metric's errors are a part of: its magnitude, or more where it may vanish. The angle of attack to 90 degrees,
 /// the residual power and a gearbox's loss to the input, the mean lift and its ratio to the weight to a thousandth of
-/// the peak lift, the mean current of a direct drive, which alternates, to its peak. Not a number for a metric that is
-/// absent.
+/// the peak lift, the mean current of a direct drive, which alternates, to its peak, temperatures to about the absolute
+/// one. Not a number for a metric that is absent.
 double error_scale(const Metrics<double>& metrics, Metric which);
 
 /// Quantities integrated over the TIME of a cycle.
@@ -155,9 +158,13 @@ inline Reporting reporting_of(const Design<double>& d) {
   return {total_mass(d).value_or(absent), d.bench_torque_constant.value_or(absent)};
 }
 
+/// The key that a design would have to state for a metric of the motor's heat; null where the metric is none, or known.
+const char* lacking_of_heat(Metric metric, const Design<double>& design);
+
 /// The metrics of a cycle from its integrals and extremes. `extremes` holds the maxima of extreme_candidates(). A
 /// direct drive has no rod, no speed of rotation and no direct current: rod forces, crank speeds and the bench estimate
-/// (17) are absent; its voltage is the amplitude. Floquet multiplier: of the orbit, or `absent`.
+/// (17) are absent; its voltage is the amplitude. Floquet multiplier: of the orbit, or `absent`. The temperatures are
+/// those that the losses of this cycle lead to, absent without thermal resistances.
 template <template <Scalar> class V, Scalar S>
 Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, const CycleExtremes<S>& extremes,
                          const S& floquet_multiplier_max, const ReportingOf<S>& reporting) {
@@ -211,6 +218,10 @@ Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, cons
   m[Metric::efficiency_mechanism] = ratio(m[Metric::power_aerodynamic], m[Metric::power_motor]);
   m[Metric::floquet_multiplier_max] = floquet_multiplier_max;
   m[Metric::lift_to_weight] = m[Metric::lift_mean] / (reporting.mass * S(standard_gravity));
+  const MotorTemperatures<S> T = settled_temperatures(v.thermal, m[Metric::power_copper], m[Metric::power_viscous]);
+  m[Metric::winding_temperature] = T.winding - S(zero_celsius);
+  m[Metric::case_temperature] = T.casing - S(zero_celsius);
+  m[Metric::winding_temperature_margin] = v.thermal.winding_temperature_max - T.winding;
   return m;
 }
 

@@ -8,6 +8,7 @@
 // Steps and branches stay frozen although the parameters move the places where the rod force or the stored power
 // changes sign. That is exact: the right-hand side and the integrands are continuous there, so a moving boundary adds
 // nothing to a first derivative. It must lie where the sign changes, though: the recorded nodes are moved there first.
+// A motor that heats up has its temperatures from a fixed point around the orbit, which is closed in the same way.
 // The derivatives are about as accurate as the orbit. Peaks are differentiated at their fixed place (envelope theorem).
 #pragma once
 

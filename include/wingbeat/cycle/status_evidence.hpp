@@ -54,10 +54,11 @@ struct StatusEvidence {
     inertia_vanishes,  ///< inertia at angle
 
     // Undecided, by the orbit search
-    unstable_orbit,     ///< frequency, multiplier
-    unstable_response,  ///< of a direct drive: multiplier
-    no_response,        ///< of a direct drive: search
-    no_cycle,           ///< it rotates in time, but neither an orbit (search, direct) nor a simulated cycle was found
+    unstable_orbit,         ///< frequency, multiplier
+    unstable_response,      ///< of a direct drive: multiplier
+    no_response,            ///< of a direct drive: search
+    no_steady_temperature,  ///< winding_temperature, the last of a search around cycles that flap
+    no_cycle,  ///< it rotates in time, but neither an orbit (search, direct) nor a simulated cycle was found
     // Undecided, in time; a crank also has `range` of its angles, or the frequency where it revolves
     out_of_steps,            ///< steps, as many as allowed
     out_of_time,             ///< time allowed
@@ -69,20 +70,21 @@ struct StatusEvidence {
   };
   Kind kind = Kind::none;
 
-  double frequency = absent;         ///< of flapping; of a direct drive's supply [Hz]
-  double angle = absent;             ///< of the crank; of a direct drive the stroke angle [rad]
-  double torque = absent;            ///< [N m]
-  double friction_torque = absent;   ///< that friction can hold; of a stall its constant part [N m]
-  double torque_margin = absent;     ///< [N m]
-  double lever = absent;             ///< g of the wings [m]
-  double inertia = absent;           ///< J + A (h + s mu r_e) [kg m2]
-  double multiplier = absent;        ///< the largest Floquet multiplier [1]
-  double stroke_amplitude = absent;  ///< [rad]
-  double crank_speed = absent;       ///< omega [rad/s]
-  double time = absent;              ///< since the start [s]
-  double change = absent;            ///< relative, of cycles [1]
-  double accuracy = absent;          ///< of the metrics, relative [1]
-  double travel = absent;            ///< [rad]
+  double frequency = absent;            ///< of flapping; of a direct drive's supply [Hz]
+  double angle = absent;                ///< of the crank; of a direct drive the stroke angle [rad]
+  double torque = absent;               ///< [N m]
+  double friction_torque = absent;      ///< that friction can hold; of a stall its constant part [N m]
+  double torque_margin = absent;        ///< [N m]
+  double lever = absent;                ///< g of the wings [m]
+  double inertia = absent;              ///< J + A (h + s mu r_e) [kg m2]
+  double multiplier = absent;           ///< the largest Floquet multiplier [1]
+  double stroke_amplitude = absent;     ///< [rad]
+  double crank_speed = absent;          ///< omega [rad/s]
+  double time = absent;                 ///< since the start [s]
+  double change = absent;               ///< relative, of cycles [1]
+  double accuracy = absent;             ///< of the metrics, relative [1]
+  double travel = absent;               ///< [rad]
+  double winding_temperature = absent;  ///< [degC]; where it stands in the way, of the motor that flaps while colder
   double faster_orbit = absent;  ///< in time, not flapping: frequency of an orbit that only a faster start reaches [Hz]
   long steps = 0;                ///< of the integrator
   int cycles = 0;                ///< periods of a direct drive's supply

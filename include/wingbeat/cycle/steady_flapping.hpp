@@ -51,12 +51,15 @@ struct SteadyFlapping {
   std::optional<SimulatedCycle> simulated;  ///< where no periodic orbit in crank angle gives the metrics, but this does
   double crank_speed = absent;  ///< flapping: omega at crank angle 0 (direct drive: phase 0 of the supply) [rad/s]
   double current = absent;      ///< flapping: i there [A]
+  /// At which the motor's constants were taken [K]; absent where it does not heat up.
+  MotorTemperatures<double> temperatures{absent, absent};
 };
 
 /// Finds the steady flapping of a validated vehicle. Never throws on account of the vehicle, never hangs, never returns
 /// NaN but for absent metrics. `start_up` decides what happens from rest where the orbit alone cannot: where the crank
 /// could lock or jam, where several orbits may exist, and where no orbit is found. Without it such vehicles are
-/// assessed by statics alone.
+/// assessed by statics alone. A motor with thermal resistances is taken at the temperatures at which it settles
+/// (cycle/thermal_equilibrium.hpp), also where it is asked what happens from rest.
 SteadyFlapping find_steady_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options = {},
                                     const StartUp& start_up = {});
 

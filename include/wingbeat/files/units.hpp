@@ -30,11 +30,15 @@ enum class SpeedConstant { refused, inverted };
 /// - a frequency may be written as an angular speed and is divided by 2 pi: "1320 rpm" is 22 Hz. An angular speed may
 ///   not be written as a frequency, nor may Hz stand inside any other unit;
 /// - an angle needs a unit of angle: a percentage is not one.
-/// Refused too: units with an offset (degC), a logarithm or a factor ("5 2 mm", "5 mm·2"), and reciprocals (s for Hz).
-/// Beside UDUNITS' own units: deg, rev, and products written as one word: Ah, Wh, Nm, Ncm, Nmm, Nms and Vs with any
-/// prefix, and inertias such as gcm2.
+/// A temperature ("K", and "degC" for metrics) may be written in any unit of temperature, with its own zero.
+/// Refused too: units with an offset for anything else, a logarithm or a factor ("5 2 mm", "5 mm·2"), and reciprocals
+/// (s for Hz). Beside UDUNITS' own units: deg, rev, and products written as one word: Ah, Wh, Nm, Ncm, Nmm, Nms and Vs
+/// with any prefix, and inertias such as gcm2.
 double parse_quantity(std::string_view text, std::string_view expected_unit,
                       SpeedConstant speed_constant = SpeedConstant::refused);
+
+/// Throws UnitError, as parse_quantity does, where a number in `unit` is no such quantity.
+void require_unit(std::string_view unit, std::string_view expected_unit);
 
 /// What a number in `unit` is multiplied by to give SI, under the rules of parse_quantity.
 double unit_factor(std::string_view unit, std::string_view expected_unit);

@@ -3,7 +3,9 @@
 // At every state of charge s the vehicle flaps steadily, for flapping settles within milliseconds to seconds and the
 // battery empties over minutes. Then Q ds/dt = -mean(i)(s), with the charge Q of a full battery, so time is a
 // quadrature over charge: t = integral of Q / mean(i) ds, and with it the energies. The crank starts from rest at the
-// first charge; from then on it turns, and flight goes on while a rotating orbit exists.
+// first charge; from then on it turns, and flight goes on while a rotating orbit exists. A motor that heats up has
+// settled at every charge, or, where its time constants are given, warms up from its surroundings: two more states,
+// d(T_w - T_case)/dt and dT_case/dt, beside the charge.
 #pragma once
 
 #include <optional>

@@ -46,6 +46,10 @@ struct MotorDatasheet {
   std::optional<double> mechanical_time_constant;      ///< R_a J / K^2 of the motor alone [s]
   std::optional<double> rotor_diameter, rotor_length;  ///< [m]
   std::vector<MotorPoint> points;
+  // Of the motor's heat, handed on as they are.
+  std::optional<double> thermal_resistance_winding, thermal_resistance_case;  ///< R_th1, R_th2 [K/W], both or neither
+  std::optional<double> winding_temperature_max;                              ///< [K]
+  std::optional<double> thermal_time_constant_winding, thermal_time_constant_case;  ///< tau_w, tau_c [s]
   /// Relative standard deviation of a value by its name ("stall_current"), and of all others.
   std::map<std::string, double> deviations;
   double deviation = 0.05;

@@ -12,6 +12,7 @@
 #include "wingbeat/parts/blade_element.hpp"
 #include "wingbeat/parts/friction.hpp"
 #include "wingbeat/parts/motor.hpp"
+#include "wingbeat/parts/motor_thermal.hpp"
 #include "wingbeat/parts/planform.hpp"
 #include "wingbeat/parts/spring.hpp"
 #include "wingbeat/parts/supply.hpp"
@@ -28,6 +29,27 @@ template <>
 inline constexpr std::pair<const char*, Condition> names_of<Condition>[] = {
     {"air", Condition::air}, {"vacuum", Condition::vacuum}, {"wingless", Condition::wingless}};
 
+/// What [motor] says of heat: on as soon as the thermal resistances are given, both of them.
+template <Scalar S>
+struct MotorThermalDesign {
+  std::optional<S> resistance_winding;                            ///< R_th1 [K/W]
+  std::optional<S> resistance_case;                               ///< R_th2 [K/W]
+  S ambient_temperature = S(catalogue_temperature);               ///< T_amb [K]
+  S reference_temperature = S(catalogue_temperature);             ///< T_0 [K]
+  S copper_temperature_coefficient = S(copper_resistance_slope);  ///< a_Cu [1/K]
+  S magnet_temperature_coefficient = S(0);                        ///< a_B [1/K]
+  std::optional<S> winding_temperature_max;                       ///< [K]
+  std::optional<S> time_constant_winding;  ///< tau_w of the winding over the case [s], for flights
+  std::optional<S> time_constant_case;     ///< tau_c of the case over the air [s], for flights
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.resistance_winding, of.resistance_case, of.ambient_temperature, of.reference_temperature,
+               of.copper_temperature_coefficient, of.magnet_temperature_coefficient, of.winding_temperature_max,
+               of.time_constant_winding, of.time_constant_case);
+  }
+};
+
 /// [motor]: constants at the output shaft, or at the motor shaft with a gear ratio.
 template <Scalar S>
 struct MotorDesign {
@@ -36,10 +58,11 @@ struct MotorDesign {
   S gear_inertia = S(0);                  ///< J_G [kg m2], only with gear_ratio
   S gear_damping = S(0);                  ///< b_G [N m s/rad], only with gear_ratio
   std::optional<S> gear_efficiency = {};  ///< eta [1]; 1 unless given
+  MotorThermalDesign<S> thermal = {};
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
-    return use(of.gear_ratio, of.constants, of.gear_inertia, of.gear_damping, of.gear_efficiency);
+    return use(of.gear_ratio, of.constants, of.gear_inertia, of.gear_damping, of.gear_efficiency, of.thermal);
   }
 };
 

@@ -1,0 +1,77 @@
+// The temperatures at which a motor settles in steady flapping: an outer fixed point around the orbit, for the scalar
+// solver, the batched one and simulation in time alike; model.md section 8, docs/motors.md.
+#pragma once
+
+#include <optional>
+
+#include "wingbeat/cycle/steady_flapping.hpp"
+#include "wingbeat/parts/motor_thermal.hpp"
+
+namespace wingbeat {
+
+/// How a search for temperatures ended.
+enum class ThermalOutcome {
+  searching,
+  settled,      ///< the losses lead to the temperatures that they were computed at, to the tolerance
+  never_flaps,  ///< not even with the motor as warm as its surroundings
+  stops,    ///< the motor heats up until the vehicle no longer flaps; solved last where the heating would lead to then
+  runaway,  ///< the winding heats up still at the melting point of copper, where it was solved last
+  does_not_settle
+};
+
+/// Solves for the temperatures T = G(T), where G are those that the losses of steady flapping with the motor at T lead
+/// to. Whoever solves the vehicle does so at(), tells advance() what came out, and goes on until that says that the
+/// search is over: secants (of two temperatures Anderson's mixing with one step of memory), from the surroundings on.
+class ThermalEquilibrium {
+ public:
+  /// `tolerance`: wanted relative accuracy of the motor's constants.
+  ThermalEquilibrium(const MotorThermal<double>& thermal, double tolerance);
+
+  /// Where the vehicle is to be solved next; after the search, where it was solved last [K].
+  const MotorTemperatures<double>& at() const { return at_; }
+  /// True when the search is over.
+  bool advance(bool flaps, const Metrics<double>& metrics);
+  ThermalOutcome outcome() const { return outcome_; }
+  /// ThermalOutcome::stops: winding temperature up to which the vehicle flaps [K].
+  double stops_at() const { return stopped_ ? stopped_->winding : absent; }
+  int solutions() const { return solutions_; }
+
+ private:
+  struct Trial {
+    MotorTemperatures<double> at, leads_to;
+  };
+  bool end(ThermalOutcome outcome) {
+    outcome_ = outcome;
+    return true;
+  }
+  bool towards_stop();
+  double weighted(const MotorTemperatures<double>& a, const MotorTemperatures<double>& b) const;
+  MotorTemperatures<double> secant(const Trial& last) const;
+
+  MotorThermal<double> thermal_;
+  double closeness_;
+  MotorTemperatures<double> at_;
+  std::optional<Trial> before_;                       ///< the last that flapped
+  std::optional<MotorTemperatures<double>> stopped_;  ///< the coolest that did not
+  std::optional<Trial> heating_, cooling_;            ///< nearest to the equilibrium on either side, by the winding
+  bool at_stop_ = false;
+  int solutions_ = 0;
+  ThermalOutcome outcome_ = ThermalOutcome::searching;
+};
+
+/// Tolerance of each solution within such a search: its errors must not show in the temperatures.
+double tolerance_within_equilibrium(double tolerance);
+
+namespace detail {
+
+/// find_steady_flapping() with the motor's constants as the vehicle has them, whatever it heats up to.
+SteadyFlapping find_flapping_as_it_is(const Vehicle<double>& vehicle, const SteadyOptions& options,
+                                      const StartUp& start_up);
+
+/// find_steady_flapping() of a vehicle whose motor heats up.
+SteadyFlapping find_warm_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
+                                  const StartUp& start_up);
+
+}  // namespace detail
+
+}  // namespace wingbeat

@@ -1,0 +1,108 @@
+// Temperatures of a motor and what they change; model.md section 8.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/core/range.hpp"
+#include "wingbeat/core/scalar.hpp"
+#include "wingbeat/core/status.hpp"
+#include "wingbeat/parts/motor.hpp"
+
+namespace wingbeat {
+
+inline constexpr double zero_celsius = 273.15;             ///< [K]
+inline constexpr double catalogue_temperature = 298.15;    ///< T_0 of motor catalogues [K], 25 degC
+inline constexpr double copper_melting_point = 1357.77;    ///< [K], fixed point of ITS-90
+inline constexpr double copper_resistance_slope = 0.0039;  ///< a_Cu of annealed copper [1/K], IEC 60028 rounded
+
+/// Two lumps: the copper loss heats the winding, which passes it on to the case, which passes it on to the air together
+/// with the motor's viscous loss. Not a number for both resistances: the motor keeps its constants at any load.
+template <Scalar S>
+struct MotorThermal {
+  S resistance_winding = S(std::numeric_limits<double>::quiet_NaN());  ///< R_th1 [K/W], >= 0
+  S resistance_case = S(std::numeric_limits<double>::quiet_NaN());     ///< R_th2 [K/W], >= 0
+  S ambient_temperature = S(catalogue_temperature);                    ///< T_amb [K]
+  S reference_temperature = S(catalogue_temperature);  ///< T_0 at which the motor's constants are stated [K]
+  S copper_temperature_coefficient =
+      S(copper_resistance_slope);           ///< a_Cu: R_a = R_a0 (1 + a_Cu (T_w - T_0)) [1/K], >= 0
+  S magnet_temperature_coefficient = S(0);  ///< a_B: K = K_0 (1 + a_B (T_case - T_0)) [1/K], <= 0
+  /// Largest temperature allowed to the winding [K]; not a number: none is stated.
+  S winding_temperature_max = S(std::numeric_limits<double>::quiet_NaN());
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.resistance_winding, of.resistance_case, of.ambient_temperature, of.reference_temperature,
+               of.copper_temperature_coefficient, of.magnet_temperature_coefficient, of.winding_temperature_max);
+  }
+};
+
+/// Temperatures of the two lumps [K].
+template <Scalar S>
+struct MotorTemperatures {
+  S winding;  ///< T_w
+  S casing;   ///< T_case
+};
+
+/// True where thermal resistances are stated: the constants of the motor follow its temperatures.
+template <Scalar S>
+bool heats_up(const MotorThermal<S>& t) {
+  return !std::isnan(value_of(t.resistance_winding));
+}
+
+/// Temperatures [K] at which the motor settles under steady losses [W]; not a number without thermal resistances.
+template <Scalar S>
+MotorTemperatures<S> settled_temperatures(const MotorThermal<S>& t, const S& P_copper, const S& P_viscous) {
+  const S T_case = t.ambient_temperature + t.resistance_case * (P_copper + P_viscous);
+  return {T_case + t.resistance_winding * P_copper, T_case};
+}
+
+/// The motor, whose constants are stated at T_0, at other temperatures. A magnet too hot to have a field has none: K is
+/// never negative.
+template <Scalar S>
+Motor<S> at_temperatures(Motor<S> motor, const MotorThermal<S>& t, const MotorTemperatures<S>& at) {
+  const S T_0 = t.reference_temperature;
+  const S field = S(1.0) + t.magnet_temperature_coefficient * (at.casing - T_0);
+  motor.armature_resistance =
+      motor.armature_resistance * (S(1.0) + t.copper_temperature_coefficient * (at.winding - T_0));
+  motor.torque_constant = motor.torque_constant * select(field > S(0.0), field, S(0.0));
+  return motor;
+}
+
+namespace range {
+inline constexpr ParameterRange temperature{"173.15 to 1000 K (-100 to 727 degC)",
+                                            "must lie between 173.15 and 1000 K (-100 and 727 degC)", 173.15, 1000.0};
+inline constexpr ParameterRange not_positive{"<= 0", "must be <= 0", -endless, 0.0};
+}  // namespace range
+
+/// Keys, units and ranges; the table of parameters has them from here.
+namespace motor_thermal_key {
+inline constexpr ParameterKey resistance_winding{"motor.thermal_resistance_winding", "K/W", range::not_negative};
+inline constexpr ParameterKey resistance_case{"motor.thermal_resistance_case", "K/W", range::not_negative};
+inline constexpr ParameterKey ambient_temperature{"motor.ambient_temperature", "K", range::temperature};
+inline constexpr ParameterKey reference_temperature{"motor.reference_temperature", "K", range::temperature};
+inline constexpr ParameterKey copper_temperature_coefficient{"motor.copper_temperature_coefficient", "1/K",
+                                                             range::not_negative};
+inline constexpr ParameterKey magnet_temperature_coefficient{"motor.magnet_temperature_coefficient", "1/K",
+                                                             range::not_positive};
+inline constexpr ParameterKey winding_temperature_max{"motor.winding_temperature_max", "K", range::temperature};
+inline constexpr ParameterKey time_constant_winding{"motor.thermal_time_constant_winding", "s", range::positive};
+inline constexpr ParameterKey time_constant_case{"motor.thermal_time_constant_case", "s", range::positive};
+}  // namespace motor_thermal_key
+
+/// Throws ParameterError where the surroundings leave the winding no resistance or the magnet no field.
+inline void validate(const MotorThermal<double>& t) {
+  if (!heats_up(t)) return;
+  const double from_T_0 = t.ambient_temperature - t.reference_temperature;
+  require(1.0 + t.copper_temperature_coefficient * from_T_0 > 0.0,
+          motor_thermal_key::copper_temperature_coefficient.path,
+          "leaves the winding no resistance at the ambient temperature: must be lower", "1/K",
+          t.copper_temperature_coefficient);
+  require(1.0 + t.magnet_temperature_coefficient * from_T_0 > 0.0,
+          motor_thermal_key::magnet_temperature_coefficient.path,
+          "leaves the magnet no field at the ambient temperature: must be nearer to 0", "1/K",
+          t.magnet_temperature_coefficient);
+}
+
+}  // namespace wingbeat
