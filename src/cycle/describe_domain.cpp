@@ -1,6 +1,7 @@
 // The limits of the domain that a cycle exceeds, in words.
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/cycle/domain.hpp"
+#include "wingbeat/parts/motor_thermal.hpp"
 
 namespace wingbeat {
 namespace {

@@ -218,7 +218,7 @@ class Editor {
 };
 
 /// Keys that may name a table file, with its name as it stands there.
-constexpr std::string_view naming[] = {"wing.planform.file", "supply.discharge_curve", "transmission.stroke_table",
+constexpr std::string_view naming[] = {"wing.planform.file", "supply.discharge_curve", "transmission.file",
                                        "aerodynamics.coefficients.table"};
 
 /// The text with the names of table files as they are seen from another folder.

@@ -220,7 +220,10 @@ class Reader {
 
   void read_added_mass(AerodynamicsDesign<double>& a) const {
     const std::string_view path = "aerodynamics.added_mass";
-    if (document_.find(path)) a.added_mass = choice<AddedMass>(path);
+    const Value* value = document_.find(path);
+    if (!value) return;
+    if (value->kind != Value::Kind::boolean) wrong(*value, path, find_parameter<double>(path)->range.text);
+    a.added_mass = value->number > 0.0;
   }
 
   void read_numbers(Design<double>& d) {
@@ -328,9 +331,12 @@ class Reader {
   }
 
   void read_stroke_table(StrokeTable<double>& table) const {
-    const std::string path = "transmission.stroke_table";
+    const std::string path = document_.find("transmission.file") ? "transmission.file" : "transmission.stroke_table";
     const Value* value = document_.find(path);
-    if (!value) missing(path, "the name of a CSV file, or rows [crank angle, stroke angle]");
+    if (!value) return;  // missing, which is among the errors already
+    const bool in_place = path == "transmission.stroke_table";
+    if (!in_place) text_of(*value, path, "the name of a CSV file");
+    if (in_place && value->kind != Value::Kind::array) wrong(*value, path, "rows [crank angle, stroke angle]");
     std::vector<std::pair<double, double>> rows;
     for (const auto& row : read_table(*value, path, stroke_columns)) rows.emplace_back(row[0], row[1]);
     try {
@@ -388,6 +394,7 @@ class Reader {
     } catch (const ParameterError& error) {
       std::string key = error.key();
       if (key == "wing.planform.file" && !document_.find(key)) key = "wing.planform.chords";
+      if (key == "transmission.stroke_table" && !document_.find(key)) key = "transmission.file";
       document_.locate(key).refuse(key, error.reason());
     }
   }

@@ -210,8 +210,11 @@ Value value_of_node(const toml::node& node, const Origin& origin) {
     for (const toml::node& item : *array) value.items.push_back(value_of_node(item, origin));
   } else if (node.is_table()) {
     value.kind = Value::Kind::table;
+  } else if (const auto* boolean = node.as_boolean()) {
+    value.kind = Value::Kind::boolean;
+    value.number = boolean->get() ? 1.0 : 0.0;
   } else {
-    value.text = node.is_boolean() ? "a boolean" : node.is_time() ? "a time" : "a date";
+    value.text = node.is_time() ? "a time" : "a date";
   }
   return value;
 }
@@ -401,6 +404,7 @@ std::string kind_of(const Value& value) {
     case Value::Kind::number: return fmt::format("the number {}", value.number);
     case Value::Kind::array: return "an array";
     case Value::Kind::table: return "a table";
+    case Value::Kind::boolean: return "a boolean";
     case Value::Kind::other: break;
   }
   return value.text;

@@ -26,10 +26,10 @@ struct Origin {
 };
 
 struct Value {
-  enum class Kind { text, number, array, table, other };
+  enum class Kind { text, number, boolean, array, table, other };
   Kind kind = Kind::other;
-  std::string text;  ///< the text; of `other` what it is: "a boolean"
-  double number = 0.0;
+  std::string text;          ///< the text; of `other` what it is: "a date"
+  double number = 0.0;       ///< 1 or 0 for a boolean
   std::vector<Value> items;  ///< of an array
   Origin origin;
 };

@@ -13,7 +13,7 @@ void validate(const FourBar<double>& f) {
   require(four_bar_key::coupler_length, l);
   require(four_bar_key::rocker_length, p);
   require(four_bar_key::ground_length, d);
-  require(four_bar_key::swing_ratio, f.swing_ratio);
+  require(four_bar_key::stroke_ratio, f.stroke_ratio);
   // Grashof's condition first: without it the rocker's swing, and the middle of it, do not exist.
   std::array<double, 4> link = {r_c, l, p, d};
   std::sort(link.begin(), link.end());
@@ -30,7 +30,7 @@ void validate(const FourBar<double>& f) {
             four_bar_key::coupler_length.path,
             "must keep the transmission angle between coupler and rocker within 5 to 175", "deg", mu);
   }
-  require(four_bar_key::mid_angle, f.mid_angle);
+  require(four_bar_key::ground_angle, f.ground_angle);
 }
 
 Reversals reversals(const FourBar<double>& f) {

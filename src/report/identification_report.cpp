@@ -1,0 +1,140 @@
+#include "wingbeat/report/identification_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "wingbeat/core/text.hpp"
+#include "wingbeat/files/input_file.hpp"
+#include "wingbeat/files/units.hpp"
+#include "wingbeat/report/report.hpp"
+
+namespace wingbeat {
+namespace {
+
+struct Constant {
+  std::string_view key;  ///< of [motor]
+  std::string_view name, unit;
+  IdentifiedConstant MotorIdentification::* value;
+};
+constexpr Constant constants[] = {
+    {"armature_resistance", "armature resistance", "ohm", &MotorIdentification::armature_resistance},
+    {"armature_inductance", "armature inductance", "H", &MotorIdentification::armature_inductance},
+    {"torque_constant", "torque constant", "N m/A", &MotorIdentification::torque_constant},
+    {"inertia", "inertia", "kg m2", &MotorIdentification::inertia},
+    {"viscous_damping", "viscous damping", "N m s/rad", &MotorIdentification::viscous_damping},
+    {"friction_torque", "friction torque", "N m", &MotorIdentification::friction_torque}};
+
+/// What [motor] has from the sheet as it stands there.
+struct SheetValue {
+  std::string_view key, unit;
+  std::optional<double> MotorDatasheet::* value;
+};
+constexpr SheetValue thermal_values[] = {
+    {"thermal_resistance_winding", "K/W", &MotorDatasheet::thermal_resistance_winding},
+    {"thermal_resistance_case", "K/W", &MotorDatasheet::thermal_resistance_case},
+    {"winding_temperature_max", "K", &MotorDatasheet::winding_temperature_max},
+    {"thermal_time_constant_winding", "s", &MotorDatasheet::thermal_time_constant_winding},
+    {"thermal_time_constant_case", "s", &MotorDatasheet::thermal_time_constant_case}};
+
+std::string percent(double x) { return fmt::format("{:.{}f} %", 100.0 * x, std::abs(x) < 0.1 ? 1 : 0); }
+
+std::string sentence(const Contradiction& c) {
+  return fmt::format("{} and {} disagree about the {} by {}", c.first, c.second, c.constant, percent(c.size));
+}
+
+std::string scientific(double x, std::string_view unit) { return fmt::format("{:.4g} {}", x, unit); }
+
+}  // namespace
+
+std::string motor_section(const MotorIdentification& motor, const MotorDatasheet& sheet, const std::string& made_by) {
+  motor.motor();
+  std::string text = fmt::format("# {}\n# {}; constants at the output shaft.\n",
+                                 sheet.name.empty() ? "Motor of a data sheet" : one_line(sheet.name, 100), made_by);
+  for (const Contradiction& c : motor.contradictions) text += fmt::format("# On the sheet, {}.\n", sentence(c));
+  for (const std::string& remark : motor.remarks) text += fmt::format("# {}.\n", remark);
+  text += "\n[motor]\n";
+  for (const Constant& c : constants) {
+    text += fmt::format("{} = \"{} {}\"\n", c.key, *(motor.*c.value).value, c.unit);
+  }
+  if (sheet.gear_efficiency) text += fmt::format("gear_efficiency = {}\n", *sheet.gear_efficiency);
+  for (const SheetValue& v : thermal_values) {
+    if (sheet.*v.value) text += fmt::format("{} = \"{} {}\"\n", v.key, *(sheet.*v.value), v.unit);
+  }
+  return text;
+}
+
+std::string text_identification(const MotorIdentification& motor, const MotorDatasheet& sheet) {
+  std::string text = sheet.name.empty() ? "" : one_line(sheet.name, 88) + "\n";
+  text += "\nConstants at the output shaft\n";
+  for (const Constant& c : constants) {
+    const IdentifiedConstant& x = motor.*c.value;
+    text += fmt::format("  {:<22}", c.name);
+    if (!x.value) {
+      text += "not determined\n";
+    } else if (x.standard_error > 0.0) {
+      text += fmt::format("{:>22} +- {:<10.2g}{}\n", scientific(*x.value, c.unit), x.standard_error, x.source);
+    } else {
+      text += fmt::format("{:>22}    {:<10}{}\n", scientific(*x.value, c.unit), "", x.source);
+    }
+  }
+  if (!motor.checks.empty()) {
+    text += "\nThe sheet beside the identified motor    published    identified   deviation\n";
+    for (const DatasheetCheck& c : motor.checks) {
+      text += fmt::format("  {:<34}{:>14.4g}{:>14.4g}{:>12}\n", detail::spaced(c.name), c.published, c.identified,
+                          fmt::format("{:+.1f} %", 100.0 * c.deviation));
+    }
+  }
+  if (!motor.contradictions.empty()) {
+    text += "\nContradictions of the sheet\n";
+    for (const Contradiction& c : motor.contradictions) {
+      text += "  " + wrapped(fmt::format("{}: {:.4g} and {:.4g}", sentence(c), c.first_value, c.second_value), 88, 4) +
+              "\n";
+    }
+  }
+  if (!motor.remarks.empty()) text += "\nRemarks\n";
+  for (const std::string& remark : motor.remarks) text += "  " + wrapped(remark, 88, 4) + "\n";
+  if (!motor.missing.empty()) text += "\nNot determined\n";
+  for (const std::string& missing : motor.missing) text += "  " + wrapped(missing, 88, 4) + "\n";
+  return text;
+}
+
+std::string json_identification(const MotorIdentification& motor, const MotorDatasheet& sheet) {
+  using Json = nlohmann::ordered_json;
+  const auto number = [](const std::optional<double>& x) { return x && std::isfinite(*x) ? Json(*x) : Json(nullptr); };
+  Json json;
+  json["name"] = sheet.name;
+  json["complete"] = motor.complete();
+  json["birge_ratio"] = motor.birge_ratio;
+  json["gear_efficiency"] = number(sheet.gear_efficiency);
+  for (const Constant& c : constants) {
+    const IdentifiedConstant& x = motor.*c.value;
+    json["motor"][std::string(c.key)] = {{"value", number(x.value)},
+                                         {"standard_error", x.value ? Json(x.standard_error) : Json(nullptr)},
+                                         {"unit", c.unit},
+                                         {"source", x.source}};
+  }
+  json["checks"] = Json::array();
+  for (const DatasheetCheck& c : motor.checks) {
+    json["checks"].push_back(
+        {{"name", c.name}, {"published", c.published}, {"identified", c.identified}, {"deviation", c.deviation}});
+  }
+  json["contradictions"] = Json::array();
+  for (const Contradiction& c : motor.contradictions) {
+    json["contradictions"].push_back({{"constant", c.constant},
+                                      {"first", c.first},
+                                      {"second", c.second},
+                                      {"first_value", c.first_value},
+                                      {"second_value", c.second_value},
+                                      {"size", c.size},
+                                      {"sentence", sentence(c)}});
+  }
+  json["remarks"] = motor.remarks;
+  json["missing"] = motor.missing;
+  return json.dump(2) + "\n";
+}
+
+}  // namespace wingbeat

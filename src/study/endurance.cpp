@@ -398,7 +398,8 @@ class Flight {
           result_.end = EnduranceEnd::stops;
           return end_here(row_at(drawn, y, state_at(drawn, y)));
         }
-        const auto [length, next] = *step;
+        const double length = step->first;
+        const Path next = step->second;
         const State state = state_at(drawn + length, next);
         // The last moment of this step at which something still holds: its row.
         const auto last_row = [&](const auto& holds) {

@@ -104,7 +104,7 @@ void validate(const Design<double>& d) {
   }
   validate(d.wing.planform);
   const Planform<double>& planform = d.wing.planform;
-  if (d.aerodynamics.added_mass != AddedMass::none && planform.shape == PlanformShape::moments && !planform.s22) {
+  if (d.aerodynamics.added_mass && planform.shape == PlanformShape::moments && !planform.s22) {
     throw ParameterError("aerodynamics.added_mass",
                          "needs the wing's outline: give wing.planform.s22, or a planform with a shape");
   }

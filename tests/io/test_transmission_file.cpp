@@ -25,21 +25,21 @@ std::string refusal(const std::string& text, const Overrides& overrides) {
 }
 
 TEST(TransmissionFile, FourBarIsReadAndWrittenBack) {
-  const Overrides more = {"transmission.swing_ratio=2", "transmission.mid_angle=100 deg"};
+  const Overrides more = {"transmission.stroke_ratio=2", "transmission.ground_angle=100 deg"};
   const Design<double> d = parse_design(file_of(TransmissionType::four_bar), "v.toml", more);
   EXPECT_EQ(d.transmission.type, TransmissionType::four_bar);
-  EXPECT_EQ(d.transmission.swing_ratio, 2.0);
+  EXPECT_EQ(d.transmission.stroke_ratio, 2.0);
   const FourBar<double> bars = resolve(d).transmission.four_bar;
   EXPECT_EQ(bars.coupler_length, 20e-3);
-  EXPECT_NEAR(bars.mid_angle, 100.0 / degrees_per_radian, 1e-15);
+  EXPECT_NEAR(bars.ground_angle, 100.0 / degrees_per_radian, 1e-15);
   EXPECT_EQ(write_design(parse_design(write_design(d), "w.toml")), write_design(d));
 }
 
 TEST(TransmissionFile, WhatTheFourBarIsNotGivenFollows) {
   const Design<double> d = parse_design(file_of(TransmissionType::four_bar), "v.toml");
   const FourBar<double> bars = resolve(d).transmission.four_bar;
-  EXPECT_EQ(bars.swing_ratio, 1.0);
-  EXPECT_EQ(bars.mid_angle, centred_mid_angle(bars));
+  EXPECT_EQ(bars.stroke_ratio, 1.0);
+  EXPECT_EQ(bars.ground_angle, centred_ground_angle(bars));
 }
 
 TEST(TransmissionFile, RodMassIsTheCouplers) {
@@ -57,7 +57,7 @@ TEST(TransmissionFile, TableIsReadFromAFileBesideTheVehicleAndWrittenBack) {
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "law.csv") << "crank_angle_deg,stroke_angle_deg\n0,0\n90,40\n180,0\n270,-40\n";
   std::ofstream(folder / "v.toml") << file_of(TransmissionType::tabulated);
-  const Overrides named = {"transmission.stroke_table=law.csv", "transmission.stroke_scale=0.5"};
+  const Overrides named = {"transmission.file=law.csv", "transmission.stroke_scale=0.5"};
   const Design<double> d = read_design(folder / "v.toml", named);
   const StrokeTable<double> table = resolve(d).transmission.tabulated;
   ASSERT_EQ(table.curve->rows().size(), 4u);

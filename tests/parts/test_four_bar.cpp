@@ -18,9 +18,9 @@ static_assert(Transmission<FourBar<Jet<2>>, Jet<2>>);
 static_assert(Transmission<AnyTransmission<double>, double>);
 static_assert(Transmission<AnyTransmission<Jet<2>>, Jet<2>>);
 
-FourBar<double> four_bar(double swing_ratio = 1.0) {
-  FourBar<double> f{3e-3, 14e-3, 5e-3, 14.5e-3, swing_ratio};
-  f.mid_angle = centred_mid_angle(f);
+FourBar<double> four_bar(double stroke_ratio = 1.0) {
+  FourBar<double> f{3e-3, 14e-3, 5e-3, 14.5e-3, stroke_ratio};
+  f.ground_angle = centred_ground_angle(f);
   return f;
 }
 
@@ -41,7 +41,7 @@ std::string refusal_of(const FourBar<double>& f) {
 TEST(FourBar, LoopCloses) {
   const FourBar<double> f = four_bar();
   for (double theta = 0.0; theta < two_pi; theta += 0.1) {
-    const double phi = stroke_angle(at(f, theta)) + f.mid_angle;
+    const double phi = stroke_angle(at(f, theta)) + f.ground_angle;
     const std::complex<double> pin = f.ground_length + std::polar(f.rocker_length, phi);
     EXPECT_NEAR(std::abs(pin - std::polar(f.crank_radius, theta)), f.coupler_length, 1e-16) << theta;
     EXPECT_GT(pin.imag(), 0.0);
@@ -61,7 +61,7 @@ TEST(FourBar, SlopesAgreeWithDifferences) {
 TEST(FourBar, DualNumbersAgreeWithDifferences) {
   using J = Jet<6>;
   FourBar<double> f = four_bar(2.0);
-  f.mid_angle = 1.7;
+  f.ground_angle = 1.7;
   for (const double theta : {0.3, 1.9, 4.4}) {
     FourBar<J> dual = cast<J>(f);
     int n = 0;
@@ -98,17 +98,17 @@ TEST(FourBar, ConservesPowerAndItsLeverIsThatOfTheTransmissionAngle) {
   for (double theta = 0.0; theta < two_pi; theta += 0.1) {
     const CrankKinematics<double> k = at(f, theta);
     EXPECT_NEAR(k.crank_lever, k.wing_lever * k.stroke_slope, 1e-17) << theta;
-    const double phi = stroke_angle(k) / f.swing_ratio + f.mid_angle;
+    const double phi = stroke_angle(k) / f.stroke_ratio + f.ground_angle;
     const std::complex<double> coupler =
         f.ground_length + std::polar(f.rocker_length, phi) - std::polar(f.crank_radius, theta);
     const double mu = phi - std::arg(coupler);
-    EXPECT_NEAR(k.wing_lever, f.rocker_length * std::sin(mu) / f.swing_ratio, 1e-16) << theta;
+    EXPECT_NEAR(k.wing_lever, f.rocker_length * std::sin(mu) / f.stroke_ratio, 1e-16) << theta;
   }
 }
 
 TEST(FourBar, ReversesWhereCrankAndCouplerAreInLine) {
-  for (const double swing_ratio : {1.0, 4.0}) {
-    const FourBar<double> f = four_bar(swing_ratio);
+  for (const double stroke_ratio : {1.0, 4.0}) {
+    const FourBar<double> f = four_bar(stroke_ratio);
     const Reversals known = reversals(f), found = find_reversals(f);
     ASSERT_EQ(found.count, 2u);
     ASSERT_EQ(known.count, 2u);
@@ -139,8 +139,8 @@ TEST(FourBar, LongRockerIsASlider) {
   for (const double p : {2.0, 20.0, 200.0}) {
     const double tilt = std::atan(slider.rod_length / p);  // the rocker's axis is as high as the pin in mid-stroke
     FourBar<double> f{slider.crank_radius, slider.rod_length, p, std::hypot(p, slider.rod_length)};
-    f.swing_ratio = p / slider.hinge_offset;
-    f.mid_angle = pi - tilt;
+    f.stroke_ratio = p / slider.hinge_offset;
+    f.ground_angle = pi - tilt;
     double off = 0.0;
     for (double theta = 0.1; theta < two_pi; theta += 0.2) {
       const CrankKinematics<double> s = crank_kinematics(slider, std::sin(theta), std::cos(theta));
@@ -176,8 +176,8 @@ TEST(FourBar, RefusesWhatCannotTurn) {
             "transmission.coupler_length: must keep the transmission angle between coupler and rocker within 5 to 175 "
             "[deg], got 175");
   f = four_bar();
-  f.swing_ratio = 0.0;
-  EXPECT_EQ(refusal_of(f), "transmission.swing_ratio: must be > 0 [1], got 0");
+  f.stroke_ratio = 0.0;
+  EXPECT_EQ(refusal_of(f), "transmission.stroke_ratio: must be > 0 [1], got 0");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "vehicle/metrics_apart.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "wingbeat/core/jet.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
@@ -27,7 +28,7 @@ Design<double> with_added_mass(bool springs = false) {
   Design<double> d = reference_design();
   if (springs) d.spring.stiffness = 1.377e-3;
   d.wing.planform = outline(PlanformShape::semi_ellipse, 0.0);
-  d.aerodynamics.added_mass = AddedMass::strip_theory;
+  d.aerodynamics.added_mass = true;
   return d;
 }
 
@@ -72,7 +73,7 @@ TEST(AddedMass, NeedsAirAndAnOutline) {
   EXPECT_EQ(resolve(with_added_mass(), Condition::vacuum).wings.added_inertia, 0.0);
   EXPECT_EQ(resolve(reference_design()).wings.added_inertia, 0.0);
   Design<double> d = reference_design();
-  d.aerodynamics.added_mass = AddedMass::strip_theory;
+  d.aerodynamics.added_mass = true;
   try {
     validate(d);
     FAIL() << "accepted";
@@ -96,7 +97,7 @@ TEST(AddedMass, EnergyBalanceClosesToTheToleranceAndTakesNoMeanPower) {
       const EnergyAudit audit = energy_audit(found.metrics);
       EXPECT_NEAR(audit.imbalance, 0.0, tolerance * audit.electrical);
       EXPECT_NEAR(audit.residual, 0.0, 1e-13 * audit.electrical);
-      d.aerodynamics.added_mass = AddedMass::none;
+      d.aerodynamics.added_mass = false;
       const SteadyFlapping without = find_steady_flapping(resolve(d), {.tolerance = tolerance});
       EXPECT_GT(std::abs(found.metrics[Metric::rod_force_peak] / without.metrics[Metric::rod_force_peak] - 1.0), 1e-2);
     }
@@ -175,20 +176,6 @@ TEST(AddedMass, DerivativesAgreeWithDifferences) {
   }
 }
 
-/// Largest deviation of metrics beside their error_scale().
-double apart(const Metrics<double>& a, const Metrics<double>& b, std::string& where) {
-  double worst = 0.0;
-  for (int n = 0; n < metric_count; ++n) {
-    const Metric m = Metric(n);
-    if (m == Metric::floquet_multiplier_max) continue;
-    // A crank may all but stop on its way.
-    const double size = m == Metric::crank_speed_min ? b[Metric::crank_speed_max] : error_scale(b, m);
-    const double off = std::abs(a[m] - b[m]);
-    if (off > worst * size) worst = off / size, where = metric_info(m).key;
-  }
-  return worst;
-}
-
 TEST(AddedMass, OrbitsOfRandomVehiclesAgreeWithTheSimulationAndWithPacks) {
   std::mt19937_64 random(20261);
   const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
@@ -197,7 +184,7 @@ TEST(AddedMass, OrbitsOfRandomVehiclesAgreeWithTheSimulationAndWithPacks) {
     const bool crank = n % 4 != 3;
     Design<double> d = crank ? random_design(random, 1.5) : random_direct_design(random, n % 8 == 7);
     d.aerodynamics.angle_of_attack_min = {};
-    d.aerodynamics.added_mass = AddedMass::strip_theory;
+    d.aerodynamics.added_mass = true;
     d.wing.planform.s22 = 4.17e-8 * d.wing.inertia / 7.205e-8 * uniform(0.3, 3.0);
     validate(d);
     const Vehicle<double> v = resolve(d);
@@ -216,8 +203,8 @@ TEST(AddedMass, OrbitsOfRandomVehiclesAgreeWithTheSimulationAndWithPacks) {
     ++(crank ? flapping : direct);
     packs += pack[0].scalar ? 0 : 1;
     std::string where;
-    EXPECT_LT(apart(orbit.metrics, *time.metrics, where), 1e-6) << "vehicle " << n << " in time, " << where;
-    EXPECT_LT(apart(orbit.metrics, pack[0].metrics, where), 1e-6) << "vehicle " << n << " in packs, " << where;
+    EXPECT_LT(metrics_apart(orbit.metrics, *time.metrics, where), 1e-6) << "vehicle " << n << " in time, " << where;
+    EXPECT_LT(metrics_apart(orbit.metrics, pack[0].metrics, where), 1e-6) << "vehicle " << n << " in packs, " << where;
     const EnergyAudit audit = energy_audit(orbit.metrics);
     EXPECT_NEAR(audit.imbalance, 0.0, 1e-7 * audit.electrical) << n;
   }
@@ -228,7 +215,7 @@ TEST(AddedMass, OrbitsOfRandomVehiclesAgreeWithTheSimulationAndWithPacks) {
 
 TEST(AddedMass, ThatLeavesNoInertiaIsRefused) {
   Design<double> d = reference_design();
-  d.aerodynamics.added_mass = AddedMass::strip_theory;
+  d.aerodynamics.added_mass = true;
   const auto with_share = [&](double share) {  // J_a over the wings' own inertia
     d.wing.planform.s22 = share * 2.0 * 7.205e-8 / (0.25 * pi * 1.225);
     return d;

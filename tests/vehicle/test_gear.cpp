@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "vehicle/metrics_apart.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/cycle/orbit_gradient.hpp"
@@ -21,22 +22,6 @@ Vehicle<double> with_gear(double efficiency, bool springs = false) {
 
 SteadyFlapping orbit_of(const Vehicle<double>& v, double tolerance) {
   return find_steady_flapping(v, {.tolerance = tolerance}, start_up_in_time());
-}
-
-/// Largest deviation of metrics beside their error_scale().
-double apart(const Metrics<double>& a, const Metrics<double>& b, std::string& where) {
-  double worst = 0.0;
-  for (int n = 0; n < metric_count; ++n) {
-    const Metric m = Metric(n);
-    if (m == Metric::floquet_multiplier_max) continue;
-    // A crank may all but stop on its way, a gearbox all but idle.
-    double size = error_scale(b, m);
-    if (m == Metric::crank_speed_min) size = b[Metric::crank_speed_max];
-    if (m == Metric::power_gear) size = b[Metric::power_electrical];
-    const double off = std::abs(a[m] - b[m]);
-    if (off > worst * size) worst = off / size, where = metric_info(m).key;
-  }
-  return worst;
 }
 
 // Of the four branches exactly one agrees with itself, and there the gearbox passes e times the motor's torque.
@@ -101,10 +86,10 @@ TEST(GearEfficiency, ApproachesTheIdealGearbox) {
     const SteadyFlapping ideal = orbit_of(reference_vehicle(springs), 1e-10);
     EXPECT_EQ(ideal.metrics[Metric::power_gear], 0.0);
     std::string where;
-    EXPECT_EQ(apart(orbit_of(with_gear(1.0, springs), 1e-10).metrics, ideal.metrics, where), 0.0) << where;
+    EXPECT_EQ(metrics_apart(orbit_of(with_gear(1.0, springs), 1e-10).metrics, ideal.metrics, where), 0.0) << where;
     double before = 0.0;
     for (const double loss : {1e-2, 1e-4, 1e-6}) {
-      const double off = apart(orbit_of(with_gear(1.0 - loss, springs), 1e-10).metrics, ideal.metrics, where);
+      const double off = metrics_apart(orbit_of(with_gear(1.0 - loss, springs), 1e-10).metrics, ideal.metrics, where);
       EXPECT_GT(off, 0.1 * loss);
       EXPECT_LT(off, 10.0 * loss) << where;
       if (before > 0.0) {
@@ -132,7 +117,7 @@ TEST(GearEfficiency, OrbitsOfRandomVehiclesAgreeWithTheSimulationAndCloseTheEner
     }
     ++flapping;
     std::string where;
-    EXPECT_LT(apart(orbit.metrics, *time.metrics, where), 1e-6) << "vehicle " << n << ", " << where;
+    EXPECT_LT(metrics_apart(orbit.metrics, *time.metrics, where), 1e-6) << "vehicle " << n << ", " << where;
     const EnergyAudit audit = energy_audit(orbit.metrics);
     EXPECT_NEAR(audit.imbalance, 0.0, 1e-7 * audit.electrical) << n;
     EXPECT_GE(audit.gear, 0.0) << n;
@@ -249,7 +234,7 @@ TEST(GearEfficiency, EnsemblesLeaveItToTheScalarSolver) {
   EXPECT_EQ(outcomes[0].scalar, !has_packs);
   EXPECT_TRUE(outcomes[1].scalar);
   std::string where;
-  EXPECT_LT(apart(outcomes[1].metrics, orbit_of(with_gear(0.8), 1e-9).metrics, where), 1e-5) << where;
+  EXPECT_LT(metrics_apart(outcomes[1].metrics, orbit_of(with_gear(0.8), 1e-9).metrics, where), 1e-5) << where;
   EXPECT_LT(outcomes[1].metrics[Metric::frequency], 0.95 * outcomes[0].metrics[Metric::frequency]);
 }
 

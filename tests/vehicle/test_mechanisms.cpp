@@ -19,7 +19,7 @@ Design<double> four_bar_design() {
   d.transmission.coupler_length = 20e-3;
   d.transmission.rocker_length = 6e-3;
   d.transmission.ground_length = 20.5e-3;
-  d.transmission.swing_ratio = 2.0;
+  d.transmission.stroke_ratio = 2.0;
   return d;
 }
 
@@ -59,8 +59,8 @@ TEST(FourBarVehicle, LongRockerFlapsAsASliderCrankByVirtualWork) {
     bars.transmission.coupler_length = l;
     bars.transmission.rocker_length = p;
     bars.transmission.ground_length = std::hypot(p, l);
-    bars.transmission.swing_ratio = p / H;
-    bars.transmission.mid_angle = pi - std::atan(l / p);
+    bars.transmission.stroke_ratio = p / H;
+    bars.transmission.ground_angle = pi - std::atan(l / p);
     const SteadyFlapping one = orbit_of(resolve(slider), 1e-9), other = orbit_of(resolve(bars), 1e-9);
     ASSERT_EQ(one.status, FlappingStatus::flapping) << describe(one.evidence);
     ASSERT_EQ(other.status, FlappingStatus::flapping) << describe(other.evidence);

@@ -82,7 +82,7 @@ TEST(ThermalEquilibrium, WinglessMotorSettlesWhereItsClosedFormDoes) {
 }
 
 TEST(ThermalEquilibrium, ReferenceVehicleLosesLiftAsExpected) {
-  // model.md section 8: about 20 K and -8 % of lift at 3 V, about 60 K and -24 % at 5 V.
+  // docs/model.md section 11: about 20 K and -8 % of lift at 3 V, about 60 K and -24 % at 5 V.
   const struct {
     double voltage, rise, lift;
   } expected[] = {{3.0, 20.0, -0.08}, {5.0, 60.0, -0.24}};

@@ -172,13 +172,13 @@ inline WideVehicle wide_vehicle(FarBox box, std::uint32_t n, std::uint32_t seed 
         t.rocker_length = t.crank_radius * logarithmic(1.2, 6.0);
         t.ground_length = t.crank_radius * logarithmic(1.5, 10.0);
         t.coupler_length = t.crank_radius * logarithmic(1.5, 10.0);
-        t.swing_ratio = chance(0.5) ? 1.0 : logarithmic(1.0, 5.0);
+        t.stroke_ratio = chance(0.5) ? 1.0 : logarithmic(1.0, 5.0);
         try {
           validate(transmission_of(t));
           turns = stroke_amplitude(transmission_of(t)) < 2.0;
         } catch (const ParameterError&) {}
       }
-      if (chance(0.2)) t.mid_angle = centred_mid_angle(transmission_of(t).four_bar) + uniform(-0.3, 0.3);
+      if (chance(0.2)) t.ground_angle = centred_ground_angle(transmission_of(t).four_bar) + uniform(-0.3, 0.3);
       break;
     }
     case FarBox::tabulated: {

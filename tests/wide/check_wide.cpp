@@ -132,8 +132,8 @@ void print_design(const WideVehicle& vehicle) {
     choose("transmission.type", "four-bar");
     set("transmission.crank_radius", t.crank_radius), set("transmission.coupler_length", t.coupler_length);
     set("transmission.rocker_length", t.rocker_length), set("transmission.ground_length", t.ground_length);
-    set("transmission.swing_ratio", t.swing_ratio);
-    if (t.mid_angle) set("transmission.mid_angle", degrees_per_radian * *t.mid_angle);
+    set("transmission.stroke_ratio", t.stroke_ratio);
+    if (t.ground_angle) set("transmission.ground_angle", degrees_per_radian * *t.ground_angle);
   }
   if (t.type == TransmissionType::slider_crank) {
     set("transmission.crank_radius", t.crank_radius), set("transmission.rod_length", t.rod_length);

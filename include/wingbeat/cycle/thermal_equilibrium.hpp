@@ -1,5 +1,5 @@
 // The temperatures at which a motor settles in steady flapping: an outer fixed point around the orbit, for the scalar
-// solver, the batched one and simulation in time alike; model.md section 8, docs/motors.md.
+// solver, the batched one and simulation in time alike; docs/model.md section 11, docs/motors.md.
 #pragma once
 
 #include <optional>

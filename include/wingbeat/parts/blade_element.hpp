@@ -76,12 +76,6 @@ inline ForceCoefficients<double> translational_2022() {
   return {{0.225, 1.58, 2.13, -7.2 / degrees_per_radian}, {1.92, -1.55, 2.04, -9.82 / degrees_per_radian}, nullptr};
 }
 
-/// Whether air that is accelerated with the wings counts (model.md section 10).
-enum class AddedMass { none, strip_theory };
-template <>
-inline constexpr std::pair<const char*, AddedMass> names_of<AddedMass>[] = {{"none", AddedMass::none},
-                                                                            {"strip-theory", AddedMass::strip_theory}};
-
 /// J_a of all wings [kg m2] by strip theory: (pi/4) rho S_22.
 template <Scalar S>
 S added_inertia_of(const S& air_density, const S& s22) {

@@ -20,12 +20,13 @@ struct FourBar {
   S coupler_length = S(0);  ///< l [m], > 0
   S rocker_length = S(0);   ///< p [m], > 0
   S ground_length = S(0);   ///< d, crank axis to rocker axis [m], > 0
-  S swing_ratio = S(1);     ///< n_s, turning angle of the wings over that of the rocker [1], > 0
-  S mid_angle = S(0);       ///< phi_mid, rocker angle at stroke angle zero [rad]
+  S stroke_ratio = S(1);    ///< n_s, turning angle of the wings over that of the rocker [1], > 0
+  S ground_angle = S(0);    ///< phi_mid, from the ground link to the rocker at stroke angle zero [rad]
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
-    return use(of.crank_radius, of.coupler_length, of.rocker_length, of.ground_length, of.swing_ratio, of.mid_angle);
+    return use(of.crank_radius, of.coupler_length, of.rocker_length, of.ground_length, of.stroke_ratio,
+               of.ground_angle);
   }
 };
 
@@ -34,8 +35,8 @@ namespace four_bar_key {
 inline constexpr ParameterKey coupler_length{"transmission.coupler_length", "m", range::positive};
 inline constexpr ParameterKey rocker_length{"transmission.rocker_length", "m", range::positive};
 inline constexpr ParameterKey ground_length{"transmission.ground_length", "m", range::positive};
-inline constexpr ParameterKey swing_ratio{"transmission.swing_ratio", "1", range::positive};
-inline constexpr ParameterKey mid_angle{"transmission.mid_angle", "rad", range::any};
+inline constexpr ParameterKey stroke_ratio{"transmission.stroke_ratio", "1", range::positive};
+inline constexpr ParameterKey ground_angle{"transmission.ground_angle", "rad", range::any};
 }  // namespace four_bar_key
 
 /// Least transmission angle between coupler and rocker, and least distance from 180 deg [deg]: beyond, the coupler has
@@ -50,7 +51,7 @@ void validate(const FourBar<double>& f);
 template <Scalar S>
 CrankKinematics<S> crank_kinematics(const FourBar<S>& f, const S& sin_theta, const S& cos_theta) {
   using std::atan;
-  const S r_c = f.crank_radius, l = f.coupler_length, p = f.rocker_length, n_s = f.swing_ratio;
+  const S r_c = f.crank_radius, l = f.coupler_length, p = f.rocker_length, n_s = f.stroke_ratio;
   // From the rocker's axis to the crank pin, and the triangle of that diagonal, rocker and coupler.
   const S w_x = r_c * cos_theta - f.ground_length, w_y = r_c * sin_theta;
   const S diagonal2 = square(w_x) + square(w_y);
@@ -75,7 +76,7 @@ CrankKinematics<S> crank_kinematics(const FourBar<S>& f, const S& sin_theta, con
   const S per_l = inverse_of(l);
 
   CrankKinematics<S> k;
-  k.stroke_offset = n_s * (S(0.5 * pi) - atan(S(cos_phi * inverse_of(sin_phi))) - f.mid_angle);
+  k.stroke_offset = n_s * (S(0.5 * pi) - atan(S(cos_phi * inverse_of(sin_phi))) - f.ground_angle);
   k.tan_stroke = S(0.0);
   k.stroke_slope = n_s * slope;
   k.stroke_curve = n_s * (dl_h - slope * dl_p_sin_mu) * per_l_p_sin_mu;
@@ -104,7 +105,7 @@ RockerEnds<S> rocker_ends(const FourBar<S>& f) {
 
 /// phi_mid [rad] that centres the stroke at zero.
 template <Scalar S>
-S centred_mid_angle(const FourBar<S>& f) {
+S centred_ground_angle(const FourBar<S>& f) {
   const RockerEnds<S> ends = rocker_ends(f);
   return S(0.5) * (ends.stretched + ends.folded);
 }
@@ -115,25 +116,25 @@ Reversals reversals(const FourBar<double>& f);
 template <Scalar S>
 S stroke_amplitude(const FourBar<S>& f) {
   const RockerEnds<S> ends = rocker_ends(f);
-  return S(0.5) * f.swing_ratio * (ends.folded - ends.stretched);
+  return S(0.5) * f.stroke_ratio * (ends.folded - ends.stretched);
 }
 
 /// Largest stroke angle to either side [rad].
 inline double stroke_reach(const FourBar<double>& f) {
   const RockerEnds<double> ends = rocker_ends(f);
-  return f.swing_ratio * std::fmax(std::abs(ends.folded - f.mid_angle), std::abs(ends.stretched - f.mid_angle));
+  return f.stroke_ratio * std::fmax(std::abs(ends.folded - f.ground_angle), std::abs(ends.stretched - f.ground_angle));
 }
 
 /// n_s r_c / p, B1 where crank and rocker are perpendicular to the coupler [1].
 template <Scalar S>
 S typical_stroke_slope(const FourBar<S>& f) {
-  return f.swing_ratio * f.crank_radius / f.rocker_length;
+  return f.stroke_ratio * f.crank_radius / f.rocker_length;
 }
 
 /// g where rocker and coupler are perpendicular [m].
 template <Scalar S>
 S typical_lever(const FourBar<S>& f) {
-  return f.rocker_length / f.swing_ratio;
+  return f.rocker_length / f.stroke_ratio;
 }
 
 /// h where crank and coupler are perpendicular [m].

@@ -1,4 +1,4 @@
-// Temperatures of a motor and what they change; model.md section 8.
+// Temperatures of a motor and what they change; docs/model.md section 11.
 #pragma once
 
 #include <cmath>

@@ -77,18 +77,18 @@ struct TransmissionDesign {
   std::optional<S> mid_stroke_height;  ///< y_0 [m]; l unless given
   Formulation formulation = Formulation::rod_force;
   TransmissionType type = TransmissionType::slider_crank;
-  S coupler_length = S(0);          ///< four-bar: l [m]
-  S rocker_length = S(0);           ///< four-bar: p [m]
-  S ground_length = S(0);           ///< four-bar: d [m]
-  S swing_ratio = S(1);             ///< four-bar: n_s [1]
-  std::optional<S> mid_angle = {};  ///< four-bar: phi_mid [rad]; the middle of the rocker's swing unless given
-  StrokeTable<S> table = {};        ///< tabulated
+  S coupler_length = S(0);             ///< four-bar: l [m]
+  S rocker_length = S(0);              ///< four-bar: p [m]
+  S ground_length = S(0);              ///< four-bar: d [m]
+  S stroke_ratio = S(1);               ///< four-bar: n_s [1]
+  std::optional<S> ground_angle = {};  ///< four-bar: phi_mid [rad]; the middle of the rocker's swing unless given
+  StrokeTable<S> table = {};           ///< tabulated
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
     return use(of.crank_radius, of.rod_length, of.hinge_offset, of.stroke_amplitude, of.mid_stroke_height,
-               of.formulation, of.type, of.coupler_length, of.rocker_length, of.ground_length, of.swing_ratio,
-               of.mid_angle, of.table);
+               of.formulation, of.type, of.coupler_length, of.rocker_length, of.ground_length, of.stroke_ratio,
+               of.ground_angle, of.table);
   }
 };
 
@@ -142,7 +142,7 @@ struct AerodynamicsDesign {
   std::string coefficients_name = "translational-2022";  ///< the named set, or "custom" or "table"
   ForceCoefficients<S> coefficients;
   std::optional<S> angle_of_attack_min;  ///< stop of the passive pitching [rad]; none unless given
-  AddedMass added_mass = AddedMass::none;
+  bool added_mass = false;  ///< air accelerated with the wings counts, by strip theory (model.md section 10)
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {

@@ -1,0 +1,352 @@
+// A vehicle ready for the equations of motion, and the equations themselves; model.md section 2.
+#pragma once
+
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/core/members.hpp"
+#include "wingbeat/core/scalar.hpp"
+#include "wingbeat/parts/any_transmission.hpp"
+#include "wingbeat/parts/blade_element.hpp"
+#include "wingbeat/parts/friction.hpp"
+#include "wingbeat/parts/motor.hpp"
+#include "wingbeat/parts/motor_thermal.hpp"
+#include "wingbeat/parts/spring.hpp"
+#include "wingbeat/vehicle/design.hpp"
+#include "wingbeat/vehicle/drive.hpp"
+
+namespace wingbeat {
+
+inline constexpr double standard_gravity = 9.80665;  ///< [m/s2], CGPM 1901
+
+/// The constants of one vehicle in one condition, all referred to the output shaft. The equations of motion below and
+/// CrankSystem take any template V of the same members whose `transmission` satisfies the concept Transmission.
+template <Scalar S>
+struct Vehicle {
+  S voltage;  ///< v that steady flapping sees [V], at the motor terminals where there is no source resistance
+  Motor<S> motor;
+  AnyTransmission<S> transmission;
+  Friction<S> friction;
+  HingeSpring<S> spring;
+  S wing_count;    ///< N_w
+  S wing_inertia;  ///< J_w of one wing [kg m2]; 0 when wingless
+  BladeElement<S> wings;
+  S source_resistance = S(0);  ///< R_i inside the supply [ohm], >= 0: the terminals see v - R_i i
+  S drive_frequency = S(0);    ///< of a sine supply, whose amplitude is `voltage` [Hz]; else 0
+  MotorThermal<S> thermal;     ///< what changes `motor` where it heats up; see with_motor_at()
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.voltage, of.motor, of.transmission, of.friction, of.spring, of.wing_count, of.wing_inertia, of.wings,
+               of.source_resistance, of.drive_frequency, of.thermal);
+  }
+};
+
+/// The transmission that a design describes.
+template <Scalar S>
+AnyTransmission<S> transmission_of(const TransmissionDesign<S>& t) {
+  AnyTransmission<S> of{};
+  of.type = t.type;
+  switch (t.type) {
+    case TransmissionType::slider_crank: {
+      const S H = t.hinge_offset ? *t.hinge_offset : hinge_offset_for<S>(*t.stroke_amplitude, t.crank_radius);
+      const S y_0 = t.mid_stroke_height ? *t.mid_stroke_height : t.rod_length;
+      of.slider_crank = {t.crank_radius, t.rod_length, H, y_0, t.formulation};
+      break;
+    }
+    case TransmissionType::four_bar:
+      of.four_bar = {t.crank_radius, t.coupler_length, t.rocker_length, t.ground_length, t.stroke_ratio};
+      of.four_bar.ground_angle = t.ground_angle ? *t.ground_angle : centred_ground_angle(of.four_bar);
+      break;
+    case TransmissionType::tabulated: of.tabulated = t.table; break;
+    case TransmissionType::direct: break;
+  }
+  return of;
+}
+
+/// What a design says of its motor's temperatures.
+template <Scalar S>
+MotorThermal<S> motor_thermal_of(const MotorThermalDesign<S>& t) {
+  MotorThermal<S> of;
+  if (!t.resistance_winding || !t.resistance_case) return of;
+  of = {*t.resistance_winding,
+        *t.resistance_case,
+        t.ambient_temperature,
+        t.reference_temperature,
+        t.copper_temperature_coefficient,
+        t.magnet_temperature_coefficient,
+        of.winding_temperature_max};
+  if (t.winding_temperature_max) of.winding_temperature_max = *t.winding_temperature_max;
+  return of;
+}
+
+/// The vehicle that a design describes, in a condition, its motor's constants as stated, at the reference temperature.
+/// Does not check ranges: validate(design) does.
+template <Scalar S>
+Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air) {
+  Vehicle<S> v;
+  v.voltage = mean_voltage(design.supply);
+  v.source_resistance = source_resistance(design.supply);
+  const MotorDesign<S>& m = design.motor;
+  v.motor = m.gear_ratio ? at_output_shaft(GearMotor<S>{*m.gear_ratio, m.constants, m.gear_inertia, m.gear_damping})
+                         : m.constants;
+  if (m.gear_efficiency) v.motor.gear_efficiency = *m.gear_efficiency;
+  v.thermal = motor_thermal_of(m.thermal);
+
+  const bool direct = design.transmission.type == TransmissionType::direct;
+  v.transmission = transmission_of(design.transmission);
+
+  const S& coefficient = design.friction.coefficient;
+  switch (design.friction.law) {
+    case FrictionLaw::none: break;
+    case FrictionLaw::load_proportional: v.friction.radius = coefficient; break;
+    case FrictionLaw::viscous: v.friction.damping = coefficient; break;
+    case FrictionLaw::quadratic: v.friction.quadratic = coefficient; break;
+    case FrictionLaw::constant: v.friction.torque = coefficient; break;
+  }
+
+  const bool wings = condition != Condition::wingless;
+  v.wing_count = design.wing.count;
+  // Inertia on one spring, spring and drive frequency: of a direct drive any of them may follow from the others.
+  const S rotor_share = direct ? v.motor.inertia / v.wing_count : S(0.0);
+  S wing_inertia = design.wing.inertia;
+  S stiffness = design.spring.stiffness ? *design.spring.stiffness : S(0.0);
+  if (design.wing.resonance) wing_inertia = stiffness / square(S(two_pi) * *design.wing.resonance) - rotor_share;
+  const S inertia = rotor_share + wing_inertia;
+  const bool sine = design.supply.type == SupplyType::sine;
+  v.drive_frequency = sine ? design.supply.frequency : S(0.0);
+  if (design.spring.resonance) stiffness = stiffness_for_resonance(inertia, *design.spring.resonance);
+  if (design.spring.resonance_ratio) {
+    stiffness = stiffness_for_resonance<S>(inertia, *design.spring.resonance_ratio * design.supply.frequency);
+  }
+  if (design.supply_resonance_ratio) {
+    v.drive_frequency = *design.supply_resonance_ratio * resonance_of(inertia, stiffness);
+  }
+  v.wing_inertia = wings ? wing_inertia : S(0.0);
+  v.spring.stiffness = wings ? stiffness : S(0.0);
+
+  const bool air = condition == Condition::air;
+  const ChordMoments<S> moments = chord_moments(design.wing.planform, design.wing.count);
+  v.wings.air_density = air ? design.aerodynamics.air_density : S(0.0);
+  v.wings.pitch_coefficient = design.aerodynamics.pitch_coefficient;
+  v.wings.s2 = wings ? moments.s2 : S(0.0);
+  v.wings.s3 = wings ? moments.s3 : S(0.0);
+  v.wings.coefficients = design.aerodynamics.coefficients;
+  if (design.aerodynamics.angle_of_attack_min) v.wings.angle_of_attack_min = *design.aerodynamics.angle_of_attack_min;
+  if (design.aerodynamics.added_mass && wings) {
+    const S s22 = squared_chord_moment(design.wing.planform, design.wing.count);
+    v.wings.added_inertia = added_inertia_of(v.wings.air_density, s22);
+  }
+  return v;
+}
+
+/// The vehicle with its motor, stated at the reference temperature, at other temperatures [K].
+template <template <Scalar> class V, Scalar S>
+V<S> with_motor_at(V<S> vehicle, const MotorTemperatures<S>& temperatures) {
+  vehicle.motor = at_temperatures(vehicle.motor, vehicle.thermal, temperatures);
+  return vehicle;
+}
+
+/// The vehicle as it is switched on: the motor as warm as its surroundings.
+template <template <Scalar> class V, Scalar S>
+V<S> switched_on(const V<S>& v) {
+  return heats_up(v.thermal) ? with_motor_at(v, {v.thermal.ambient_temperature, v.thermal.ambient_temperature}) : v;
+}
+
+/// Which smooth branch of the kinked equations holds, each +-1.
+template <Scalar S>
+struct Branch {
+  S stroke;             ///< sign of beta'
+  S force;              ///< sign of the rod force F
+  S direction;          ///< sign of omega; +1 in steady flapping
+  S stored_power;       ///< sign of (N_w J_w beta'' + N_w k beta) beta', for the reactive power (eq 23) alone
+  S pitching = S(1.0);  ///< -1 where the angle of attack is at its lower bound
+  S gear = S(1.0);      ///< sign of T_g omega: -1 where the load drives the motor
+};
+
+/// Everything that acts at one instant.
+template <Scalar S>
+struct Motion {
+  CrankKinematics<S> kinematics;
+  S crank_acceleration;   ///< omega' [rad/s2]
+  S inductive_voltage;    ///< v - R_a i - K omega = L_a di/dt [V]
+  S current;              ///< i [A]
+  S voltage;              ///< v at the terminals [V]
+  S rod_force;            ///< F [N], positive when the crank pushes the slider up
+  S force_switch;         ///< has the sign of F on either branch while the equations have one solution [N kg m3]
+  S stroke_velocity;      ///< beta' [rad/s]
+  S stroke_acceleration;  ///< beta'' [rad/s2]
+  AeroLoads<S> aero;      ///< of all wings
+  S friction_torque;      ///< T_f on the crank, the motor's own friction included [N m]
+  S motor_torque;         ///< T_m = F h + T_f [N m] (eq 5)
+  S gear_torque;          ///< T_g that the gearbox takes from the motor, along omega [N m] (model.md section 9)
+  S gear_loss;            ///< (1 - e) T_g omega [W]
+  S stored_moment;        ///< N_w J_w beta'' + N_w k beta [N m]
+};
+
+/// J + A (h + s mu r_e) [kg m2], the divisor of omega' on the branch s (model.md section 2), with all of the added mass
+/// that there may be: that at rest; eta J behind a gearbox that loses torque. The equations have one solution while it
+/// is positive for s = +1 and s = -1 and the lever g is positive.
+template <template <Scalar> class V, Scalar S>
+S effective_inertia(const V<S>& v, const CrankKinematics<S>& k, const S& s) {
+  const S A = (v.wing_count * v.wing_inertia + v.wings.added_inertia) * k.stroke_slope / k.wing_lever;
+  const S J = has_gear_loss(v.motor) ? S(v.motor.gear_efficiency * v.motor.inertia) : v.motor.inertia;
+  return J + A * (k.crank_lever + s * v.friction.radius);
+}
+
+/// Moment of all hinge springs, N_w k beta [N m].
+template <template <Scalar> class V, Scalar S>
+S spring_moment(const V<S>& v, const CrankKinematics<S>& k) {
+  // Without springs the arc tangent is a tenth of all the work; its derivative by the stiffness is still wanted.
+  if (!ScalarTraits<S>::differentiates && !any<S>(v.spring.stiffness > S(0.0))) return S(0.0);
+  return v.wing_count * spring_loads(v.spring, stroke_angle(k)).moment;
+}
+
+/// What is known of an instant before the sign of the rod force.
+template <Scalar S>
+struct Instant {
+  CrankKinematics<S> kinematics;
+  S omega;  ///< crank speed [rad/s]
+  MotorLoads<S> motor;
+  S stroke_velocity;  ///< beta' [rad/s]
+  AeroLoads<S> aero;  ///< of all wings
+  S spring_moment;    ///< N_w k beta [N m]
+  S load_free;        ///< friction on the crank that does not depend on F [N m]
+  S drive;            ///< K i - b omega - load_free [N m]; behind a gearbox, which the motor's share of it passes
+  S gear_ratio;       ///< e, torque behind the gearbox over torque before it [1]
+  S inertia;          ///< e J [kg m2]
+  S A_g;              ///< A g of F = A omega' + C [kg m2]
+  S C_g;              ///< C g [N m]
+  S force_switch;  ///< e J C_g + A_g drive: has the sign of F on either branch while there is one solution [N m kg m2]
+};
+
+/// The instant at crank speed omega [rad/s] and current i [A] under the terminal voltage v_t [V], N_k_beta being the
+/// spring_moment() there; `stroke` and `direction` are the signs of beta' and omega (model.md section 2), `pitching`
+/// and `gear` as in Branch.
+template <template <Scalar> class V, Scalar S>
+[[gnu::always_inline]] inline Instant<S> instant_at(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta,
+                                                    const S& omega, const S& i, const S& v_t, const S& stroke,
+                                                    const S& direction, const S& pitching = S(1.0),
+                                                    const S& gear = S(1.0)) {
+  Instant<S> at;
+  at.kinematics = k;
+  at.omega = omega;
+  at.motor = motor_loads(v.motor, v_t, i, omega);
+  at.stroke_velocity = k.stroke_slope * omega;
+  at.aero = aero_loads(v.wings, at.stroke_velocity, stroke, pitching);
+  at.spring_moment = N_k_beta;
+  // The motor's own friction acts before the gearbox.
+  const S mechanism = load_free_friction(v.friction, omega, direction), own = direction * v.motor.friction_torque;
+  at.load_free = mechanism + own;
+  at.gear_ratio = gear_torque_ratio(v.motor, gear);
+  at.inertia = v.motor.inertia;
+  at.drive = at.motor.torque - at.motor.drag_torque - at.load_free;
+  if (has_gear_loss(v.motor)) {
+    at.inertia = at.gear_ratio * v.motor.inertia;
+    at.drive = at.gear_ratio * (at.motor.torque - at.motor.drag_torque - own) - mechanism;
+  }
+
+  // F = A omega' + C of model.md, both sides times g, which saves dividing by it twice.
+  const S N_J = v.wing_count * v.wing_inertia + at.aero.added_inertia;
+  at.A_g = N_J * k.stroke_slope;
+  at.C_g = N_J * k.stroke_curve * square(omega) + at.aero.moment + at.spring_moment;
+  at.force_switch = at.inertia * at.C_g + at.A_g * at.drive;
+  return at;
+}
+
+/// Rod force and accelerations of an instant, on a given branch (model.md section 2, eqs 1, 5-11, 21).
+template <template <Scalar> class V, Scalar S>
+[[gnu::always_inline]] inline Motion<S> motion_on(const V<S>& v, const Instant<S>& at, const S& i, const S& v_t,
+                                                  const Branch<S>& branch) {
+  Motion<S> m;
+  m.kinematics = at.kinematics;
+  const CrankKinematics<S>& k = m.kinematics;
+  const S J = at.inertia;
+  const S g = k.wing_lever;
+  const S omega2 = square(at.omega);
+  // mu r_e |F| sign(omega) = s mu r_e F with s = sign(F) sign(omega), on this branch.
+  const S lever = k.crank_lever + branch.force * branch.direction * v.friction.radius;
+  const S inertia_g = J * g + at.A_g * lever;
+  const S divisor = inverse_of(inertia_g);
+
+  m.current = i;
+  m.voltage = v_t;
+  m.stroke_velocity = at.stroke_velocity;
+  m.aero = at.aero;
+  m.force_switch = at.force_switch;
+  m.rod_force = at.force_switch * divisor;
+  m.crank_acceleration = (at.drive * g - at.C_g * lever) * divisor;
+  m.stroke_acceleration = k.stroke_slope * m.crank_acceleration + k.stroke_curve * omega2;
+  m.friction_torque = load_friction(v.friction, branch.force * m.rod_force, branch.direction) + at.load_free;
+  m.motor_torque = m.rod_force * k.crank_lever + m.friction_torque;
+  m.gear_torque = m.gear_loss = S(0.0);
+  if (has_gear_loss(v.motor)) {
+    m.gear_torque =
+        branch.direction * (at.motor.torque - at.motor.drag_torque - v.motor.inertia * m.crank_acceleration) -
+        v.motor.friction_torque;
+    m.gear_loss = (S(1.0) - at.gear_ratio) * m.gear_torque * branch.direction * at.omega;
+  }
+  m.stored_moment = v.wing_count * v.wing_inertia * m.stroke_acceleration + at.spring_moment;
+  m.inductive_voltage = at.motor.inductive_voltage;
+  return m;
+}
+
+/// The levers of a direct drive, whose shaft angle is the stroke angle itself: B1 = g = h = 1, B2 = 0. The "rod force"
+/// is then the torque passed on to the wings [N m]. It holds no position: that is the stroke angle of the state.
+template <Scalar S>
+CrankKinematics<S> direct_kinematics() {
+  return {S(0.0), S(0.0), S(1.0), S(0.0), S(1.0), S(1.0)};
+}
+
+/// Rod force and accelerations at crank angle theta (given by sine and cosine), crank speed omega [rad/s] and current
+/// i [A] under the terminal voltage v_t [V], on a given branch.
+template <template <Scalar> class V, Scalar S>
+[[gnu::always_inline]] inline Motion<S> motion_at(const V<S>& v, const S& sin_theta, const S& cos_theta, const S& omega,
+                                                  const S& i, const S& v_t, const Branch<S>& branch) {
+  const CrankKinematics<S> k = crank_kinematics(v.transmission, sin_theta, cos_theta);
+  const S N_k_beta = spring_moment(v, k);
+  const Instant<S> at =
+      instant_at(v, k, N_k_beta, omega, i, v_t, branch.stroke, branch.direction, branch.pitching, branch.gear);
+  return motion_on(v, at, i, v_t, branch);
+}
+
+/// Voltage at the motor terminals [V] under the current i [A], where the supply drives `voltage` [V].
+template <template <Scalar> class V, Scalar S>
+S terminal_voltage(const V<S>& v, const S& voltage, const S& i) {
+  return voltage - v.source_resistance * i;
+}
+
+/// All resistance that the current passes, R_a + R_i [ohm].
+template <template <Scalar> class V, Scalar S>
+S circuit_resistance(const V<S>& v) {
+  return v.motor.armature_resistance + v.source_resistance;
+}
+
+/// The current [A] where L_a = 0 and the supply drives `voltage` [V]: i = (v - K omega) / (R_a + R_i).
+template <template <Scalar> class V, Scalar S>
+S algebraic_current(const V<S>& v, const S& voltage, const S& omega) {
+  return (voltage - v.motor.torque_constant * omega) / circuit_resistance(v);
+}
+
+/// Steady speed without load and friction [rad/s], K v / (K^2 + (R_a + R_i) b): the closed form of the wingless
+/// condition.
+template <template <Scalar> class V, Scalar S>
+S no_load_speed(const V<S>& v) {
+  const S& K = v.motor.torque_constant;
+  return K * v.voltage / (K * K + circuit_resistance(v) * v.motor.viscous_damping);
+}
+
+/// Kinetic energy of all wings, without the air that moves with them, and elastic energy of all hinge springs [J].
+template <template <Scalar> class V, Scalar S>
+S wing_energy(const V<S>& v, const CrankKinematics<S>& k, const S& stroke_velocity) {
+  const S kinetic = S(0.5) * v.wing_count * v.wing_inertia * square(stroke_velocity);
+  if (!ScalarTraits<S>::differentiates && !any<S>(v.spring.stiffness > S(0.0))) return kinetic;
+  return kinetic + v.wing_count * spring_loads(v.spring, stroke_angle(k)).energy;
+}
+
+/// Kinetic and elastic energy of rotor, wings, springs and inductance [J].
+template <template <Scalar> class V, Scalar S>
+S stored_energy(const V<S>& v, const CrankKinematics<S>& k, const S& omega, const S& i) {
+  return S(0.5) * v.motor.inertia * square(omega) + wing_energy(v, k, S(k.stroke_slope * omega)) +
+         S(0.5) * v.motor.armature_inductance * square(i);
+}
+
+}  // namespace wingbeat
