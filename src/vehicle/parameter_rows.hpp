@@ -109,10 +109,15 @@ std::span<const Parameter<S>> parameter_table() {
       number<S, Geared>({"motor.gear_damping", "N m s/rad", range::not_negative, "0 N m s/rad",
                          "b_G, viscous damping of the gearbox at the output shaft"},
                         [](auto& d) -> auto& { return d.motor.gear_damping; }),
-      number<S>(row(motor_key::gear_efficiency, "1",
-                    "eta, torque behind the gearbox over torque before it while the motor drives; 1/eta while the load "
-                    "drives"),
-                [](auto& d) -> auto& { return d.motor.gear_efficiency; }),
+      Parameter<S>{row(motor_key::gear_efficiency, "1",
+                       "eta, torque behind the gearbox over torque before it while the motor drives; 1/eta while the "
+                       "load drives"),
+                   [](Design<S>& d, const S& x) {
+                     d.motor.constants.gear_efficiency = x;  // what is referred to the output shaft keeps it
+                     d.motor.gear_efficiency = x;
+                     return true;
+                   },
+                   [](const Design<S>& d) -> std::optional<S> { return d.motor.gear_efficiency; }},
       number<S>(row(motor_key::armature_resistance, "required", "R_a, armature resistance", {}, "9 ohm"),
                 [](auto& d) -> auto& { return d.motor.constants.armature_resistance; }),
       number<S>(row(motor_key::armature_inductance, "required",
