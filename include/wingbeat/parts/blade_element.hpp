@@ -170,17 +170,22 @@ struct AeroLoads {
   S added_inertia;
 };
 
-/// J_a (sin^2(alpha) - C_alpha |beta'| sin(alpha) cos(alpha)) [kg m2] at the angle of attack alpha = pi/2 - C_alpha
-/// |beta'| [rad]; J_a sin^2(alpha) where the pitching is at its stop. Even and smooth in beta'.
+/// added_inertia() where there is some, out of the way of vehicles without.
 template <Scalar S>
-S added_inertia(const BladeElement<S>& w, const S& alpha, const S& pitching) {
+[[gnu::noinline]] S added_inertia_at(const BladeElement<S>& w, const S& alpha, const S& pitching) {
   using std::cos;
   using std::sin;
-  if (!any<S>(w.added_inertia > S(0.0))) return S(0.0);
   const S s = sin(alpha), c = cos(alpha);
   S share = s * s - (S(0.5 * pi) - alpha) * s * c;
   if constexpr (ScalarTraits<S>::reads_tables) share = select(pitching >= S(0.0), share, s * s);
   return w.added_inertia * share;
+}
+
+/// J_a (sin^2(alpha) - C_alpha |beta'| sin(alpha) cos(alpha)) [kg m2] at the angle of attack alpha = pi/2 - C_alpha
+/// |beta'| [rad]; J_a sin^2(alpha) where the pitching is at its stop. Even and smooth in beta'.
+template <Scalar S>
+S added_inertia(const BladeElement<S>& w, const S& alpha, const S& pitching) {
+  return any<S>(w.added_inertia > S(0.0)) ? added_inertia_at(w, alpha, pitching) : S(0.0);
 }
 
 /// Kinetic energy of the air that moves with the wings, J_a sin^2(alpha) beta'^2 / 2 [J].
