@@ -245,8 +245,10 @@ void StudySections::read_metrics(EnsembleOptions& options) const {
   }
 }
 
-void StudySections::leave_out_heat(EnsembleOptions& options) const {
+void StudySections::leave_out_absent(EnsembleOptions& options, bool heats, bool added_mass) const {
   if (study_->find("metrics")) return;
+  if (!added_mass) options.metrics.reset(std::size_t(Metric::added_mass_inertia_ratio));
+  if (heats) return;
   for (const Metric m : {Metric::winding_temperature, Metric::case_temperature, Metric::winding_temperature_margin}) {
     options.metrics.reset(std::size_t(m));
   }
