@@ -315,7 +315,7 @@ DesignParameter StudySections::parameter_named(const TomlNode& node, const std::
   } catch (const ParameterError& error) {
     refuse(node, where, fmt::format("{}: {}", one_line(key), error.reason()));
   }
-  if (key == "wing.count" || key == "supply.cells") {
+  if (key == "vehicle.motors" || key == "wing.count" || key == "supply.cells") {
     refuse(node, where, fmt::format("{} is a whole number and has no derivative", key));
   }
   const bool voltage = key == "supply.voltage" || key == "supply.duty" || key == "supply.amplitude";

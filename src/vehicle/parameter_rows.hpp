@@ -54,6 +54,9 @@ std::span<const Parameter<S>> parameter_table() {
                  {},
                  "3.34 g"},
                 [](auto& d) -> auto& { return d.mass; }),
+      number<S>({"vehicle.motors", "1", range::count, "1",
+                 "M, number of motors on the supply, each with a transmission and wings of its own as below, in phase"},
+                [](auto& d) -> auto& { return d.motors; }),
 
       choice<S, SupplyChoice>("what feeds the motor terminals"),
       number<S, Powered>(row(supply_key::voltage, "required", "v, terminal voltage; pwm: while switched on", {}, "3 V"),
@@ -138,7 +141,7 @@ std::span<const Parameter<S>> parameter_table() {
                     "adds to every friction law"),
                 [](auto& d) -> auto& { return d.motor.constants.friction_torque; }),
       number<S, Weighed>({"motor.mass", "kg", range::not_negative, "none: in vehicle.mass",
-                          "mass of the motor with its gearbox, in addition to vehicle.mass"},
+                          "mass of one motor with its gearbox, in addition to vehicle.mass"},
                          [](auto& d) -> auto& { return d.masses.motor; }),
 
       number<S>(row(motor_thermal_key::resistance_winding, "none: constants the same at any load",
@@ -265,7 +268,7 @@ std::span<const Parameter<S>> parameter_table() {
                                  "mass of one hinge spring, in addition to vehicle.mass; one for each wing"},
                                 [](auto& d) -> auto& { return d.masses.spring; }),
 
-      number<S>({"wing.count", "1", range::count, "2", "N_w, number of wings", {}, "2"},
+      number<S>({"wing.count", "1", range::count, "2", "N_w, number of wings that one motor drives", {}, "2"},
                 [](auto& d) -> auto& { return d.wing.count; }),
       replaceable<S>(
           {"wing.inertia",

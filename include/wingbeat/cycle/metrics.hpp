@@ -164,7 +164,8 @@ const char* lacking_of_heat(Metric metric, const Design<double>& design);
 /// The same for every metric that a part of the model gives which a design may leave out.
 const char* lacking_for(Metric metric, const Design<double>& design);
 
-/// The metrics of a cycle from its integrals and extremes. `extremes` holds the maxima of extreme_candidates(). A
+/// The metrics of a cycle from its integrals and extremes: of all motors together, but for the force of one rod and the
+/// temperatures of one motor. `extremes` holds the maxima of extreme_candidates(). A
 /// direct drive has no rod, no speed of rotation and no direct current: rod forces, crank speeds and the bench estimate
 /// (17) are absent; its voltage is the amplitude. Floquet multiplier: of the orbit, or `absent`. The temperatures are
 /// those that the losses of this cycle lead to, absent without thermal resistances; the ratio of inertias is that at
@@ -202,8 +203,8 @@ Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, cons
   m[Metric::power_residual] = f * total(Integral::residual_work);
   m[Metric::lift_mean] = f * total(Integral::lift);
   m[Metric::lift_peak] = peak(Extreme::lift);
-  m[Metric::rod_force_peak] = peak(Extreme::rod_force);
-  m[Metric::rod_force_mean] = f * total(Integral::rod_force);
+  m[Metric::rod_force_peak] = peak(Extreme::rod_force) / v.motors;
+  m[Metric::rod_force_mean] = f * total(Integral::rod_force) / v.motors;
   const Drive drive = drive_of(v);
   if (!drive.has_rod) m[Metric::rod_force_peak] = m[Metric::rod_force_mean] = S(absent);
   // An estimate from the mean current, which says nothing where it alternates.

@@ -122,7 +122,7 @@ struct SpringDesign {
 /// [wing]
 template <Scalar S>
 struct WingDesign {
-  S count = S(2);    ///< N_w
+  S count = S(2);    ///< N_w of one motor
   S inertia = S(0);  ///< J_w of ONE wing about its hinge [kg m2]
   Planform<S> planform;
   /// Direct: resonance of rotor and wings on their springs [Hz]; given, the inertia follows: J_w = k/(2 pi f)^2 - J/N_w
@@ -155,7 +155,7 @@ struct AerodynamicsDesign {
 template <Scalar S>
 struct ItemMasses {
   std::optional<S> supply;              ///< battery with its leads [kg], >= 0
-  std::optional<S> motor;               ///< motor with its gearbox [kg], >= 0
+  std::optional<S> motor;               ///< one motor with its gearbox [kg], >= 0
   std::optional<S> rod_linear_density;  ///< mass of rod or coupler over its length [kg/m], >= 0
   std::optional<S> spring;              ///< one hinge spring [kg], >= 0; one for each wing
 
@@ -169,6 +169,7 @@ template <Scalar S>
 struct Design {
   std::string name;
   std::optional<S> mass;  ///< of all that `masses` does not state [kg]; enables lift_to_weight
+  S motors = S(1);        ///< M, whole number >= 1: so many copies of [motor] to [wing], in phase on one supply
   ItemMasses<S> masses;
   std::optional<S> bench_torque_constant;  ///< K_ref of eq (17) [N m/A]
   Supply<S> supply;
@@ -182,8 +183,8 @@ struct Design {
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
-    return use(of.name, of.mass, of.masses, of.bench_torque_constant, of.supply, of.supply_resonance_ratio, of.motor,
-               of.transmission, of.friction, of.spring, of.wing, of.aerodynamics);
+    return use(of.name, of.mass, of.motors, of.masses, of.bench_torque_constant, of.supply, of.supply_resonance_ratio,
+               of.motor, of.transmission, of.friction, of.spring, of.wing, of.aerodynamics);
   }
 };
 
@@ -212,11 +213,12 @@ std::optional<S> total_mass(const Design<S>& design) {
   if (!design.mass) return std::nullopt;
   const ItemMasses<S>& items = design.masses;
   const std::optional<S> rod = rod_length(design.transmission);
+  const S& M = design.motors;
   S mass = *design.mass;
   if (items.supply) mass = mass + *items.supply;
-  if (items.motor) mass = mass + *items.motor;
-  if (items.rod_linear_density && rod) mass = mass + *items.rod_linear_density * *rod;
-  if (items.spring && has_springs(design)) mass = mass + design.wing.count * *items.spring;
+  if (items.motor) mass = mass + M * *items.motor;
+  if (items.rod_linear_density && rod) mass = mass + M * (*items.rod_linear_density * *rod);
+  if (items.spring && has_springs(design)) mass = mass + M * (design.wing.count * *items.spring);
   return mass;
 }
 
