@@ -83,7 +83,13 @@ void validate(const Design<double>& d) {
     throw ParameterError(std::string(parameter.path),
                          range_message(parameter.range.expected, std::string(parameter.unit).c_str(), *x));
   }
-  if (d.supply.type == SupplyType::battery) validate(d.supply.battery);
+  if (d.supply.type == SupplyType::battery) {
+    validate(d.supply.battery);
+    if (d.supply.battery.specific_energy && d.masses.supply) {
+      throw ParameterError(battery_key::specific_energy.path,
+                           "gives the mass of the battery, which supply.mass states; give one of them");
+    }
+  }
 
   const TransmissionType type = d.transmission.type;
   if (d.masses.rod_linear_density && !rod_length(d.transmission)) {

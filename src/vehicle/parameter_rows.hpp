@@ -40,6 +40,8 @@ std::span<const Parameter<S>> parameter_table() {
   constexpr auto spring_ratio = [](auto& d) -> auto& { return d.spring.resonance_ratio; };
   constexpr auto drive_ratio = [](auto& d) -> auto& { return d.supply_resonance_ratio; };
   constexpr auto wing_resonance = [](auto& d) -> auto& { return d.wing.resonance; };
+  constexpr auto supply_mass = [](auto& d) -> auto& { return d.masses.supply; };
+  constexpr auto specific_energy = [](auto& d) -> auto& { return d.supply.battery.specific_energy; };
   constexpr auto chord_ratio = [](auto& d) -> auto& { return d.wing.planform.chord_ratio; };
 
   static constexpr Parameter<S> parameters[] = {
@@ -50,7 +52,7 @@ std::span<const Parameter<S>> parameter_table() {
                  range::positive,
                  "unknown",
                  "mass of the vehicle but for the masses stated for themselves (motor.mass, supply.mass, "
-                 "spring.mass, transmission.rod_linear_density); enables lift_to_weight",
+                 "supply.specific_energy, spring.mass, transmission.rod_linear_density); enables lift_to_weight",
                  {},
                  "3.34 g"},
                 [](auto& d) -> auto& { return d.mass; }),
@@ -99,9 +101,19 @@ std::span<const Parameter<S>> parameter_table() {
       number<S, OnBattery>(
           row(battery_key::cutoff_voltage, "none", "mean terminal voltage of one cell at which a flight ends"),
           [](auto& d) -> auto& { return d.supply.battery.cutoff_voltage; }),
-      number<S, Weighed>({"supply.mass", "kg", range::not_negative, "none: in vehicle.mass",
-                          "mass of the battery, in addition to vehicle.mass"},
-                         [](auto& d) -> auto& { return d.masses.supply; }),
+      alternative<S, OnBattery>(
+          row(battery_key::specific_energy, "none: in vehicle.mass",
+              "energy of the full battery without load over its mass: that mass, which grows with the capacity, is in "
+              "addition to vehicle.mass",
+              {"mass"}),
+          specific_energy, supply_mass),
+      alternative<S, Weighed>({"supply.mass",
+                               "kg",
+                               range::not_negative,
+                               "none: in vehicle.mass",
+                               "mass of the battery, in addition to vehicle.mass",
+                               {"specific_energy"}},
+                              supply_mass, specific_energy),
 
       number<S>({"motor.gear_ratio", "1", range::positive, "none: constants at the output shaft",
                  "n, motor turns per output turn; given, the motor constants below are the motor shaft's"},

@@ -206,8 +206,8 @@ std::optional<S> rod_length(const TransmissionDesign<S>& t) {
   return std::nullopt;
 }
 
-/// Mass of the whole vehicle [kg]: vehicle.mass and every mass stated for itself; empty where vehicle.mass is not
-/// known.
+/// Mass of the whole vehicle [kg]: vehicle.mass, every mass stated for itself and that of a battery that weighs by its
+/// capacity; empty where vehicle.mass is not known.
 template <Scalar S>
 std::optional<S> total_mass(const Design<S>& design) {
   if (!design.mass) return std::nullopt;
@@ -216,6 +216,9 @@ std::optional<S> total_mass(const Design<S>& design) {
   const S& M = design.motors;
   S mass = *design.mass;
   if (items.supply) mass = mass + *items.supply;
+  if (design.supply.type == SupplyType::battery) {
+    if (const std::optional<S> battery = battery_mass(design.supply.battery)) mass = mass + *battery;
+  }
   if (items.motor) mass = mass + M * *items.motor;
   if (items.rod_linear_density && rod) mass = mass + M * (*items.rod_linear_density * *rod);
   if (items.spring && has_springs(design)) mass = mass + M * (design.wing.count * *items.spring);
