@@ -15,9 +15,9 @@ std::span<const Parameter<S>> parameter_table() {
   using D = Design<S>;
   using detail::alternative, detail::battery_voltage, detail::choice, detail::friction_number, detail::number,
       detail::replaceable, detail::row, detail::table, detail::text, detail::wave_number;
-  using detail::FormulationChoice, detail::FrictionChoice, detail::Geared, detail::Heated, detail::ShapeChoice,
-      detail::ShapeIs, detail::SupplyChoice, detail::SupplyIs, detail::TransmissionChoice, detail::TransmissionIs,
-      detail::Weighed, detail::WeighedSprings;
+  using detail::Drawn, detail::FormulationChoice, detail::FrictionChoice, detail::Geared, detail::Heated,
+      detail::ShapeChoice, detail::ShapeIs, detail::SupplyChoice, detail::SupplyIs, detail::TransmissionChoice,
+      detail::TransmissionIs, detail::Weighed, detail::WeighedSprings;
   using enum PlanformShape;
   using Powered = SupplyIs<SupplyType::constant, SupplyType::pwm>;
   using Sine = SupplyIs<SupplyType::sine>;
@@ -42,6 +42,7 @@ std::span<const Parameter<S>> parameter_table() {
   constexpr auto wing_resonance = [](auto& d) -> auto& { return d.wing.resonance; };
   constexpr auto supply_mass = [](auto& d) -> auto& { return d.masses.supply; };
   constexpr auto specific_energy = [](auto& d) -> auto& { return d.supply.battery.specific_energy; };
+  constexpr auto areal_density = [](auto& d) -> auto& { return d.wing.areal_density; };
   constexpr auto chord_ratio = [](auto& d) -> auto& { return d.wing.planform.chord_ratio; };
 
   static constexpr Parameter<S> parameters[] = {
@@ -288,9 +289,9 @@ std::span<const Parameter<S>> parameter_table() {
            range::positive,
            "required",
            "J_w, inertia of one wing about its hinge",
-           {"resonance"},
+           {"resonance", "areal_density"},
            "7.2e-8 kg m2"},
-          [](auto& d) -> auto& { return d.wing.inertia; }, wing_resonance),
+          [](auto& d) -> auto& { return d.wing.inertia; }, wing_resonance, areal_density),
       alternative<S, Direct>(
           {"wing.resonance",
            "Hz",
@@ -298,8 +299,16 @@ std::span<const Parameter<S>> parameter_table() {
            "required",
            "frequency at which rotor and wings resonate on springs of a given stiffness: the inertia "
            "follows, J + N_w J_w = N_w k / (2 pi f)^2",
-           {"inertia"}},
-          wing_resonance),
+           {"inertia", "areal_density"}},
+          wing_resonance, areal_density),
+      alternative<S>(row(wing_material_key::areal_density, "required",
+                         "sigma of the membrane, ribs and glue spread over it: the inertia follows from the planform's "
+                         "outline, J_w = integral (sigma c + lambda) r^2 dr",
+                         {"inertia", "resonance"}),
+                     areal_density, wing_resonance),
+      number<S, Drawn>(row(wing_material_key::spar_density, "0 kg/m",
+                           "lambda, mass of the leading-edge spar over its length, from root to tip"),
+                       [](auto& d) -> auto& { return d.wing.spar_density; }),
       choice<S, ShapeChoice>("how the wing's outline is given", name_of(semi_ellipse)),
       number<S, Outline>(row(planform_key::length, "required", "R, wing root to tip", {}, "63 mm"),
                          [](auto& d) -> auto& { return d.wing.planform.length; }),

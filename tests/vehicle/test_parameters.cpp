@@ -43,6 +43,7 @@ std::vector<Design<double>> designs_of_every_kind() {
         d.motor.gear_ratio = 4.0;
         d.motor.thermal.resistance_winding = 20.0;
         d.spring.stiffness = 1e-3;
+        d.wing.areal_density = 0.02;
         designs.push_back(d);
       }
     }

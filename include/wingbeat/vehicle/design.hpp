@@ -16,6 +16,7 @@
 #include "wingbeat/parts/planform.hpp"
 #include "wingbeat/parts/spring.hpp"
 #include "wingbeat/parts/supply.hpp"
+#include "wingbeat/parts/wing_mass.hpp"
 
 namespace wingbeat {
 
@@ -127,10 +128,12 @@ struct WingDesign {
   Planform<S> planform;
   /// Direct: resonance of rotor and wings on their springs [Hz]; given, the inertia follows: J_w = k/(2 pi f)^2 - J/N_w
   std::optional<S> resonance;
+  std::optional<S> areal_density;  ///< sigma of the membrane [kg/m2]; given, the inertia follows from the outline
+  S spar_density = S(0);           ///< lambda of the leading-edge spar [kg/m], only with areal_density
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
-    return use(of.count, of.inertia, of.planform, of.resonance);
+    return use(of.count, of.inertia, of.planform, of.resonance, of.areal_density, of.spar_density);
   }
 };
 
@@ -192,6 +195,13 @@ struct Design {
 template <Scalar S>
 bool has_springs(const Design<S>& design) {
   return design.spring.stiffness || design.spring.resonance || design.spring.resonance_ratio;
+}
+
+/// Mass properties of one wing that is stated by its material; empty where its inertia is stated.
+template <Scalar S>
+std::optional<WingMass<S>> wing_mass(const WingDesign<S>& wing) {
+  if (!wing.areal_density) return std::nullopt;
+  return wing_mass(WingMaterial<S>{*wing.areal_density, wing.spar_density}, wing.planform);
 }
 
 /// Length of the rod, of a four-bar the coupler [m]; empty where there is none.

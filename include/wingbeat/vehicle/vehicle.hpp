@@ -115,6 +115,7 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
   // Inertia on one spring, spring and drive frequency: of a direct drive any of them may follow from the others.
   const S rotor_share = direct ? v.motor.inertia / v.wing_count : S(0.0);
   S wing_inertia = design.wing.inertia;
+  if (const std::optional<WingMass<S>> drawn = wing_mass(design.wing)) wing_inertia = drawn->inertia;
   S stiffness = design.spring.stiffness ? *design.spring.stiffness : S(0.0);
   if (design.wing.resonance) wing_inertia = stiffness / square(S(two_pi) * *design.wing.resonance) - rotor_share;
   const S inertia = rotor_share + wing_inertia;
