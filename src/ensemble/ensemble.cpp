@@ -238,6 +238,7 @@ void solve_warm(std::span<const EnsembleMember> members, const std::vector<std::
     ThermalEquilibrium equilibrium;
   };
   std::vector<Search> active;
+  active.reserve(which.size());
   for (const std::size_t n : which) {
     active.push_back({n, ThermalEquilibrium(members[n].vehicle.thermal, options.tolerance)});
   }

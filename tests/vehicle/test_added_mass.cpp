@@ -143,7 +143,7 @@ TEST(AddedMass, EnergyBalanceClosesToTheToleranceAndTakesNoMeanPower) {
   }
 }
 
-// Both are integrals of a function of beta' alone along a closed course, here by Gauss's rule between samples of it.
+// Both are integrals of a function of beta' alone along a closed path, here by Gauss's rule between samples of it.
 TEST(AddedMass, MeanPowerAndMeanRotationalLiftOverAnOrbitVanish) {
   for (const bool springs : {false, true}) {
     const Vehicle<double> v = resolve(with_added_mass(springs));

@@ -220,11 +220,11 @@ TEST(DirectDrive, SticksExactlyAsLongAsFrictionHolds) {
   ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
   int stuck = 0, slipping = 0;
   for (const WaveformRow& row : found.record.waveform(2001)) {
-    const double pull = v.motor.torque_constant * row.current - 2.0 * v.spring.stiffness * row.stroke_angle;
+    const double net_torque = v.motor.torque_constant * row.current - 2.0 * v.spring.stiffness * row.stroke_angle;
     if (row.flapping_velocity == 0.0) {
       ++stuck;
-      EXPECT_LE(std::abs(pull), 2.2e-3 * (1.0 + 1e-8));
-      EXPECT_NEAR(row.friction_torque, pull, 1e-12);
+      EXPECT_LE(std::abs(net_torque), 2.2e-3 * (1.0 + 1e-8));
+      EXPECT_NEAR(row.friction_torque, net_torque, 1e-12);
     } else {
       ++slipping;
       EXPECT_NEAR(row.friction_torque, std::copysign(2.2e-3, row.flapping_velocity), 1e-15);
