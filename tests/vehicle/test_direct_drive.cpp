@@ -6,6 +6,7 @@
 #include <cmath>
 #include <complex>
 
+#include "vehicle/direct_design.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "wingbeat/cycle/direct_balance.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
@@ -15,16 +16,6 @@ namespace wingbeat {
 namespace {
 
 using testing::HasSubstr;
-
-Design<double> direct_design() {
-  Design<double> d = reference_design();
-  d.transmission = {};
-  d.transmission.type = TransmissionType::direct;
-  d.supply = {SupplyType::sine, 3.0, 22.0, 1.0};
-  d.friction = {FrictionLaw::none, 0.0};
-  d.spring.resonance = 22.0;
-  return d;
-}
 
 /// Largest relative deviation of metrics that both have. What vanishes over a period of a symmetric motion, the mean
 /// current and what follows from it, is assessed beside the peak.
