@@ -11,21 +11,21 @@
 namespace wingbeat {
 namespace {
 
-constexpr double R = 63e-3, c_0 = 25e-3;
+constexpr double drawn_length = 63e-3, drawn_chord = 25e-3;
 
 Planform<double> outline(PlanformShape shape, double hub_offset) {
   Planform<double> p;
   p.shape = shape;
-  p.length = R;
-  p.root_chord = c_0;
+  p.length = drawn_length;
+  p.root_chord = drawn_chord;
   p.hub_offset = hub_offset;
-  if (shape == PlanformShape::tabulated) p.chord_table = {{0.0, 10e-3}, {20e-3, 25e-3}, {R, 5e-3}};
+  if (shape == PlanformShape::tabulated) p.chord_table = {{0.0, 10e-3}, {20e-3, 25e-3}, {drawn_length, 5e-3}};
   return p;
 }
 
 double chord(PlanformShape shape, double x) {
-  if (shape == PlanformShape::rectangle) return c_0;
-  if (shape == PlanformShape::semi_ellipse) return c_0 * std::sqrt(1.0 - square(x / R));
+  if (shape == PlanformShape::rectangle) return drawn_chord;
+  if (shape == PlanformShape::semi_ellipse) return drawn_chord * std::sqrt(1.0 - square(x / drawn_length));
   return x < 20e-3 ? 10e-3 + 15e-3 * x / 20e-3 : 25e-3 - 20e-3 * (x - 20e-3) / 43e-3;
 }
 
@@ -36,7 +36,7 @@ TEST(WingMass, IsTheSumOverItsStrips) {
       WingMass<double> sum{};
       constexpr int count = 200000;
       for (int n = 0; n < count; ++n) {
-        const double x = R * (n + 0.5) / count, r = x + d, c = chord(shape, x), dr = R / count;
+        const double x = drawn_length * (n + 0.5) / count, r = x + d, c = chord(shape, x), dr = drawn_length / count;
         const double strip = (0.02 * c + 1e-3) * dr;
         sum.mass += strip;
         sum.inertia += strip * r * r;
@@ -56,12 +56,12 @@ TEST(WingMass, IsTheSumOverItsStrips) {
 TEST(WingMass, OfAPlateAndARod) {
   const Planform<double> p = outline(PlanformShape::rectangle, 0.0);
   const WingMass<double> plate = wing_mass(WingMaterial<double>{0.05, 0.0}, p);
-  EXPECT_DOUBLE_EQ(plate.mass, 0.05 * R * c_0);
-  EXPECT_DOUBLE_EQ(plate.inertia, plate.mass * R * R / 3.0);
-  EXPECT_DOUBLE_EQ(plate.pitch_inertia, plate.mass * c_0 * c_0 / 3.0);
-  EXPECT_DOUBLE_EQ(plate.mass_product, plate.mass * R * c_0 / 4.0);
+  EXPECT_DOUBLE_EQ(plate.mass, 0.05 * drawn_length * drawn_chord);
+  EXPECT_DOUBLE_EQ(plate.inertia, plate.mass * drawn_length * drawn_length / 3.0);
+  EXPECT_DOUBLE_EQ(plate.pitch_inertia, plate.mass * drawn_chord * drawn_chord / 3.0);
+  EXPECT_DOUBLE_EQ(plate.mass_product, plate.mass * drawn_length * drawn_chord / 4.0);
   const WingMass<double> both = wing_mass(WingMaterial<double>{0.05, 2e-3}, p);
-  EXPECT_NEAR(both.inertia - plate.inertia, 2e-3 * R * R * R / 3.0, 1e-20);
+  EXPECT_NEAR(both.inertia - plate.inertia, 2e-3 * drawn_length * drawn_length * drawn_length / 3.0, 1e-20);
   EXPECT_EQ(both.pitch_inertia, plate.pitch_inertia);
   EXPECT_EQ(both.mass_product, plate.mass_product);
 }
@@ -76,16 +76,16 @@ TEST(WingMass, SharesTheChordMomentOfLift) {
 
 TEST(WingMass, FollowsItsChordRatioWithDerivatives) {
   Planform<double> p = outline(PlanformShape::semi_ellipse, 0.0);
-  p.chord_ratio = c_0 / R;
+  p.chord_ratio = drawn_chord / drawn_length;
   const WingMaterial<double> material{0.02, 0.0};
   EXPECT_DOUBLE_EQ(wing_mass(material, p).inertia,
                    wing_mass(material, outline(PlanformShape::semi_ellipse, 0.0)).inertia);
   Planform<Jet<1>> dual = cast<Jet<1>>(p);
-  dual.length = Jet<1>(R, 0);
+  dual.length = Jet<1>(drawn_length, 0);
   const WingMass<Jet<1>> m = wing_mass(cast<Jet<1>>(material), dual);
-  EXPECT_NEAR(m.inertia.v[0] * R / m.inertia.a, 4.0, 1e-12);  // all lengths grow alike
-  EXPECT_NEAR(m.pitch_inertia.v[0] * R / m.pitch_inertia.a, 4.0, 1e-12);
-  EXPECT_NEAR(m.mass.v[0] * R / m.mass.a, 2.0, 1e-12);
+  EXPECT_NEAR(m.inertia.v[0] * drawn_length / m.inertia.a, 4.0, 1e-12);  // all lengths grow alike
+  EXPECT_NEAR(m.pitch_inertia.v[0] * drawn_length / m.pitch_inertia.a, 4.0, 1e-12);
+  EXPECT_NEAR(m.mass.v[0] * drawn_length / m.mass.a, 2.0, 1e-12);
 }
 
 }  // namespace
