@@ -83,7 +83,9 @@ TEST(AddedMass, ItsShareOfTheWingsInertiaIsAMetric) {
   const double expected = J_a / 7.205e-8;
   EXPECT_NEAR(ratio_of(d, Condition::air), expected, 1e-14);
   const Vehicle<double> v = resolve(d);
-  const TransientResult time = simulate_start_up(v, {.tolerance = 1e-4});
+  TransientOptions loose;
+  loose.tolerance = 1e-4;
+  const TransientResult time = simulate_start_up(v, loose);
   ASSERT_TRUE(time.metrics);
   EXPECT_NEAR((*time.metrics)[Metric::added_mass_inertia_ratio], expected, 1e-14);
   const std::array<EnsembleMember, 1> member = {{{v, {}}}};

@@ -155,7 +155,7 @@ TEST(Parameters, AlternativesReplaceEachOther) {
 }
 
 TEST(Parameters, JetsCarryDerivatives) {
-  Design<GradientJet> d{};
+  Design<GradientJet> d = cast<GradientJet>(Design<double>());
   set_parameter(d, "motor.inertia", GradientJet(1.5e-7, 1));
   EXPECT_EQ(d.motor.constants.inertia.a, 1.5e-7);
   EXPECT_EQ(d.motor.constants.inertia.v[1], 1.0);
