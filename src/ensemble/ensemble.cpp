@@ -72,10 +72,10 @@ Plan plan_for(const EnsembleOptions& options) {
   finer.approach = PackApproach::resume;
   finer.implicit = true;
   for (PackSettings& again : plan.again) {
-    ++finer.newton_iterations;
     finer.segments = std::min(finer.segments + 2, max_half_segments);
     again = finer;
     finer.intervals = std::min(finer.intervals + 2, solver::max_collocation_intervals);
+    ++finer.newton_iterations;
   }
   plan.from_rest = s;
   plan.from_rest.approach = PackApproach::from_rest;
@@ -127,9 +127,10 @@ class EnsembleRun {
   }
 
  private:
-  static constexpr std::size_t kinds = 12;
+  static constexpr std::size_t kinds = 24;
   std::size_t kind_of(const Vehicle<double>& v) const {
-    return (v.transmission.slider_crank.formulation == Formulation::virtual_work ? 6 : 0) +
+    return (v.wings.added_inertia > 0.0 ? 12 : 0) +
+           (v.transmission.slider_crank.formulation == Formulation::virtual_work ? 6 : 0) +
            (v.spring.stiffness > 0.0 ? 3 : 0) + std::size_t(current_of(v));
   }
 

@@ -46,14 +46,16 @@ struct HalfCycle {
   const Vehicle<S>& vehicle;
   CrankGeometry<S> geometry;
   S per_inductance;  ///< 1 / L_a [1/H]
+  S per_resistance;  ///< 1 / (R_a + R_i) [1/ohm]
   S half;            ///< +1: crank angle u, stroke upward; -1: crank angle pi + u, stroke downward
+  bool added_mass;   ///< whether the air that the wings accelerate counts (model.md section 10)
   S drop = S(0.0);   ///< N = 1: L_a di/dt [V], which a small inductance takes from the voltage
 
   S current(const State& y) const {
     if constexpr (N == 2) {
       return y[1];
     } else {
-      return algebraic_current(vehicle, S(vehicle.voltage - drop), y[0]);
+      return (vehicle.voltage - drop - vehicle.motor.torque_constant * y[0]) * per_resistance;
     }
   }
 
@@ -65,19 +67,28 @@ struct HalfCycle {
 
   Branch<S> branch(const S& force) const { return {half, force, S(1.0), S(1.0)}; }
 
-  Motion<S> motion(const Configuration<S>& place, const State& y, const S& force) const {
-    const S i = current(y);
-    const S v_t = terminal_voltage(vehicle, vehicle.voltage, i);
-    const Instant<S> at = instant_at(vehicle, place.kinematics, place.spring_moment, y[0], i, v_t, half, S(1.0));
-    return motion_on(vehicle, at, i, v_t, branch(force));
+  [[gnu::always_inline]] Motion<S> motion(const Configuration<S>& place, const State& y, const S& force) const {
+    return added_mass ? motion_with_added_mass(place, y, &force) : motion_of<false>(place, y, &force);
   }
 
   /// The branch that holds is chosen on the spot.
-  Motion<S> motion_on_its_branch(const Configuration<S>& place, const State& y) const {
+  [[gnu::always_inline]] Motion<S> motion_on_its_branch(const Configuration<S>& place, const State& y) const {
+    return added_mass ? motion_with_added_mass(place, y, nullptr) : motion_of<false>(place, y, nullptr);
+  }
+
+  /// On the branch of the rod force's sign `force`; without, on the one that holds.
+  template <bool has_added_mass>
+  [[gnu::always_inline]] Motion<S> motion_of(const Configuration<S>& place, const State& y, const S* force) const {
     const S i = current(y);
     const S v_t = terminal_voltage(vehicle, vehicle.voltage, i);
-    const Instant<S> at = instant_at(vehicle, place.kinematics, place.spring_moment, y[0], i, v_t, half, S(1.0));
-    return motion_on(vehicle, at, i, v_t, branch(sign_of(at.force_switch)));
+    const Instant<S> at =
+        instant_at<has_added_mass>(vehicle, place.kinematics, place.spring_moment, y[0], i, v_t, half, S(1.0));
+    return motion_on(vehicle, at, i, v_t, branch(force != nullptr ? *force : sign_of(at.force_switch)));
+  }
+  // Out of the way of vehicles without.
+  [[gnu::noinline, gnu::cold]] Motion<S> motion_with_added_mass(const Configuration<S>& place, const State& y,
+                                                                const S* force) const {
+    return motion_of<true>(place, y, force);
   }
 
   template <bool quadratures>
@@ -97,12 +108,22 @@ struct HalfCycle {
   }
 };
 
+template <bool quadratures, class System>
+[[gnu::noinline, gnu::cold]] void evaluate_with_added_mass(const System& system,
+                                                           const Configuration<typename System::Real>& place,
+                                                           const typename System::State& y,
+                                                           const typename System::Real& force,
+                                                           solver::Rates<System>& out) {
+  out = system.template rates_of<quadratures>(system.motion_with_added_mass(place, y, &force), y, force);
+}
+
 // A cycle's code must stay within the processor's instruction cache: the right-hand side is one function.
 template <bool quadratures, class System>
 [[gnu::noinline, gnu::flatten]] void evaluate(const System& system, const Configuration<typename System::Real>& place,
                                               const typename System::State& y, const typename System::Real& force,
                                               solver::Rates<System>& out) {
-  out = system.template rates_of<quadratures>(system.motion(place, y, force), y, force);
+  if (system.added_mass) return evaluate_with_added_mass<quadratures>(system, place, y, force, out);
+  out = system.template rates_of<quadratures>(system.template motion_of<false>(place, y, &force), y, force);
 }
 
 }  // namespace wingbeat

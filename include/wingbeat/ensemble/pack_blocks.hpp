@@ -82,8 +82,9 @@ struct PackResult {
   IterateStart start;
 };
 
-/// Solves `count` members, at most lanes_* of them, alike in formulation, in whether they have springs and in
-/// what their inductance makes of the current. A member's result does not depend on the others.
+/// Solves `count` members, at most lanes_* of them, alike in formulation, in whether they have springs, in
+/// whether they count the added mass, and in what their inductance makes of the current. A member's result does not
+/// depend on the others.
 void solve_block_base(const EnsembleMember* const* members, int count, const PackSettings& settings,
                       PackResult* const* results);
 #ifdef WINGBEAT_X86

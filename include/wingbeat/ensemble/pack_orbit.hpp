@@ -88,10 +88,12 @@ class PackOrbit {
         segments_(settings.segments) {
     no_load_ = no_load_speed(vehicle);
     floor_ = L(1e-4) * no_load_;
-    current_scale_ = vehicle.voltage / circuit_resistance(vehicle);
+    per_resistance_ = L(1.0) / circuit_resistance(vehicle);
+    current_scale_ = vehicle.voltage * per_resistance_;
     wanted_ = settings.wanted;
     for (const bool wanted : wanted_) reads_ = reads_ || wanted;
     geometry_ = geometry_of(vehicle.transmission.slider_crank);
+    added_mass_ = any<L>(vehicle.wings.added_inertia > L(0.0));
     lags_ = N == 1 && settings.current == PackCurrent::lagging;
     if (N == 2 || lags_) per_inductance_ = L(1.0) / vehicle.motor.armature_inductance;
   }
@@ -123,7 +125,9 @@ class PackOrbit {
   }
 
  private:
-  System half_cycle(int half) const { return {vehicle_, geometry_, per_inductance_, L(half == 0 ? 1.0 : -1.0)}; }
+  System half_cycle(int half) const {
+    return {vehicle_, geometry_, per_inductance_, per_resistance_, L(half == 0 ? 1.0 : -1.0), added_mass_};
+  }
 
   [[gnu::noinline, gnu::flatten]] void tabulate();
   [[gnu::noinline, gnu::flatten]] void assess_statics();
@@ -205,10 +209,11 @@ class PackOrbit {
   const solver::CollocationRule& rule_;
   int segments_;  ///< of half an iterate
   CrankGeometry<L> geometry_;
-  L per_inductance_, current_scale_, no_load_, floor_;
+  L per_inductance_, per_resistance_, current_scale_, no_load_, floor_;
   Matrix monodromy_;  ///< of an iterate
   std::array<std::array<Configuration<L>, coarse_samples>, 2> table_;
   State y_;  ///< where an iterate starts
+  bool added_mass_;
   Mask unresolved_, locked_;
   Mask lost_;  ///< the crank comes near standstill on the way to the orbit
   std::array<ForceSwitches<L>, 2> switches_{};

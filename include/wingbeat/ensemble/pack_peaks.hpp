@@ -68,7 +68,7 @@ Observable<L> PackOrbit<L, N>::observable_inside(Quantity quantity, const Segmen
                                                  const L& x) const {
   std::array<bool, quantity_count> wanted{};
   wanted[std::size_t(quantity)] = true;
-  System system = {vehicle_, geometry_, per_inductance_, trajectory.half};
+  System system = {vehicle_, geometry_, per_inductance_, per_resistance_, trajectory.half, added_mass_};
   const L t = L(2.0) * x * inverse_of(max(trajectory.length, L(1e-12))) - L(1.0);
   State y;
   for (std::size_t n = 0; n < N; ++n) y[n] = trajectory.legendre[0][n] + t * trajectory.legendre[1][n];

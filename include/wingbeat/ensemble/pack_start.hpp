@@ -25,7 +25,7 @@ void PackOrbit<L, N>::assess_statics() {
   locked_ = !unresolved_ && unresolved_;
   // From rest, locking shows by itself, and only jams on the way are left to be told from near ones.
   const bool from_rest = settings_.approach == PackApproach::from_rest;
-  const L inertia_margin(from_rest ? 0.05 : 0.3), lever_margin(from_rest ? 0.02 : 0.1);
+  const L inertia_margin(from_rest ? 0.05 : 0.15), lever_margin(from_rest ? 0.02 : 0.05);
   const bool springs = !from_rest && any<L>(v.spring.stiffness > L(0.0));
   for (const auto& half : table_) {
     for (const Configuration<L>& place : half) {
@@ -33,7 +33,7 @@ void PackOrbit<L, N>::assess_statics() {
       unresolved_ = unresolved_ || !(min_inertia(v, k) > inertia_margin * v.motor.inertia) ||
                     !(k.wing_lever > lever_margin * typical_lever(v.transmission));
       if (springs) {
-        unresolved_ = unresolved_ || !(advance_torque(v, k, place.spring_moment, L(L(0.8) * stall)) > L(0.0));
+        unresolved_ = unresolved_ || !(advance_torque(v, k, place.spring_moment, L(L(0.95) * stall)) > L(0.0));
       }
     }
   }

@@ -199,7 +199,7 @@ S added_energy(const BladeElement<S>& w, const S& alpha, const S& stroke_velocit
 /// The loads at stroke velocity beta' [rad/s] of the sign `stroke`. `pitching` is the branch of the passive pitching:
 /// +1 free, -1 at the stop; as with tables, batches do not know the stop. Always inlined, with all that returns it
 /// (motion_at and below): a right-hand side that reads the moment alone pays for nothing else.
-template <Scalar S>
+template <bool has_added_mass = true, Scalar S>
 [[gnu::always_inline]] inline AeroLoads<S> aero_loads(const BladeElement<S>& w, const S& stroke_velocity,
                                                       const S& stroke, const S& pitching) {
   const S speed = stroke * stroke_velocity;
@@ -213,7 +213,8 @@ template <Scalar S>
   loads.lift = S(0.5) * w.air_density * C_L * square(speed) * w.s2;
   loads.moment = stroke * (S(0.5) * w.air_density * C_D * square(speed) * w.s3);
   loads.power = loads.moment * stroke_velocity;
-  loads.added_inertia = added_inertia(w, alpha, pitching);
+  loads.added_inertia = S(0.0);
+  if constexpr (has_added_mass) loads.added_inertia = added_inertia(w, alpha, pitching);
   return loads;
 }
 

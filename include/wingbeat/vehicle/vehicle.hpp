@@ -229,7 +229,7 @@ struct Instant {
 /// The instant at crank speed omega [rad/s] and current i [A] under the terminal voltage v_t [V], N_k_beta being the
 /// spring_moment() there; `stroke` and `direction` are the signs of beta' and omega (model.md section 2), `pitching`
 /// and `gear` as in Branch.
-template <template <Scalar> class V, Scalar S>
+template <bool has_added_mass = true, template <Scalar> class V, Scalar S>
 [[gnu::always_inline]] inline Instant<S> instant_at(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta,
                                                     const S& omega, const S& i, const S& v_t, const S& stroke,
                                                     const S& direction, const S& pitching = S(1.0),
@@ -239,7 +239,7 @@ template <template <Scalar> class V, Scalar S>
   at.omega = omega;
   at.motor = motor_loads(v.motor, v_t, i, omega);
   at.stroke_velocity = k.stroke_slope * omega;
-  at.aero = aero_loads(v.wings, at.stroke_velocity, stroke, pitching);
+  at.aero = aero_loads<has_added_mass>(v.wings, at.stroke_velocity, stroke, pitching);
   at.spring_moment = N_k_beta;
   // The motor's own friction acts before the gearbox.
   const S mechanism = load_free_friction(v.friction, omega, direction), own = direction * v.motor.friction_torque;
@@ -253,7 +253,8 @@ template <template <Scalar> class V, Scalar S>
   }
 
   // F = A omega' + C of model.md, both sides times g, which saves dividing by it twice.
-  const S N_J = v.wing_count * v.wing_inertia + at.aero.added_inertia;
+  S N_J = v.wing_count * v.wing_inertia;
+  if constexpr (has_added_mass) N_J = N_J + at.aero.added_inertia;
   at.A_g = N_J * k.stroke_slope;
   at.C_g = N_J * k.stroke_curve * square(omega) + at.aero.moment + at.spring_moment;
   at.force_switch = at.inertia * at.C_g + at.A_g * at.drive;
