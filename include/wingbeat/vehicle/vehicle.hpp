@@ -219,19 +219,19 @@ struct Instant {
 };
 
 /// The instant at crank speed omega [rad/s] and current i [A] under the terminal voltage v_t [V], N_k_beta being the
-/// spring_moment() there; `stroke` and `direction` are the signs of beta' and omega (model.md section 2), `pitching`
-/// and `gear` as in Branch.
+/// spring_moment() there, of wings that ask (inertia) beta'' + moment of the stroke, springs apart; `aero` is what the
+/// air does to them, `direction` the sign of omega, `gear` as in Branch.
 template <template <Scalar> class V, Scalar S>
-[[gnu::always_inline]] inline Instant<S> instant_at(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta,
-                                                    const S& omega, const S& i, const S& v_t, const S& stroke,
-                                                    const S& direction, const S& pitching = S(1.0),
-                                                    const S& gear = S(1.0)) {
+[[gnu::always_inline]] inline Instant<S> instant_under(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta,
+                                                       const S& omega, const S& i, const S& v_t, const S& direction,
+                                                       const S& gear, const AeroLoads<S>& aero, const S& inertia,
+                                                       const S& moment) {
   Instant<S> at;
   at.kinematics = k;
   at.omega = omega;
   at.motor = motor_loads(v.motor, v_t, i, omega);
   at.stroke_velocity = k.stroke_slope * omega;
-  at.aero = aero_loads(v.wings, at.stroke_velocity, stroke, pitching);
+  at.aero = aero;
   at.spring_moment = N_k_beta;
   // The motor's own friction acts before the gearbox.
   const S mechanism = load_free_friction(v.friction, omega, direction), own = direction * v.motor.friction_torque;
@@ -245,11 +245,22 @@ template <template <Scalar> class V, Scalar S>
   }
 
   // F = A omega' + C of model.md, both sides times g, which saves dividing by it twice.
-  const S N_J = v.wing_count * v.wing_inertia + at.aero.added_inertia;
-  at.A_g = N_J * k.stroke_slope;
-  at.C_g = N_J * k.stroke_curve * square(omega) + at.aero.moment + at.spring_moment;
+  at.A_g = inertia * k.stroke_slope;
+  at.C_g = inertia * k.stroke_curve * square(omega) + moment + at.spring_moment;
   at.force_switch = at.inertia * at.C_g + at.A_g * at.drive;
   return at;
+}
+
+/// The same of wings under the pitch law: `stroke` and `direction` are the signs of beta' and omega (model.md section
+/// 2), `pitching` and `gear` as in Branch.
+template <template <Scalar> class V, Scalar S>
+[[gnu::always_inline]] inline Instant<S> instant_at(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta,
+                                                    const S& omega, const S& i, const S& v_t, const S& stroke,
+                                                    const S& direction, const S& pitching = S(1.0),
+                                                    const S& gear = S(1.0)) {
+  const AeroLoads<S> aero = aero_loads<S>(v.wings, k.stroke_slope * omega, stroke, pitching);
+  return instant_under<V, S>(v, k, N_k_beta, omega, i, v_t, direction, gear, aero,
+                             v.wing_count * v.wing_inertia + aero.added_inertia, aero.moment);
 }
 
 /// Rod force and accelerations of an instant, on a given branch (model.md section 2, eqs 1, 5-11, 21).
