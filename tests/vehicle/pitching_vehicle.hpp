@@ -1,0 +1,38 @@
+// A direct drive with wings that pitch, for tests.
+#pragma once
+
+#include "vehicle/reference_vehicle.hpp"
+#include "wingbeat/parts/pitching_wings.hpp"
+
+namespace wingbeat {
+
+struct PitchingVehicle {
+  Vehicle<double> vehicle;
+  PitchingWings<double> wings;
+};
+
+/// The reference vehicle's motor and equivalent wings, driven directly at their resonance, on hinges of `stiffness`
+/// [N m/rad] each.
+inline PitchingVehicle pitching_vehicle(double stiffness, double voltage = 3.0, Condition condition = Condition::air) {
+  Design<double> d = reference_design();
+  d.transmission = {};
+  d.transmission.type = TransmissionType::direct;
+  d.supply = {SupplyType::sine, voltage, 22.0, 1.0};
+  d.friction = {FrictionLaw::viscous, 1e-6};
+  d.spring.resonance = 22.0;
+  d.wing.planform = {};
+  d.wing.planform.shape = PlanformShape::semi_ellipse;
+  d.wing.planform.length = 63e-3;
+  d.wing.planform.root_chord = 25e-3;
+  PitchingVehicle of{resolve(d, condition), {}};
+  PitchingWings<double>& w = of.wings;
+  w.hinge = hinges_together<double>({stiffness, 2e-8}, d.wing.count);
+  w.pitch_inertia = d.wing.count * 3e-9;
+  w.mass_product = d.wing.count * 8e-9;
+  w.moments = pitch_chord_moments(d.wing.planform, d.wing.count);
+  w.air = pitch_added_mass(of.vehicle.wings.air_density, w.moments);
+  w.normal_force = NormalForce::normal_force;
+  return of;
+}
+
+}  // namespace wingbeat
