@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "time/simulation.hpp"
 #include "vehicle/pitching_vehicle.hpp"
 #include "wingbeat/core/jet.hpp"
@@ -40,6 +42,31 @@ TEST(PitchDirectModel, ReachesTheOrbitFromRest) {
     EXPECT_EQ(before > 0.0, stop < infinity);
     EXPECT_NEAR(model.now.impact_loss - before, impact_loss(system, cycle), 1e-6 * before);
   }
+}
+
+TEST(PitchDirectModel, ReachesTheOrbitsOfRandomVehicles) {
+  using System = PitchDirectSystem<double, 5>;
+  std::mt19937_64 random(2611);
+  int stopped = 0;
+  for (int n = 0; n < 60; ++n) {
+    const PitchingVehicle of = random_pitching_vehicle(random, n % 2 == 1);
+    validate(of.wings, of.vehicle.wing_count * of.vehicle.wing_inertia);
+    const System system{of.vehicle, of.wings, {0.5, 60.0, 0.5, 60.0, 0.1}};
+    solver::Iterate<System> cycle;
+    const auto found = solver::solve_periodic(system, {}, {.tolerance = 1e-9, .max_steps = 2000}, cycle);
+    ASSERT_EQ(found.status, solver::PeriodicStatus::converged) << n << ": " << describe(found.status);
+    stopped += impact_loss(system, cycle) > 0.0;
+    // What is left of the start after so many periods is a ten-millionth.
+    const double periods = std::ceil(std::max(20.0, std::log(1e-7) / std::log(found.floquet_multiplier_max)));
+    PitchDirectModel model(of.vehicle, of.wings);
+    model.start({});
+    ASSERT_EQ(step_to(model, periods * model.period, 1e-10), StepOutcome::reached) << n;
+    const double sizes[] = {0.5, 60.0, 0.5, 60.0, 0.1};
+    for (std::size_t k = 0; k < 5; ++k) {
+      EXPECT_NEAR(model.now.y[k], cycle.steps.front().y[k], 1e-6 * sizes[k]) << "vehicle " << n << ", state " << k;
+    }
+  }
+  EXPECT_GE(stopped, 10);
 }
 
 // No supply, no damping, no air: a free swing keeps its energy, to what impacts take of it.

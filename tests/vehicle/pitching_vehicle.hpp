@@ -1,6 +1,9 @@
 // A direct drive with wings that pitch, for tests.
 #pragma once
 
+#include <cmath>
+#include <random>
+
 #include "vehicle/reference_vehicle.hpp"
 #include "wingbeat/parts/pitching_wings.hpp"
 
@@ -32,6 +35,20 @@ inline PitchingVehicle pitching_vehicle(double stiffness, double voltage = 3.0, 
   w.moments = pitch_chord_moments(d.wing.planform, d.wing.count);
   w.air = pitch_added_mass(of.vehicle.wings.air_density, w.moments);
   w.normal_force = NormalForce::normal_force;
+  return of;
+}
+
+/// Hinges from soft to stiff, with and without stops, driven below and above resonance.
+inline PitchingVehicle random_pitching_vehicle(std::mt19937_64& random, bool stops) {
+  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  const double stiffness = std::exp(uniform(std::log(5e-5), std::log(3e-3)));
+  PitchingVehicle of = pitching_vehicle(stiffness, uniform(0.5, 5.0));
+  of.vehicle.drive_frequency = uniform(14.0, 34.0);
+  of.wings.pitch_inertia *= std::exp(uniform(-0.7, 0.7));
+  of.wings.mass_product *= uniform(-0.5, 1.2);
+  of.wings.hinge.damping *= std::exp(uniform(-3.0, 3.0));
+  if (uniform(0.0, 1.0) < 0.3) of.wings.rotational_coefficient = 0.0;
+  if (stops) of.wings.hinge.stop = uniform(0.05, 0.6);
   return of;
 }
 

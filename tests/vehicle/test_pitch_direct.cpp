@@ -8,6 +8,7 @@
 #include "wingbeat/core/jet.hpp"
 #include "wingbeat/cycle/direct_system.hpp"
 #include "wingbeat/cycle/pitch_direct_system.hpp"
+#include "wingbeat/cycle/pitch_metrics.hpp"
 #include "wingbeat/cycle/record.hpp"
 #include "wingbeat/solve/periodic.hpp"
 
@@ -70,6 +71,10 @@ TEST(PitchDirect, SmallSwingsInVacuumAreTheComplexImpedances) {
     const Complex current = (v.voltage - K * j * w * beta) / Z;
     const double expected[] = {beta.imag(), (j * w * beta).imag(), psi.imag(), (j * w * psi).imag(), current.imag()};
     const double sizes[] = {std::abs(beta), w * std::abs(beta), std::abs(psi), w * std::abs(psi), std::abs(current)};
+    const PitchMetrics m = pitch_metrics(system, orbit.cycle);
+    EXPECT_NEAR(m.amplitude, std::abs(psi), 1e-8 * std::abs(psi));
+    EXPECT_NEAR(m.phase, std::arg(psi / (-j * beta)), 1e-7);
+    EXPECT_NEAR(m.angle_of_attack_max, 0.5 * pi, 2.0 * std::abs(psi));
     for (std::size_t n = 0; n < 5; ++n) {
       EXPECT_NEAR(orbit.cycle.steps.front().y[n], expected[n], 1e-8 * sizes[n]) << n << " at " << stiffness;
     }
@@ -166,6 +171,9 @@ TEST(PitchDirect, StopsHoldTheWingsAndTakeTheEnergyOfImpacts) {
       EXPECT_TRUE(step.signs[PitchSystem::held] > 0.0 || step.y[3] == 0.0);
       if (n > 0) impacts += step.signs[PitchSystem::impacts] != orbit.cycle.steps[n - 1].signs[PitchSystem::impacts];
     }
+    const PitchMetrics m = pitch_metrics(orbit.system, orbit.cycle);
+    EXPECT_NEAR(m.amplitude, of.wings.hinge.stop, 1e-12);
+    EXPECT_NEAR(m.angle_of_attack_min, 0.5 * pi - of.wings.hinge.stop, 1e-12);
     EXPECT_GT(held, 2);
     EXPECT_GE(impacts, 2);
     EXPECT_GT(impact_loss(orbit.system, orbit.cycle), 1e-4 * orbit.total(Integral::electrical_work));

@@ -78,6 +78,9 @@ struct PitchCrankSystem {
     return crank_kinematics(vehicle.transmission, S(sin(theta)), S(cos(theta)));
   }
 
+  S stroke_angle(const S& theta, const State&) const { return wingbeat::stroke_angle(kinematics(theta)); }
+  static S stroke_sign(const Signs& signs) { return signs[stroke]; }
+
   bool jumps(std::size_t k) const { return k == stop && has_stop(wings.hinge); }
   Signs start_signs(const State& y) const {
     Signs signs;

@@ -77,6 +77,8 @@ struct PitchDirectSystem {
   }
 
   static CrankKinematics<S> kinematics(const S&) { return direct_kinematics<S>(); }
+  static const S& stroke_angle(const S&, const State& y) { return y[0]; }
+  static S stroke_sign(const Signs& signs) { return signs[velocity]; }
 
   bool jumps(std::size_t k) const { return k == stop && has_stop(wings.hinge); }
   Signs start_signs(const State& y) const {
