@@ -7,6 +7,7 @@
 #include "wingbeat/core/jet.hpp"
 #include "wingbeat/cycle/crank_system.hpp"
 #include "wingbeat/cycle/pitch_crank_system.hpp"
+#include "wingbeat/cycle/pitch_metrics.hpp"
 #include "wingbeat/cycle/record.hpp"
 #include "wingbeat/solve/periodic.hpp"
 
@@ -103,6 +104,10 @@ TEST(PitchCrank, StopsHoldTheWingsAndTakeTheEnergyOfImpacts) {
     int held = 0;
     for (const auto& step : orbit.cycle.steps) held += step.signs[PitchCrank::held] < 0.0;
     EXPECT_GT(held, 2);
+    const PitchMetrics m = pitch_metrics(system, orbit.cycle);
+    EXPECT_NEAR(m.amplitude, 0.35, 1e-12);
+    EXPECT_NEAR(m.angle_of_attack_min, 0.5 * pi - 0.35, 1e-12);
+    EXPECT_LT(std::abs(m.phase), 1.0);
     EXPECT_GT(impact_loss(system, orbit.cycle), 0.0);
     EXPECT_NEAR(crank_imbalance(system, orbit), 0.0, 3e-10);
     EXPECT_LT(orbit.summary.floquet_multiplier_max, 1.0);

@@ -147,6 +147,18 @@ S squared_chord_moment(const Planform<S>& p, const S& count) {
   return count * sum;
 }
 
+/// Area of one wing [m2], of a planform that has a shape.
+template <Scalar S>
+S wing_area(const Planform<S>& p) {
+  if (p.shape == PlanformShape::tabulated) {
+    double area = 0.0;
+    detail::visit_table(p.chord_table, [&](double weight, double chord, double) { area += weight * chord; });
+    return S(area);
+  }
+  const S rectangle = detail::root_chord_of(p) * p.length;
+  return p.shape == PlanformShape::semi_ellipse ? S(S(0.25 * pi) * rectangle) : rectangle;
+}
+
 /// S_mn = N_w integral c^m r^n dr of higher powers of the chord, r measured from the hinge: what pitch as a degree of
 /// freedom needs (model.md section 12).
 template <Scalar S>
