@@ -56,7 +56,7 @@ std::array<S, domain_limit_count> excess_of(const Vehicle<double>& v, const Metr
   if (air) {
     const Range range = angle_range(v);
     at(DomainLimit::angle_of_attack) = (S(range.low) - m[Metric::angle_of_attack_min]) / S(angle_of_attack_highest_deg);
-    // At the reversals the wing is upright, whatever its pitching.
+    // At the reversals alpha is 90 deg, whatever the pitching.
     if (range.high < angle_of_attack_highest_deg - angle_slack_deg) {
       at(DomainLimit::angle_of_attack) =
           larger(S(1.0 - range.high / angle_of_attack_highest_deg), at(DomainLimit::angle_of_attack));

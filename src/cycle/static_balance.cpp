@@ -63,7 +63,7 @@ StaticBalance static_balance(const Vehicle<double>& v) {
   s.has_wings = v.wing_inertia > 0.0;
   s.inertia_min = v.motor.inertia;
   s.lever_min = typical_lever(v.transmission);
-  s.advance_least = s.stall_torque - s.breakaway_torque;
+  s.advance_min = s.stall_torque - s.breakaway_torque;
   if (!s.has_wings) return s;
 
   const UnitCircle& circle = unit_circle();
@@ -80,7 +80,7 @@ StaticBalance static_balance(const Vehicle<double>& v) {
   std::tie(s.lever_angle, s.lever_min) = min_on_circle([&](double angle) { return kinematics_at(v, angle).wing_lever; },
                                                        lever, 0.1 * typical_lever(v.transmission));
   if (springs) {
-    std::tie(s.advance_angle, s.advance_least) =
+    std::tie(s.advance_angle, s.advance_min) =
         min_on_circle([&](double angle) { return advance_torque(v, angle); }, advance, 0.2 * s.stall_torque);
   }
   return s;

@@ -90,6 +90,15 @@ bool ThermalEquilibrium::advance(bool flaps, const Metrics<double>& metrics) {
   return false;
 }
 
+bool conclude(const ThermalEquilibrium& search, FlappingStatus& status, StatusEvidence& evidence) {
+  if (search.outcome() == ThermalOutcome::stops) evidence.winding_temperature = search.stops_at() - zero_celsius;
+  if (search.outcome() != ThermalOutcome::does_not_settle) return true;
+  status = FlappingStatus::undecided;
+  evidence = {.kind = StatusEvidence::Kind::no_steady_temperature,
+              .winding_temperature = search.at().winding - zero_celsius};
+  return false;
+}
+
 SteadyFlapping detail::find_warm_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                           const StartUp& start_up) {
   SteadyOptions within = options;
@@ -100,14 +109,12 @@ SteadyFlapping detail::find_warm_flapping(const Vehicle<double>& vehicle, const 
     found = find_flapping_as_it_is(with_motor_at(vehicle, equilibrium.at()), within, start_up);
     found.temperatures = equilibrium.at();
   } while (!equilibrium.advance(found.status == FlappingStatus::flapping, found.metrics));
-  if (equilibrium.outcome() == ThermalOutcome::stops) {
-    found.evidence.winding_temperature = equilibrium.stops_at() - zero_celsius;
-  } else if (equilibrium.outcome() == ThermalOutcome::does_not_settle) {
-    found = {};
-    found.metrics.values.fill(absent);
-    found.status = FlappingStatus::undecided;
-    found.evidence = {.kind = StatusEvidence::Kind::no_steady_temperature,
-                      .winding_temperature = equilibrium.at().winding - zero_celsius};
+  if (!conclude(equilibrium, found.status, found.evidence)) {
+    SteadyFlapping none;
+    none.metrics.values.fill(absent);
+    none.status = found.status;
+    none.evidence = found.evidence;
+    return none;
   }
   return found;
 }

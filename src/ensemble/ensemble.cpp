@@ -21,10 +21,10 @@ struct PackSolver {
 PackSolver solver_for(InstructionSet isa) {
   switch (isa) {
 #ifdef WINGBEAT_X86
-    case InstructionSet::avx2: return {solve_block_avx2, packs_avx2};
-    case InstructionSet::avx512: return {solve_block_avx512, packs_avx512};
+    case InstructionSet::avx2: return {solve_block_avx2, lanes_avx2};
+    case InstructionSet::avx512: return {solve_block_avx512, lanes_avx512};
 #endif
-    default: return {solve_block_base, packs_base};
+    default: return {solve_block_base, lanes_base};
   }
 }
 
@@ -159,8 +159,8 @@ class EnsembleRun {
            std::vector<std::size_t>& inexact) {
     if (which.empty()) return;
     settings.current = current_of(members_[which.front()].vehicle);
-    std::array<const EnsembleMember*, packs_avx512> members;
-    std::array<PackResult*, packs_avx512> results;
+    std::array<const EnsembleMember*, lanes_avx512> members;
+    std::array<PackResult*, lanes_avx512> results;
     for (std::size_t start = 0; start < which.size(); start += std::size_t(solver_.lanes)) {
       const std::size_t count = std::min(which.size() - start, std::size_t(solver_.lanes));
       for (std::size_t lane = 0; lane < count; ++lane) {
@@ -208,8 +208,9 @@ class EnsembleRun {
     const StartUp known = [](const Vehicle<double>&) { return StartUpOutcome{}; };
     SteadyFlapping found;
     if (start_up_is_known(n)) found = detail::find_flapping_as_it_is(members_[n].vehicle, steady, known);
-    if (found.status != FlappingStatus::flapping)
+    if (found.status != FlappingStatus::flapping) {
       found = detail::find_flapping_as_it_is(members_[n].vehicle, steady, start_up_);
+    }
     const bool flaps = found.status == FlappingStatus::flapping;
     outcomes_[n] = {found.status, true, flaps ? found.summary.error_estimate : absent, found.metrics,
                     flaps ? domain(n, found.metrics) : DomainStatus()};
@@ -238,6 +239,7 @@ void solve_warm(std::span<const EnsembleMember> members, const std::vector<std::
     ThermalEquilibrium equilibrium;
   };
   std::vector<Search> active;
+  active.reserve(which.size());
   for (const std::size_t n : which) {
     active.push_back({n, ThermalEquilibrium(members[n].vehicle.thermal, options.tolerance)});
   }

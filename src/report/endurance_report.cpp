@@ -209,25 +209,25 @@ std::string text_endurance(const Design<double>& design, const EnduranceResult& 
 
   fmt::format_to(out, "\n{:<24}{:>14}{:>14}{:>14}\n", "Over the flight", "first", "mean", "last");
   const EnduranceRow& first = f.rows.front();
-  const auto course = [&](const char* name, Metric m, const char* unit, double mean) {
+  const auto over_flight = [&](const char* name, Metric m, const char* unit, double mean) {
     fmt::format_to(out, "  {:<22}{:>14}{:>14}{:>14}\n", name, readable(first.metrics[m], unit), readable(mean, unit),
                    readable(f.last.metrics[m], unit));
   };
   const auto percent = [](double x) { return std::isfinite(x) ? fmt::format("{:.2f} %", 100.0 * x) : "-"; };
-  course("terminal voltage", Metric::voltage, "V", ratio(f.last.energy_electrical, f.drawn));
-  course("mean current", Metric::current_mean, "A", f.current);
-  course("electrical power", Metric::power_electrical, "W", f.power);
-  course("aerodynamic power", Metric::power_aerodynamic, "W", f.aerodynamic);
+  over_flight("terminal voltage", Metric::voltage, "V", ratio(f.last.energy_electrical, f.drawn));
+  over_flight("mean current", Metric::current_mean, "A", f.current);
+  over_flight("electrical power", Metric::power_electrical, "W", f.power);
+  over_flight("aerodynamic power", Metric::power_aerodynamic, "W", f.aerodynamic);
   fmt::format_to(out, "  {:<22}{:>14}{:>14}{:>14}\n", "system efficiency",
                  percent(first.metrics[Metric::efficiency_system]), percent(f.efficiency),
                  percent(f.last.metrics[Metric::efficiency_system]));
-  course("mean lift", Metric::lift_mean, "N", f.lift);
+  over_flight("mean lift", Metric::lift_mean, "N", f.lift);
   if (const auto mass = total_mass(design)) {
     const double weight = *mass * standard_gravity;
     fmt::format_to(out, "  {:<22}{:>14.4g}{:>14.4g}{:>14.4g}\n", "mean lift / weight",
                    first.metrics[Metric::lift_to_weight], f.lift / weight, f.last.metrics[Metric::lift_to_weight]);
   }
-  course("flapping frequency", Metric::frequency, "Hz", absent);
+  over_flight("flapping frequency", Metric::frequency, "Hz", absent);
   for (const Metric m : {Metric::winding_temperature, Metric::case_temperature}) {
     if (!heated(f)) break;
     const auto degrees = [&](const EnduranceRow& row) { return fmt::format("{:.1f} degC", row.metrics[m]); };

@@ -90,6 +90,7 @@ std::string toml_value(const ParameterText& key, std::string_view value) {
 
 /// A value to put in for a key that a new vehicle does not state: the example of its unit.
 std::string example_of(const ParameterText& key) {
+  if (key.range.text == "true or false") return "true";
   if (key.unit.empty()) return "\"...\"";
   const std::string example = quantity_example(key.unit);
   const auto quote = example.find('"');

@@ -184,6 +184,7 @@ SteadyFlapping BenchModel::orbit_at_frequency(std::size_t n, Vehicle<double>& ve
   if (search.outcome != FrequencyOutcome::reached) {
     start = absent;
     SteadyFlapping none;
+    none.metrics.values.fill(absent);
     none.status = search.status == FlappingStatus::flapping ? FlappingStatus::stalled : search.status;
     refused = search.finding;
     return none;

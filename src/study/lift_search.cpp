@@ -91,7 +91,7 @@ class LiftTrace {
     if (drive_of(v).rotates) {
       const StaticBalance balance = static_balance(v);
       const double start =
-          (balance.stall_torque - balance.advance_least) * circuit_resistance(v) / v.motor.torque_constant;
+          (balance.stall_torque - balance.advance_min) * circuit_resistance(v) / v.motor.torque_constant;
       most = std::max(most, 10.0 * start);
     }
     return most;

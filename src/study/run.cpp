@@ -171,8 +171,9 @@ TransientResult simulate_warm(Vehicle<double>& vehicle, TransientOptions transie
     found = simulate_start_up(vehicle, transient);
     flaps = found.status == FlappingStatus::flapping && found.metrics;
   } while (!equilibrium.advance(flaps, flaps ? *found.metrics : nothing));
-  if (equilibrium.outcome() == ThermalOutcome::stops) {
-    found.evidence.winding_temperature = equilibrium.stops_at() - zero_celsius;
+  if (!conclude(equilibrium, found.status, found.evidence)) {
+    found.metrics.reset();
+    found.settled = false;
   }
   return found;
 }

@@ -64,7 +64,7 @@ TEST_F(MotorHeat, BadInputIsNamed) {
               HasSubstr("motor.thermal_resistance_case: missing in [motor]; expected a thermal resistance such "
                         "as \"20 K/W\""));
   EXPECT_THAT(complaint(thermal + "ambient_temperature = 25\n"),
-              HasSubstr("must lie between 173.15 and 1000 K (-100 and 727 degC) [K], got 25"));
+              HasSubstr("must lie between -100 and 727 degC, 173.15 and 1000 [K], got 25"));
   EXPECT_THAT(complaint(thermal + "ambient_temperature = \"25 mm\"\n"),
               HasSubstr("expected a temperature such as \"25 degC\", got \"25 mm\""));
   EXPECT_THAT(complaint(thermal + "copper_temperature_coefficient = \"-0.1 1/K\"\n"), HasSubstr("must be >= 0"));

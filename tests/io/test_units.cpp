@@ -88,7 +88,8 @@ TEST(Units, RefusesWhatIsNotTheQuantity) {
   EXPECT_EQ(refusal("5 s", "Hz"), "expected a frequency such as \"22 Hz\", got \"5 s\"");
   EXPECT_EQ(refusal("5 furlog", "m"),
             "expected a length such as \"5 mm\", got \"5 furlog\" with the unknown unit \"furlog\"");
-  EXPECT_EQ(refusal("5 degC", "K"), "expected a quantity in K, got \"5 degC\"; \"degC\" has an offset or a logarithm");
+  EXPECT_EQ(refusal("5 degC", "K/W"),
+            "expected a thermal resistance such as \"20 K/W\", got \"5 degC\"; \"degC\" has an offset or a logarithm");
   for (const char* text : {"mm", "nan mm", "inf", "-inf", "", " ", "+-5 mm", "five mm"}) {
     EXPECT_THAT(refusal(text, "m"), testing::HasSubstr(", which does not begin with a number")) << text;
   }

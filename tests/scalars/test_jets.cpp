@@ -28,6 +28,7 @@ Vehicle<double> generic_vehicle(Formulation formulation) {
   v.source_resistance = 1.7;
   v.wings.angle_of_attack_min = 0.2;
   v.wings.added_inertia = 4e-8;
+  v.thermal = {20.0, 48.0, 303.0, 298.0, 3.9e-3, -1e-3, 358.0};
   v.drive_frequency = 22.0;
   return v;
 }

@@ -91,8 +91,8 @@ struct Kepler : TestSystem<S, 4, 3> {
     const S r2 = y[0] * y[0] + y[1] * y[1];
     const S per_r = S(1.0) / sqrt(r2);
     Rates<Kepler> rates;
-    const S pull = -per_r / r2;
-    rates.dy = {y[2], y[3], pull * y[0], pull * y[1]};
+    const S attraction = -per_r / r2;
+    rates.dy = {y[2], y[3], attraction * y[0], attraction * y[1]};
     rates.switches = {S(1.0)};
     // Integrals over half a revolution: pi, pi / sqrt(1 - e^2), pi (1/2 + 2 e^2).
     if constexpr (quadratures) rates.dq = {per_r, per_r * per_r, y[0] * y[0]};

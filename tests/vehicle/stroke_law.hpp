@@ -98,7 +98,9 @@ struct StrokeLawVehicle {
 /// The reference vehicle with a stroke law of about its stroke.
 inline StrokeLawVehicle<double> stroke_law_vehicle(const StrokeLaw<double>& law) {
   const Vehicle<double> v = resolve(reference_design());
-  StrokeLawVehicle<double> w{v.voltage, v.motor, law, v.friction, v.spring, v.wing_count, v.wing_inertia, v.wings};
+  StrokeLawVehicle<double> w{v.voltage,    v.motor,        law,     v.friction,          v.spring,
+                             v.wing_count, v.wing_inertia, v.wings, v.source_resistance, v.drive_frequency,
+                             v.thermal};
   w.spring.stiffness = 6e-4;
   return w;
 }

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "vehicle/metrics_apart.hpp"
+#include "vehicle/orbit_derivatives.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "wingbeat/core/jet.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
@@ -104,7 +105,7 @@ TEST(AddedMass, EnergyBalanceClosesToTheToleranceAndTakesNoMeanPower) {
   }
 }
 
-// Both are integrals of a function of beta' alone along a closed course, here by Gauss's rule between samples of it.
+// Both are integrals of a function of beta' alone along a closed path, here by Gauss's rule between samples of it.
 TEST(AddedMass, MeanPowerAndMeanRotationalLiftOverAnOrbitVanish) {
   for (const bool springs : {false, true}) {
     const Vehicle<double> v = resolve(with_added_mass(springs));
@@ -139,40 +140,15 @@ TEST(AddedMass, MeanPowerAndMeanRotationalLiftOverAnOrbitVanish) {
 }
 
 TEST(AddedMass, DerivativesAgreeWithDifferences) {
+  const auto parameters = [](auto& of) {
+    return std::array{&of.wing.planform.length, &of.wing.planform.root_chord, &of.aerodynamics.pitch_coefficient,
+                      &of.aerodynamics.air_density, &of.wing.inertia};
+  };
   for (const bool springs : {false, true}) {
-    const Design<double> d = with_added_mass(springs);
-    const auto metrics_of = [](const Design<double>& of) {
-      const SteadyFlapping found = find_steady_flapping(resolve(of), {.tolerance = 1e-12, .stability = false});
-      EXPECT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
-      return found;
-    };
-    const auto parameters = [](auto& of) {
-      return std::array{&of.wing.planform.length, &of.wing.planform.root_chord, &of.aerodynamics.pitch_coefficient,
-                        &of.aerodynamics.air_density, &of.wing.inertia};
-    };
-    Design<GradientJet> seeded = cast<GradientJet>(d);
-    const auto jets = parameters(seeded);
-    for (std::size_t k = 0; k < jets.size(); ++k) *jets[k] = gradient_seed(value_of(*jets[k]), int(k));
-    const OrbitGradient g = orbit_gradient(metrics_of(d), gradient_vehicle(seeded, Condition::air));
-    ASSERT_TRUE(g.regular);
-    for (std::size_t k = 0; k < jets.size(); ++k) {
-      const double value = value_of(*jets[k]), h = 2e-4 * value;
-      std::array<Metrics<double>, 4> at;
-      const double steps[] = {-2.0, -1.0, 1.0, 2.0}, weights[] = {1.0 / 12.0, -8.0 / 12.0, 8.0 / 12.0, -1.0 / 12.0};
-      for (std::size_t n = 0; n < 4; ++n) {
-        Design<double> moved = d;
-        *parameters(moved)[k] = value + steps[n] * h;
-        at[n] = metrics_of(moved).metrics;
-      }
-      for (const Metric m : {Metric::frequency, Metric::power_electrical, Metric::power_friction, Metric::lift_mean,
-                             Metric::lift_peak, Metric::rod_force_peak, Metric::power_reactive}) {
-        double difference = 0.0;
-        for (std::size_t n = 0; n < 4; ++n) difference += weights[n] * at[n][m] / h;
-        const double size = std::abs(value_of(g.metrics[m]) / value);
-        EXPECT_NEAR(g.metrics[m].v[gradient_first_slot + Eigen::Index(k)], difference, 1e-7 * size)
-            << metric_info(m).key << " by parameter " << k;
-      }
-    }
+    expect_orbit_derivatives(with_added_mass(springs), parameters,
+                             {Metric::frequency, Metric::power_electrical, Metric::power_friction, Metric::lift_mean,
+                              Metric::lift_peak, Metric::rod_force_peak, Metric::power_reactive},
+                             1e-7);
   }
 }
 

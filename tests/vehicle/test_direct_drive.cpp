@@ -6,6 +6,7 @@
 #include <cmath>
 #include <complex>
 
+#include "vehicle/direct_design.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "wingbeat/cycle/direct_balance.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
@@ -15,16 +16,6 @@ namespace wingbeat {
 namespace {
 
 using testing::HasSubstr;
-
-Design<double> direct_design() {
-  Design<double> d = reference_design();
-  d.transmission = {};
-  d.transmission.type = TransmissionType::direct;
-  d.supply = {SupplyType::sine, 3.0, 22.0, 1.0};
-  d.friction = {FrictionLaw::none, 0.0};
-  d.spring.resonance = 22.0;
-  return d;
-}
 
 /// Largest relative deviation of metrics that both have. What vanishes over a period of a symmetric motion, the mean
 /// current and what follows from it, is assessed beside the peak.
@@ -220,11 +211,11 @@ TEST(DirectDrive, SticksExactlyAsLongAsFrictionHolds) {
   ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
   int stuck = 0, slipping = 0;
   for (const WaveformRow& row : found.record.waveform(2001)) {
-    const double pull = v.motor.torque_constant * row.current - 2.0 * v.spring.stiffness * row.stroke_angle;
+    const double net_torque = v.motor.torque_constant * row.current - 2.0 * v.spring.stiffness * row.stroke_angle;
     if (row.flapping_velocity == 0.0) {
       ++stuck;
-      EXPECT_LE(std::abs(pull), 2.2e-3 * (1.0 + 1e-8));
-      EXPECT_NEAR(row.friction_torque, pull, 1e-12);
+      EXPECT_LE(std::abs(net_torque), 2.2e-3 * (1.0 + 1e-8));
+      EXPECT_NEAR(row.friction_torque, net_torque, 1e-12);
     } else {
       ++slipping;
       EXPECT_NEAR(row.friction_torque, std::copysign(2.2e-3, row.flapping_velocity), 1e-15);

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "vehicle/metrics_apart.hpp"
+#include "vehicle/orbit_derivatives.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/cycle/orbit_gradient.hpp"
@@ -183,41 +184,19 @@ TEST(GearEfficiency, Statics) {
 }
 
 TEST(GearEfficiency, DerivativesAgreeWithDifferences) {
+  const auto parameters = [](auto& of) {
+    return std::array{&*of.motor.gear_efficiency, &of.motor.constants.inertia, &of.motor.constants.friction_torque,
+                      &of.friction.coefficient, &of.wing.inertia};
+  };
   for (const bool springs : {false, true}) {
     Design<double> d = reference_design();
     if (springs) d.spring.stiffness = 1.377e-3;
     d.motor.gear_efficiency = 0.75;
     d.motor.constants.friction_torque = 1e-4;
-    const auto orbit = [](const Design<double>& of) {
-      return find_steady_flapping(resolve(of), {.tolerance = 1e-12, .stability = false});
-    };
-    const auto parameters = [](auto& of) {
-      return std::array{&*of.motor.gear_efficiency, &of.motor.constants.inertia, &of.motor.constants.friction_torque,
-                        &of.friction.coefficient, &of.wing.inertia};
-    };
-    Design<GradientJet> seeded = cast<GradientJet>(d);
-    const auto jets = parameters(seeded);
-    for (std::size_t k = 0; k < jets.size(); ++k) *jets[k] = gradient_seed(value_of(*jets[k]), int(k));
-    const OrbitGradient g = orbit_gradient(orbit(d), gradient_vehicle(seeded, Condition::air));
-    ASSERT_TRUE(g.regular);
-    for (std::size_t k = 0; k < jets.size(); ++k) {
-      const double value = value_of(*jets[k]), h = 2e-4 * value;
-      std::array<Metrics<double>, 4> at;
-      const double steps[] = {-2.0, -1.0, 1.0, 2.0}, weights[] = {1.0 / 12.0, -8.0 / 12.0, 8.0 / 12.0, -1.0 / 12.0};
-      for (std::size_t n = 0; n < 4; ++n) {
-        Design<double> moved = d;
-        *parameters(moved)[k] = value + steps[n] * h;
-        at[n] = orbit(moved).metrics;
-      }
-      for (const Metric m : {Metric::frequency, Metric::power_electrical, Metric::power_friction, Metric::power_gear,
-                             Metric::lift_mean, Metric::rod_force_peak, Metric::crank_speed_min}) {
-        double difference = 0.0;
-        for (std::size_t n = 0; n < 4; ++n) difference += weights[n] * at[n][m] / h;
-        EXPECT_NEAR(g.metrics[m].v[gradient_first_slot + Eigen::Index(k)], difference,
-                    1e-6 * std::abs(value_of(g.metrics[m]) / value))
-            << metric_info(m).key << " by parameter " << k;
-      }
-    }
+    expect_orbit_derivatives(d, parameters,
+                             {Metric::frequency, Metric::power_electrical, Metric::power_friction, Metric::power_gear,
+                              Metric::lift_mean, Metric::rod_force_peak, Metric::crank_speed_min},
+                             1e-6);
   }
   // At 1 there is none to both sides.
   Design<GradientJet> seeded = cast<GradientJet>(reference_design());

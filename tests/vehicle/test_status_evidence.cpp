@@ -4,6 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "vehicle/direct_design.hpp"
 #include "vehicle/reference_vehicle.hpp"
 #include "vehicle/wide_boxes.hpp"
 #include "wingbeat/time/transient.hpp"
@@ -12,16 +13,6 @@ namespace wingbeat {
 namespace {
 
 using Evidence = StatusEvidence::Kind;
-
-Design<double> direct_design() {
-  Design<double> d = reference_design();
-  d.transmission = {};
-  d.transmission.type = TransmissionType::direct;
-  d.supply = {SupplyType::sine, 3.0, 22.0, 1.0};
-  d.friction = {FrictionLaw::none, 0.0};
-  d.spring.resonance = 22.0;
-  return d;
-}
 
 template <class T>
 TransientOptions limited(T TransientOptions::* limit, std::type_identity_t<T> value) {

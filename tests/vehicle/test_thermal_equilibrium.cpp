@@ -58,6 +58,24 @@ TEST(ThermalEquilibrium, HeldCurrentHasAClosedForm) {
   }
 }
 
+TEST(ThermalEquilibrium, LossesThatJumpDoNotSettle) {
+  ThermalEquilibrium search(resolve(warm_design()).thermal, 1e-9);
+  FlappingStatus status = FlappingStatus::flapping;
+  StatusEvidence evidence;
+  Metrics<double> m;
+  m.values.fill(absent);
+  do {
+    // Below 60 degC they lead to 120 degC, above to 30 degC.
+    m[Metric::winding_temperature] = search.at().winding < 60.0 + zero_celsius ? 120.0 : 30.0;
+    m[Metric::case_temperature] = 0.5 * (m[Metric::winding_temperature] + 25.0);
+  } while (!search.advance(true, m));
+  EXPECT_EQ(search.outcome(), ThermalOutcome::does_not_settle);
+  EXPECT_FALSE(conclude(search, status, evidence));
+  EXPECT_EQ(status, FlappingStatus::undecided);
+  EXPECT_EQ(evidence.kind, StatusEvidence::Kind::no_steady_temperature);
+  EXPECT_NEAR(evidence.winding_temperature, 60.0, 1.0);
+}
+
 TEST(ThermalEquilibrium, WinglessMotorSettlesWhereItsClosedFormDoes) {
   Design<double> d = warm_design(5.0);
   d.friction = {FrictionLaw::constant, 1e-3};

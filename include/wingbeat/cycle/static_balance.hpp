@@ -24,14 +24,14 @@ struct StaticBalance {
   double inertia_angle;     ///< crank angle of it [rad]
   double lever_min;         ///< least wing lever g over crank angle [m]; <= 0 jams
   double lever_angle;       ///< crank angle of it [rad]
-  double advance_least;     ///< least K v/(R_a + R_i) - F_s h - mu r_e |F_s| - T_c over crank angle [N m]; <= 0: locks
+  double advance_min;       ///< least K v/(R_a + R_i) - F_s h - mu r_e |F_s| - T_c over crank angle [N m]; <= 0: locks
                             ///< exist (of a gearbox that loses torque: advance_torque())
   double advance_angle;     ///< crank angle of it [rad]
   bool has_wings;           ///< false: rod force zero, nothing can jam or lock
 
   bool stalled() const { return stall_torque <= breakaway_torque; }
   bool can_jam() const { return has_wings && (inertia_min <= 0.0 || lever_min <= 0.0); }
-  bool can_lock() const { return has_wings && advance_least <= 0.0; }
+  bool can_lock() const { return has_wings && advance_min <= 0.0; }
 };
 
 /// K v / (R_a + R_i) [N m].

@@ -59,6 +59,10 @@ class ThermalEquilibrium {
   ThermalOutcome outcome_ = ThermalOutcome::searching;
 };
 
+/// Says in `status` and `evidence` of the last solution how its search ended. False where there is no steady
+/// temperature: what flaps there is then undecided, and its metrics are those of no steady state.
+bool conclude(const ThermalEquilibrium& search, FlappingStatus& status, StatusEvidence& evidence);
+
 /// Tolerance of each solution within such a search: its errors must not show in the temperatures.
 double tolerance_within_equilibrium(double tolerance);
 

@@ -98,6 +98,6 @@ inline constexpr bool has_packs = false;
 #else
 inline constexpr bool has_packs = true;
 #endif
-inline constexpr int packs_base = 4, packs_avx2 = 8, packs_avx512 = 16;
+inline constexpr int lanes_base = 4, lanes_avx2 = 8, lanes_avx512 = 16;
 
 }  // namespace wingbeat

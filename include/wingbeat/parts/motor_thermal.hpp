@@ -72,7 +72,7 @@ Motor<S> at_temperatures(Motor<S> motor, const MotorThermal<S>& t, const MotorTe
 
 namespace range {
 inline constexpr ParameterRange temperature{"173.15 to 1000 K (-100 to 727 degC)",
-                                            "must lie between 173.15 and 1000 K (-100 and 727 degC)", 173.15, 1000.0};
+                                            "must lie between -100 and 727 degC, 173.15 and 1000", 173.15, 1000.0};
 inline constexpr ParameterRange not_positive{"<= 0", "must be <= 0", -endless, 0.0};
 }  // namespace range
 

@@ -24,7 +24,7 @@ void solve_block_base(const EnsembleMember* const* members, int count, const Pac
   using Arch = xsimd::neon64;
 #endif
   using Block = Pack<Arch, 2>;
-  static_assert(Block::lanes == packs_base);
+  static_assert(Block::lanes == lanes_base);
   solve_block<Block>(members, count, settings, results);
 }
 
