@@ -40,6 +40,7 @@ const std::array<MetricInfo, metric_count>& metric_table() {
       {"winding_temperature_degc", "degC", "winding temperature of the motor"},
       {"case_temperature_degc", "degC", "case temperature of the motor"},
       {"winding_temperature_margin_k", "K", "largest winding temperature allowed, less the winding temperature"},
+      {"added_mass_inertia_ratio", "1", "inertia of the air that moves with the wings over the wings' own"},
   }};
   return table;
 }
@@ -63,6 +64,11 @@ const char* lacking_of_heat(Metric metric, const Design<double>& design) {
       return thermal.resistance_winding ? nullptr : motor_thermal_key::resistance_winding.path;
     default: return nullptr;
   }
+}
+
+const char* lacking_for(Metric metric, const Design<double>& design) {
+  if (metric == Metric::added_mass_inertia_ratio && !design.aerodynamics.added_mass) return "aerodynamics.added_mass";
+  return lacking_of_heat(metric, design);
 }
 
 double error_scale(const Metrics<double>& metrics, Metric which) {

@@ -33,7 +33,7 @@ WaveformRow waveform_row(const Vehicle<double>& v, const Motion<double>& m, doub
   row.angle_of_attack_deg = degrees_per_radian * m.aero.angle_of_attack;
   row.lift = m.aero.lift;
   row.aero_moment = m.aero.moment;
-  row.rod_force = drive_of(v).has_rod ? m.rod_force : absent;
+  row.rod_force = drive_of(v).has_rod ? m.rod_force / v.motors : absent;
   row.motor_torque = m.motor_torque;
   row.friction_torque = m.friction_torque;
   row.voltage = m.voltage;

@@ -175,7 +175,7 @@ class BenchReader {
       if (q.metric == Metric::lift_to_weight && !fit.design.mass) {
         l.refuse(l.at("file"), "file", "lift_to_weight needs [vehicle] mass in the vehicle file");
       }
-      if (const char* lacks = lacking_of_heat(q.metric, fit.design)) {
+      if (const char* lacks = lacking_for(q.metric, fit.design)) {
         l.refuse(l.at("file"), "file",
                  fmt::format("{} needs {} in the vehicle file", metric_info(q.metric).key, lacks));
       }

@@ -81,7 +81,7 @@ class OptimiseReader : public detail::StudySections {
     if (metric == Metric::power_motor_reference && !design.bench_torque_constant) {
       refuse(node, where, "power_motor_reference_w needs bench.torque_constant");
     }
-    if (const char* lacks = lacking_of_heat(metric, design)) {
+    if (const char* lacks = lacking_for(metric, design)) {
       refuse(node, where, fmt::format("{} needs {} in the vehicle file", name, lacks));
     }
     return metric;

@@ -66,9 +66,12 @@ class StudyReader : public detail::StudySections {
     places_.study = place_of(*study_);
     if (const auto voltage = set_.find("supply.voltage"); voltage != set_.end()) places_.set_voltage = voltage->second;
     detail::complete_sweep(study.sweep, *this, places_, input);
-    const bool heats = std::any_of(study.sweep.variants.begin(), study.sweep.variants.end(),
-                                   [](const auto& v) { return v.design.motor.thermal.resistance_winding.has_value(); });
-    if (!heats) leave_out_heat(study.sweep.options);
+    bool heats = false, added_mass = false;
+    for (const auto& v : study.sweep.variants) {
+      heats = heats || v.design.motor.thermal.resistance_winding.has_value();
+      added_mass = added_mass || v.design.aerodynamics.added_mass;
+    }
+    leave_out_absent(study.sweep.options, heats, added_mass);
     return study;
   }
 

@@ -245,8 +245,10 @@ void StudySections::read_metrics(EnsembleOptions& options) const {
   }
 }
 
-void StudySections::leave_out_heat(EnsembleOptions& options) const {
+void StudySections::leave_out_absent(EnsembleOptions& options, bool heats, bool added_mass) const {
   if (study_->find("metrics")) return;
+  if (!added_mass) options.metrics.reset(std::size_t(Metric::added_mass_inertia_ratio));
+  if (heats) return;
   for (const Metric m : {Metric::winding_temperature, Metric::case_temperature, Metric::winding_temperature_margin}) {
     options.metrics.reset(std::size_t(m));
   }
@@ -313,7 +315,7 @@ DesignParameter StudySections::parameter_named(const TomlNode& node, const std::
   } catch (const ParameterError& error) {
     refuse(node, where, fmt::format("{}: {}", one_line(key), error.reason()));
   }
-  if (key == "wing.count" || key == "supply.cells") {
+  if (key == "vehicle.motors" || key == "wing.count" || key == "supply.cells") {
     refuse(node, where, fmt::format("{} is a whole number and has no derivative", key));
   }
   const bool voltage = key == "supply.voltage" || key == "supply.duty" || key == "supply.amplitude";

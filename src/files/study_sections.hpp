@@ -76,8 +76,9 @@ class StudySections : public TomlReader {
 
   void read_tolerance(EnsembleOptions& options) const;
   void read_metrics(EnsembleOptions& options) const;
-  /// Of vehicles whose motor does not heat up: its temperatures are no metrics unless the study names them.
-  void leave_out_heat(EnsembleOptions& options) const;
+  /// What vehicles without a motor that heats up or without added mass do not have is no metric unless the study names
+  /// it.
+  void leave_out_absent(EnsembleOptions& options, bool heats, bool added_mass) const;
   std::string read_title() const;
   /// The vehicle with [set], its file being sought in that folder.
   Design<double> read_vehicle(const std::filesystem::path& folder) const;

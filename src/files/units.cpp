@@ -317,6 +317,8 @@ std::string quantity_example(std::string_view unit) {
       {"N m s/rad", "a torsional damping such as \"3.6e-6 N m s/rad\""},
       {"N m s2/rad2", "a quadratic damping such as \"2e-8 N m s2/rad2\""},
       {"kg/m", "a mass over a length such as \"2 g/m\""},
+      {"kg/m2", "a mass over an area such as \"20 g/m2\""},
+      {"J/kg", "an energy over a mass such as \"160 W h/kg\""},
       {"kg/m3", "a density such as \"1.225 kg/m3\""},
       {"K", "a temperature such as \"25 degC\""},
       {"degC", "a temperature such as \"25 degC\""},

@@ -33,6 +33,7 @@ void validate(const Battery<double>& b) {
   require(battery_key::capacity, b.capacity);
   require(battery_key::charge, b.charge);
   if (b.cutoff_voltage) require(battery_key::cutoff_voltage, *b.cutoff_voltage);
+  if (b.specific_energy) require(battery_key::specific_energy, *b.specific_energy);
 }
 
 namespace detail {

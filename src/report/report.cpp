@@ -238,6 +238,9 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
     table.line("duty", fmt::format("{:.4g}", result.design.supply.duty),
                fmt::format("of {}", readable(result.design.supply.voltage, "V")));
   }
+  if (result.design.motors > 1.0) {
+    table.line("motors", fmt::format("{:.0f}", result.design.motors), "currents, powers and lift are of all of them");
+  }
   table.metric("flapping frequency", Metric::frequency, "Hz");
   table.metric("mean current", Metric::current_mean, "A");
   table.metric("peak current", Metric::current_peak, "A");
@@ -263,7 +266,8 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
   }
 
   table.group("Mechanism and wings");
-  table.metric("peak rod force, magnitude", Metric::rod_force_peak, "N");
+  table.metric("peak rod force, magnitude", Metric::rod_force_peak, "N",
+               result.design.motors > 1.0 ? "of one rod" : "");
   table.metric("mean rod force, magnitude", Metric::rod_force_mean, "N");
   table.angle("stroke amplitude", degrees_per_radian * m[Metric::stroke_amplitude], "half peak to peak");
   table.metric("peak flapping velocity", Metric::flapping_velocity_peak, "rad/s");

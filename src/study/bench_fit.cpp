@@ -40,7 +40,8 @@ void check_fit(const BenchFit& fit) {
       if (!p.parameter.set(design, x)) throw ParameterError(p.parameter.key, "has no place in this vehicle");
       validate(design);
     }
-    if (p.parameter.key == "wing.count") throw ParameterError(p.parameter.key, "a whole number cannot be fitted");
+    if (p.parameter.key == "vehicle.motors" || p.parameter.key == "wing.count")
+      throw ParameterError(p.parameter.key, "a whole number cannot be fitted");
     if (p.parameter.key.starts_with("supply.")) {
       throw ParameterError(p.parameter.key, "the logs state the supply, it cannot be fitted");
     }

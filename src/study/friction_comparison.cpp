@@ -22,7 +22,7 @@ double mean_friction_torque(const BenchFit& fit, double& speed) {
     const SteadyFlapping s = find_steady_flapping(resolve(d, log.condition), {.stability = false});
     if (s.status != FlappingStatus::flapping) continue;
     const double omega = two_pi * s.metrics[Metric::frequency];
-    torque += s.metrics[Metric::power_friction] / omega;
+    torque += s.metrics[Metric::power_friction] / (omega * d.motors);
     speed += omega;
     ++count;
   }

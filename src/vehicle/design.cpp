@@ -41,6 +41,10 @@ void validate_direct(const Design<double>& d) {
                          "ties the frequency to the springs, which spring.resonance_ratio "
                          "ties to the frequency; give one of them");
   }
+  if (d.wing.resonance && d.wing.areal_density) {
+    throw ParameterError("wing.resonance",
+                         "gives the wing's inertia, which wing.areal_density gives; give one of them");
+  }
   if (d.wing.resonance && !d.spring.stiffness) {
     throw ParameterError("wing.resonance", "gives the inertia that resonates on a known spring; give spring.stiffness");
   }
@@ -83,7 +87,13 @@ void validate(const Design<double>& d) {
     throw ParameterError(std::string(parameter.path),
                          range_message(parameter.range.expected, std::string(parameter.unit).c_str(), *x));
   }
-  if (d.supply.type == SupplyType::battery) validate(d.supply.battery);
+  if (d.supply.type == SupplyType::battery) {
+    validate(d.supply.battery);
+    if (d.supply.battery.specific_energy && d.masses.supply) {
+      throw ParameterError(battery_key::specific_energy.path,
+                           "gives the mass of the battery, which supply.mass states; give one of them");
+    }
+  }
 
   const TransmissionType type = d.transmission.type;
   if (d.masses.rod_linear_density && !rod_length(d.transmission)) {
@@ -107,6 +117,10 @@ void validate(const Design<double>& d) {
   if (d.aerodynamics.added_mass && planform.shape == PlanformShape::moments && !planform.s22) {
     throw ParameterError("aerodynamics.added_mass",
                          "needs the wing's outline: give wing.planform.s22, or a planform with a shape");
+  }
+  if (d.wing.areal_density && planform.shape == PlanformShape::moments) {
+    throw ParameterError(wing_material_key::areal_density.path,
+                         "needs the wing's outline: give a planform with a shape, or wing.inertia");
   }
   const MotorThermalDesign<double>& thermal = d.motor.thermal;
   if (thermal.resistance_winding.has_value() != thermal.resistance_case.has_value()) {

@@ -65,6 +65,10 @@ struct Geared {
   static constexpr std::string_view text = "motor.gear_ratio";
   static constexpr bool holds(const auto& d) { return d.motor.gear_ratio.has_value(); }
 };
+struct Drawn {
+  static constexpr std::string_view text = "wing.areal_density";
+  static constexpr bool holds(const auto& d) { return d.wing.areal_density.has_value(); }
+};
 struct Heated {
   static constexpr std::string_view text = "motor.thermal_resistance_winding";
   static constexpr bool holds(const auto& d) { return d.motor.thermal.resistance_winding.has_value(); }
@@ -117,18 +121,18 @@ constexpr Parameter<S> alternative(const ParameterText& text, Access, Others...)
           [](const Design<S>& d) -> std::optional<S> { return Access{}(d); }};
 }
 
-/// A plain number that an optional one replaces.
-template <Scalar S, class Where = Everywhere, class Access, class Other>
-constexpr Parameter<S> replaceable(const ParameterText& text, Access, Other) {
+/// A plain number that optional ones replace.
+template <Scalar S, class Where = Everywhere, class Access, class... Others>
+constexpr Parameter<S> replaceable(const ParameterText& text, Access, Others...) {
   return {placed<Where>(text),
           [](Design<S>& d, const S& x) {
             if (!Where::holds(d)) return false;
             Access{}(d) = x;
-            Other{}(d).reset();
+            (Others{}(d).reset(), ...);
             return true;
           },
           [](const Design<S>& d) -> std::optional<S> {
-            if (!Where::holds(d) || Other{}(d)) return std::nullopt;
+            if (!Where::holds(d) || (Others{}(d) || ...)) return std::nullopt;
             return Access{}(d);
           }};
 }

@@ -15,9 +15,9 @@ std::span<const Parameter<S>> parameter_table() {
   using D = Design<S>;
   using detail::alternative, detail::battery_voltage, detail::choice, detail::friction_number, detail::number,
       detail::replaceable, detail::row, detail::table, detail::text, detail::wave_number;
-  using detail::FormulationChoice, detail::FrictionChoice, detail::Geared, detail::Heated, detail::ShapeChoice,
-      detail::ShapeIs, detail::SupplyChoice, detail::SupplyIs, detail::TransmissionChoice, detail::TransmissionIs,
-      detail::Weighed, detail::WeighedSprings;
+  using detail::Drawn, detail::FormulationChoice, detail::FrictionChoice, detail::Geared, detail::Heated,
+      detail::ShapeChoice, detail::ShapeIs, detail::SupplyChoice, detail::SupplyIs, detail::TransmissionChoice,
+      detail::TransmissionIs, detail::Weighed, detail::WeighedSprings;
   using enum PlanformShape;
   using Powered = SupplyIs<SupplyType::constant, SupplyType::pwm>;
   using Sine = SupplyIs<SupplyType::sine>;
@@ -40,6 +40,9 @@ std::span<const Parameter<S>> parameter_table() {
   constexpr auto spring_ratio = [](auto& d) -> auto& { return d.spring.resonance_ratio; };
   constexpr auto drive_ratio = [](auto& d) -> auto& { return d.supply_resonance_ratio; };
   constexpr auto wing_resonance = [](auto& d) -> auto& { return d.wing.resonance; };
+  constexpr auto supply_mass = [](auto& d) -> auto& { return d.masses.supply; };
+  constexpr auto specific_energy = [](auto& d) -> auto& { return d.supply.battery.specific_energy; };
+  constexpr auto areal_density = [](auto& d) -> auto& { return d.wing.areal_density; };
   constexpr auto chord_ratio = [](auto& d) -> auto& { return d.wing.planform.chord_ratio; };
 
   static constexpr Parameter<S> parameters[] = {
@@ -50,10 +53,13 @@ std::span<const Parameter<S>> parameter_table() {
                  range::positive,
                  "unknown",
                  "mass of the vehicle but for the masses stated for themselves (motor.mass, supply.mass, "
-                 "spring.mass, transmission.rod_linear_density); enables lift_to_weight",
+                 "supply.specific_energy, spring.mass, transmission.rod_linear_density); enables lift_to_weight",
                  {},
                  "3.34 g"},
                 [](auto& d) -> auto& { return d.mass; }),
+      number<S>({"vehicle.motors", "1", range::count, "1",
+                 "M, number of motors on the supply, each with a transmission and wings of its own as below, in phase"},
+                [](auto& d) -> auto& { return d.motors; }),
 
       choice<S, SupplyChoice>("what feeds the motor terminals"),
       number<S, Powered>(row(supply_key::voltage, "required", "v, terminal voltage; pwm: while switched on", {}, "3 V"),
@@ -96,9 +102,19 @@ std::span<const Parameter<S>> parameter_table() {
       number<S, OnBattery>(
           row(battery_key::cutoff_voltage, "none", "mean terminal voltage of one cell at which a flight ends"),
           [](auto& d) -> auto& { return d.supply.battery.cutoff_voltage; }),
-      number<S, Weighed>({"supply.mass", "kg", range::not_negative, "none: in vehicle.mass",
-                          "mass of the battery, in addition to vehicle.mass"},
-                         [](auto& d) -> auto& { return d.masses.supply; }),
+      alternative<S, OnBattery>(
+          row(battery_key::specific_energy, "none: in vehicle.mass",
+              "energy of the full battery without load over its mass: that mass, which grows with the capacity, is in "
+              "addition to vehicle.mass",
+              {"mass"}),
+          specific_energy, supply_mass),
+      alternative<S, Weighed>({"supply.mass",
+                               "kg",
+                               range::not_negative,
+                               "none: in vehicle.mass",
+                               "mass of the battery, in addition to vehicle.mass",
+                               {"specific_energy"}},
+                              supply_mass, specific_energy),
 
       number<S>({"motor.gear_ratio", "1", range::positive, "none: constants at the output shaft",
                  "n, motor turns per output turn; given, the motor constants below are the motor shaft's"},
@@ -138,7 +154,7 @@ std::span<const Parameter<S>> parameter_table() {
                     "adds to every friction law"),
                 [](auto& d) -> auto& { return d.motor.constants.friction_torque; }),
       number<S, Weighed>({"motor.mass", "kg", range::not_negative, "none: in vehicle.mass",
-                          "mass of the motor with its gearbox, in addition to vehicle.mass"},
+                          "mass of one motor with its gearbox, in addition to vehicle.mass"},
                          [](auto& d) -> auto& { return d.masses.motor; }),
 
       number<S>(row(motor_thermal_key::resistance_winding, "none: constants the same at any load",
@@ -265,7 +281,7 @@ std::span<const Parameter<S>> parameter_table() {
                                  "mass of one hinge spring, in addition to vehicle.mass; one for each wing"},
                                 [](auto& d) -> auto& { return d.masses.spring; }),
 
-      number<S>({"wing.count", "1", range::count, "2", "N_w, number of wings", {}, "2"},
+      number<S>({"wing.count", "1", range::count, "2", "N_w, number of wings that one motor drives", {}, "2"},
                 [](auto& d) -> auto& { return d.wing.count; }),
       replaceable<S>(
           {"wing.inertia",
@@ -273,9 +289,9 @@ std::span<const Parameter<S>> parameter_table() {
            range::positive,
            "required",
            "J_w, inertia of one wing about its hinge",
-           {"resonance"},
+           {"resonance", "areal_density"},
            "7.2e-8 kg m2"},
-          [](auto& d) -> auto& { return d.wing.inertia; }, wing_resonance),
+          [](auto& d) -> auto& { return d.wing.inertia; }, wing_resonance, areal_density),
       alternative<S, Direct>(
           {"wing.resonance",
            "Hz",
@@ -283,8 +299,16 @@ std::span<const Parameter<S>> parameter_table() {
            "required",
            "frequency at which rotor and wings resonate on springs of a given stiffness: the inertia "
            "follows, J + N_w J_w = N_w k / (2 pi f)^2",
-           {"inertia"}},
-          wing_resonance),
+           {"inertia", "areal_density"}},
+          wing_resonance, areal_density),
+      alternative<S>(row(wing_material_key::areal_density, "required",
+                         "sigma of the membrane, ribs and glue spread over it: the inertia follows from the planform's "
+                         "outline, J_w = integral (sigma c + lambda) r^2 dr",
+                         {"inertia", "resonance"}),
+                     areal_density, wing_resonance),
+      number<S, Drawn>(row(wing_material_key::spar_density, "0 kg/m",
+                           "lambda, mass of the leading-edge spar over its length, from root to tip"),
+                       [](auto& d) -> auto& { return d.wing.spar_density; }),
       choice<S, ShapeChoice>("how the wing's outline is given", name_of(semi_ellipse)),
       number<S, Outline>(row(planform_key::length, "required", "R, wing root to tip", {}, "63 mm"),
                          [](auto& d) -> auto& { return d.wing.planform.length; }),

@@ -143,4 +143,20 @@ TEST_F(Endurance, DutyForALift) {
   EXPECT_NEAR(ripple["start_up"]["current_ripple_a"].get<double>(), 7.0 * 0.25 / (29e-3 * 20e3), 1e-6);
 }
 
+TEST_F(Endurance, ALargerBatteryWeighsMore) {
+  const auto flight = [&](const std::string& capacity) {
+    const Outcome o = run({"endurance", battery, "--set", "supply.cells=2", "--set", "vehicle.mass=\"3 g\"", "--set",
+                           "supply.specific_energy=160 W h/kg", "--set", "supply.capacity=" + capacity, "--json"});
+    EXPECT_EQ(o.status, 0) << o.err;
+    return o.json();
+  };
+  const Json small = flight("30 mA h"), large = flight("60 mA h"), heavy = flight("600 mA h");
+  EXPECT_NEAR(large["endurance_s"].get<double>() / small["endurance_s"].get<double>(), 2.0, 1e-6);
+  EXPECT_LT(large["initial"]["lift_to_weight"].get<double>(), small["initial"]["lift_to_weight"].get<double>());
+  EXPECT_EQ(heavy["hover"], "never");
+  const Outcome both = run({"run", battery, "--set", "supply.specific_energy=160 W h/kg", "--set", "supply.mass=1 g"});
+  EXPECT_EQ(both.status, 2);
+  EXPECT_THAT(both.err, HasSubstr("not both"));
+}
+
 }  // namespace

@@ -47,6 +47,36 @@ TEST(Battery, SlopesMatchHandCalculation) {
   EXPECT_DOUBLE_EQ(detail::monotone_slope(cube, 3), (5.0 * 28.0 - 2.0 * 7.0) / 3.0);
 }
 
+// The integral of each cubic in closed form, against Simpson's rule on it, which is exact for cubics.
+TEST(Battery, MeanVoltageIsTheIntegralOverTheCharge) {
+  Battery<double> b = lithium();
+  b.cells = 2.0;
+  double sum = 0.0;
+  for (std::size_t k = 1; k < b.discharge_curve.size(); ++k) {
+    const double low = b.discharge_curve[k - 1].first, high = b.discharge_curve[k].first;
+    sum += (high - low) / 6.0 *
+           (open_circuit_voltage(b, low) + 4.0 * open_circuit_voltage(b, 0.5 * (low + high)) +
+            open_circuit_voltage(b, high));
+  }
+  EXPECT_NEAR(mean_open_circuit_voltage(b), sum, 1e-13);
+  Battery<double> constant;
+  constant.cells = 3.0;
+  constant.cell_voltage = 3.7;
+  EXPECT_DOUBLE_EQ(mean_open_circuit_voltage(constant), 11.1);
+}
+
+TEST(Battery, WeighsByItsCapacity) {
+  Battery<double> b = lithium();
+  EXPECT_FALSE(battery_mass(b));
+  b.specific_energy = 160.0 * 3600.0;
+  EXPECT_DOUBLE_EQ(*battery_mass(b), 180.0 * mean_open_circuit_voltage(b) / (160.0 * 3600.0));
+  EXPECT_NEAR(*battery_mass(b), 1.15e-3, 0.05e-3);  // 50 mA h at 160 W h/kg
+  Battery<Jet<1>> dual = cast<Jet<1>>(b);
+  dual.capacity = Jet<1>(180.0, 0);
+  EXPECT_DOUBLE_EQ(battery_mass(dual)->v[0], *battery_mass(b) / 180.0);
+  EXPECT_EQ(refusal(b, [](auto& x) { x.specific_energy = 0.0; }), "supply.specific_energy: must be > 0 [J/kg], got 0");
+}
+
 TEST(Battery, DerivativeByChargeIsExactAndContinuous) {
   const Battery<double> b = lithium();
   const auto dual = cast<Jet<1>>(b);

@@ -1,74 +1,91 @@
-// Mass moments of membrane and spar.
+// Mass properties of a wing from its drawing: against sums over strips, closed forms, derivatives.
 #include "wingbeat/parts/wing_mass.hpp"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "wingbeat/core/jet.hpp"
+#include "wingbeat/core/members.hpp"
+
 namespace wingbeat {
 namespace {
 
-constexpr double membrane = 0.08, spar = 1.6e-3;  // [kg/m2], [kg/m]
+constexpr double drawn_length = 63e-3, drawn_chord = 25e-3;
 
-Planform<double> membrane_wing(PlanformShape shape, double offset) {
+Planform<double> outline(PlanformShape shape, double hub_offset) {
   Planform<double> p;
   p.shape = shape;
-  p.length = 63e-3;
-  p.root_chord = 25e-3;
-  p.hub_offset = offset;
+  p.length = drawn_length;
+  p.root_chord = drawn_chord;
+  p.hub_offset = hub_offset;
+  if (shape == PlanformShape::tabulated) p.chord_table = {{0.0, 10e-3}, {20e-3, 25e-3}, {drawn_length, 5e-3}};
   return p;
 }
 
-TEST(WingMass, AgreesWithTheSumOverItsArea) {
-  for (const PlanformShape shape : {PlanformShape::semi_ellipse, PlanformShape::rectangle}) {
+double chord(PlanformShape shape, double x) {
+  if (shape == PlanformShape::rectangle) return drawn_chord;
+  if (shape == PlanformShape::semi_ellipse) return drawn_chord * std::sqrt(1.0 - square(x / drawn_length));
+  return x < 20e-3 ? 10e-3 + 15e-3 * x / 20e-3 : 25e-3 - 20e-3 * (x - 20e-3) / 43e-3;
+}
+
+TEST(WingMass, IsTheSumOverItsStrips) {
+  const WingMaterial<double> material{0.02, 1e-3};
+  for (const PlanformShape shape : {PlanformShape::semi_ellipse, PlanformShape::rectangle, PlanformShape::tabulated}) {
     for (const double d : {0.0, 4e-3}) {
-      const Planform<double> p = membrane_wing(shape, d);
       WingMass<double> sum{};
-      const int strips = 20000;
-      for (int n = 0; n < strips; ++n) {
-        const double dr = p.length / strips, x = (n + 0.5) * dr, r = x + d;
-        const double c =
-            p.root_chord * (shape == PlanformShape::rectangle ? 1.0 : std::sqrt(1.0 - square(x / p.length)));
-        sum.mass += (membrane * c + spar) * dr;
-        sum.inertia += (membrane * c + spar) * square(r) * dr;
-        sum.pitch_inertia += membrane * c * c * c / 3.0 * dr;
-        sum.mass_product += membrane * r * c * c / 2.0 * dr;
+      constexpr int count = 200000;
+      for (int n = 0; n < count; ++n) {
+        const double x = drawn_length * (n + 0.5) / count, r = x + d, c = chord(shape, x), dr = drawn_length / count;
+        const double strip = (0.02 * c + 1e-3) * dr;
+        sum.mass += strip;
+        sum.inertia += strip * r * r;
+        sum.pitch_inertia += 0.02 * c * c * c / 3.0 * dr;
+        sum.mass_product += 0.02 * c * c / 2.0 * r * dr;
       }
-      const WingMass<double> m = wing_mass(p, membrane, spar);
-      EXPECT_NEAR(m.mass, sum.mass, 1e-6 * m.mass);
-      EXPECT_NEAR(m.inertia, sum.inertia, 1e-6 * m.inertia);
-      EXPECT_NEAR(m.pitch_inertia, sum.pitch_inertia, 1e-6 * m.pitch_inertia);
-      EXPECT_NEAR(m.mass_product, sum.mass_product, 1e-6 * m.mass_product);
+      const WingMass<double> m = wing_mass(material, outline(shape, d));
+      EXPECT_NEAR(m.mass / sum.mass, 1.0, 1e-8);
+      EXPECT_NEAR(m.inertia / sum.inertia, 1.0, 1e-8);
+      EXPECT_NEAR(m.pitch_inertia / sum.pitch_inertia, 1.0, 1e-8);
+      EXPECT_NEAR(m.mass_product / sum.mass_product, 1.0, 1e-8);
     }
   }
 }
 
-TEST(WingMass, OfARectangleHasItsClosedForm) {
-  const double R = 63e-3, c = 25e-3;
-  const WingMass<double> m = wing_mass(membrane_wing(PlanformShape::rectangle, 0.0), membrane, 0.0);
-  EXPECT_NEAR(m.mass, membrane * c * R, 1e-14 * m.mass);
-  EXPECT_NEAR(m.inertia, m.mass * R * R / 3.0, 1e-14 * m.inertia);
-  EXPECT_NEAR(m.pitch_inertia, m.mass * c * c / 3.0, 1e-14 * m.pitch_inertia);
-  EXPECT_NEAR(m.mass_product, m.mass * R * c / 4.0, 1e-14 * m.mass_product);
+// A plate: m R^2/3 about the hinge, m c^2/3 about the edge, m (R/2) (c/2) between; a rod along the edge: m R^2/3 alone.
+TEST(WingMass, OfAPlateAndARod) {
+  const Planform<double> p = outline(PlanformShape::rectangle, 0.0);
+  const WingMass<double> plate = wing_mass(WingMaterial<double>{0.05, 0.0}, p);
+  EXPECT_DOUBLE_EQ(plate.mass, 0.05 * drawn_length * drawn_chord);
+  EXPECT_DOUBLE_EQ(plate.inertia, plate.mass * drawn_length * drawn_length / 3.0);
+  EXPECT_DOUBLE_EQ(plate.pitch_inertia, plate.mass * drawn_chord * drawn_chord / 3.0);
+  EXPECT_DOUBLE_EQ(plate.mass_product, plate.mass * drawn_length * drawn_chord / 4.0);
+  const WingMass<double> both = wing_mass(WingMaterial<double>{0.05, 2e-3}, p);
+  EXPECT_NEAR(both.inertia - plate.inertia, 2e-3 * drawn_length * drawn_length * drawn_length / 3.0, 1e-20);
+  EXPECT_EQ(both.pitch_inertia, plate.pitch_inertia);
+  EXPECT_EQ(both.mass_product, plate.mass_product);
 }
 
-TEST(WingMass, TablesAreTheirOutline) {
-  Planform<double> table = membrane_wing(PlanformShape::tabulated, 4e-3);
-  table.chord_table = {{0.0, 25e-3}, {20e-3, 25e-3}, {63e-3, 25e-3}};
-  const WingMass<double> m = wing_mass(table, membrane, spar),
-                         exact = wing_mass(membrane_wing(PlanformShape::rectangle, 4e-3), membrane, spar);
-  EXPECT_NEAR(m.mass, exact.mass, 1e-14 * exact.mass);
-  EXPECT_NEAR(m.inertia, exact.inertia, 1e-14 * exact.inertia);
-  EXPECT_NEAR(m.pitch_inertia, exact.pitch_inertia, 1e-14 * exact.pitch_inertia);
-  EXPECT_NEAR(m.mass_product, exact.mass_product, 1e-14 * exact.mass_product);
-}
-
-// Within what a pitching wing must keep to, whatever it is made of.
-TEST(WingMass, ProductStaysWithinTheInertias) {
-  for (const double heavy : {0.0, 1.0}) {
-    for (const double offset : {0.0, 30e-3}) {
-      const WingMass<double> m = wing_mass(membrane_wing(PlanformShape::semi_ellipse, offset), membrane, heavy * spar);
-      EXPECT_LT(square(m.mass_product), m.inertia * m.pitch_inertia);
-    }
+// The inertia of the membrane is its areal density times the chord moment s_2 that lift has.
+TEST(WingMass, SharesTheChordMomentOfLift) {
+  for (const PlanformShape shape : {PlanformShape::semi_ellipse, PlanformShape::rectangle, PlanformShape::tabulated}) {
+    const Planform<double> p = outline(shape, 3e-3);
+    EXPECT_NEAR(wing_mass(WingMaterial<double>{0.02, 0.0}, p).inertia / (0.02 * one_wing_moments(p).s2), 1.0, 1e-13);
   }
+}
+
+TEST(WingMass, FollowsItsChordRatioWithDerivatives) {
+  Planform<double> p = outline(PlanformShape::semi_ellipse, 0.0);
+  p.chord_ratio = drawn_chord / drawn_length;
+  const WingMaterial<double> material{0.02, 0.0};
+  EXPECT_DOUBLE_EQ(wing_mass(material, p).inertia,
+                   wing_mass(material, outline(PlanformShape::semi_ellipse, 0.0)).inertia);
+  Planform<Jet<1>> dual = cast<Jet<1>>(p);
+  dual.length = Jet<1>(drawn_length, 0);
+  const WingMass<Jet<1>> m = wing_mass(cast<Jet<1>>(material), dual);
+  EXPECT_NEAR(m.inertia.v[0] * drawn_length / m.inertia.a, 4.0, 1e-12);  // all lengths grow alike
+  EXPECT_NEAR(m.pitch_inertia.v[0] * drawn_length / m.pitch_inertia.a, 4.0, 1e-12);
+  EXPECT_NEAR(m.mass.v[0] * drawn_length / m.mass.a, 2.0, 1e-12);
 }
 
 }  // namespace

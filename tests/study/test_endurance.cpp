@@ -225,6 +225,36 @@ TEST(Endurance, SaysWhyItDoesNotStart) {
               testing::HasSubstr("the battery cannot start the vehicle at a charge of 1 (7.2 V without load)"));
 }
 
+// On a battery of twice the charge and half the resistance each of two motors flies as one does on its own.
+TEST(Endurance, SeveralMotorsShareTheBattery) {
+  for (const bool warms_up : {false, true}) {
+    Design<double> one = hovering_design();
+    if (warms_up) {
+      MotorThermalDesign<double>& t = one.motor.thermal;
+      t.resistance_winding = t.resistance_case = 20.0;
+      t.time_constant_winding = 3.0;
+      t.time_constant_case = 60.0;
+    }
+    Design<double> two = one;
+    two.motors = 2.0;
+    *two.mass *= 2.0;
+    two.supply.battery.capacity *= 2.0;
+    two.supply.battery.internal_resistance *= 0.5;
+    const EnduranceResult a = simulate_discharge(one), b = simulate_discharge(two);
+    EXPECT_NEAR(b.endurance() / a.endurance(), 1.0, 1e-7);
+    ASSERT_TRUE(a.hover_lost && b.hover_lost);
+    EXPECT_NEAR(b.hover_lost->time / a.hover_lost->time, 1.0, 1e-6);
+    const EnduranceRow &last = b.rows.back(), &of_one = a.rows.back();
+    EXPECT_NEAR(last.energy_internal / of_one.energy_internal, 2.0, 1e-6);
+    EXPECT_NEAR(last.energy_electrical / of_one.energy_electrical, 2.0, 1e-6);
+    EXPECT_NEAR(last.lift_impulse / of_one.lift_impulse, 2.0, 1e-6);
+    const double chemical = chemical_energy(two.supply.battery, 1.0, 0.0);
+    EXPECT_NEAR(last.energy_electrical + last.energy_internal, chemical, 1e-8 * chemical);
+    if (!warms_up) continue;
+    EXPECT_NEAR(last.metrics[Metric::winding_temperature], of_one.metrics[Metric::winding_temperature], 1e-5);
+  }
+}
+
 TEST(Endurance, EmptyFromTheStart) {
   Design<double> d = hovering_design();
   d.supply.battery.charge = 0.0;

@@ -70,6 +70,47 @@ TEST(AddedMass, IsConservative) {
   }
 }
 
+// J_a over N_w J_w, a constant of the vehicle: by orbit, in time and in packs; absent where nothing is added.
+TEST(AddedMass, ItsShareOfTheWingsInertiaIsAMetric) {
+  const auto ratio_of = [](const Design<double>& d, Condition condition) {
+    const SteadyFlapping found = find_steady_flapping(resolve(d, condition), {.tolerance = 1e-4});
+    EXPECT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
+    return found.metrics[Metric::added_mass_inertia_ratio];
+  };
+  Design<double> d = with_added_mass();
+  // Semi-ellipse without offset: integral c^2 r^2 dr = 2/15 c_0^2 R^3.
+  const double J_a = 0.25 * pi * 1.225 * 2.0 / 15.0 * square(25e-3) * std::pow(63e-3, 3);
+  const double expected = J_a / 7.205e-8;
+  EXPECT_NEAR(ratio_of(d, Condition::air), expected, 1e-14);
+  const Vehicle<double> v = resolve(d);
+  TransientOptions loose;
+  loose.tolerance = 1e-4;
+  const TransientResult time = simulate_start_up(v, loose);
+  ASSERT_TRUE(time.metrics);
+  EXPECT_NEAR((*time.metrics)[Metric::added_mass_inertia_ratio], expected, 1e-14);
+  const std::array<EnsembleMember, 1> member = {{{v, {}}}};
+  std::array<EnsembleOutcome, 1> pack;
+  solve_ensemble(member, {}, start_up_in_time(), pack);
+  EXPECT_NEAR(pack[0].metrics[Metric::added_mass_inertia_ratio], expected, 1e-14);
+  EXPECT_TRUE(std::isnan(ratio_of(d, Condition::vacuum)));
+  EXPECT_TRUE(std::isnan(ratio_of(d, Condition::wingless)));
+
+  Design<GradientJet> seeded = cast<GradientJet>(d);
+  seeded.wing.planform.root_chord = gradient_seed(value_of(seeded.wing.planform.root_chord), 0);
+  seeded.wing.inertia = gradient_seed(value_of(seeded.wing.inertia), 1);
+  const SteadyFlapping found = find_steady_flapping(v, {.tolerance = 1e-8});
+  const OrbitGradient g = orbit_gradient(found, gradient_vehicle(seeded, Condition::air));
+  const auto& slope = g.metrics[Metric::added_mass_inertia_ratio].v;
+  EXPECT_NEAR(slope[gradient_first_slot], 2.0 * expected / 25e-3, 1e-11);
+  EXPECT_NEAR(slope[gradient_first_slot + 1] * 7.205e-8, -expected, 1e-13);
+
+  EXPECT_STREQ(lacking_for(Metric::added_mass_inertia_ratio, reference_design()), "aerodynamics.added_mass");
+  EXPECT_EQ(lacking_for(Metric::added_mass_inertia_ratio, d), nullptr);
+  EXPECT_EQ(lacking_for(Metric::lift_mean, reference_design()), nullptr);
+  d.aerodynamics.added_mass = false;
+  EXPECT_TRUE(std::isnan(ratio_of(d, Condition::air)));
+}
+
 TEST(AddedMass, NeedsAirAndAnOutline) {
   EXPECT_EQ(resolve(with_added_mass(), Condition::vacuum).wings.added_inertia, 0.0);
   EXPECT_EQ(resolve(reference_design()).wings.added_inertia, 0.0);

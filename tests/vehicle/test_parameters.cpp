@@ -43,6 +43,7 @@ std::vector<Design<double>> designs_of_every_kind() {
         d.motor.gear_ratio = 4.0;
         d.motor.thermal.resistance_winding = 20.0;
         d.spring.stiffness = 1e-3;
+        d.wing.areal_density = 0.02;
         designs.push_back(d);
       }
     }
@@ -154,7 +155,7 @@ TEST(Parameters, AlternativesReplaceEachOther) {
 }
 
 TEST(Parameters, JetsCarryDerivatives) {
-  Design<GradientJet> d{};
+  Design<GradientJet> d = cast<GradientJet>(Design<double>());
   set_parameter(d, "motor.inertia", GradientJet(1.5e-7, 1));
   EXPECT_EQ(d.motor.constants.inertia.a, 1.5e-7);
   EXPECT_EQ(d.motor.constants.inertia.v[1], 1.0);

@@ -115,7 +115,7 @@ class CycleGradient {
             total(m.current),
             total(m.stroke_velocity),
             total(m.aero.lift),
-            System::has_rod ? total(m.rod_force) : J(absent),
+            System::has_rod ? total(m.rod_force) / jets_.vehicle.motors : J(absent),
             total(m.motor_torque)};
   }
 

@@ -46,9 +46,10 @@ enum class Metric {
   lift_to_weight,
   winding_temperature,
   case_temperature,
-  winding_temperature_margin
+  winding_temperature_margin,
+  added_mass_inertia_ratio
 };
-inline constexpr int metric_count = int(Metric::winding_temperature_margin) + 1;
+inline constexpr int metric_count = int(Metric::added_mass_inertia_ratio) + 1;
 
 /// How a metric is named outside the program.
 struct MetricInfo {
@@ -160,11 +161,15 @@ inline Reporting reporting_of(const Design<double>& d) {
 
 /// The key that a design would have to state for a metric of the motor's heat; null where the metric is none, or known.
 const char* lacking_of_heat(Metric metric, const Design<double>& design);
+/// The same for every metric that a part of the model gives which a design may leave out.
+const char* lacking_for(Metric metric, const Design<double>& design);
 
-/// The metrics of a cycle from its integrals and extremes. `extremes` holds the maxima of extreme_candidates(). A
+/// The metrics of a cycle from its integrals and extremes: of all motors together, but for the force of one rod and the
+/// temperatures of one motor. `extremes` holds the maxima of extreme_candidates(). A
 /// direct drive has no rod, no speed of rotation and no direct current: rod forces, crank speeds and the bench estimate
 /// (17) are absent; its voltage is the amplitude. Floquet multiplier: of the orbit, or `absent`. The temperatures are
-/// those that the losses of this cycle lead to, absent without thermal resistances.
+/// those that the losses of this cycle lead to, absent without thermal resistances; the ratio of inertias is that at
+/// rest, J_a / (N_w J_w), absent without added mass or without wings.
 template <template <Scalar> class V, Scalar S>
 Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, const CycleExtremes<S>& extremes,
                          const S& floquet_multiplier_max, const ReportingOf<S>& reporting) {
@@ -198,8 +203,8 @@ Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, cons
   m[Metric::power_residual] = f * total(Integral::residual_work);
   m[Metric::lift_mean] = f * total(Integral::lift);
   m[Metric::lift_peak] = peak(Extreme::lift);
-  m[Metric::rod_force_peak] = peak(Extreme::rod_force);
-  m[Metric::rod_force_mean] = f * total(Integral::rod_force);
+  m[Metric::rod_force_peak] = peak(Extreme::rod_force) / v.motors;
+  m[Metric::rod_force_mean] = f * total(Integral::rod_force) / v.motors;
   const Drive drive = drive_of(v);
   if (!drive.has_rod) m[Metric::rod_force_peak] = m[Metric::rod_force_mean] = S(absent);
   // An estimate from the mean current, which says nothing where it alternates.
@@ -222,6 +227,9 @@ Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, cons
   m[Metric::winding_temperature] = T.winding - S(zero_celsius);
   m[Metric::case_temperature] = T.casing - S(zero_celsius);
   m[Metric::winding_temperature_margin] = v.thermal.winding_temperature_max - T.winding;
+  const auto weighs = v.wings.added_inertia > S(0.0);
+  m[Metric::added_mass_inertia_ratio] =
+      select(weighs, ratio(v.wings.added_inertia, v.wing_count * v.wing_inertia), S(absent));
   return m;
 }
 

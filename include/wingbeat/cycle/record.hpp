@@ -9,7 +9,8 @@
 
 namespace wingbeat {
 
-/// One instant of a flapping cycle, in the order of a waveform file (all SI, angle of attack in degrees).
+/// One instant of a flapping cycle, in the order of a waveform file (all SI, angle of attack in degrees). Current,
+/// lift, moments, torques and powers are the sums of all motors, the rod force is that of one.
 struct WaveformRow {
   double time;                 ///< since crank angle 0; direct drive: since the supply's phase 0 [s]
   double crank_angle;          ///< theta; direct drive: of the shaft, which is the stroke angle [rad]

@@ -27,11 +27,13 @@ struct Battery {
   S capacity = S(0);                ///< Q, charge that a full battery holds [C], > 0
   S charge = S(1);                  ///< state of charge [1], 0 (empty) to 1 (full)
   std::optional<S> cutoff_voltage;  ///< mean terminal voltage of one cell at which flight ends [V], >= 0
+  /// e, open-circuit energy of the full battery over its mass [J/kg], > 0; given, the battery weighs by its capacity.
+  std::optional<S> specific_energy;
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
     return use(of.cells, of.cell_voltage, of.discharge_curve, of.internal_resistance, of.capacity, of.charge,
-               of.cutoff_voltage);
+               of.cutoff_voltage, of.specific_energy);
   }
 };
 
@@ -43,6 +45,7 @@ inline constexpr ParameterKey internal_resistance{"supply.internal_resistance", 
 inline constexpr ParameterKey capacity{"supply.capacity", "C", range::positive};
 inline constexpr ParameterKey charge{"supply.charge", "1", range::zero_to_one};
 inline constexpr ParameterKey cutoff_voltage{"supply.cutoff_voltage", "V", range::not_negative};
+inline constexpr ParameterKey specific_energy{"supply.specific_energy", "J/kg", range::positive};
 }  // namespace battery_key
 
 /// Throws ParameterError for the first parameter out of its range.
@@ -73,6 +76,30 @@ S open_circuit_voltage(const Battery<S>& b, const S& charge) {
   const S x = charge - S(x0);
   const double c2 = (3.0 * secant - 2.0 * d0 - d1) / h, c3 = (d0 + d1 - 2.0 * secant) / (h * h);
   return b.cells * (S(y0) + x * (S(d0) + x * (S(c2) + x * S(c3))));
+}
+
+/// Mean of that voltage over the state of charge, from 0 to 1 [V]: the integral of every cubic in closed form. Times
+/// the capacity it is the energy of the full battery.
+template <Scalar S>
+S mean_open_circuit_voltage(const Battery<S>& b) {
+  const auto& curve = b.discharge_curve;
+  if (curve.size() < 2) return open_circuit_voltage(b, S(1.0));
+  double sum = 0.0;
+  for (std::size_t k = 0; k + 1 < curve.size(); ++k) {
+    const auto [x0, y0] = curve[k];
+    const auto [x1, y1] = curve[k + 1];
+    const double h = x1 - x0;
+    const double d0 = detail::monotone_slope(curve, k), d1 = detail::monotone_slope(curve, k + 1);
+    sum += 0.5 * h * (y0 + y1) + h * h * (d0 - d1) / 12.0;
+  }
+  return b.cells * S(sum);
+}
+
+/// Mass of a battery that weighs by its capacity, Q mean(n E) / e [kg]; empty without a specific energy.
+template <Scalar S>
+std::optional<S> battery_mass(const Battery<S>& b) {
+  if (!b.specific_energy) return std::nullopt;
+  return b.capacity * mean_open_circuit_voltage(b) / *b.specific_energy;
 }
 
 /// Resistance between that voltage and the terminals, n R_i [ohm].

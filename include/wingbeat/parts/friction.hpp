@@ -47,6 +47,13 @@ inline void validate(const Friction<double>& f) {
   require(friction_key::torque, f.torque);
 }
 
+/// The friction of `count` equal transmissions that move in phase, against their common speed: what follows the load
+/// follows the sum of their rod forces.
+template <Scalar S>
+Friction<S> side_by_side(const Friction<S>& f, const S& count) {
+  return {f.radius, f.damping * count, f.quadratic * count, f.torque * count};
+}
+
 /// The part of the friction torque [N m] that does not depend on the rod force, at crank speed omega turning in
 /// `direction` (+-1).
 template <Scalar S>

@@ -77,6 +77,18 @@ Motor<S> at_output_shaft(const GearMotor<S>& geared) {
           m.gear_efficiency};
 }
 
+/// The motor that acts as `count` equal ones do on the same terminals and on shafts that turn in phase: current and
+/// torque are the sums of theirs (model.md section 13).
+template <Scalar S>
+Motor<S> side_by_side(Motor<S> m, const S& count) {
+  m.armature_resistance = m.armature_resistance / count;
+  m.armature_inductance = m.armature_inductance / count;
+  m.inertia = m.inertia * count;
+  m.viscous_damping = m.viscous_damping * count;
+  m.friction_torque = m.friction_torque * count;
+  return m;
+}
+
 /// Keys, units and ranges; the table of parameters has them from here.
 namespace motor_key {
 inline constexpr ParameterKey armature_resistance{"motor.armature_resistance", "ohm", range::positive};

@@ -38,6 +38,14 @@ struct MotorThermal {
   }
 };
 
+/// What the losses of `count` equal motors together heat each of them by.
+template <Scalar S>
+MotorThermal<S> side_by_side(MotorThermal<S> t, const S& count) {
+  t.resistance_winding = t.resistance_winding / count;
+  t.resistance_case = t.resistance_case / count;
+  return t;
+}
+
 /// Temperatures of the two lumps [K].
 template <Scalar S>
 struct MotorTemperatures {

@@ -1,32 +1,53 @@
-// Mass moments of a wing made of a membrane and a leading-edge spar; model.md section 12.
+// Mass properties of a wing from its drawing: a membrane behind a straight leading edge that carries a spar.
 #pragma once
 
+#include "wingbeat/core/range.hpp"
+#include "wingbeat/core/scalar.hpp"
+#include "wingbeat/core/status.hpp"
 #include "wingbeat/parts/planform.hpp"
 
 namespace wingbeat {
 
-/// Of ONE wing about its hinge and its leading-edge axis.
+/// What a wing is made of. Ribs and glue count in the areal density, spread over the membrane.
+template <Scalar S>
+struct WingMaterial {
+  S areal_density = S(0);  ///< sigma of the membrane [kg/m2], > 0
+  S spar_density = S(0);   ///< lambda, mass of the leading-edge spar over its length, from root to tip [kg/m], >= 0
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.areal_density, of.spar_density);
+  }
+};
+
+/// Keys, units and ranges; the table of parameters has them from here.
+namespace wing_material_key {
+inline constexpr ParameterKey areal_density{"wing.areal_density", "kg/m2", range::positive};
+inline constexpr ParameterKey spar_density{"wing.spar_density", "kg/m", range::not_negative};
+}  // namespace wing_material_key
+
+/// Of one wing. r is the distance from the flapping hinge, x that behind the leading edge, about which the wing
+/// pitches.
 template <Scalar S>
 struct WingMass {
   S mass;           ///< [kg]
-  S inertia;        ///< J_w = integral r^2 dm [kg m2]
-  S pitch_inertia;  ///< I_psi = integral x^2 dm [kg m2]
+  S inertia;        ///< J_w = integral r^2 dm about the flapping hinge [kg m2]
+  S pitch_inertia;  ///< I_psi = integral x^2 dm about the leading edge [kg m2]
   S mass_product;   ///< P = integral r x dm [kg m2]
 };
 
-/// Of a planform that has a shape, its leading edge straight: a membrane of `areal_density` sigma [kg/m2] from the axis
-/// to x = c, and a thin spar of `spar_density` [kg/m] along the axis, from root to tip. J_w = sigma S_2 + spar, I_psi =
-/// sigma S_30 / 3, P = sigma S_21 / 2.
+/// Mass properties of one wing of that outline; not for planforms given by moments, which have none.
 template <Scalar S>
-WingMass<S> wing_mass(const Planform<S>& p, const S& areal_density, const S& spar_density) {
-  const bool table = p.shape == PlanformShape::tabulated;
-  const S root = p.hub_offset + (table ? S(p.chord_table.front().first) : S(0.0));
-  const S tip = p.hub_offset + (table ? S(p.chord_table.back().first) : p.length);
-  const S s2 = one_wing_moments(p).s2;
+WingMass<S> wing_mass(const WingMaterial<S>& material, const Planform<S>& p) {
+  const S& sigma = material.areal_density;
+  const S& lambda = material.spar_density;
+  const S d = p.hub_offset;
+  const S R = p.shape == PlanformShape::tabulated && !p.chord_table.empty() ? S(p.chord_table.back().first) : p.length;
+  const S tip = d + R;
   const PitchChordMoments<S> s = pitch_chord_moments(p, S(1.0));
-  return {areal_density * wing_area(p) + spar_density * (tip - root),
-          areal_density * s2 + spar_density * (tip * tip * tip - root * root * root) / S(3.0),
-          areal_density * s.s30 / S(3.0), S(0.5) * areal_density * s.s21};
+  return {sigma * wing_area(p) + lambda * R,
+          sigma * one_wing_moments(p).s2 + lambda * (tip * tip * tip - d * d * d) / S(3.0), sigma * s.s30 / S(3.0),
+          S(0.5) * sigma * s.s21};
 }
 
 }  // namespace wingbeat

@@ -16,6 +16,7 @@
 #include "wingbeat/parts/planform.hpp"
 #include "wingbeat/parts/spring.hpp"
 #include "wingbeat/parts/supply.hpp"
+#include "wingbeat/parts/wing_mass.hpp"
 
 namespace wingbeat {
 
@@ -122,15 +123,17 @@ struct SpringDesign {
 /// [wing]
 template <Scalar S>
 struct WingDesign {
-  S count = S(2);    ///< N_w
+  S count = S(2);    ///< N_w of one motor
   S inertia = S(0);  ///< J_w of ONE wing about its hinge [kg m2]
   Planform<S> planform;
   /// Direct: resonance of rotor and wings on their springs [Hz]; given, the inertia follows: J_w = k/(2 pi f)^2 - J/N_w
   std::optional<S> resonance;
+  std::optional<S> areal_density;  ///< sigma of the membrane [kg/m2]; given, the inertia follows from the outline
+  S spar_density = S(0);           ///< lambda of the leading-edge spar [kg/m], only with areal_density
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
-    return use(of.count, of.inertia, of.planform, of.resonance);
+    return use(of.count, of.inertia, of.planform, of.resonance, of.areal_density, of.spar_density);
   }
 };
 
@@ -155,7 +158,7 @@ struct AerodynamicsDesign {
 template <Scalar S>
 struct ItemMasses {
   std::optional<S> supply;              ///< battery with its leads [kg], >= 0
-  std::optional<S> motor;               ///< motor with its gearbox [kg], >= 0
+  std::optional<S> motor;               ///< one motor with its gearbox [kg], >= 0
   std::optional<S> rod_linear_density;  ///< mass of rod or coupler over its length [kg/m], >= 0
   std::optional<S> spring;              ///< one hinge spring [kg], >= 0; one for each wing
 
@@ -169,6 +172,7 @@ template <Scalar S>
 struct Design {
   std::string name;
   std::optional<S> mass;  ///< of all that `masses` does not state [kg]; enables lift_to_weight
+  S motors = S(1);        ///< M, whole number >= 1: so many copies of [motor] to [wing], in phase on one supply
   ItemMasses<S> masses;
   std::optional<S> bench_torque_constant;  ///< K_ref of eq (17) [N m/A]
   Supply<S> supply;
@@ -182,8 +186,8 @@ struct Design {
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
-    return use(of.name, of.mass, of.masses, of.bench_torque_constant, of.supply, of.supply_resonance_ratio, of.motor,
-               of.transmission, of.friction, of.spring, of.wing, of.aerodynamics);
+    return use(of.name, of.mass, of.motors, of.masses, of.bench_torque_constant, of.supply, of.supply_resonance_ratio,
+               of.motor, of.transmission, of.friction, of.spring, of.wing, of.aerodynamics);
   }
 };
 
@@ -191,6 +195,13 @@ struct Design {
 template <Scalar S>
 bool has_springs(const Design<S>& design) {
   return design.spring.stiffness || design.spring.resonance || design.spring.resonance_ratio;
+}
+
+/// Mass properties of one wing that is stated by its material; empty where its inertia is stated.
+template <Scalar S>
+std::optional<WingMass<S>> wing_mass(const WingDesign<S>& wing) {
+  if (!wing.areal_density) return std::nullopt;
+  return wing_mass(WingMaterial<S>{*wing.areal_density, wing.spar_density}, wing.planform);
 }
 
 /// Length of the rod, of a four-bar the coupler [m]; empty where there is none.
@@ -205,18 +216,22 @@ std::optional<S> rod_length(const TransmissionDesign<S>& t) {
   return std::nullopt;
 }
 
-/// Mass of the whole vehicle [kg]: vehicle.mass and every mass stated for itself; empty where vehicle.mass is not
-/// known.
+/// Mass of the whole vehicle [kg]: vehicle.mass, every mass stated for itself and that of a battery that weighs by its
+/// capacity; empty where vehicle.mass is not known.
 template <Scalar S>
 std::optional<S> total_mass(const Design<S>& design) {
   if (!design.mass) return std::nullopt;
   const ItemMasses<S>& items = design.masses;
   const std::optional<S> rod = rod_length(design.transmission);
+  const S& M = design.motors;
   S mass = *design.mass;
   if (items.supply) mass = mass + *items.supply;
-  if (items.motor) mass = mass + *items.motor;
-  if (items.rod_linear_density && rod) mass = mass + *items.rod_linear_density * *rod;
-  if (items.spring && has_springs(design)) mass = mass + design.wing.count * *items.spring;
+  if (design.supply.type == SupplyType::battery) {
+    if (const std::optional<S> battery = battery_mass(design.supply.battery)) mass = mass + *battery;
+  }
+  if (items.motor) mass = mass + M * *items.motor;
+  if (items.rod_linear_density && rod) mass = mass + M * (*items.rod_linear_density * *rod);
+  if (items.spring && has_springs(design)) mass = mass + M * (design.wing.count * *items.spring);
   return mass;
 }
 

@@ -17,8 +17,10 @@ namespace wingbeat {
 
 inline constexpr double standard_gravity = 9.80665;  ///< [m/s2], CGPM 1901
 
-/// The constants of one vehicle in one condition, all referred to the output shaft. The equations of motion below and
-/// CrankSystem take any template V of the same members whose `transmission` satisfies the concept Transmission.
+/// The constants of one vehicle in one condition, all referred to the output shaft. Several motors with their
+/// transmissions and wings are one that acts as they do together (model.md section 13): its current, torques, forces
+/// and powers are the sums of theirs. The equations of motion below and CrankSystem take any template V of the same
+/// members whose `transmission` satisfies the concept Transmission.
 template <Scalar S>
 struct Vehicle {
   S voltage;  ///< v that steady flapping sees [V], at the motor terminals where there is no source resistance
@@ -26,17 +28,18 @@ struct Vehicle {
   AnyTransmission<S> transmission;
   Friction<S> friction;
   HingeSpring<S> spring;
-  S wing_count;    ///< N_w
+  S wing_count;    ///< N_w, of all motors
   S wing_inertia;  ///< J_w of one wing [kg m2]; 0 when wingless
   BladeElement<S> wings;
   S source_resistance = S(0);  ///< R_i inside the supply [ohm], >= 0: the terminals see v - R_i i
   S drive_frequency = S(0);    ///< of a sine supply, whose amplitude is `voltage` [Hz]; else 0
   MotorThermal<S> thermal;     ///< what changes `motor` where it heats up; see with_motor_at()
+  S motors = S(1);             ///< M: rod forces are reported of one of so many rods
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
     return use(of.voltage, of.motor, of.transmission, of.friction, of.spring, of.wing_count, of.wing_inertia, of.wings,
-               of.source_resistance, of.drive_frequency, of.thermal);
+               of.source_resistance, of.drive_frequency, of.thermal, of.motors);
   }
 };
 
@@ -90,6 +93,9 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
                          : m.constants;
   if (m.gear_efficiency) v.motor.gear_efficiency = *m.gear_efficiency;
   v.thermal = motor_thermal_of(m.thermal);
+  const S& M = v.motors = design.motors;
+  v.motor = side_by_side(v.motor, M);
+  if (heats_up(v.thermal)) v.thermal = side_by_side(v.thermal, M);
 
   const bool direct = design.transmission.type == TransmissionType::direct;
   v.transmission = transmission_of(design.transmission);
@@ -102,12 +108,14 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
     case FrictionLaw::quadratic: v.friction.quadratic = coefficient; break;
     case FrictionLaw::constant: v.friction.torque = coefficient; break;
   }
+  v.friction = side_by_side(v.friction, M);
 
   const bool wings = condition != Condition::wingless;
-  v.wing_count = design.wing.count;
+  v.wing_count = M * design.wing.count;
   // Inertia on one spring, spring and drive frequency: of a direct drive any of them may follow from the others.
   const S rotor_share = direct ? v.motor.inertia / v.wing_count : S(0.0);
   S wing_inertia = design.wing.inertia;
+  if (const std::optional<WingMass<S>> drawn = wing_mass(design.wing)) wing_inertia = drawn->inertia;
   S stiffness = design.spring.stiffness ? *design.spring.stiffness : S(0.0);
   if (design.wing.resonance) wing_inertia = stiffness / square(S(two_pi) * *design.wing.resonance) - rotor_share;
   const S inertia = rotor_share + wing_inertia;
@@ -127,12 +135,12 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
   const ChordMoments<S> moments = chord_moments(design.wing.planform, design.wing.count);
   v.wings.air_density = air ? design.aerodynamics.air_density : S(0.0);
   v.wings.pitch_coefficient = design.aerodynamics.pitch_coefficient;
-  v.wings.s2 = wings ? moments.s2 : S(0.0);
-  v.wings.s3 = wings ? moments.s3 : S(0.0);
+  v.wings.s2 = wings ? S(M * moments.s2) : S(0.0);
+  v.wings.s3 = wings ? S(M * moments.s3) : S(0.0);
   v.wings.coefficients = design.aerodynamics.coefficients;
   if (design.aerodynamics.angle_of_attack_min) v.wings.angle_of_attack_min = *design.aerodynamics.angle_of_attack_min;
   if (design.aerodynamics.added_mass && wings) {
-    const S s22 = squared_chord_moment(design.wing.planform, design.wing.count);
+    const S s22 = M * squared_chord_moment(design.wing.planform, design.wing.count);
     v.wings.added_inertia = added_inertia_of(v.wings.air_density, s22);
   }
   return v;
