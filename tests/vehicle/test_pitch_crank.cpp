@@ -18,14 +18,15 @@ using PitchCrank = PitchCrankSystem<double, 4>;
 
 PitchCrank pitch_crank(double stiffness, double stop = infinity, double friction_radius = 2.5e-3,
                        Formulation formulation = Formulation::virtual_work) {
-  PitchingVehicle of = pitching_vehicle(stiffness);
+  const Vehicle<double> of = pitching_vehicle(stiffness);
   Design<double> d = reference_design();
   d.transmission.formulation = formulation;
   d.friction.coefficient = friction_radius;
   Vehicle<double> v = resolve(d);
-  v.wings = of.vehicle.wings;
-  of.wings.hinge.stop = stop;
-  return {v, of.wings, {138.0, 0.5, 60.0, 0.1}, 1.0};
+  v.wings = of.wings;
+  v.pitch = of.pitch;
+  v.pitch.hinge.stop = stop;
+  return {v, {138.0, 0.5, 60.0, 0.1}, 1.0};
 }
 
 struct PitchCrankOrbit {
@@ -75,7 +76,7 @@ TEST(PitchCrank, EnergyBalanceClosesToTheTolerance) {
 TEST(PitchCrank, StiffHingesAreTheLawWithoutPitching) {
   Vehicle<double> law = pitch_crank(1e-2).vehicle;
   law.wings.pitch_coefficient = 0.0;
-  law.wings.added_inertia = added_inertia_of(law.wings.air_density, pitch_crank(1e-2).wings.moments.s22);
+  law.wings.added_inertia = added_inertia_of(law.wings.air_density, pitch_crank(1e-2).vehicle.pitch.moments.s22);
   law.wings.coefficients.drag = {3.45, 0.0, 1.0, 0.0};  // C_N of the normal-force set at 90 degrees
   using Law = CrankSystem<double, 2>;
   solver::Iterate<Law> cycle;
@@ -85,7 +86,7 @@ TEST(PitchCrank, StiffHingesAreTheLawWithoutPitching) {
   double before = 1.0;
   for (const double stiffness : {5e-3, 2e-2, 8e-2}) {
     PitchCrank system = pitch_crank(stiffness);
-    system.wings.hinge.damping = 0.2 * std::sqrt(2.0 * stiffness * system.wings.pitch_inertia);
+    system.vehicle.pitch.hinge.damping = 0.2 * std::sqrt(2.0 * stiffness * system.vehicle.pitch.pitch_inertia);
     const PitchCrankOrbit orbit = crank_orbit(system, 1e-9);
     double off = 0.0;
     for (const Integral which : {Integral::time, Integral::current_square, Integral::aero_work}) {

@@ -18,7 +18,7 @@ namespace {
 using PitchSystem = PitchDirectSystem<double, 5>;
 using Complex = std::complex<double>;
 
-PitchSystem pitch_system(const PitchingVehicle& of) { return {of.vehicle, of.wings, {0.5, 60.0, 0.5, 60.0, 0.1}}; }
+PitchSystem pitch_system(const Vehicle<double>& of) { return {of, {0.5, 60.0, 0.5, 60.0, 0.1}}; }
 
 struct PitchOrbit {
   PitchSystem system;
@@ -56,17 +56,17 @@ double pitch_imbalance(const PitchOrbit& orbit) {
 // Small swings without air: three linear equations in complex amplitudes.
 TEST(PitchDirect, SmallSwingsInVacuumAreTheComplexImpedances) {
   for (const double stiffness : {5e-5, 1e-3}) {
-    PitchingVehicle of = pitching_vehicle(stiffness, 1e-6, Condition::vacuum);
+    Vehicle<double> of = pitching_vehicle(stiffness, 1e-6, Condition::vacuum);
     PitchSystem system = pitch_system(of);
     system.typical = {2e-7, 2e-5, 2e-7, 2e-5, 3e-8};
     const PitchOrbit orbit = pitch_orbit(system, 1e-10);
-    const Vehicle<double>& v = of.vehicle;
+    const Vehicle<double>& v = of;
     const double w = two_pi * v.drive_frequency, K = v.motor.torque_constant, N = v.wing_count;
     const Complex j(0.0, 1.0), Z = v.motor.armature_resistance + j * w * v.motor.armature_inductance;
     const Complex bb = -w * w * (v.motor.inertia + N * v.wing_inertia) + N * v.spring.stiffness +
                        j * w * (v.motor.viscous_damping + v.friction.damping + K * K / Z);
-    const Complex pp = -w * w * of.wings.pitch_inertia + of.wings.hinge.stiffness + j * w * of.wings.hinge.damping;
-    const Complex bp = -w * w * of.wings.mass_product;
+    const Complex pp = -w * w * of.pitch.pitch_inertia + of.pitch.hinge.stiffness + j * w * of.pitch.hinge.damping;
+    const Complex bp = -w * w * of.pitch.mass_product;
     const Complex beta = K * v.voltage / Z / (bb - bp * bp / pp), psi = -bp / pp * beta;
     const Complex current = (v.voltage - K * j * w * beta) / Z;
     const double expected[] = {beta.imag(), (j * w * beta).imag(), psi.imag(), (j * w * psi).imag(), current.imag()};
@@ -83,22 +83,22 @@ TEST(PitchDirect, SmallSwingsInVacuumAreTheComplexImpedances) {
 
 // Without damping a period turns each mode by its frequency: the trace of the return map is 2 sum cos(w_k T).
 TEST(PitchDirect, ModesInVacuumHaveTheirClosedFormFrequencies) {
-  PitchingVehicle of = pitching_vehicle(3e-4, 0.0, Condition::vacuum);
-  of.vehicle.motor.viscous_damping = of.vehicle.friction.damping = of.wings.hinge.damping = 0.0;
-  of.vehicle.motor.armature_inductance = 0.0;
-  of.vehicle.motor.armature_resistance = 1e12;
+  Vehicle<double> of = pitching_vehicle(3e-4, 0.0, Condition::vacuum);
+  of.motor.viscous_damping = of.friction.damping = of.pitch.hinge.damping = 0.0;
+  of.motor.armature_inductance = 0.0;
+  of.motor.armature_resistance = 1e12;
   using Undamped = PitchDirectSystem<double, 4>;
-  const Undamped system{of.vehicle, of.wings, {1e-6, 1e-4, 1e-6, 1e-4}};
+  const Undamped system{of, {1e-6, 1e-4, 1e-6, 1e-4}};
   solver::Iterate<Undamped> cycle;
   solver::run_iterate<true>(system, {1e-6, 0.0, 1e-6, 0.0}, {.tolerance = 1e-12, .max_steps = 5000}, cycle);
   ASSERT_EQ(cycle.status, solver::IterateStatus::complete);
   const auto M = solver::monodromy(system, system.cast<Jet<4>>(), cycle);
 
-  const double bb = of.vehicle.motor.inertia + of.vehicle.wing_count * of.vehicle.wing_inertia,
-               bp = of.wings.mass_product, pp = of.wings.pitch_inertia;
-  const double k = of.vehicle.wing_count * of.vehicle.spring.stiffness, k_psi = of.wings.hinge.stiffness;
+  const double bb = of.motor.inertia + of.wing_count * of.wing_inertia, bp = of.pitch.mass_product,
+               pp = of.pitch.pitch_inertia;
+  const double k = of.wing_count * of.spring.stiffness, k_psi = of.pitch.hinge.stiffness;
   const double a = bb * pp - bp * bp, b = bb * k_psi + pp * k, c = k * k_psi;
-  const double root = std::sqrt(b * b - 4.0 * a * c), T = 1.0 / of.vehicle.drive_frequency;
+  const double root = std::sqrt(b * b - 4.0 * a * c), T = 1.0 / of.drive_frequency;
   const double w1 = std::sqrt((b - root) / (2.0 * a)), w2 = std::sqrt((b + root) / (2.0 * a));
   EXPECT_LT(w1, 0.99 * two_pi * 22.0);  // below either oscillator alone
   double trace = 0.0;
@@ -108,10 +108,10 @@ TEST(PitchDirect, ModesInVacuumHaveTheirClosedFormFrequencies) {
 
 TEST(PitchDirect, EnergyBalanceClosesToTheToleranceAndAddedMassTakesNoMeanPower) {
   for (const double stiffness : {2e-4, 8e-4}) {
-    PitchingVehicle of = pitching_vehicle(stiffness);
+    Vehicle<double> of = pitching_vehicle(stiffness);
     double with_air = 0.0;
     for (const bool added_mass : {true, false}) {
-      if (!added_mass) of.wings.air = {};
+      if (!added_mass) of.pitch.air = {};
       const PitchOrbit orbit = pitch_orbit(pitch_system(of), 1e-10);
       EXPECT_NEAR(pitch_imbalance(orbit), 0.0, 1e-10) << stiffness;
       EXPECT_GT(orbit.total(PitchSystem::hinge_work), 0.0);
@@ -129,10 +129,10 @@ TEST(PitchDirect, EnergyBalanceClosesToTheToleranceAndAddedMassTakesNoMeanPower)
 
 // A hinge that hardly yields: a wing upright, 90 degrees of angle of attack, as under a law without pitching.
 TEST(PitchDirect, StiffHingesAreTheLawWithoutPitching) {
-  PitchingVehicle of = pitching_vehicle(1e-2);
-  Vehicle<double> law = of.vehicle;
+  Vehicle<double> of = pitching_vehicle(1e-2);
+  Vehicle<double> law = of;
   law.wings.pitch_coefficient = 0.0;
-  law.wings.added_inertia = added_inertia_of(law.wings.air_density, of.wings.moments.s22);
+  law.wings.added_inertia = added_inertia_of(law.wings.air_density, of.pitch.moments.s22);
   // C_D of the normal-force set at 90 degrees.
   law.wings.coefficients.drag = {3.45, 0.0, 1.0, 0.0};
   using Law = DirectSystem<double, 3>;
@@ -142,8 +142,8 @@ TEST(PitchDirect, StiffHingesAreTheLawWithoutPitching) {
   const CycleIntegrals<double> expected = cycle_integrals(cycle);
   double before = 1.0;
   for (const double stiffness : {5e-3, 2e-2, 8e-2}) {
-    of.wings.hinge.stiffness = 2.0 * stiffness;
-    of.wings.hinge.damping = 0.2 * std::sqrt(2.0 * stiffness * of.wings.pitch_inertia);
+    of.pitch.hinge.stiffness = 2.0 * stiffness;
+    of.pitch.hinge.damping = 0.2 * std::sqrt(2.0 * stiffness * of.pitch.pitch_inertia);
     const PitchOrbit orbit = pitch_orbit(pitch_system(of), 1e-9);
     double off = 0.0;
     for (const Integral which : {Integral::current_square, Integral::aero_work, Integral::speed_square}) {
@@ -156,24 +156,24 @@ TEST(PitchDirect, StiffHingesAreTheLawWithoutPitching) {
 }
 
 TEST(PitchDirect, StopsHoldTheWingsAndTakeTheEnergyOfImpacts) {
-  PitchingVehicle of = pitching_vehicle(2e-4);
+  Vehicle<double> of = pitching_vehicle(2e-4);
   double largest = 0.0;
   for (const auto& step : pitch_orbit(pitch_system(of), 1e-8).cycle.steps)
     largest = std::max(largest, std::abs(step.y[2]));
-  of.wings.hinge.stop = 0.7 * largest;
+  of.pitch.hinge.stop = 0.7 * largest;
   for (const double tolerance : {1e-6, 1e-10}) {
     const PitchOrbit orbit = pitch_orbit(pitch_system(of), tolerance);
     int held = 0, impacts = 0;
     for (std::size_t n = 0; n < orbit.cycle.steps.size(); ++n) {
       const auto& step = orbit.cycle.steps[n];
-      EXPECT_LE(std::abs(step.y[2]), of.wings.hinge.stop * (1.0 + 1e-9));
+      EXPECT_LE(std::abs(step.y[2]), of.pitch.hinge.stop * (1.0 + 1e-9));
       held += step.signs[PitchSystem::held] < 0.0;
       EXPECT_TRUE(step.signs[PitchSystem::held] > 0.0 || step.y[3] == 0.0);
       if (n > 0) impacts += step.signs[PitchSystem::impacts] != orbit.cycle.steps[n - 1].signs[PitchSystem::impacts];
     }
     const PitchMetrics m = pitch_metrics(orbit.system, orbit.cycle);
-    EXPECT_NEAR(m.amplitude, of.wings.hinge.stop, 1e-12);
-    EXPECT_NEAR(m.angle_of_attack_min, 0.5 * pi - of.wings.hinge.stop, 1e-12);
+    EXPECT_NEAR(m.amplitude, of.pitch.hinge.stop, 1e-12);
+    EXPECT_NEAR(m.angle_of_attack_min, 0.5 * pi - of.pitch.hinge.stop, 1e-12);
     EXPECT_GT(held, 2);
     EXPECT_GE(impacts, 2);
     EXPECT_GT(impact_loss(orbit.system, orbit.cycle), 1e-4 * orbit.total(Integral::electrical_work));
@@ -184,8 +184,8 @@ TEST(PitchDirect, StopsHoldTheWingsAndTakeTheEnergyOfImpacts) {
 
 // The saltation matrix of impacts, against two iterates from starts a little apart.
 TEST(PitchDirect, DerivativeOfTheReturnMapCrossesImpacts) {
-  PitchingVehicle of = pitching_vehicle(2e-4);
-  of.wings.hinge.stop = 0.5;
+  Vehicle<double> of = pitching_vehicle(2e-4);
+  of.pitch.hinge.stop = 0.5;
   const PitchSystem system = pitch_system(of);
   const PitchSystem::State start{0.3, -20.0, 0.1, 10.0, 0.05};
   const solver::IterateOptions options{.tolerance = 1e-12, .max_steps = 5000};

@@ -36,13 +36,12 @@ struct PitchCrankSystem {
       std::size_t(Integral::reactive_work), std::size_t(Integral::lift),          hinge_work};
 
   Vehicle<S> vehicle;
-  PitchingWings<S> wings;
   State typical;           ///< size of each state, scale of errors
   S speed_floor = S(0.0);  ///< below this crank speed [rad/s] the crank counts as stopped
 
   PitchCrankSystem() = default;
-  PitchCrankSystem(const Vehicle<S>& v, const PitchingWings<S>& w, const State& size, const S& floor)
-      : vehicle(v), wings(w), typical(size), speed_floor(floor) {
+  PitchCrankSystem(const Vehicle<S>& v, const State& size, const S& floor)
+      : vehicle(v), typical(size), speed_floor(floor) {
     if constexpr (std::same_as<S, double>) turn_at(reversals(v.transmission));
   }
 
@@ -50,7 +49,7 @@ struct PitchCrankSystem {
   PitchCrankSystem<T, N> cast() const {
     std::array<T, N> size;
     for (std::size_t n = 0; n < N; ++n) size[n] = T(typical[n]);
-    return {wingbeat::cast<T>(vehicle), wingbeat::cast<T>(wings), size, T(speed_floor)};
+    return {wingbeat::cast<T>(vehicle), size, T(speed_floor)};
   }
 
   static double period() { return two_pi; }
@@ -81,7 +80,7 @@ struct PitchCrankSystem {
   S stroke_angle(const S& theta, const State&) const { return wingbeat::stroke_angle(kinematics(theta)); }
   static S stroke_sign(const Signs& signs) { return signs[stroke]; }
 
-  bool jumps(std::size_t k) const { return k == stop && has_stop(wings.hinge); }
+  bool jumps(std::size_t k) const { return k == stop && has_stop(vehicle.pitch.hinge); }
   Signs start_signs(const State& y) const {
     Signs signs;
     signs.fill(S(1.0));
@@ -106,8 +105,8 @@ struct PitchCrankSystem {
     const CrankKinematics<S> k = kinematics(theta);
     const S i = current(theta, y), v_t = terminal_voltage(vehicle, vehicle.voltage, i);
     const S psi_rate = select(signs[held] >= S(0.0), y[2], S(0.0));
-    return pitch_motion_on(vehicle, wings, k, spring_moment(vehicle, k), y[0], i, v_t, y[1], psi_rate, branch(signs),
-                           PitchBranch<S>{signs[turn], signs[held]});
+    return pitch_motion_on(vehicle, vehicle.pitch, k, spring_moment(vehicle, k), y[0], i, v_t, y[1], psi_rate,
+                           branch(signs), PitchBranch<S>{signs[turn], signs[held]});
   }
 
   template <bool quadratures>

@@ -38,13 +38,16 @@ struct PitchDirectSystem {
                                                                       std::size_t(Integral::lift),
                                                                       hinge_work};
 
+  /// What has an extreme that is a metric; those of the pitching are in PitchMetrics.
+  static constexpr std::array extremes = {Extreme::current, Extreme::lift, Extreme::flapping_velocity,
+                                          Extreme::stroke_max, Extreme::stroke_min};
+
   Vehicle<S> vehicle;
-  PitchingWings<S> wings;
   State typical;  ///< size of each state, scale of errors
 
   template <Scalar T>
   PitchDirectSystem<T, N> cast() const {
-    PitchDirectSystem<T, N> of{wingbeat::cast<T>(vehicle), wingbeat::cast<T>(wings), {}};
+    PitchDirectSystem<T, N> of{wingbeat::cast<T>(vehicle), {}};
     for (std::size_t n = 0; n < N; ++n) of.typical[n] = T(typical[n]);
     return of;
   }
@@ -64,6 +67,9 @@ struct PitchDirectSystem {
 
   /// Angular frequency of the supply [rad/s]: d phi / dt.
   S phase_rate() const { return S(two_pi) * vehicle.drive_frequency; }
+  S phase_rate(const State&) const { return phase_rate(); }
+  static const S& shaft_speed(const State& y) { return y[1]; }
+  static const S& shaft_angle(const S&, const State& y) { return y[0]; }
   S voltage(const S& phi) const {
     using std::sin;
     return vehicle.voltage * sin(phi);
@@ -78,9 +84,10 @@ struct PitchDirectSystem {
 
   static CrankKinematics<S> kinematics(const S&) { return direct_kinematics<S>(); }
   static const S& stroke_angle(const S&, const State& y) { return y[0]; }
+  static const S& stroke_angle(const Motion<S>&, const State& y) { return y[0]; }
   static S stroke_sign(const Signs& signs) { return signs[velocity]; }
 
-  bool jumps(std::size_t k) const { return k == stop && has_stop(wings.hinge); }
+  bool jumps(std::size_t k) const { return k == stop && has_stop(vehicle.pitch.hinge); }
   Signs start_signs(const State& y) const {
     Signs signs;
     signs.fill(S(1.0));
@@ -104,8 +111,16 @@ struct PitchDirectSystem {
   PitchMotion<S> pitch_motion(const S& phi, const State& y, const Signs& signs) const {
     const S N_k_beta = vehicle.wing_count * vehicle.spring.stiffness * y[0];
     const S psi_rate = select(signs[held] >= S(0.0), y[3], S(0.0));
-    return pitch_motion_on(vehicle, wings, kinematics(phi), N_k_beta, y[1], current(phi, y), voltage(phi), y[2],
+    return pitch_motion_on(vehicle, vehicle.pitch, kinematics(phi), N_k_beta, y[1], current(phi, y), voltage(phi), y[2],
                            psi_rate, branch(signs), PitchBranch<S>{signs[turn], signs[held]});
+  }
+
+  Motion<S> motion(const S& phi, const State& y, const Signs& signs) const {
+    return pitch_motion(phi, y, signs).stroke;
+  }
+
+  CycleExtremes<S> candidates(const Motion<S>& m, const State& y, const Signs& signs) const {
+    return extreme_candidates(m, m.stroke_velocity, branch(signs), y[0]);
   }
 
   template <bool quadratures>

@@ -29,16 +29,16 @@ template <class System>
 typename System::Real switch_of(const System& system, const PitchMotion<typename System::Real>& m,
                                 const typename System::State& y, const typename System::Signs& signs) {
   using S = typename System::Real;
-  if (!has_stop(system.wings.hinge)) return S(1.0);
+  if (!has_stop(system.vehicle.pitch.hinge)) return S(1.0);
   const S at = side<System>(y);
-  return is_held<System>(signs) ? S(at * m.stop_moment) : S(system.wings.hinge.stop - at * y[System::pitch]);
+  return is_held<System>(signs) ? S(at * m.stop_moment) : S(system.vehicle.pitch.hinge.stop - at * y[System::pitch]);
 }
 
 /// True of a state with which a recorded cycle may begin at a stop.
 template <class System>
 bool rests_at_stop(const System& system, const typename System::State& y) {
-  return has_stop(system.wings.hinge) && value_of(y[System::pitch + 1]) == 0.0 &&
-         std::abs(value_of(y[System::pitch])) >= value_of(system.wings.hinge.stop);
+  return has_stop(system.vehicle.pitch.hinge) && value_of(y[System::pitch + 1]) == 0.0 &&
+         std::abs(value_of(y[System::pitch])) >= value_of(system.vehicle.pitch.hinge.stop);
 }
 
 /// Decides whether wings that rest at a stop are held there.
@@ -55,14 +55,14 @@ void hold_or_leave(const System& system, const typename System::Real& x, const t
 template <class System>
 StopImpact<typename System::Real> impact_at(const System& system, const typename System::Real& x,
                                             const typename System::State& y) {
-  return stop_impact(system.vehicle, system.wings, system.kinematics(x), y[System::shaft], y[System::pitch],
+  return stop_impact(system.vehicle, system.vehicle.pitch, system.kinematics(x), y[System::shaft], y[System::pitch],
                      y[System::pitch + 1]);
 }
 
 template <class System>
 typename System::State after_impact(const System& system, const typename System::Real& x, typename System::State y) {
   using S = typename System::Real;
-  y[System::pitch] = side<System>(y) * system.wings.hinge.stop;
+  y[System::pitch] = side<System>(y) * system.vehicle.pitch.hinge.stop;
   y[System::shaft] = y[System::shaft] + impact_at(system, x, y).shaft_speed;
   y[System::pitch + 1] = S(0.0);
   return y;
@@ -91,7 +91,7 @@ void reset_map(const System& system, const typename System::Real& x, typename Sy
   using S = typename System::Real;
   if (value_of(from[System::impacts]) != value_of(to[System::impacts])) {
     const auto before = system.template rates<quadratures>(x, y, from);
-    const S late = (side<System>(y) * system.wings.hinge.stop - y[System::pitch]) / before.dy[System::pitch];
+    const S late = (side<System>(y) * system.vehicle.pitch.hinge.stop - y[System::pitch]) / before.dy[System::pitch];
     for (std::size_t n = 0; n < y.size(); ++n) y[n] = y[n] + before.dy[n] * late;
     y = after_impact(system, S(x + late), y);
     const auto after = system.template rates<quadratures>(S(x + late), y, to);
@@ -103,7 +103,7 @@ void reset_map(const System& system, const typename System::Real& x, typename Sy
     }
   }
   if (is_held<System>(to)) {
-    y[System::pitch] = side<System>(y) * system.wings.hinge.stop;
+    y[System::pitch] = side<System>(y) * system.vehicle.pitch.hinge.stop;
     y[System::pitch + 1] = S(0.0);
   }
 }

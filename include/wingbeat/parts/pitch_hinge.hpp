@@ -16,7 +16,7 @@ template <Scalar S>
 struct PitchHinge {
   S stiffness = S(0);    ///< k_psi [N m/rad], >= 0
   S damping = S(0);      ///< c_psi [N m s/rad], >= 0
-  S stop = S(infinity);  ///< psi_max: |psi| goes no further [rad], > 0; infinite where there is no stop
+  S stop = S(infinity);  ///< psi_max: |psi| goes no further [rad], > 0, < pi; infinite where there is no stop
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
@@ -28,7 +28,7 @@ struct PitchHinge {
 namespace pitch_key {
 inline constexpr ParameterKey stiffness{"pitch.stiffness", "N m/rad", range::not_negative};
 inline constexpr ParameterKey damping{"pitch.damping", "N m s/rad", range::not_negative};
-inline constexpr ParameterKey stop{"pitch.stop", "rad", range::positive};
+inline constexpr ParameterKey stop{"pitch.stop", "rad", range::below_straight};
 }  // namespace pitch_key
 
 inline void validate(const PitchHinge<double>& h) {

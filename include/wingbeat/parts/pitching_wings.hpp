@@ -8,6 +8,8 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
+#include <string_view>
 
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/members.hpp"
@@ -43,6 +45,21 @@ struct NormalForceCoefficient {
 /// C_L = 1.8 sin(2 alpha) and C_D = 1.95 - 1.5 cos(2 alpha) along the normal of the chord, in the form above.
 inline NormalForceCoefficient<double> normal_force_robofly() { return {3.6, 0.15}; }
 
+/// How vehicle files name it.
+inline constexpr const char* normal_force_set = "normal-force-robofly";
+
+/// The same as C_L and C_D along the normal, of which every coefficient is a number of its own.
+inline ForceCoefficients<double> force_coefficients_robofly() {
+  return {{0.0, 1.8, 2.0, 0.0}, {1.95, -1.5, 2.0, 0.0}, {}};
+}
+
+/// The force coefficients of that name in vehicle files; none for any other.
+inline std::optional<ForceCoefficients<double>> named_coefficients(std::string_view name) {
+  if (name == "translational-2022") return translational_2022();
+  if (name == normal_force_set) return force_coefficients_robofly();
+  return std::nullopt;
+}
+
 /// Where the coefficient of the force normal to the chord comes from.
 enum class NormalForce {
   lift_and_drag,  ///< C_L cos(alpha) + C_D sin(alpha) of the ForceCoefficients
@@ -74,9 +91,10 @@ PitchAddedMass<S> pitch_added_mass(const S& air_density, const PitchChordMoments
 /// force coefficients are taken.
 template <Scalar S>
 struct PitchingWings {
-  PitchHinge<S> hinge;     ///< all hinges together
-  S pitch_inertia = S(0);  ///< N_w I_psi = N_w integral x^2 dm, x from the axis along the chord [kg m2], > 0
-  S mass_product = S(0);   ///< N_w P = N_w integral r x dm [kg m2], P^2 <= J_w I_psi
+  PitchHinge<S> hinge;  ///< all hinges together
+  /// N_w I_psi = N_w integral x^2 dm, x from the axis along the chord [kg m2], > 0; 0 where the wings do not pitch so
+  S pitch_inertia = S(0);
+  S mass_product = S(0);  ///< N_w P = N_w integral r x dm [kg m2], P^2 <= J_w I_psi
   PitchChordMoments<S> moments;
   PitchAddedMass<S> air;
   S rotational_coefficient = S(leading_edge_rotational_coefficient);  ///< C_rot [1]; 0 without rotational lift

@@ -9,6 +9,7 @@
 #include "wingbeat/parts/friction.hpp"
 #include "wingbeat/parts/motor.hpp"
 #include "wingbeat/parts/motor_thermal.hpp"
+#include "wingbeat/parts/pitching_wings.hpp"
 #include "wingbeat/parts/spring.hpp"
 #include "wingbeat/vehicle/design.hpp"
 #include "wingbeat/vehicle/drive.hpp"
@@ -35,13 +36,21 @@ struct Vehicle {
   S drive_frequency = S(0);    ///< of a sine supply, whose amplitude is `voltage` [Hz]; else 0
   MotorThermal<S> thermal;     ///< what changes `motor` where it heats up; see with_motor_at()
   S motors = S(1);             ///< M: rod forces are reported of one of so many rods
+  PitchingWings<S> pitch;      ///< of wings whose pitch is a degree of freedom; see pitches()
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
     return use(of.voltage, of.motor, of.transmission, of.friction, of.spring, of.wing_count, of.wing_inertia, of.wings,
-               of.source_resistance, of.drive_frequency, of.thermal, of.motors);
+               of.source_resistance, of.drive_frequency, of.thermal, of.motors, of.pitch);
   }
 };
+
+/// True where pitch is a degree of freedom (model.md section 12) instead of following the stroke by the pitch law. The
+/// systems and models in time of such vehicles are others: PitchDirectSystem, PitchDirectModel.
+template <Scalar S>
+bool pitches(const Vehicle<S>& v) {
+  return value_of(v.pitch.pitch_inertia) > 0.0;
+}
 
 /// The transmission that a design describes.
 template <Scalar S>
@@ -78,6 +87,28 @@ MotorThermal<S> motor_thermal_of(const MotorThermalDesign<S>& t) {
         t.magnet_temperature_coefficient,
         of.winding_temperature_max};
   if (t.winding_temperature_max) of.winding_temperature_max = *t.winding_temperature_max;
+  return of;
+}
+
+/// Wings that pitch on the hinges that a design describes, `count` of them, in air of that density [kg/m3].
+template <Scalar S>
+PitchingWings<S> pitching_wings_of(const Design<S>& design, const S& count, const S& air_density) {
+  const PitchDesign<S>& p = design.pitch;
+  PitchingWings<S> of;
+  PitchHinge<S> hinge{*p.stiffness, p.damping};
+  if (p.stop) hinge.stop = *p.stop;
+  of.hinge = hinges_together(hinge, count);
+  if (const std::optional<WingMass<S>> drawn = wing_mass(design.wing)) {
+    of.pitch_inertia = count * drawn->pitch_inertia;
+    of.mass_product = count * drawn->mass_product;
+  }
+  if (design.wing.pitch_inertia) of.pitch_inertia = count * *design.wing.pitch_inertia;
+  if (design.wing.mass_product) of.mass_product = count * *design.wing.mass_product;
+  of.moments = pitch_chord_moments(design.wing.planform, count);
+  if (design.aerodynamics.added_mass) of.air = pitch_added_mass(air_density, of.moments);
+  if (!p.rotational_lift) of.rotational_coefficient = S(0.0);
+  of.damping_coefficient = p.damping_coefficient;
+  if (design.aerodynamics.coefficients_name == normal_force_set) of.normal_force = NormalForce::normal_force;
   return of;
 }
 
@@ -134,7 +165,7 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
   const bool air = condition == Condition::air;
   const ChordMoments<S> moments = chord_moments(design.wing.planform, design.wing.count);
   v.wings.air_density = air ? design.aerodynamics.air_density : S(0.0);
-  v.wings.pitch_coefficient = design.aerodynamics.pitch_coefficient;
+  v.wings.pitch_coefficient = design.pitch.stiffness ? S(0.0) : design.aerodynamics.pitch_coefficient;
   v.wings.s2 = wings ? S(M * moments.s2) : S(0.0);
   v.wings.s3 = wings ? S(M * moments.s3) : S(0.0);
   v.wings.coefficients = design.aerodynamics.coefficients;
@@ -143,6 +174,7 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
     const S s22 = M * squared_chord_moment(design.wing.planform, design.wing.count);
     v.wings.added_inertia = added_inertia_of(v.wings.air_density, s22);
   }
+  if (design.pitch.stiffness && wings) v.pitch = pitching_wings_of(design, v.wing_count, v.wings.air_density);
   return v;
 }
 
