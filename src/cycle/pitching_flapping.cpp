@@ -170,10 +170,11 @@ SteadyFlapping PitchingSearch<N>::run(const StartUp& start_up) {
   orbit.fill(result);
   if (!(vehicle_.spring.stiffness > 0.0)) result.metrics[Metric::floquet_multiplier_max] = absent;
   result.status = FlappingStatus::flapping;
+  const bool in_air = vehicle_.wings.air_density > 0.0;
   result.evidence = {.kind = PitchEvidence::response,
                      .frequency = vehicle_.drive_frequency,
                      .stroke_amplitude = result.metrics[Metric::stroke_amplitude],
-                     .over_rotation = result.evidence.over_rotation,
+                     .over_rotation = in_air ? result.evidence.over_rotation : absent,
                      .other_amplitude = other_amplitude};
   return result;
 }

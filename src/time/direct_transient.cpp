@@ -414,7 +414,9 @@ void DirectStartUp<Model>::settle(double closure, double change) {
                       .time = result_.time_to_steady,
                       .change = change,
                       .cycles = result_.cycles};
-  if constexpr (Model::pitches) result_.evidence.over_rotation = pitching_.over_rotation;
+  if constexpr (Model::pitches) {
+    if (model_.vehicle.wings.air_density > 0.0) result_.evidence.over_rotation = pitching_.over_rotation;
+  }
 }
 
 template <class Model>

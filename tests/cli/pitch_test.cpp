@@ -49,7 +49,9 @@ TEST_F(Pitch, RunsByBothMethods) {
       taken += json[key].get<double>();
     }
     EXPECT_NEAR(taken, given, 1e-6 * given);
-    if (!stop.empty()) EXPECT_NEAR(json["pitch_amplitude_deg"].get<double>(), 20.0, 1e-6);
+    if (!stop.empty()) {
+      EXPECT_NEAR(json["pitch_amplitude_deg"].get<double>(), 20.0, 1e-6);
+    }
   }
 }
 
@@ -122,6 +124,15 @@ TEST_F(Pitch, BadInputIsRefusedInOneSentence) {
   EXPECT_THAT(complaint({}, replace(drawn, "inertia = 7.2e-8\n")), HasSubstr("wing.pitch_inertia: missing"));
   EXPECT_THAT(complaint({}, replace(drawn, "inertia = 7.2e-8\npitch_inertia = 3e-9\nmass_product = 2e-8\n")),
               HasSubstr("no wing has that much"));
+}
+
+TEST_F(Pitch, AnOptimumIsRefusedByName) {
+  std::ofstream(path("o.toml")) << "[study]\nvehicle = \"" << hinged
+                                << "\"\n[objective]\nmaximise = \"lift_mean_n\"\n[[parameter]]\n"
+                                   "key = \"pitch.stiffness\"\nlower = \"1e-4 N m/rad\"\nupper = \"1e-3 N m/rad\"\n";
+  const Outcome o = run({"optimise", path("o.toml")});
+  EXPECT_EQ(o.status, 2) << o.out;
+  EXPECT_THAT(o.err, HasSubstr("do not have yet; sweep them instead"));
 }
 
 TEST_F(Pitch, ACrankIsRefusedByName) {

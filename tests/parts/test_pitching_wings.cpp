@@ -316,7 +316,7 @@ TEST(PitchingWings, RefusesWhatNoWingIs) {
   EXPECT_EQ(refused([](P&) {}), "no error");
   EXPECT_EQ(refused([](P& p) { p.hinge.stiffness = -1e-4; }), "pitch.stiffness: must be >= 0 [N m/rad], got -0.0001");
   EXPECT_EQ(refused([](P& p) { p.hinge.damping = -1e-7; }), "pitch.damping: must be >= 0 [N m s/rad], got -1e-07");
-  EXPECT_EQ(refused([](P& p) { p.hinge.stop = 0.0; }), "pitch.stop: must be > 0 [rad], got 0");
+  EXPECT_EQ(refused([](P& p) { p.hinge.stop = 0.0; }), "pitch.stop: must be > 0 and < pi [rad], got 0");
   EXPECT_EQ(refused([](P& p) { p.pitch_inertia = 0.0; }), "wing.pitch_inertia: must be > 0 [kg m2], got 0");
   EXPECT_EQ(refused([](P& p) { p.damping_coefficient = -5.0; }), "pitch.damping_coefficient: must be >= 0 [1], got -5");
   EXPECT_EQ(refused([](P& p) { p.mass_product = -4e-8; }),

@@ -188,7 +188,7 @@ TEST(Parameters, NearestKey) {
             "unknown key; [spring] knows stiffness, resonance, resonance_ratio, mass");
   EXPECT_EQ(unknown_key_message("battery"),
             "unknown key; the sections are [vehicle], [supply], [motor], [transmission], [friction], [spring], [wing], "
-            "[aerodynamics], [bench]");
+            "[pitch], [aerodynamics], [bench]");
 }
 
 }  // namespace

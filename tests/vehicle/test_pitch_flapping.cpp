@@ -53,7 +53,7 @@ Design<double> random_hinged_design(std::mt19937_64& random, bool stops) {
   }
   if (uniform(0.0, 1.0) < 0.3) d.motor.constants.armature_inductance = 0.0;
   if (uniform(0.0, 1.0) < 0.3) d.friction = {FrictionLaw::viscous, 2e-6};
-  if (stops) d.pitch.stop = uniform(0.1, 0.8);
+  if (stops) d.pitch.stop = uniform(0.05, 0.5);
   return d;
 }
 
