@@ -14,6 +14,9 @@ std::string describe(const DomainEvidence& e) {
     case Quantity::angle_of_attack_min:
       return format("the angle of attack falls to %.4g deg (the coefficients hold from %.4g to %.4g deg)", e.value,
                     e.lowest, e.highest);
+    case Quantity::angle_of_attack_max:
+      return format("the angle of attack rises to %.4g deg (the coefficients hold from %.4g to %.4g deg)", e.value,
+                    e.lowest, e.highest);
     case Quantity::angle_of_attack_range:
       return format("the angle of attack runs from %.4g to 90 deg (the coefficients hold from %.4g to %.4g deg)",
                     e.value, e.lowest, e.highest);

@@ -23,6 +23,22 @@ std::string lock_list(const StatusEvidence& e) {
 
 const char* phase_of(const StatusEvidence& e) { return e.direct ? "the phase of the supply" : "crank angle"; }
 
+constexpr double notable_over_rotation = 0.1;  // of the period; some of it lies about every reversal
+
+/// What is to be said of wings that pitch on a hinge.
+std::string describe_pitching(const StatusEvidence& e) {
+  std::string text;
+  if (e.over_rotation > notable_over_rotation) {
+    text += format("; the wings over-rotate: their angle of attack is beyond 90 deg for %.0f %% of the period",
+                   100.0 * e.over_rotation);
+  }
+  if (std::isfinite(e.other_amplitude)) {
+    text += format("; a second stable response to the same supply exists, with a stroke of +-%.1f deg",
+                   in_degrees(e.other_amplitude));
+  }
+  return text;
+}
+
 std::string describe_flapping(const StatusEvidence& e) {
   switch (e.kind) {
     case StatusEvidence::Kind::orbit: {
@@ -40,7 +56,7 @@ std::string describe_flapping(const StatusEvidence& e) {
         text += format("; a stroke of +-%.0f deg passes the quarter turn that wings have room for",
                        in_degrees(e.stroke_amplitude));
       }
-      return text;
+      return text + describe_pitching(e);
     }
     case StatusEvidence::Kind::simulated_cycle:
       return format(
@@ -66,7 +82,7 @@ std::string describe_flapping(const StatusEvidence& e) {
       if (e.steps > 0) {
         text += format(", metrics to about %.1g: the %ld integration steps allowed are used up", e.accuracy, e.steps);
       }
-      return text;
+      return text + describe_pitching(e);
     }
     default: return "";
   }

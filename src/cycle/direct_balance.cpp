@@ -1,5 +1,6 @@
 #include "wingbeat/cycle/direct_balance.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "wingbeat/core/root.hpp"
@@ -52,6 +53,17 @@ DirectBalance direct_balance(const Vehicle<double>& v) {
     at_high = at_low;
   }
   return balance;
+}
+
+double typical_pitch(const Vehicle<double>& vehicle, double stroke_velocity) {
+  const PitchingWings<double>& p = vehicle.pitch;
+  const double w = two_pi * vehicle.drive_frequency;
+  const double drag = 0.5 * vehicle.wings.air_density * normal_force_coefficient(vehicle.wings, p, 0.5 * pi);
+  const double moment = (std::abs(p.mass_product) + p.air.rp) * w * stroke_velocity +
+                        drag * centre_of_pressure(0.5 * pi) * p.moments.s22 * square(stroke_velocity);
+  const double rigidity =
+      std::max(std::abs(p.hinge.stiffness - square(w) * (p.pitch_inertia + p.air.pp)), 0.2 * p.hinge.stiffness);
+  return std::min({moment / rigidity, p.hinge.stop, 1.0}) + 1e-12;
 }
 
 }  // namespace wingbeat

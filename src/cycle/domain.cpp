@@ -21,7 +21,8 @@ struct Range {
   double low, high;
 };
 Range angle_range(const Vehicle<double>& v) {
-  Range range{angle_of_attack_lowest_deg, angle_of_attack_highest_deg};
+  // A wing on a hinge lags behind the reversals, beyond 90 deg of attack, where its coefficients are continued.
+  Range range{angle_of_attack_lowest_deg, pitches(v) ? pitching_angle_highest_deg : angle_of_attack_highest_deg};
   if (const auto& table = v.wings.coefficients.table) {
     range.low = std::max(range.low, degrees_per_radian * table->alpha().front());
     range.high = std::min(range.high, degrees_per_radian * table->alpha().back());
@@ -57,7 +58,10 @@ std::array<S, domain_limit_count> excess_of(const Vehicle<double>& v, const Metr
     const Range range = angle_range(v);
     at(DomainLimit::angle_of_attack) = (S(range.low) - m[Metric::angle_of_attack_min]) / S(angle_of_attack_highest_deg);
     // At the reversals alpha is 90 deg, whatever the pitching.
-    if (range.high < angle_of_attack_highest_deg - angle_slack_deg) {
+    if (pitches(v)) {
+      at(DomainLimit::angle_of_attack) =
+          larger(m[Metric::angle_of_attack_max] / S(range.high) - S(1.0), at(DomainLimit::angle_of_attack));
+    } else if (range.high < angle_of_attack_highest_deg - angle_slack_deg) {
       at(DomainLimit::angle_of_attack) =
           larger(S(1.0 - range.high / angle_of_attack_highest_deg), at(DomainLimit::angle_of_attack));
     }
@@ -101,7 +105,8 @@ std::array<S, domain_limit_count> excess_of(const Vehicle<double>& v, const Metr
 const std::array<DomainLimitInfo, domain_limit_count>& domain_limit_table() {
   static const std::array<DomainLimitInfo, domain_limit_count> table = {{
       {"angle_of_attack",
-       "angle of attack within 0 to 90 deg, and within a table of coefficients, over the whole cycle"},
+       "angle of attack within 0 to 90 deg, of wings that pitch on a hinge to 180 deg, and within a table of "
+       "coefficients, over the whole cycle"},
       {"stroke",
        "stroke angle of a slider-crank up to 85 deg to either side, of another mechanism to 180 deg, stroke "
        "amplitude of a direct drive to 180 deg"},
@@ -147,7 +152,7 @@ std::bitset<metric_count> domain_metrics() {
   std::bitset<metric_count> needed;
   for (const Metric m : {Metric::power_electrical, Metric::power_motor, Metric::power_aerodynamic,
                          Metric::power_residual, Metric::angle_of_attack_min, Metric::stroke_amplitude,
-                         Metric::flapping_velocity_peak, Metric::winding_temperature}) {
+                         Metric::flapping_velocity_peak, Metric::winding_temperature, Metric::angle_of_attack_max}) {
     needed.set(std::size_t(m));
   }
   return needed;
@@ -181,9 +186,14 @@ std::vector<DomainEvidence> domain_evidence(const Vehicle<double>& v, const Metr
   };
   const double P_e = m[Metric::power_electrical], P_m = m[Metric::power_motor], P_aero = m[Metric::power_aerodynamic];
   const Range range = angle_range(v);
-  const bool short_table = range.high < angle_of_attack_highest_deg - angle_slack_deg;
-  add(DomainLimit::angle_of_attack, short_table ? Quantity::angle_of_attack_range : Quantity::angle_of_attack_min,
-      m[Metric::angle_of_attack_min], range.low, range.high);
+  const bool short_table = !pitches(v) && range.high < angle_of_attack_highest_deg - angle_slack_deg;
+  if (m[Metric::angle_of_attack_max] > range.high) {
+    add(DomainLimit::angle_of_attack, Quantity::angle_of_attack_max, m[Metric::angle_of_attack_max], range.low,
+        range.high);
+  } else {
+    add(DomainLimit::angle_of_attack, short_table ? Quantity::angle_of_attack_range : Quantity::angle_of_attack_min,
+        m[Metric::angle_of_attack_min], range.low, range.high);
+  }
   if (!drive_of(v).stroke_is_fixed) {
     add(DomainLimit::stroke, Quantity::stroke_amplitude, degrees_per_radian * m[Metric::stroke_amplitude], 0.0,
         other_stroke_max_deg);

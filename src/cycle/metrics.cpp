@@ -41,6 +41,10 @@ const std::array<MetricInfo, metric_count>& metric_table() {
       {"case_temperature_degc", "degC", "case temperature of the motor"},
       {"winding_temperature_margin_k", "K", "largest winding temperature allowed, less the winding temperature"},
       {"added_mass_inertia_ratio", "1", "inertia of the air that moves with the wings over the wings' own"},
+      {"power_hinge_w", "W", "mean loss in the damping and at the stops of the pitch hinges"},
+      {"pitch_amplitude_deg", "degree", "pitch amplitude, half peak to peak"},
+      {"pitch_phase_deg", "degree", "lead of the pitching over the pitch that opposes the flapping velocity"},
+      {"angle_of_attack_max_deg", "degree", "largest angle of attack of wings that pitch on a hinge"},
   }};
   return table;
 }
@@ -68,14 +72,23 @@ const char* lacking_of_heat(Metric metric, const Design<double>& design) {
 
 const char* lacking_for(Metric metric, const Design<double>& design) {
   if (metric == Metric::added_mass_inertia_ratio && !design.aerodynamics.added_mass) return "aerodynamics.added_mass";
-  return lacking_of_heat(metric, design);
+  switch (metric) {
+    case Metric::power_hinge:
+    case Metric::pitch_amplitude:
+    case Metric::pitch_phase:
+    case Metric::angle_of_attack_max: return design.pitch.stiffness ? nullptr : pitch_key::stiffness.path;
+    default: return lacking_of_heat(metric, design);
+  }
 }
 
 double error_scale(const Metrics<double>& metrics, Metric which) {
   const double size = std::abs(metrics[which]);
   switch (which) {
-    case Metric::angle_of_attack_min: return std::max(size, 90.0);
+    case Metric::angle_of_attack_min:
+    case Metric::angle_of_attack_max:
+    case Metric::pitch_phase: return std::max(size, 90.0);
     case Metric::power_gear:
+    case Metric::power_hinge:
     case Metric::power_residual: return std::max(size, std::abs(metrics[Metric::power_electrical]));
     case Metric::lift_mean: return std::max(size, 1e-3 * metrics[Metric::lift_peak]);
     case Metric::lift_to_weight:

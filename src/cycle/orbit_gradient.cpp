@@ -131,8 +131,22 @@ GradientVehicle gradient_vehicle(const Design<GradientJet>& design, Condition co
 
 OrbitGradient orbit_gradient(const SteadyFlapping& orbit, const GradientVehicle& vehicle,
                              const GradientOptions& options) {
-  return std::visit([&](const auto& recorded) { return differentiate(orbit, recorded, vehicle, options); },
-                    orbit.record.cycles());
+  return std::visit(
+      [&](const auto& recorded) {
+        if constexpr (requires { recorded.system.pitch; }) {
+          OrbitGradient none;
+          none.regular = false;
+          for (int m = 0; m < metric_count; ++m) {
+            none.metrics.values[std::size_t(m)] = J(orbit.metrics.values[std::size_t(m)]);
+            make_absent(none.metrics.values[std::size_t(m)]);
+          }
+          none.instants.assign(options.crank_angles.size(), GradientInstant{});
+          return none;
+        } else {
+          return differentiate(orbit, recorded, vehicle, options);
+        }
+      },
+      orbit.record.cycles());
 }
 
 MetricGradients metric_gradients(const Design<double>& design, Condition condition, const SteadyFlapping& orbit,

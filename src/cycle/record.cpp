@@ -13,15 +13,17 @@ WaveformRow row_inside(const Recorded& recorded, const solver::Step<decltype(Rec
   const auto result = solver::evaluate_inside<true>(system, recorded.cycle, step, theta);
   const Motion<double> m = system.motion(theta, result.y, step.signs);
   phase_rate = system.phase_rate(result.y);
+  double pitch_angle = absent;
+  if constexpr (requires { Recorded::system.pitch; }) pitch_angle = result.y[system.pitch];
   return waveform_row(system.vehicle, m, start_time + result.dq[std::size_t(Integral::time)],
                       system.shaft_angle(theta, result.y), system.shaft_speed(result.y),
-                      system.stroke_angle(m, result.y));
+                      system.stroke_angle(m, result.y), pitch_angle);
 }
 
 }  // namespace
 
 WaveformRow waveform_row(const Vehicle<double>& v, const Motion<double>& m, double time, double shaft_angle,
-                         double shaft_speed, double stroke_angle) {
+                         double shaft_speed, double stroke_angle, double pitch_angle) {
   const double spring_moment = v.wing_count * spring_loads(v.spring, stroke_angle).moment;
   WaveformRow row;
   row.time = time;
@@ -43,6 +45,7 @@ WaveformRow waveform_row(const Vehicle<double>& v, const Motion<double>& m, doub
   row.power_aerodynamic = m.aero.power;
   row.spring_moment = spring_moment;
   row.inertial_moment = v.wing_count * v.wing_inertia * m.stroke_acceleration;
+  row.pitch_angle = pitch_angle;
   return row;
 }
 

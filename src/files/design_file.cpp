@@ -65,7 +65,13 @@ class Reader {
     read_choice("wing.planform.shape", d.wing.planform.shape);
     check_alternatives();
     attempt([&] { read_coefficients(d.aerodynamics); });
-    attempt([&] { read_added_mass(d.aerodynamics); });
+    attempt([&] { read_flag("aerodynamics.added_mass", d.aerodynamics.added_mass); });
+    attempt([&] { read_flag("pitch.rotational_lift", d.pitch.rotational_lift); });
+    attempt([&] {
+      if (document_.has_section("pitch") && !document_.find(pitch_key::stiffness.path)) {
+        missing(pitch_key::stiffness.path, quantity_example(pitch_key::stiffness.unit));
+      }
+    });
     read_numbers(d);
     attempt([&] {
       if (d.supply.type == SupplyType::battery) read_discharge_curve(d.supply.battery);
@@ -218,12 +224,11 @@ class Reader {
     }
   }
 
-  void read_added_mass(AerodynamicsDesign<double>& a) const {
-    const std::string_view path = "aerodynamics.added_mass";
+  void read_flag(std::string_view path, bool& flag) const {
     const Value* value = document_.find(path);
     if (!value) return;
     if (value->kind != Value::Kind::boolean) wrong(*value, path, find_parameter<double>(path)->range.text);
-    a.added_mass = value->number > 0.0;
+    flag = value->number > 0.0;
   }
 
   void read_numbers(Design<double>& d) {
@@ -234,11 +239,19 @@ class Reader {
           const double number = number_of(*value, key.path, key.unit);
           if (!key.set(d, number)) value->origin.refuse(std::string(key.path), "has no place in this vehicle");
           check_range(*value, key, number);
-        } else if (key.fallback == "required" && !key.has_alternative()) {
+        } else if (is_required(key)) {
           missing(key.path, quantity_example(key.unit));
         }
       });
     }
+  }
+
+  bool is_required(const ParameterText& key) const {
+    constexpr std::string_view unless = "required unless ";
+    if (key.fallback == "required") return !key.has_alternative();
+    if (!key.fallback.starts_with(unless)) return false;
+    const std::string_view other = key.fallback.substr(unless.size());
+    return find_parameter<double>(other) && !document_.find(other);
   }
 
   /// Each at its own line; validate() sees to what needs another key.
@@ -284,11 +297,14 @@ class Reader {
 
   void read_coefficients(AerodynamicsDesign<double>& a) const {
     const std::string path = "aerodynamics.coefficients", table_path = path + ".table";
-    const char* expected = "\"translational-2022\" or a table of coefficients";
+    const char* expected = "\"translational-2022\", \"normal-force-robofly\" or a table of coefficients";
     a.coefficients = translational_2022();
     a.coefficients_name = "translational-2022";
     if (const Value* name = document_.find(path)) {
-      if (name->kind != Value::Kind::text || name->text != a.coefficients_name) wrong(*name, path, expected);
+      const auto named = name->kind == Value::Kind::text ? named_coefficients(name->text) : std::nullopt;
+      if (!named) wrong(*name, path, expected);
+      a.coefficients = *named;
+      a.coefficients_name = name->text;
     }
     if (!document_.has_section(path)) return;
     if (const Value* table = document_.find(table_path)) {

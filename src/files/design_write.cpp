@@ -86,10 +86,9 @@ std::vector<WrittenKey> written_keys(const Design<double>& design) {
       if (const auto& curve = design.transmission.table.curve) write(key, stroke_rows(*curve));
     } else if (key.path == "aerodynamics.coefficients.table") {
       if (const auto& table = design.aerodynamics.coefficients.table) write(key, coefficient_rows(*table));
-    } else if (key.path == "aerodynamics.added_mass") {
-      if (design.aerodynamics.added_mass) write(key, "true");
     } else if (key.text) {
-      if (const std::string text = key.text(design); !text.empty()) write(key, toml_text(text));
+      const bool flag = key.range.text == "true or false";
+      if (const std::string text = key.text(design); !text.empty()) write(key, flag ? text : toml_text(text));
     } else if (const auto value = key.get(design); value && (custom || !of_wave)) {
       write(key, toml_quantity(*value, key.unit), *value);
     }

@@ -26,9 +26,11 @@ constexpr std::string_view first_waveform_header =
     "time_s,crank_angle_rad,crank_speed_rad_per_s,current_a,stroke_angle_rad,flapping_velocity_rad_per_s,"
     "angle_of_attack_deg,lift_n,aero_moment_nm,rod_force_n,motor_torque_nm,friction_torque_nm";
 
-std::string waveform_header() {
+/// With the pitch angle, which comes last, or without it.
+std::string waveform_header(bool pitching) {
   std::string text;
-  for (const WaveformColumn& c : waveform_columns()) text += fmt::format("{}{}", text.empty() ? "" : ",", c.name);
+  for (const WaveformColumn& c : std::span(waveform_columns()).first(waveform_column_count - (pitching ? 0 : 1)))
+    text += fmt::format("{}{}", text.empty() ? "" : ",", c.name);
   return text;
 }
 
@@ -46,7 +48,9 @@ bool text_is_own(std::string_view head) {
   if (head.starts_with("<")) return head.find(fmt::format("<!-- {} -->", drawn)) != std::string_view::npos;
   for (int line = 0; line < 3; ++line) {
     const std::string_view content = head.substr(0, head.find_first_of("\r\n"));
-    if (line == 0 && (content == first_waveform_header || content == waveform_header())) return true;
+    if (line == 0 &&
+        (content == first_waveform_header || content == waveform_header(false) || content == waveform_header(true)))
+      return true;
     const bool comment = content.starts_with("#") || (line == 0 && content.starts_with("Written by: "));
     if (comment && says_so(content)) return true;
     const auto next = head.find('\n');

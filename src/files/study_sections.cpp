@@ -245,8 +245,14 @@ void StudySections::read_metrics(EnsembleOptions& options) const {
   }
 }
 
-void StudySections::leave_out_absent(EnsembleOptions& options, bool heats, bool added_mass) const {
+void StudySections::leave_out_absent(EnsembleOptions& options, bool heats, bool added_mass, bool pitching) const {
   if (study_->find("metrics")) return;
+  if (!pitching) {
+    for (const Metric m :
+         {Metric::power_hinge, Metric::pitch_amplitude, Metric::pitch_phase, Metric::angle_of_attack_max}) {
+      options.metrics.reset(std::size_t(m));
+    }
+  }
   if (!added_mass) options.metrics.reset(std::size_t(Metric::added_mass_inertia_ratio));
   if (heats) return;
   for (const Metric m : {Metric::winding_temperature, Metric::case_temperature, Metric::winding_temperature_margin}) {

@@ -76,9 +76,9 @@ class StudySections : public TomlReader {
 
   void read_tolerance(EnsembleOptions& options) const;
   void read_metrics(EnsembleOptions& options) const;
-  /// What vehicles without a motor that heats up or without added mass do not have is no metric unless the study names
-  /// it.
-  void leave_out_absent(EnsembleOptions& options, bool heats, bool added_mass) const;
+  /// What vehicles without a motor that heats up, without added mass or without pitch hinges do not have is no metric
+  /// unless the study names it.
+  void leave_out_absent(EnsembleOptions& options, bool heats, bool added_mass, bool pitching) const;
   std::string read_title() const;
   /// The vehicle with [set], its file being sought in that folder.
   Design<double> read_vehicle(const std::filesystem::path& folder) const;

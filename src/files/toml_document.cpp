@@ -331,10 +331,12 @@ void spell_out_coefficients(Document& document, std::string_view overridden) {
   const std::string path = "aerodynamics.coefficients";
   const Value* name = document.find(path);
   const bool single = at_or_below(overridden, path + ".lift") || at_or_below(overridden, path + ".drag");
-  const bool named_set = name && name->kind == Value::Kind::text && name->text == "translational-2022";
-  if (!single || document.has_section(path) || (name && !named_set)) return;
+  const auto set = !name                             ? translational_2022()
+                   : name->kind == Value::Kind::text ? named_coefficients(name->text)
+                                                     : std::nullopt;
+  if (!single || document.has_section(path) || !set) return;
   Design<double> named{};
-  named.aerodynamics.coefficients = translational_2022();
+  named.aerodynamics.coefficients = *set;
   const Origin origin = document.locate(path);
   document.values.erase(path);
   document.sections.insert_or_assign(path, origin);

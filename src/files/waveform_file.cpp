@@ -31,12 +31,18 @@ const std::array<WaveformColumn, waveform_column_count>& waveform_columns() {
       {"power_aerodynamic_w", "W", "aerodynamic power", &R::power_aerodynamic},
       {"spring_moment_nm", "N m", "moment of all hinge springs, towards stroke angle zero", &R::spring_moment},
       {"inertial_moment_nm", "N m", "wing inertia times stroke acceleration, of all wings", &R::inertial_moment},
+      {"pitch_angle_rad", "rad", "pitch angle of wings on a hinge, 0 where the chord is upright", &R::pitch_angle},
   }};
   return columns;
 }
 
+std::span<const WaveformColumn> waveform_columns(std::span<const WaveformRow> rows) {
+  const bool pitching = !rows.empty() && std::isfinite(rows.front().pitch_angle);
+  return std::span<const WaveformColumn>(waveform_columns()).first(waveform_column_count - (pitching ? 0 : 1));
+}
+
 std::string waveforms_csv(std::span<const WaveformRow> rows) {
-  const auto& columns = waveform_columns();
+  const auto columns = waveform_columns(rows);
   std::string text;
   auto out = std::back_inserter(text);
   for (const WaveformColumn& c : columns) fmt::format_to(out, "{}{}", &c == columns.data() ? "" : ",", c.name);
@@ -55,7 +61,7 @@ std::string waveforms_csv(std::span<const WaveformRow> rows) {
 void write_waveforms_netcdf(const std::filesystem::path& path, std::span<const WaveformRow> rows,
                             const Provenance& provenance) {
   NetcdfFile file(path);
-  const auto& columns = waveform_columns();
+  const auto columns = waveform_columns(rows);
   const NetcdfFile::Dimension time = file.define_dimension(columns.front().name, rows.size());
   std::vector<NetcdfFile::Variable> variables;
   for (const WaveformColumn& c : columns) {

@@ -5,6 +5,7 @@
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/parts/blade_element.hpp"
+#include "wingbeat/parts/pitching_wings.hpp"
 #include "wingbeat/parts/planform.hpp"
 
 namespace wingbeat {
@@ -58,6 +59,20 @@ void validate(const BladeElement<double>& w) {
   }
   require(planform_key::s2, w.s2);
   require(planform_key::s3, w.s3);
+}
+
+void validate(const PitchingWings<double>& w, double stroke_inertia) {
+  validate(w.hinge);
+  require(pitch_key::pitch_inertia, w.pitch_inertia);
+  require(pitch_key::mass_product, w.mass_product);
+  require(pitch_key::damping_coefficient, w.damping_coefficient);
+  const double largest = std::sqrt(stroke_inertia * w.pitch_inertia);
+  if (!(std::abs(w.mass_product) < largest)) {
+    throw ParameterError(pitch_key::mass_product.path,
+                         detail::format("no wing has that much: its square must be below wing.inertia times "
+                                        "wing.pitch_inertia, |P| < %.4g of %.4g kg m2 in all wings",
+                                        largest, std::abs(w.mass_product)));
+  }
 }
 
 namespace {

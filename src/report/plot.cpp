@@ -113,8 +113,14 @@ void plot_powers(std::span<const PowerBar> bars, const std::string& title, PlotF
                              {"friction", &EnergyAudit::friction, "#56b4e9", true, 0.398},
                              {"aerodynamic", &EnergyAudit::aerodynamic, "#00507c", false, 0.575},
                              {"residual", &EnergyAudit::residual, "#bbbbbb", true, 0.829}};
-  if (std::any_of(bars.begin(), bars.end(), [](const PowerBar& bar) { return bar.audit.gear != 0.0; })) {
-    parts.insert(parts.begin() + 2, {"gearbox", &EnergyAudit::gear, "#009e73", false, 0.0});
+  const auto lost_in = [&](double EnergyAudit::* power) {
+    return std::any_of(bars.begin(), bars.end(), [&](const PowerBar& bar) { return bar.audit.*power != 0.0; });
+  };
+  // A direct drive has no gearbox, and wings pitch on hinges under direct drives alone.
+  const bool gearbox = lost_in(&EnergyAudit::gear);
+  if (gearbox || lost_in(&EnergyAudit::hinge)) {
+    parts.insert(parts.begin() + 2, gearbox ? Part{"gearbox", &EnergyAudit::gear, "#009e73", false, 0.0}
+                                            : Part{"hinges", &EnergyAudit::hinge, "#009e73", false, 0.0});
     constexpr double key_x[] = {0.03, 0.174, 0.326, 0.492, 0.64, 0.862};
     for (std::size_t n = 0; n < parts.size(); ++n) parts[n].key_x = key_x[n];
   }

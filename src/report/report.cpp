@@ -92,6 +92,7 @@ void power_group(Table& table, const Metrics<double>& m) {
   power("  viscous loss of the motor", a.viscous, "b omega^2");
   if (a.gear != 0.0) power("  gearbox", a.gear, "(1 - e) T_g omega");
   power("  friction", a.friction, "T_f omega");
+  if (std::isfinite(m[Metric::power_hinge])) power("  pitch hinges", a.hinge, "c_psi psi'^2, impacts on stops");
   power("  aerodynamic", a.aerodynamic, "M_aero beta'");
   power("  formulation residual", a.residual, "F (h omega - g beta')");
   table.line("  energy-balance error", readable(a.imbalance, "W"),
@@ -272,6 +273,11 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
   table.angle("stroke amplitude", degrees_per_radian * m[Metric::stroke_amplitude], "half peak to peak");
   table.metric("peak flapping velocity", Metric::flapping_velocity_peak, "rad/s");
   table.angle("smallest angle of attack", m[Metric::angle_of_attack_min]);
+  if (std::isfinite(m[Metric::pitch_amplitude])) {
+    table.angle("largest angle of attack", m[Metric::angle_of_attack_max], "beyond 90 deg the wings over-rotate");
+    table.angle("pitch amplitude", m[Metric::pitch_amplitude], "half peak to peak");
+    table.angle("pitch phase", m[Metric::pitch_phase], "ahead of the pitch that opposes the flapping velocity");
+  }
   table.metric("lowest crank speed", Metric::crank_speed_min, "rad/s");
   table.metric("highest crank speed", Metric::crank_speed_max, "rad/s");
 

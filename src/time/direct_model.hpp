@@ -14,6 +14,9 @@ namespace wingbeat::detail {
 /// The unknowns are beta [rad], beta' [rad/s] and, with an inductance, i [A].
 class DirectModel {
  public:
+  static constexpr bool can_stick = true, pitches = false;
+  static constexpr int other_quadratures = 0;  ///< behind `quadratures`
+
   /// Everything that moves: copied to save it, assigned to go back.
   struct State {
     double t = 0.0;
@@ -24,6 +27,7 @@ class DirectModel {
   /// Functions of the state whose sign changes are events: of the motion, the speed or, where the shaft is stuck, what
   /// friction has left to hold; the moment stored in wings and springs; the speed.
   enum Indicator { motion_ends, stored_moment, velocity, indicator_count };
+  static constexpr std::size_t plain_indicators = 1;  ///< of them where no metrics are taken
 
   /// Throws ParameterError for numbers out of range.
   explicit DirectModel(const Vehicle<double>& vehicle);

@@ -1,6 +1,7 @@
 #include "time/direct_transient.hpp"
 
 #include <cmath>
+#include <complex>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -8,8 +9,10 @@
 #include "time/direct_model.hpp"
 #include "time/integrator.hpp"
 #include "time/model_problem.hpp"
+#include "time/pitch_direct_model.hpp"
 #include "time/recorder.hpp"
 #include "time/transient_tools.hpp"
+#include "wingbeat/cycle/pitch_metrics.hpp"
 
 namespace wingbeat::detail {
 namespace {
@@ -22,6 +25,8 @@ constexpr int creep_periods = 8;         // of ever shorter slips in one directi
 constexpr double nearly_settled = 1e-4;  // off the orbit, where the steps allowed end before the tolerance is reached
 constexpr int contraction_periods = 4;   // over which the contraction is taken: complex multipliers make it uneven
 
+/// Of a DirectModel or a PitchDirectModel.
+template <class Model>
 class DirectStartUp {
  public:
   DirectStartUp(const Vehicle<double>& vehicle, const TransientOptions& options);
@@ -39,6 +44,8 @@ class DirectStartUp {
   void add_variation();
   void period_done();
   void settle(double closure, double change);
+  void note_pitching(Integrator& steps, double from);
+  void meet_or_leave_stop();
   bool rests_for_good();
   bool creeps_to_rest();
   void begin_measuring();
@@ -50,13 +57,14 @@ class DirectStartUp {
   const TransientOptions& options_;
   TransientResult result_;
   Recorder recorder_{options_, result_};
-  DirectModel model_;
-  DirectModel::State& now_ = model_.now;
+  Model model_;
+  typename Model::State& now_ = model_.now;
   bool stiff_ = false, done_ = false;
   double relative_tolerance_ = 1e-9, tightest_ = 1e-13;
-  double quadrature_scale_[quadrature_count] = {};
+  static constexpr int count = quadrature_count + Model::other_quadratures;
+  double quadrature_scale_[count] = {};
 
-  double q_[quadrature_count] = {};
+  double q_[count] = {};
   std::unique_ptr<Integrator> plain_, with_quadratures_;
 
   bool measuring_ = false;
@@ -72,47 +80,64 @@ class DirectStartUp {
   double stroke_before_ = 0.0;
   double travel_[2] = {}, last_travel_ = infinity;  ///< of this period: backwards, forwards; the longer of the last
   int creeping_ = 0;                                ///< periods so far
-  double before_[3] = {};
+  double before_[5] = {};
+  PitchMetrics pitching_{};  ///< of this period, so far
+  double lowest_psi_ = 0.0, highest_psi_ = 0.0, impact_mark_ = 0.0;
   std::vector<double> changes_;
 };
 
-DirectStartUp::DirectStartUp(const Vehicle<double>& vehicle, const TransientOptions& options)
+template <class Model>
+DirectStartUp<Model>::DirectStartUp(const Vehicle<double>& vehicle, const TransientOptions& options)
     : options_(options), model_(vehicle) {
   require(options.tolerance >= 1e-11 && options.tolerance <= 1e-2, "transient.tolerance",
           "must lie between 1e-11 and 1e-2", "1", options.tolerance);
-  model_.start(options.crank_angle, options.crank_speed, options.current);
+  if constexpr (Model::pitches) {
+    model_.start(
+        {options.crank_angle, options.crank_speed, options.pitch_angle, options.pitch_velocity, options.current});
+  } else {
+    model_.start(options.crank_angle, options.crank_speed, options.current);
+  }
+  const auto typical = model_.typical();
+  const double speed_scale = typical[1], current_scale = typical.back();
   const Motor<double>& m = model_.vehicle.motor;
   stiff_ = model_.stiff();
   result_.stiff = stiff_;
   relative_tolerance_ = std::max(tightest_, (stiff_ ? 1e-3 : 3e-3) * options.tolerance);
 
-  const double power =
-      model_.current_scale * (m.torque_constant * model_.speed_scale + model_.current_scale * m.armature_resistance);
+  const double power = current_scale * (m.torque_constant * speed_scale + current_scale * m.armature_resistance);
   const auto size = [&](Integral which) {
     switch (which) {
-      case Integral::current: return model_.current_scale;
-      case Integral::current_square: return square(model_.current_scale);
-      case Integral::speed_square: return square(model_.speed_scale);
+      case Integral::current: return current_scale;
+      case Integral::current_square: return square(current_scale);
+      case Integral::speed_square: return square(speed_scale);
       case Integral::lift:
-        return model_.vehicle.wings.air_density * model_.vehicle.wings.s2 * square(model_.speed_scale) +
-               1e-6 * m.torque_constant * model_.current_scale;
-      case Integral::rod_force: return m.torque_constant * model_.current_scale;
+        return model_.vehicle.wings.air_density * model_.vehicle.wings.s2 * square(speed_scale) +
+               1e-6 * m.torque_constant * current_scale;
+      case Integral::rod_force: return m.torque_constant * current_scale;
       default: return power;
     }
   };
   for (int k = 0; k < quadrature_count; ++k) quadrature_scale_[k] = model_.period * size(quadratures[k]);
+  if constexpr (Model::pitches) {
+    double* other = quadrature_scale_ + quadrature_count;
+    other[Model::hinge_work] = model_.period * power;
+    other[Model::stroke_cosine] = other[Model::stroke_sine] = model_.period * typical[0];
+    other[Model::pitch_cosine] = other[Model::pitch_sine] = model_.period * typical[2];
+  }
 }
 
-void DirectStartUp::root_values(double t, const double* y, double* values, bool measuring) const {
+template <class Model>
+void DirectStartUp<Model>::root_values(double t, const double* y, double* values, bool measuring) const {
   const auto indicators = model_.indicators(t, y, measuring);
-  std::copy_n(indicators.begin(), measuring ? indicators.size() : 1, values);
+  std::copy_n(indicators.begin(), measuring ? indicators.size() : Model::plain_indicators, values);
 }
 
-std::unique_ptr<Integrator> DirectStartUp::integrator(bool measuring) {
+template <class Model>
+std::unique_ptr<Integrator> DirectStartUp<Model>::integrator(bool measuring) {
   IntegratorProblem p = measuring ? problem_with_quadratures(model_, relative_tolerance_, quadrature_scale_)
                                   : problem_of(model_, relative_tolerance_);
   p.stiff = stiff_;
-  p.roots = measuring ? int(DirectModel::indicator_count) : 1;
+  p.roots = int(measuring ? std::size_t(Model::indicator_count) : Model::plain_indicators);
   p.rates = [this, measuring](double t, const double* y, double* dy) {
     ++result_.rate_evaluations;
     return model_.rates(t, y, dy, measuring);
@@ -120,29 +145,34 @@ std::unique_ptr<Integrator> DirectStartUp::integrator(bool measuring) {
   p.root_functions = [this, measuring](double t, const double* y, double* values) {
     root_values(t, y, values, measuring);
   };
-  p.longest_step = 0.25 * model_.period;
+  p.longest_step = Model::pitches ? model_.longest_step() : 0.25 * model_.period;
   return make_integrator(options_.integrator, std::move(p));
 }
 
-void DirectStartUp::come_to_rest() {
-  const bool was_stuck = now_.stuck;
-  model_.come_to_rest();
-  if (was_stuck && !now_.stuck) event(Event::breakaway);
+template <class Model>
+void DirectStartUp<Model>::come_to_rest() {
+  if constexpr (Model::can_stick) {
+    const bool was_stuck = now_.stuck;
+    model_.come_to_rest();
+    if (was_stuck && !now_.stuck) event(Event::breakaway);
+  }
 }
 
 /// Integrates to an event or to the time `until`.
-void DirectStartUp::advance(double until) {
+template <class Model>
+void DirectStartUp<Model>::advance(double until) {
   if (now_.stuck) until = std::min(until, now_.t + model_.period / sticking_pieces);
   if (until - now_.t < 1e-13 * until) {
     now_.t = until;
     return;
   }
+  if constexpr (Model::pitches) model_.begin_piece();
   std::unique_ptr<Integrator>& slot = measuring_ ? with_quadratures_ : plain_;
   if (!slot) slot = integrator(measuring_);
   Integrator& steps = *slot;
   double* y = steps.state();
   std::copy(now_.y, now_.y + model_.coupled, y);
-  if (measuring_) std::copy(q_, q_ + quadrature_count, y + model_.coupled);
+  if (measuring_) std::copy(q_, q_ + count, y + model_.coupled);
   auto directions = model_.directions();
   if (!steps.restart(now_.t, directions.data(), std::min(model_.period, until - now_.t), until)) {
     give_up({.kind = Evidence::integrator_not_started});
@@ -161,12 +191,17 @@ void DirectStartUp::advance(double until) {
     }
     now_.t = steps.time();
     std::copy(y, y + model_.coupled, now_.y);
-    if (measuring_) std::copy(y + model_.coupled, y + model_.coupled + quadrature_count, q_);
+    if (measuring_) std::copy(y + model_.coupled, y + model_.coupled + count, q_);
     step_taken(steps, from);
     if (outcome == Integrator::Outcome::stop) return;
     if (outcome == Integrator::Outcome::root) {
       if (measuring_) add_variation();
-      if (steps.found(DirectModel::motion_ends)) {
+      if constexpr (Model::pitches) {
+        if (steps.found(Model::stop)) {
+          meet_or_leave_stop();
+          return;
+        }
+      } else if (steps.found(Model::motion_ends)) {
         if (now_.stuck) {
           model_.break_away();
           event(Event::breakaway);
@@ -176,21 +211,25 @@ void DirectStartUp::advance(double until) {
         }
         return;
       }
-    } else if (model_.sticks && !now_.stuck && now_.direction * now_.y[1] < -1e-9 * model_.speed_scale) {
-      // A reversal that the integrator did not see.
-      come_to_rest();
+    } else if (model_.branch_lost()) {
+      // A reversal or a stop that the integrator did not see.
+      if constexpr (Model::pitches) meet_or_leave_stop();
+      else come_to_rest();
       return;
     }
     if (out_of_budget()) return;
   }
 }
 
-WaveformRow DirectStartUp::row(double t, const double* y) const {
+template <class Model>
+WaveformRow DirectStartUp<Model>::row(double t, const double* y) const {
   const Motion<double> m = model_.motion(t, y);
-  return waveform_row(model_.vehicle, m, t - double(result_.cycles) * model_.period, y[0], m.stroke_velocity, y[0]);
+  return waveform_row(model_.vehicle, m, t - double(result_.cycles) * model_.period, y[0], m.stroke_velocity, y[0],
+                      Model::pitches ? y[2] : absent);
 }
 
-void DirectStartUp::step_taken(Integrator& steps, double from) {
+template <class Model>
+void DirectStartUp<Model>::step_taken(Integrator& steps, double from) {
   swing_ = std::max(swing_, std::abs(now_.y[0]));
   travel_[now_.y[0] > stroke_before_] += std::abs(now_.y[0] - stroke_before_);
   stroke_before_ = now_.y[0];
@@ -203,6 +242,7 @@ void DirectStartUp::step_taken(Integrator& steps, double from) {
           return extreme_candidates(m, m.stroke_velocity, model_.branch_at(y), y[0]);
         },
         from, now_.t, extremes_);
+    if constexpr (Model::pitches) note_pitching(steps, from);
     const int last = options_.cycle_rows - 1;
     while (last > 0 && int(result_.cycle.size()) <= last) {
       const double at = model_.period * (result_.cycles + double(result_.cycle.size()) / last);
@@ -216,22 +256,56 @@ void DirectStartUp::step_taken(Integrator& steps, double from) {
   });
 }
 
-void DirectStartUp::add_variation() {
+template <class Model>
+void DirectStartUp<Model>::add_variation() {
   const double energy = model_.wing_energy();
   variation_ += std::abs(energy - energy_mark_);
   energy_mark_ = energy;
 }
 
-void DirectStartUp::begin_measuring() {
+template <class Model>
+void DirectStartUp<Model>::begin_measuring() {
   measuring_ = true;
   std::fill(std::begin(q_), std::end(q_), 0.0);
   extremes_.fill(-infinity);
   variation_ = 0.0;
   energy_mark_ = model_.wing_energy();
   result_.cycle.clear();
+  if constexpr (Model::pitches) {
+    pitching_ = {0.0, 0.0, infinity, -infinity, 0.0, 0.0};
+    lowest_psi_ = infinity;
+    highest_psi_ = -infinity;
+    impact_mark_ = now_.impact_loss;
+  }
 }
 
-void DirectStartUp::take_metrics() {
+/// How the wings have pitched in the last step: pitch and angle of attack have their extremes at ends of steps.
+template <class Model>
+void DirectStartUp<Model>::note_pitching(Integrator& steps, double from) {
+  const double* middle = steps.dense(0.5 * (from + now_.t));
+  const double stroke = sign_of(middle[1]);
+  if (stroke * middle[2] > 0.0) pitching_.over_rotation += (now_.t - from) / model_.period;
+  for (const double t : {from, now_.t}) {
+    const double psi = steps.dense(t)[2], alpha = 0.5 * pi + stroke * psi;
+    lowest_psi_ = std::min(lowest_psi_, psi);
+    highest_psi_ = std::max(highest_psi_, psi);
+    pitching_.angle_of_attack_min = std::min(pitching_.angle_of_attack_min, alpha);
+    pitching_.angle_of_attack_max = std::max(pitching_.angle_of_attack_max, alpha);
+  }
+}
+
+template <class Model>
+void DirectStartUp<Model>::meet_or_leave_stop() {
+  const double lost = now_.impact_loss;
+  if (measuring_) add_variation();
+  model_.handle(Model::stop);
+  // What the impact takes at once is no power that flows back and forth.
+  if (measuring_) energy_mark_ = model_.wing_energy();
+  if (now_.impact_loss > lost) event(Event::stop_impact);
+}
+
+template <class Model>
+void DirectStartUp<Model>::take_metrics() {
   add_variation();
   CycleIntegrals<double>& integrals = result_.integrals;
   for (int k = 0; k < quadrature_count; ++k) integrals[std::size_t(quadratures[k])] = q_[k];
@@ -239,34 +313,51 @@ void DirectStartUp::take_metrics() {
   integrals[std::size_t(Integral::reactive_work)] = variation_;
   result_.metrics = cycle_metrics(model_.vehicle, integrals, extremes_, absent, options_.reporting);
   result_.averaged_cycles = 1;
+  if constexpr (Model::pitches) {
+    const double* other = q_ + quadrature_count;
+    pitching_.amplitude = 0.5 * (highest_psi_ - lowest_psi_);
+    pitching_.hinge_power = (other[Model::hinge_work] + now_.impact_loss - impact_mark_) / model_.period;
+    const std::complex<double> stroke(other[Model::stroke_cosine], -other[Model::stroke_sine]),
+        psi(other[Model::pitch_cosine], -other[Model::pitch_sine]);
+    pitching_.phase = std::arg(psi / (std::complex<double>(0.0, -1.0) * stroke));
+    set_pitch_metrics(pitching_, *result_.metrics);
+  }
 }
 
 /// True, with the decision, where nothing moves the shaft any more.
-bool DirectStartUp::rests_for_good() {
-  const Motor<double>& m = model_.vehicle.motor;
-  const bool no_drive = model_.vehicle.voltage == 0.0 && std::abs(now_.y[1]) < 1e-9 * model_.speed_scale &&
-                        std::abs(now_.y[0]) < 1e-9 * model_.stroke_scale && swing_ < 1e-9 * model_.stroke_scale;
+template <class Model>
+bool DirectStartUp<Model>::rests_for_good() {
+  const auto typical = model_.typical();
+  const bool no_drive = model_.vehicle.voltage == 0.0 && std::abs(now_.y[1]) < 1e-9 * typical[1] &&
+                        std::abs(now_.y[0]) < 1e-9 * typical[0] && swing_ < 1e-9 * typical[0];
   double held = infinity;
-  if (now_.stuck) {
-    // The current is a sine and what remains of its start.
-    const double Z = std::hypot(m.armature_resistance, model_.w * m.armature_inductance);
-    const double lag = std::atan2(model_.w * m.armature_inductance, m.armature_resistance);
-    const double remains =
-        model_.inductive ? std::abs(now_.y[2] - model_.vehicle.voltage / Z * std::sin(model_.w * now_.t - lag)) : 0.0;
-    held = model_.drive_torque + std::abs(model_.springs_of(now_.y[0])) + m.torque_constant * remains;
+  if constexpr (Model::can_stick) {
+    if (now_.stuck) {
+      // The current is a sine and what remains of its start.
+      const Motor<double>& m = model_.vehicle.motor;
+      const double Z = std::hypot(m.armature_resistance, model_.w * m.armature_inductance);
+      const double lag = std::atan2(model_.w * m.armature_inductance, m.armature_resistance);
+      const double remains =
+          model_.inductive ? std::abs(now_.y[2] - model_.vehicle.voltage / Z * std::sin(model_.w * now_.t - lag)) : 0.0;
+      held = model_.drive_torque + std::abs(model_.springs_of(now_.y[0])) + m.torque_constant * remains;
+    }
+    if (held > model_.holding_torque && !no_drive) return false;
+  } else if (!no_drive) {
+    return false;
   }
-  if (held > model_.holding_torque && !no_drive) return false;
   done_ = true;
   result_.settled = true;
   result_.status = FlappingStatus::stalled;
   result_.time_to_steady = now_.t;
   result_.lock_angle = now_.y[0];
-  result_.torque_margin = now_.stuck ? model_.holding_torque - held : 0.0;
-  if (now_.stuck) {
-    result_.evidence = {
-        .kind = Evidence::held_shaft, .angle = now_.y[0], .torque = held, .friction_torque = model_.holding_torque};
-  } else {
-    result_.evidence = {.kind = Evidence::no_voltage};
+  result_.torque_margin = 0.0;
+  result_.evidence = {.kind = Evidence::no_voltage};
+  if constexpr (Model::can_stick) {
+    if (now_.stuck) {
+      result_.torque_margin = model_.holding_torque - held;
+      result_.evidence = {
+          .kind = Evidence::held_shaft, .angle = now_.y[0], .torque = held, .friction_torque = model_.holding_torque};
+    }
   }
   return true;
 }
@@ -274,30 +365,36 @@ bool DirectStartUp::rests_for_good() {
 /// True, with the decision, where the drive alone cannot break the shaft away and the springs let it creep towards an
 /// angle of rest: from standstill to standstill the angle is a monotone map of itself, and slips in one direction end
 /// where there are none.
-bool DirectStartUp::creeps_to_rest() {
-  const double travel = std::max(travel_[0], travel_[1]), back = std::min(travel_[0], travel_[1]);
-  const bool creeps =
-      now_.stuck && model_.drive_torque <= model_.holding_torque && travel < last_travel_ && back <= 1e-6 * travel;
-  creeping_ = creeps ? creeping_ + 1 : 0;
-  last_travel_ = travel;
-  travel_[0] = travel_[1] = 0.0;
-  if (creeping_ < creep_periods) return false;
-  done_ = true;
-  result_.settled = true;
-  result_.status = FlappingStatus::stalled;
-  result_.time_to_steady = now_.t;
-  result_.lock_angle = now_.y[0];
-  result_.torque_margin = model_.holding_torque - model_.drive_torque;
-  result_.evidence = {.kind = Evidence::creeping_shaft,
-                      .angle = now_.y[0],
-                      .torque = model_.drive_torque,
-                      .friction_torque = model_.holding_torque,
-                      .travel = travel};
-  return true;
+template <class Model>
+bool DirectStartUp<Model>::creeps_to_rest() {
+  if constexpr (!Model::can_stick) {
+    return false;
+  } else {
+    const double travel = std::max(travel_[0], travel_[1]), back = std::min(travel_[0], travel_[1]);
+    const bool creeps =
+        now_.stuck && model_.drive_torque <= model_.holding_torque && travel < last_travel_ && back <= 1e-6 * travel;
+    creeping_ = creeps ? creeping_ + 1 : 0;
+    last_travel_ = travel;
+    travel_[0] = travel_[1] = 0.0;
+    if (creeping_ < creep_periods) return false;
+    done_ = true;
+    result_.settled = true;
+    result_.status = FlappingStatus::stalled;
+    result_.time_to_steady = now_.t;
+    result_.lock_angle = now_.y[0];
+    result_.torque_margin = model_.holding_torque - model_.drive_torque;
+    result_.evidence = {.kind = Evidence::creeping_shaft,
+                        .angle = now_.y[0],
+                        .torque = model_.drive_torque,
+                        .friction_torque = model_.holding_torque,
+                        .travel = travel};
+    return true;
+  }
 }
 
 /// The decision that it flaps, with the metrics taken: how far periods are from the orbit, and from each other.
-void DirectStartUp::settle(double closure, double change) {
+template <class Model>
+void DirectStartUp<Model>::settle(double closure, double change) {
   done_ = true;
   result_.closure = closure;
   result_.settled = true;
@@ -308,26 +405,34 @@ void DirectStartUp::settle(double closure, double change) {
   result_.crank_speed = now_.y[1];
   result_.current = model_.current_of(now_.t, now_.y);
   result_.stroke_angle = now_.y[0];
+  if constexpr (Model::pitches) {
+    result_.pitch_angle = now_.y[2];
+    result_.pitch_velocity = now_.y[3];
+  }
   result_.evidence = {.kind = Evidence::settled_periods,
                       .frequency = model_.vehicle.drive_frequency,
                       .time = result_.time_to_steady,
                       .change = change,
                       .cycles = result_.cycles};
+  if constexpr (Model::pitches) {
+    if (model_.vehicle.wings.air_density > 0.0) result_.evidence.over_rotation = pitching_.over_rotation;
+  }
 }
 
-void DirectStartUp::period_done() {
+template <class Model>
+void DirectStartUp<Model>::period_done() {
   ++result_.cycles;
   event(Event::revolution);
   swings_.push_back(swing_);
   swing_ = std::abs(now_.y[0]);
   if (rests_for_good() || creeps_to_rest()) return;
 
-  const double scale[3] = {model_.stroke_scale, model_.speed_scale, model_.current_scale};
+  const auto scale = model_.typical();
   double change = 0.0;
   for (int n = 0; n < model_.coupled; ++n) {
     // Without springs nothing returns the shaft to any angle.
     if (n == 0 && !(model_.vehicle.spring.stiffness > 0.0)) continue;
-    change = std::max(change, std::abs(now_.y[n] - before_[n]) / scale[n]);
+    change = std::max(change, std::abs(now_.y[n] - before_[n]) / scale[std::size_t(n)]);
   }
   std::copy(now_.y, now_.y + model_.coupled, before_);
   changes_.push_back(change);
@@ -373,7 +478,8 @@ void DirectStartUp::period_done() {
   }
 }
 
-bool DirectStartUp::out_of_budget() {
+template <class Model>
+bool DirectStartUp<Model>::out_of_budget() {
   ++result_.steps;
   if (result_.steps > options_.max_steps && last_metrics_ && last_off_ < nearly_settled) {
     // That it flaps is beyond doubt, its metrics are as good as the steps allowed make them.
@@ -391,7 +497,8 @@ bool DirectStartUp::out_of_budget() {
   return done_;
 }
 
-void DirectStartUp::give_up(StatusEvidence why) {
+template <class Model>
+void DirectStartUp<Model>::give_up(StatusEvidence why) {
   done_ = true;
   result_.settled = false;
   result_.status = FlappingStatus::undecided;
@@ -400,12 +507,10 @@ void DirectStartUp::give_up(StatusEvidence why) {
   result_.evidence = std::move(why);
 }
 
-TransientResult DirectStartUp::run() {
-  if (model_.sticks) {
-    now_.direction = sign_of(now_.y[1]);
-    if (now_.y[1] == 0.0) come_to_rest();
-  }
-  std::copy(now_.y, now_.y + 3, before_);
+template <class Model>
+TransientResult DirectStartUp<Model>::run() {
+  if constexpr (Model::can_stick) model_.begin_piece();
+  std::copy(now_.y, now_.y + model_.coupled, before_);
   swing_ = std::abs(now_.y[0]);
   stroke_before_ = now_.y[0];
   recorder_.start(std::abs(model_.current_of(0.0, now_.y)));
@@ -431,7 +536,8 @@ TransientResult DirectStartUp::run() {
 }  // namespace
 
 TransientResult simulate_direct_start_up(const Vehicle<double>& vehicle, const TransientOptions& options) {
-  return DirectStartUp(vehicle, options).run();
+  if (pitches(vehicle)) return DirectStartUp<PitchDirectModel>(vehicle, options).run();
+  return DirectStartUp<DirectModel>(vehicle, options).run();
 }
 
 }  // namespace wingbeat::detail

@@ -30,16 +30,15 @@ IntegratorProblem problem_of(const Model& model, const double& relative) {
   return p;
 }
 
-/// The same with `quadratures` behind the unknowns, which are of the sizes `scale`.
-template <class Model>
-IntegratorProblem problem_with_quadratures(const Model& model, const double& relative,
-                                           const double (&scale)[quadrature_count]) {
+/// The same with `quadratures` and what else the model integrates behind the unknowns, which are of the sizes `scale`.
+template <class Model, std::size_t count>
+IntegratorProblem problem_with_quadratures(const Model& model, const double& relative, const double (&scale)[count]) {
   IntegratorProblem p = problem_of(model, relative);
-  p.size += quadrature_count;
+  p.size += int(count);
   p.rates = [&](double t, const double* y, double* dy) { return model.rates(t, y, dy, true); };
   p.tolerated = [&](const double* y, double* errors) {
     model.tolerated(relative, y, errors);
-    for (int k = model.coupled; k < model.coupled + quadrature_count; ++k) {
+    for (int k = model.coupled; k < model.coupled + int(count); ++k) {
       errors[k] = relative * (std::abs(y[k]) + 0.01 * scale[k - model.coupled]);
     }
   };

@@ -274,8 +274,12 @@ class OwnIntegrator : public Integrator {
 }  // namespace
 
 std::unique_ptr<Integrator> own_integrator(IntegratorProblem problem) {
-  if (problem.coupled == 2) return std::make_unique<OwnIntegrator<2>>(std::move(problem));
-  return std::make_unique<OwnIntegrator<3>>(std::move(problem));
+  switch (problem.coupled) {
+    case 2: return std::make_unique<OwnIntegrator<2>>(std::move(problem));
+    case 3: return std::make_unique<OwnIntegrator<3>>(std::move(problem));
+    case 4: return std::make_unique<OwnIntegrator<4>>(std::move(problem));
+    default: return std::make_unique<OwnIntegrator<5>>(std::move(problem));
+  }
 }
 
 }  // namespace wingbeat::detail

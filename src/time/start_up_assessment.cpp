@@ -16,7 +16,8 @@ StartUp start_up_in_time(double tolerance, TimeIntegrator integrator) {
     options.tolerance = std::max(tolerance, tightest);
     options.metrics = false;
     const TransientResult r = simulate_start_up(vehicle, options);
-    StartUpOutcome outcome{r.status, r.settled, r.evidence, r.crank_speed, r.current, r.stroke_angle, {}};
+    StartUpOutcome outcome{r.status,      r.settled,        r.evidence, r.crank_speed, r.current, r.stroke_angle,
+                           r.pitch_angle, r.pitch_velocity, {}};
     if (r.status != FlappingStatus::flapping || !r.settled) return outcome;
     outcome.cycle = [vehicle, integrator, state = outcome](double wanted, const Reporting& reporting) {
       TransientOptions onward;
@@ -26,6 +27,8 @@ StartUp start_up_in_time(double tolerance, TimeIntegrator integrator) {
       onward.crank_angle = state.stroke_angle;
       onward.crank_speed = state.crank_speed;
       onward.current = state.current;
+      onward.pitch_angle = state.pitch_angle;
+      onward.pitch_velocity = state.pitch_velocity;
       const TransientResult cycle = simulate_start_up(vehicle, onward);
       if (!cycle.settled || !cycle.metrics) return std::optional<SimulatedCycle>();
       return std::optional(

@@ -14,6 +14,7 @@ const char* name_of(TransientEvent::Kind kind) {
     case Kind::revolution: return "revolution";
     case Kind::jam: return "jam";
     case Kind::supply_switch: return "supply-switch";
+    case Kind::stop_impact: return "stop-impact";
   }
   return "unknown";
 }

@@ -78,6 +78,39 @@ void validate_added_mass(const Design<double>& d, const Vehicle<double>& v) {
           J_a, own, 90.0 - degrees_per_radian * x, share));
 }
 
+/// What wings that pitch on a hinge need and cannot have.
+void validate_pitching(const Design<double>& d, const Vehicle<double>& v) {
+  if (!d.pitch.stiffness) {
+    if (d.aerodynamics.coefficients_name != normal_force_set) return;
+    throw ParameterError("aerodynamics.coefficients",
+                         std::string(normal_force_set) +
+                             " is for wings that pitch on a hinge; give pitch.stiffness, or translational-2022");
+  }
+  const char* key = pitch_key::stiffness.path;
+  if (drive_of(d).rotates) {
+    throw ParameterError(key,
+                         std::string("pitch as a degree of freedom is solved for a direct drive only, not for a ") +
+                             name_of(d.transmission.type));
+  }
+  if (d.friction.law == FrictionLaw::constant || d.motor.constants.friction_torque > 0.0) {
+    throw ParameterError(d.friction.law == FrictionLaw::constant ? "friction.type" : "motor.friction_torque",
+                         "constant friction is not solved for together with wings that pitch on a hinge");
+  }
+  if (d.wing.planform.shape == PlanformShape::moments) {
+    throw ParameterError(key, "needs the wing's outline: give a planform with a shape");
+  }
+  const bool inertia = d.wing.pitch_inertia.has_value(), product = d.wing.mass_product.has_value();
+  if (d.wing.areal_density && (inertia || product)) {
+    throw ParameterError(inertia ? pitch_key::pitch_inertia.path : pitch_key::mass_product.path,
+                         "follows from wing.areal_density; give one of them");
+  }
+  if (!d.wing.areal_density && !(inertia && product)) {
+    throw ParameterError(inertia ? pitch_key::mass_product.path : pitch_key::pitch_inertia.path,
+                         "missing: wings that pitch on a hinge need pitch_inertia and mass_product, or areal_density");
+  }
+  validate(v.pitch, v.wing_count * v.wing_inertia);
+}
+
 }  // namespace
 
 void validate(const Design<double>& d) {
@@ -140,6 +173,7 @@ void validate(const Design<double>& d) {
   validate(v.thermal);
   validate(v.wings);
   validate_added_mass(d, v);
+  validate_pitching(d, v);
   if (d.supply_resonance_ratio && !(v.drive_frequency > 0.0)) {
     throw ParameterError("supply.resonance_ratio", "the springs' stiffness is 0: nothing resonates");
   }

@@ -69,6 +69,19 @@ struct Drawn {
   static constexpr std::string_view text = "wing.areal_density";
   static constexpr bool holds(const auto& d) { return d.wing.areal_density.has_value(); }
 };
+struct Pitching {
+  static constexpr std::string_view text = "pitch.stiffness";
+  static constexpr bool holds(const auto& d) { return d.pitch.stiffness.has_value(); }
+};
+/// The same of what stands before the stiffness in the table.
+struct PitchingWing : Pitching {
+  static constexpr bool holds(const auto&) { return true; }
+};
+/// Without a pitch hinge. No choice of its own: the file reader refuses what set() does.
+struct UnderPitchLaw {
+  static constexpr std::string_view text = {};
+  static constexpr bool holds(const auto& d) { return !Pitching::holds(d); }
+};
 struct Heated {
   static constexpr std::string_view text = "motor.thermal_resistance_winding";
   static constexpr bool holds(const auto& d) { return d.motor.thermal.resistance_winding.has_value(); }

@@ -16,8 +16,9 @@ std::span<const Parameter<S>> parameter_table() {
   using detail::alternative, detail::battery_voltage, detail::choice, detail::friction_number, detail::number,
       detail::replaceable, detail::row, detail::table, detail::text, detail::wave_number;
   using detail::Drawn, detail::FormulationChoice, detail::FrictionChoice, detail::Geared, detail::Heated,
-      detail::ShapeChoice, detail::ShapeIs, detail::SupplyChoice, detail::SupplyIs, detail::TransmissionChoice,
-      detail::TransmissionIs, detail::Weighed, detail::WeighedSprings;
+      detail::Pitching, detail::PitchingWing, detail::ShapeChoice, detail::ShapeIs, detail::SupplyChoice,
+      detail::SupplyIs, detail::TransmissionChoice, detail::TransmissionIs, detail::UnderPitchLaw, detail::Weighed,
+      detail::WeighedSprings;
   using enum PlanformShape;
   using Powered = SupplyIs<SupplyType::constant, SupplyType::pwm>;
   using Sine = SupplyIs<SupplyType::sine>;
@@ -309,6 +310,15 @@ std::span<const Parameter<S>> parameter_table() {
       number<S, Drawn>(row(wing_material_key::spar_density, "0 kg/m",
                            "lambda, mass of the leading-edge spar over its length, from root to tip"),
                        [](auto& d) -> auto& { return d.wing.spar_density; }),
+      number<S, PitchingWing>(
+          row(pitch_key::pitch_inertia, "from areal_density",
+              "I_psi = integral x^2 dm of one wing about its leading edge; given with mass_product, or "
+              "both follow from areal_density"),
+          [](auto& d) -> auto& { return d.wing.pitch_inertia; }),
+      number<S, PitchingWing>(
+          row(pitch_key::mass_product, "from areal_density",
+              "P = integral r x dm of one wing, r from the flapping hinge, x behind the leading edge"),
+          [](auto& d) -> auto& { return d.wing.mass_product; }),
       choice<S, ShapeChoice>("how the wing's outline is given", name_of(semi_ellipse)),
       number<S, Outline>(row(planform_key::length, "required", "R, wing root to tip", {}, "63 mm"),
                          [](auto& d) -> auto& { return d.wing.planform.length; }),
@@ -340,23 +350,44 @@ std::span<const Parameter<S>> parameter_table() {
       number<S, Moments>(row(planform_key::s22, "none", "S_22 = N_w integral c^2 r^2 dr of all wings, for added mass"),
                          [](auto& d) -> auto& { return d.wing.planform.s22; }),
 
+      number<S>(row(pitch_key::stiffness, "none: the pitch law",
+                    "k_psi of the hinge about which one wing pitches; given, pitch is a degree of freedom (direct "
+                    "drives)"),
+                [](auto& d) -> auto& { return d.pitch.stiffness; }),
+      number<S, Pitching>(row(pitch_key::damping, "0 N m s/rad", "c_psi of one hinge"),
+                          [](auto& d) -> auto& { return d.pitch.damping; }),
+      number<S, Pitching>(
+          row(pitch_key::stop, "none", "psi_max, pitch angle to either side at which stops hold the wing"),
+          [](auto& d) -> auto& { return d.pitch.stop; }),
+      text<S, Pitching>({"pitch.rotational_lift",
+                         "",
+                         {"true or false"},
+                         "true",
+                         "the force that the circulation of a pitching wing adds, C_rot = 0.75 pi"},
+                        [](const D& d) { return std::string(d.pitch.rotational_lift ? "" : "false"); }),
+      number<S, Pitching>(row(pitch_key::damping_coefficient, "5",
+                              "C_rd, drag coefficient of a wing that turns about its "
+                              "leading edge"),
+                          [](auto& d) -> auto& { return d.pitch.damping_coefficient; }),
+
       number<S>(row(aerodynamics_key::air_density, "required", "rho, air density", {}, "1.225 kg/m3"),
                 [](auto& d) -> auto& { return d.aerodynamics.air_density; }),
-      number<S>(row(aerodynamics_key::pitch_coefficient, "required",
-                    "C_alpha, passive pitching: alpha = pi/2 - C_alpha abs(beta')", {}, "5 ms"),
-                [](auto& d) -> auto& { return d.aerodynamics.pitch_coefficient; }),
-      number<S>(
+      number<S, UnderPitchLaw>(row(aerodynamics_key::pitch_coefficient, "required unless pitch.stiffness",
+                                   "C_alpha, passive pitching: alpha = pi/2 - C_alpha abs(beta')", {}, "5 ms"),
+                               [](auto& d) -> auto& { return d.aerodynamics.pitch_coefficient; }),
+      number<S, UnderPitchLaw>(
           row(aerodynamics_key::angle_of_attack_min, "none", "stop of the passive pitching: alpha falls no lower"),
           [](auto& d) -> auto& { return d.aerodynamics.angle_of_attack_min; }),
       text<S>({"aerodynamics.added_mass",
                "",
                {"true or false"},
                "false",
-               "air accelerated with the wings: J_a = pi/4 rho S_22 by strip theory; takes no mean power"},
+               "air accelerated with the wings: J_a = pi/4 rho S_22 by strip theory, of wings on a pitch hinge the air "
+               "that their pitching moves, too; takes no mean power"},
               [](const D& d) { return std::string(d.aerodynamics.added_mass ? "true" : ""); }),
       text<S>({"aerodynamics.coefficients",
                "",
-               {"translational-2022, or a table of the keys below"},
+               {"translational-2022, normal-force-robofly (with pitch.stiffness), or a table of the keys below"},
                "translational-2022",
                "lift and drag coefficient against angle of attack, eqs (12, 13)",
                {},

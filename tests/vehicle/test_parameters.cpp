@@ -44,6 +44,7 @@ std::vector<Design<double>> designs_of_every_kind() {
         d.motor.thermal.resistance_winding = 20.0;
         d.spring.stiffness = 1e-3;
         d.wing.areal_density = 0.02;
+        if (transmission == TransmissionType::direct) d.pitch.stiffness = 3e-4;
         designs.push_back(d);
       }
     }
@@ -187,7 +188,7 @@ TEST(Parameters, NearestKey) {
             "unknown key; [spring] knows stiffness, resonance, resonance_ratio, mass");
   EXPECT_EQ(unknown_key_message("battery"),
             "unknown key; the sections are [vehicle], [supply], [motor], [transmission], [friction], [spring], [wing], "
-            "[aerodynamics], [bench]");
+            "[pitch], [aerodynamics], [bench]");
 }
 
 }  // namespace

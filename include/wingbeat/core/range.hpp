@@ -35,6 +35,7 @@ inline constexpr ParameterRange zero_to_one{"0 to 1", "must lie between 0 and 1"
 inline constexpr ParameterRange efficiency{"> 0, <= 1", "must be > 0 and <= 1", 0.0, 1.0, true};
 inline constexpr ParameterRange acute{"> 0, < pi/2", "must lie between 0 and pi/2", 0.0, pi / 2.0, true, true};
 inline constexpr ParameterRange zero_to_acute{">= 0, < pi/2", "must be >= 0 and < pi/2", 0.0, pi / 2.0, false, true};
+inline constexpr ParameterRange below_straight{"> 0, < pi", "must be > 0 and < pi", 0.0, pi, true, true};
 inline constexpr ParameterRange count{
     "whole number >= 1", "must be a whole number >= 1", 1.0, endless, false, false, true};
 

@@ -30,4 +30,8 @@ struct DirectBalance {
 
 DirectBalance direct_balance(const Vehicle<double>& vehicle);
 
+/// Of wings that pitch, about how far [rad] at a stroke velocity [rad/s]: what inertia and drag of an upright wing ask
+/// of the hinge, at most a radian.
+double typical_pitch(const Vehicle<double>& vehicle, double stroke_velocity);
+
 }  // namespace wingbeat

@@ -31,6 +31,7 @@ using DomainStatus = std::bitset<domain_limit_count>;
 
 inline constexpr double angle_of_attack_lowest_deg = 0.0;
 inline constexpr double angle_of_attack_highest_deg = 90.0;
+inline constexpr double pitching_angle_highest_deg = 180.0;  ///< of wings that pitch on a hinge
 /// Largest stroke angle of the tan-law mechanism [deg]. The law reaches 90 deg only with a hinge offset of zero, so
 /// that every amplitude obeys it; at 85 deg the side load on the slider, whose friction is not modelled, is 11 rod
 /// forces.
@@ -82,6 +83,7 @@ std::string name_of(DomainStatus status);
 struct DomainEvidence {
   enum class Quantity {
     angle_of_attack_min,    ///< smallest of the cycle [deg]
+    angle_of_attack_max,    ///< largest of the cycle [deg], of wings that pitch on a hinge
     angle_of_attack_range,  ///< the same [deg], where the coefficients end before the 90 deg of the reversals
     stroke_angle,           ///< largest to either side, by the mechanism's geometry [deg]
     stroke_amplitude,       ///< of a direct drive [deg]

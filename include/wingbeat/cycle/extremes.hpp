@@ -69,12 +69,21 @@ CycleExtremes<double> cycle_extremes(const System& system, const solver::Iterate
     const bool last = n + 1 == cycle.steps.size();
     const bool same_branch = n > 0 && step.signs == cycle.steps[n - 1].signs;
     if (!same_branch) at = candidates(step.x, step.y, step.first.dy, step.signs);
-    const auto& y1 = last ? cycle.end : cycle.steps[n + 1].y;
+    State y1 = last ? cycle.end : cycle.steps[n + 1].y;
     const double x1 = step.x + step.h;
-    // Where the rates may jump, those of the next step do not belong to this one's end.
-    const State dy1 = solver::jumps(system, 0) ? system.template rates<false>(x1, y1, step.signs).dy
-                      : last                   ? cycle.steps.front().first.dy
-                                               : cycle.steps[n + 1].first.dy;
+    // Where the rates may jump, those of the next step do not belong to this one's end, and after an impact its state
+    // does not.
+    bool rates_jump = solver::jumps(system, 0);
+    if constexpr (requires { System::state_jumps; }) {
+      rates_jump = true;
+      constexpr auto impacts = System::impacts;
+      if (!last && step.signs[impacts] != cycle.steps[n + 1].signs[impacts]) {
+        y1 = solver::evaluate_inside<false>(system, cycle, step, x1).y;
+      }
+    }
+    const State dy1 = rates_jump ? system.template rates<false>(x1, y1, step.signs).dy
+                      : last     ? cycle.steps.front().first.dy
+                                 : cycle.steps[n + 1].first.dy;
     const Candidates end = candidates(x1, y1, dy1, step.signs);
     for (const Extreme e : System::extremes) {
       const auto c = std::size_t(e);

@@ -47,9 +47,13 @@ enum class Metric {
   winding_temperature,
   case_temperature,
   winding_temperature_margin,
-  added_mass_inertia_ratio
+  added_mass_inertia_ratio,
+  power_hinge,
+  pitch_amplitude,
+  pitch_phase,
+  angle_of_attack_max
 };
-inline constexpr int metric_count = int(Metric::added_mass_inertia_ratio) + 1;
+inline constexpr int metric_count = int(Metric::angle_of_attack_max) + 1;
 
 /// How a metric is named outside the program.
 struct MetricInfo {
@@ -230,6 +234,11 @@ Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, cons
   const auto weighs = v.wings.added_inertia > S(0.0);
   m[Metric::added_mass_inertia_ratio] =
       select(weighs, ratio(v.wings.added_inertia, v.wing_count * v.wing_inertia), S(absent));
+  // Of wings that pitch: see PitchMetrics.
+  for (const Metric which :
+       {Metric::power_hinge, Metric::pitch_amplitude, Metric::pitch_phase, Metric::angle_of_attack_max}) {
+    m[which] = S(absent);
+  }
   return m;
 }
 

@@ -70,7 +70,9 @@ struct GradientInstant {
 struct OrbitGradient {
   Metrics<GradientJet> metrics;
   std::vector<GradientInstant> instants;
-  bool regular = true;  ///< false: I - dP/dy (or df/dv) is singular, the derivatives do not exist
+  /// False: I - dP/dy (or df/dv) is singular, the derivatives do not exist; or the wings pitch on a hinge, for which
+  /// there are none.
+  bool regular = true;
 };
 
 /// Derivatives of every metric but floquet_multiplier_max (which needs second ones: absent), in SI like the metrics.

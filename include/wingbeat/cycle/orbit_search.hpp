@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "wingbeat/cycle/extremes.hpp"
+#include "wingbeat/cycle/pitch_metrics.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
 
 namespace wingbeat::detail {
@@ -12,6 +13,10 @@ namespace wingbeat::detail {
 /// The steady flapping of a direct drive; see find_steady_flapping.
 SteadyFlapping find_direct_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                     const StartUp& start_up);
+
+/// The same of wings that pitch.
+SteadyFlapping find_pitching_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
+                                      const StartUp& start_up);
 
 /// Takes the metrics of a vehicle that flaps, but on no orbit found, from its simulated cycle; undecided without one.
 void fill_simulated(const StartUpOutcome& outcome, const SteadyOptions& options, bool direct, SteadyFlapping& result);
@@ -27,6 +32,7 @@ class OrbitSearch {
   /// One search from a state at the start of an iterate.
   bool search(const State& guess) {
     solver::PeriodicOptions periodic{.tolerance = options_.tolerance, .stability = options_.stability};
+    if constexpr (requires { System::pitch; }) periodic.max_steps = pitching_steps;
     const int iterates_before = summary_.iterates;
     summary_ = solver::solve_periodic(system_, guess, periodic, iterate_);
     if (summary_.status == solver::PeriodicStatus::too_many_steps) {
@@ -47,6 +53,7 @@ class OrbitSearch {
   /// many: implicit ones tell.
   bool search_near(const State& guess) {
     solver::PeriodicOptions periodic{.tolerance = options_.tolerance, .stability = options_.stability, .near = true};
+    if constexpr (requires { System::pitch; }) periodic.max_steps = pitching_steps;
     for (const auto method : {solver::Method::explicit_pair, solver::Method::radau}) {
       periodic.method = method;
       const int iterates_before = summary_.iterates;
@@ -79,12 +86,21 @@ class OrbitSearch {
     result.crank_speed = system_.shaft_speed(start());
     result.current = system_.current(0.0, start());
     const CycleExtremes<double> extremes = cycle_extremes(system_, iterate_, options_.tolerance);
+    constexpr bool pitching = requires { System::pitch; };
+    PitchMetrics of_pitch{};
+    if constexpr (pitching) of_pitch = pitch_metrics(system_, iterate_);
     result.record = CycleRecord(RecordedCycle<System>{system_, std::move(iterate_)});
     result.metrics = cycle_metrics(system_.vehicle, result.record.integrals(), extremes,
                                    summary_.floquet_multiplier_max, options_.reporting);
+    if constexpr (pitching) {
+      set_pitch_metrics(of_pitch, result.metrics);
+      result.evidence.over_rotation = of_pitch.over_rotation;
+    }
   }
 
  private:
+  static constexpr int pitching_steps = 2000;  ///< a stiff hinge's own frequency is many times the supply's
+
   const SteadyOptions& options_;
   System system_;
   solver::Iterate<System> iterate_;

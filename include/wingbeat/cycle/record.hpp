@@ -6,6 +6,7 @@
 
 #include "wingbeat/cycle/crank_system.hpp"
 #include "wingbeat/cycle/direct_system.hpp"
+#include "wingbeat/cycle/pitch_direct_system.hpp"
 
 namespace wingbeat {
 
@@ -31,11 +32,12 @@ struct WaveformRow {
   double power_aerodynamic;    ///< M_aero beta' [W]
   double spring_moment;        ///< N_w k beta of all hinge springs [N m], towards stroke angle zero
   double inertial_moment;      ///< N_w J_w beta'' of all wings [N m]
+  double pitch_angle;          ///< psi [rad]; absent where it follows from the angle of attack by the pitch law
 };
 
 /// What acts at one instant, as a row: `stroke_angle` beta and `shaft_angle` theta [rad], omega [rad/s].
 WaveformRow waveform_row(const Vehicle<double>& vehicle, const Motion<double>& motion, double time, double shaft_angle,
-                         double shaft_speed, double stroke_angle);
+                         double shaft_speed, double stroke_angle, double pitch_angle = absent);
 
 /// Integrals over a recorded cycle.
 template <class System>
@@ -54,13 +56,14 @@ struct RecordedCycle {
   solver::Iterate<System> cycle;
 };
 
-/// A cycle of the crank or of a direct drive, each with or without inductance.
+/// A cycle of the crank or of a direct drive, the latter also of wings that pitch, each with or without inductance.
 class CycleRecord {
  public:
   template <int N>
   using Recorded = RecordedCycle<CrankSystem<double, N>>;
   using Cycles = std::variant<Recorded<1>, Recorded<2>, RecordedCycle<DirectSystem<double, 2>>,
-                              RecordedCycle<DirectSystem<double, 3>>>;
+                              RecordedCycle<DirectSystem<double, 3>>, RecordedCycle<PitchDirectSystem<double, 4>>,
+                              RecordedCycle<PitchDirectSystem<double, 5>>>;
 
   CycleRecord() = default;
   explicit CycleRecord(Cycles cycles) : cycles_(std::move(cycles)) {}

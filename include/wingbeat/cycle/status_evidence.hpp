@@ -23,12 +23,13 @@ struct StatusEvidence {
 
     // Flapping, by the orbit search
     orbit,            ///< frequency; can_lock with locks, assessed
-    response,         ///< of a direct drive to its supply: frequency, stroke_amplitude
+    response,         ///< of a direct drive to its supply: frequency, stroke_amplitude; over_rotation, other_amplitude
     simulated_cycle,  ///< in place of an orbit: frequency, change (the metrics' error), repeats_after, search, direct
     // Flapping, in time
     settled_cycles,   ///< frequency, time (steady from then on), cycles, change, repeats_after, extrapolated
     averaged_cycles,  ///< frequency, cycles, change (largest deviation of a duration from their mean), incommensurate
-    settled_periods,  ///< of a direct drive: frequency, time, cycles, change; accuracy and steps where those ran out
+    settled_periods,  ///< of a direct drive: frequency, time, cycles, change, over_rotation; accuracy and steps where
+                      ///< those ran out
 
     // Stalled, by statics
     weak_motor,   ///< torque (the stall torque) does not exceed friction_torque
@@ -85,6 +86,8 @@ struct StatusEvidence {
   double accuracy = absent;             ///< of the metrics, relative [1]
   double travel = absent;               ///< [rad]
   double winding_temperature = absent;  ///< [degC]; where it stands in the way, of the motor that flaps while colder
+  double over_rotation = absent;        ///< of wings that pitch: share of the period with alpha beyond 90 degrees [1]
+  double other_amplitude = absent;      ///< stroke amplitude of a second stable response to the same supply [rad]
   double faster_orbit = absent;  ///< in time, not flapping: frequency of an orbit that only a faster start reaches [Hz]
   long steps = 0;                ///< of the integrator
   int cycles = 0;                ///< periods of a direct drive's supply

@@ -17,10 +17,12 @@ struct WaveformColumn {
   const char* long_name;  ///< plain words
   double WaveformRow::* value;
 };
-inline constexpr int waveform_column_count = 19;
+inline constexpr int waveform_column_count = 20;
 
-/// The columns of a waveform file, in order.
+/// The columns of a waveform file, in order; the last, the pitch angle, of wings that pitch on a hinge alone.
 const std::array<WaveformColumn, waveform_column_count>& waveform_columns();
+/// Those that a file of these rows has.
+std::span<const WaveformColumn> waveform_columns(std::span<const WaveformRow> rows);
 
 /// A header line and one line per row, every number with the digits that read back to the same double.
 std::string waveforms_csv(std::span<const WaveformRow> rows);

@@ -78,7 +78,7 @@ Motor<S> at_output_shaft(const GearMotor<S>& geared) {
 }
 
 /// The motor that acts as `count` equal ones do on the same terminals and on shafts that turn in phase: current and
-/// torque are the sums of theirs (model.md section 12).
+/// torque are the sums of theirs (model.md section 13).
 template <Scalar S>
 Motor<S> side_by_side(Motor<S> m, const S& count) {
   m.armature_resistance = m.armature_resistance / count;

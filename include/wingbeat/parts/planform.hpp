@@ -1,4 +1,5 @@
-// Wing planforms and the two chord moments that quasi-steady blade elements need; model.md section 3, eqs (2, 3).
+// Wing planforms and the chord moments that blade elements need: two of them under the pitch law (model.md section 3,
+// eqs 2, 3), those of higher powers of the chord for added mass and for pitch as a degree of freedom (sections 10, 12).
 #pragma once
 
 #include <cmath>
@@ -70,6 +71,28 @@ ChordMoments<S> shift_moments(const S& m0, const S& m1, const S& m2, const S& m3
   return {m2 + S(2.0) * d * m1 + d * d * m0, m3 + S(3.0) * d * m2 + S(3.0) * d * d * m1 + d * d * d * m0};
 }
 
+/// Calls visit(weight, chord, x) at the points of a quadrature over a tabulated wing, x from the root. Between rows the
+/// chord is linear, so that three-point Gauss is exact for what is of fifth degree in chord and distance together.
+template <class Visit>
+void visit_table(const std::vector<std::pair<double, double>>& table, const Visit& visit) {
+  for (std::size_t row = 1; row < table.size(); ++row) {
+    const auto [x0, c0] = table[row - 1];
+    const auto [x1, c1] = table[row];
+    const double half = 0.5 * (x1 - x0), mid = 0.5 * (x0 + x1);
+    constexpr double node = 0.77459666924148337704;  // sqrt(3/5)
+    for (const auto& [at, weight] : {std::pair{-node, 5.0 / 9.0}, {0.0, 8.0 / 9.0}, {node, 5.0 / 9.0}}) {
+      const double x = mid + half * at;
+      visit(weight * half, c0 + (c1 - c0) * (x - x0) / (x1 - x0), x);
+    }
+  }
+}
+
+/// c_0 [m].
+template <Scalar S>
+S root_chord_of(const Planform<S>& p) {
+  return p.chord_ratio ? S(*p.chord_ratio * p.length) : p.root_chord;
+}
+
 }  // namespace detail
 
 /// Chord moments of ONE wing about the hinge; `moments` holds the moments of all wings and is not for this function.
@@ -77,7 +100,7 @@ ChordMoments<S> shift_moments(const S& m0, const S& m1, const S& m2, const S& m3
 template <Scalar S>
 ChordMoments<S> one_wing_moments(const Planform<S>& p) {
   const S R = p.length;
-  const S c_0 = p.chord_ratio ? *p.chord_ratio * p.length : p.root_chord;
+  const S c_0 = detail::root_chord_of(p);
   const S d = p.hub_offset;
   if (p.shape == PlanformShape::semi_ellipse) {
     return detail::shift_moments<S>(pi / 4.0 * c_0 * R, c_0 * R * R / 3.0, pi / 16.0 * c_0 * R * R * R,
@@ -87,22 +110,13 @@ ChordMoments<S> one_wing_moments(const Planform<S>& p) {
     return detail::shift_moments<S>(c_0 * R, c_0 * R * R / 2.0, c_0 * R * R * R / 3.0, c_0 * R * R * R * R / 4.0, d);
   }
   double m[4] = {0.0, 0.0, 0.0, 0.0};
-  for (std::size_t row = 1; row < p.chord_table.size(); ++row) {
-    const auto [x0, c0] = p.chord_table[row - 1];
-    const auto [x1, c1] = p.chord_table[row];
-    // Chord linear on [x0, x1]: three-point Gauss is exact for chord times x^3.
-    const double half = 0.5 * (x1 - x0), mid = 0.5 * (x0 + x1);
-    constexpr double node = 0.77459666924148337704;  // sqrt(3/5)
-    for (const auto& [at, weight] : {std::pair{-node, 5.0 / 9.0}, {0.0, 8.0 / 9.0}, {node, 5.0 / 9.0}}) {
-      const double x = mid + half * at;
-      const double chord = c0 + (c1 - c0) * (x - x0) / (x1 - x0);
-      double power = weight * half * chord;
-      for (double& moment : m) {
-        moment += power;
-        power *= x;
-      }
+  detail::visit_table(p.chord_table, [&](double weight, double chord, double x) {
+    double power = weight * chord;
+    for (double& moment : m) {
+      moment += power;
+      power *= x;
     }
-  }
+  });
   return detail::shift_moments<S>(S(m[0]), S(m[1]), S(m[2]), S(m[3]), d);
 }
 
@@ -120,25 +134,75 @@ template <Scalar S>
 S squared_chord_moment(const Planform<S>& p, const S& count) {
   if (p.shape == PlanformShape::moments) return p.s22 ? *p.s22 : S(0.0);
   const S R = p.length, d = p.hub_offset;
-  const S c2 = square(p.chord_ratio ? S(*p.chord_ratio * p.length) : p.root_chord);
+  const S c2 = square(detail::root_chord_of(p));
   // Moments of c^2 about the root, shifted to the hinge: q_2 + 2 d q_1 + d^2 q_0.
   if (p.shape == PlanformShape::semi_ellipse) {
     return count * c2 * R * (S(2.0 / 15.0) * R * R + S(0.5) * d * R + S(2.0 / 3.0) * d * d);
   }
   if (p.shape == PlanformShape::rectangle) return count * c2 * R * (R * R / 3.0 + d * R + d * d);
   S sum(0.0);
-  for (std::size_t row = 1; row < p.chord_table.size(); ++row) {
-    const auto [x0, c0] = p.chord_table[row - 1];
-    const auto [x1, c1] = p.chord_table[row];
-    // Of fourth degree where the chord is linear: three-point Gauss is exact.
-    const double half = 0.5 * (x1 - x0), mid = 0.5 * (x0 + x1);
-    constexpr double node = 0.77459666924148337704;  // sqrt(3/5)
-    for (const auto& [at, weight] : {std::pair{-node, 5.0 / 9.0}, {0.0, 8.0 / 9.0}, {node, 5.0 / 9.0}}) {
-      const double x = mid + half * at, chord = c0 + (c1 - c0) * (x - x0) / (x1 - x0);
-      sum = sum + S(weight * half * chord * chord) * square(S(S(x) + d));
-    }
-  }
+  detail::visit_table(p.chord_table, [&](double weight, double chord, double x) {
+    sum = sum + S(weight * chord * chord) * square(S(S(x) + d));
+  });
   return count * sum;
+}
+
+/// Area of one wing [m2], of a planform that has a shape.
+template <Scalar S>
+S wing_area(const Planform<S>& p) {
+  if (p.shape == PlanformShape::tabulated) {
+    double area = 0.0;
+    detail::visit_table(p.chord_table, [&](double weight, double chord, double) { area += weight * chord; });
+    return S(area);
+  }
+  const S rectangle = detail::root_chord_of(p) * p.length;
+  return p.shape == PlanformShape::semi_ellipse ? S(S(0.25 * pi) * rectangle) : rectangle;
+}
+
+/// S_mn = N_w integral c^m r^n dr of higher powers of the chord, r measured from the hinge: what pitch as a degree of
+/// freedom needs (model.md section 12).
+template <Scalar S>
+struct PitchChordMoments {
+  S s21 = S(0);  ///< [m4], >= 0
+  S s22 = S(0);  ///< [m5], >= 0
+  S s30 = S(0);  ///< [m4], >= 0
+  S s31 = S(0);  ///< [m5], >= 0
+  S s40 = S(0);  ///< [m5], >= 0
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.s21, of.s22, of.s30, of.s31, of.s40);
+  }
+};
+
+/// The same of all `count` wings, of a planform that has a shape. Semi-ellipse: root moments 2/3 and 1/4 of c^2, 3
+/// pi/16 and 1/5 of c^3, 8/15 of c^4, in powers of c_0 and R.
+template <Scalar S>
+PitchChordMoments<S> pitch_chord_moments(const Planform<S>& p, const S& count) {
+  const S R = p.length, d = p.hub_offset;
+  PitchChordMoments<S> of;
+  of.s22 = squared_chord_moment(p, count);
+  if (p.shape == PlanformShape::tabulated) {
+    detail::visit_table(p.chord_table, [&](double weight, double chord, double x) {
+      const double c2 = weight * chord * chord, c3 = c2 * chord;
+      of.s21 = of.s21 + S(c2) * (S(x) + d);
+      of.s30 = of.s30 + S(c3);
+      of.s31 = of.s31 + S(c3) * (S(x) + d);
+      of.s40 = of.s40 + S(c3 * chord);
+    });
+  } else {
+    const S c = detail::root_chord_of(p), c2 = c * c, c3 = c2 * c;
+    const bool elliptic = p.shape == PlanformShape::semi_ellipse;
+    of.s21 = c2 * R * (elliptic ? S(0.25 * R + 2.0 / 3.0 * d) : S(0.5 * R + d));
+    of.s30 = c3 * R * S(elliptic ? 3.0 / 16.0 * pi : 1.0);
+    of.s31 = c3 * R * (elliptic ? S(0.2 * R + 3.0 / 16.0 * pi * d) : S(0.5 * R + d));
+    of.s40 = c3 * c * R * S(elliptic ? 8.0 / 15.0 : 1.0);
+  }
+  of.s21 = count * of.s21;
+  of.s30 = count * of.s30;
+  of.s31 = count * of.s31;
+  of.s40 = count * of.s40;
+  return of;
 }
 
 }  // namespace wingbeat

@@ -129,9 +129,20 @@ auto monodromy_product(const System& system, const JetSystem& jets, const Iterat
     for (std::size_t k = 0; k < n * n; ++k) jacobian[k] = h * rates.dy[k / n].v[Eigen::Index(k % n)];
     return n <= 2 ? spectral_radius(int(n), jacobian.data()) : norm(int(n), jacobian.data());
   };
+  // Where the state jumps, the derivative of the jump is taken where it came from.
+  const auto before = [&](std::size_t k) {
+    if constexpr (state_jumps<System>()) {
+      if (k > 0 && iterate.steps[k].signs != iterate.steps[k - 1].signs) {
+        const Step<System>& step = iterate.steps[k - 1];
+        return evaluate_inside<false>(system, iterate, step, step.x + step.h).y;
+      }
+    }
+    return iterate.steps[k].y;
+  };
   const auto start_of = [&](std::size_t k) {
+    const typename System::State at = before(k);
     State y;
-    for (std::size_t j = 0; j < n; ++j) y[j] = Real(iterate.steps[k].y[j], int(j));
+    for (std::size_t j = 0; j < n; ++j) y[j] = Real(at[j], int(j));
     reset_map<false>(jets, iterate.steps, k, y, nullptr);
     return y;
   };

@@ -74,6 +74,17 @@ StepResult<System> take_step(Method method, const System& system, const typename
                                          : implicit_step<quadratures>(system, x, y, h, branch, first);
 }
 
+/// True of systems whose event_transition() moves the state, as an impact does: a recorded step then begins elsewhere
+/// than the one before it ended.
+template <class System>
+constexpr bool state_jumps() {
+  if constexpr (requires { System::state_jumps; }) {
+    return System::state_jumps;
+  } else {
+    return false;
+  }
+}
+
 /// True if the right-hand side jumps at switch k.
 template <class System>
 bool jumps(const System& system, std::size_t k) {

@@ -31,9 +31,11 @@ struct TransientOptions {
   /// take more than a million.
   long max_steps = 3000000;
 
-  double crank_angle = 0.0;  ///< theta at the start [rad]
-  double crank_speed = 0.0;  ///< omega at the start [rad/s]; negative turns backwards
-  double current = 0.0;      ///< i at the start [A]; without inductance it follows from the voltage instead
+  double crank_angle = 0.0;     ///< theta at the start [rad]
+  double crank_speed = 0.0;     ///< omega at the start [rad/s]; negative turns backwards
+  double current = 0.0;         ///< i at the start [A]; without inductance it follows from the voltage instead
+  double pitch_angle = 0.0;     ///< psi at the start, of wings that pitch [rad]
+  double pitch_velocity = 0.0;  ///< psi' at the start [rad/s]
 
   bool record = false;           ///< keep samples (and events of supply switching)
   double record_interval = 0.0;  ///< time between samples [s]; 0: every step of the integrator
@@ -49,8 +51,8 @@ struct TransientOptions {
 };
 
 struct TransientEvent {
-  /// revolution: of a direct drive, the end of a period of the supply.
-  enum class Kind { force_sign_change, standstill, breakaway, revolution, jam, supply_switch };
+  /// revolution: of a direct drive, the end of a period of the supply. stop_impact: pitching wings meet a stop.
+  enum class Kind { force_sign_change, standstill, breakaway, revolution, jam, supply_switch, stop_impact };
   double time;         ///< [s]
   double crank_angle;  ///< theta, not wrapped [rad]
   Kind kind;
@@ -88,6 +90,8 @@ struct TransientResult {
   double crank_speed = 0.0;                ///< omega at theta = 0 (mod 2 pi) at the end of the last cycle [rad/s]
   double current = 0.0;                    ///< i there [A]: with crank_speed the state of the periodic orbit
   double stroke_angle = 0.0;               ///< direct drive: beta there [rad]
+  double pitch_angle = 0.0;                ///< of wings that pitch: psi there [rad]
+  double pitch_velocity = 0.0;             ///< psi' there [rad/s]
   std::optional<Metrics<double>> metrics;  ///< of the last cycle; floquet_multiplier_max is `absent`
   CycleIntegrals<double> integrals{};      ///< behind the metrics, per cycle
   int averaged_cycles = 0;  ///< cycles behind the metrics: 1, or several where the supply has no period in common

@@ -13,6 +13,7 @@
 #include "wingbeat/parts/friction.hpp"
 #include "wingbeat/parts/motor.hpp"
 #include "wingbeat/parts/motor_thermal.hpp"
+#include "wingbeat/parts/pitching_wings.hpp"
 #include "wingbeat/parts/planform.hpp"
 #include "wingbeat/parts/spring.hpp"
 #include "wingbeat/parts/supply.hpp"
@@ -130,10 +131,29 @@ struct WingDesign {
   std::optional<S> resonance;
   std::optional<S> areal_density;  ///< sigma of the membrane [kg/m2]; given, the inertia follows from the outline
   S spar_density = S(0);           ///< lambda of the leading-edge spar [kg/m], only with areal_density
+  std::optional<S> pitch_inertia;  ///< I_psi of one wing about its leading edge [kg m2], only with a pitch hinge
+  std::optional<S> mass_product;   ///< P = integral r x dm of one wing [kg m2], only with a pitch hinge
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
-    return use(of.count, of.inertia, of.planform, of.resonance, of.areal_density, of.spar_density);
+    return use(of.count, of.inertia, of.planform, of.resonance, of.areal_density, of.spar_density, of.pitch_inertia,
+               of.mass_product);
+  }
+};
+
+/// [pitch]: the hinge about which a wing pitches, a degree of freedom in place of the pitch law as soon as its
+/// stiffness is given.
+template <Scalar S>
+struct PitchDesign {
+  std::optional<S> stiffness;                                 ///< k_psi of one hinge [N m/rad]
+  S damping = S(0);                                           ///< c_psi of one hinge [N m s/rad]
+  std::optional<S> stop;                                      ///< psi_max [rad]; none unless given
+  bool rotational_lift = true;                                ///< the force that a pitching wing's circulation adds
+  S damping_coefficient = S(rotational_damping_coefficient);  ///< C_rd [1]
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.stiffness, of.damping, of.stop, of.rotational_lift, of.damping_coefficient);
   }
 };
 
@@ -141,8 +161,8 @@ struct WingDesign {
 template <Scalar S>
 struct AerodynamicsDesign {
   S air_density = S(0);                                  ///< rho [kg/m3]
-  S pitch_coefficient = S(0);                            ///< C_alpha [s]
-  std::string coefficients_name = "translational-2022";  ///< the named set, or "custom" or "table"
+  S pitch_coefficient = S(0);                            ///< C_alpha [s]; 0 where the wings pitch on a hinge
+  std::string coefficients_name = "translational-2022";  ///< the named set, "custom" or "table"
   ForceCoefficients<S> coefficients;
   std::optional<S> angle_of_attack_min;  ///< stop of the passive pitching [rad]; none unless given
   bool added_mass = false;  ///< air accelerated with the wings counts, by strip theory (model.md section 10)
@@ -182,12 +202,13 @@ struct Design {
   FrictionDesign<S> friction;
   SpringDesign<S> spring;
   WingDesign<S> wing;
+  PitchDesign<S> pitch;
   AerodynamicsDesign<S> aerodynamics;
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
     return use(of.name, of.mass, of.motors, of.masses, of.bench_torque_constant, of.supply, of.supply_resonance_ratio,
-               of.motor, of.transmission, of.friction, of.spring, of.wing, of.aerodynamics);
+               of.motor, of.transmission, of.friction, of.spring, of.wing, of.pitch, of.aerodynamics);
   }
 };
 

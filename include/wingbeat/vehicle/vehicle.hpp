@@ -9,6 +9,7 @@
 #include "wingbeat/parts/friction.hpp"
 #include "wingbeat/parts/motor.hpp"
 #include "wingbeat/parts/motor_thermal.hpp"
+#include "wingbeat/parts/pitching_wings.hpp"
 #include "wingbeat/parts/spring.hpp"
 #include "wingbeat/vehicle/design.hpp"
 #include "wingbeat/vehicle/drive.hpp"
@@ -18,7 +19,7 @@ namespace wingbeat {
 inline constexpr double standard_gravity = 9.80665;  ///< [m/s2], CGPM 1901
 
 /// The constants of one vehicle in one condition, all referred to the output shaft. Several motors with their
-/// transmissions and wings are one that acts as they do together (model.md section 12): its current, torques, forces
+/// transmissions and wings are one that acts as they do together (model.md section 13): its current, torques, forces
 /// and powers are the sums of theirs. The equations of motion below and CrankSystem take any template V of the same
 /// members whose `transmission` satisfies the concept Transmission.
 template <Scalar S>
@@ -35,13 +36,21 @@ struct Vehicle {
   S drive_frequency = S(0);    ///< of a sine supply, whose amplitude is `voltage` [Hz]; else 0
   MotorThermal<S> thermal;     ///< what changes `motor` where it heats up; see with_motor_at()
   S motors = S(1);             ///< M: rod forces are reported of one of so many rods
+  PitchingWings<S> pitch;      ///< of wings whose pitch is a degree of freedom; see pitches()
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
     return use(of.voltage, of.motor, of.transmission, of.friction, of.spring, of.wing_count, of.wing_inertia, of.wings,
-               of.source_resistance, of.drive_frequency, of.thermal, of.motors);
+               of.source_resistance, of.drive_frequency, of.thermal, of.motors, of.pitch);
   }
 };
+
+/// True where pitch is a degree of freedom (model.md section 12) instead of following the stroke by the pitch law. The
+/// systems and models in time of such vehicles are others: PitchDirectSystem, PitchDirectModel.
+template <Scalar S>
+bool pitches(const Vehicle<S>& v) {
+  return value_of(v.pitch.pitch_inertia) > 0.0;
+}
 
 /// The transmission that a design describes.
 template <Scalar S>
@@ -78,6 +87,28 @@ MotorThermal<S> motor_thermal_of(const MotorThermalDesign<S>& t) {
         t.magnet_temperature_coefficient,
         of.winding_temperature_max};
   if (t.winding_temperature_max) of.winding_temperature_max = *t.winding_temperature_max;
+  return of;
+}
+
+/// Wings that pitch on the hinges that a design describes, `count` of them, in air of that density [kg/m3].
+template <Scalar S>
+PitchingWings<S> pitching_wings_of(const Design<S>& design, const S& count, const S& air_density) {
+  const PitchDesign<S>& p = design.pitch;
+  PitchingWings<S> of;
+  PitchHinge<S> hinge{*p.stiffness, p.damping};
+  if (p.stop) hinge.stop = *p.stop;
+  of.hinge = hinges_together(hinge, count);
+  if (const std::optional<WingMass<S>> drawn = wing_mass(design.wing)) {
+    of.pitch_inertia = count * drawn->pitch_inertia;
+    of.mass_product = count * drawn->mass_product;
+  }
+  if (design.wing.pitch_inertia) of.pitch_inertia = count * *design.wing.pitch_inertia;
+  if (design.wing.mass_product) of.mass_product = count * *design.wing.mass_product;
+  of.moments = pitch_chord_moments(design.wing.planform, count);
+  if (design.aerodynamics.added_mass) of.air = pitch_added_mass(air_density, of.moments);
+  if (!p.rotational_lift) of.rotational_coefficient = S(0.0);
+  of.damping_coefficient = p.damping_coefficient;
+  if (design.aerodynamics.coefficients_name == normal_force_set) of.normal_force = NormalForce::normal_force;
   return of;
 }
 
@@ -134,7 +165,7 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
   const bool air = condition == Condition::air;
   const ChordMoments<S> moments = chord_moments(design.wing.planform, design.wing.count);
   v.wings.air_density = air ? design.aerodynamics.air_density : S(0.0);
-  v.wings.pitch_coefficient = design.aerodynamics.pitch_coefficient;
+  v.wings.pitch_coefficient = design.pitch.stiffness ? S(0.0) : design.aerodynamics.pitch_coefficient;
   v.wings.s2 = wings ? S(M * moments.s2) : S(0.0);
   v.wings.s3 = wings ? S(M * moments.s3) : S(0.0);
   v.wings.coefficients = design.aerodynamics.coefficients;
@@ -143,6 +174,7 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
     const S s22 = M * squared_chord_moment(design.wing.planform, design.wing.count);
     v.wings.added_inertia = added_inertia_of(v.wings.air_density, s22);
   }
+  if (design.pitch.stiffness && wings) v.pitch = pitching_wings_of(design, v.wing_count, v.wings.air_density);
   return v;
 }
 
@@ -227,19 +259,19 @@ struct Instant {
 };
 
 /// The instant at crank speed omega [rad/s] and current i [A] under the terminal voltage v_t [V], N_k_beta being the
-/// spring_moment() there; `stroke` and `direction` are the signs of beta' and omega (model.md section 2), `pitching`
-/// and `gear` as in Branch.
-template <bool has_added_mass = true, template <Scalar> class V, Scalar S>
-[[gnu::always_inline]] inline Instant<S> instant_at(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta,
-                                                    const S& omega, const S& i, const S& v_t, const S& stroke,
-                                                    const S& direction, const S& pitching = S(1.0),
-                                                    const S& gear = S(1.0)) {
+/// spring_moment() there, of wings that ask (inertia) beta'' + moment of the stroke, springs apart; `aero` is what the
+/// air does to them, `direction` the sign of omega, `gear` as in Branch.
+template <template <Scalar> class V, Scalar S>
+[[gnu::always_inline]] inline Instant<S> instant_under(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta,
+                                                       const S& omega, const S& i, const S& v_t, const S& direction,
+                                                       const S& gear, const AeroLoads<S>& aero, const S& inertia,
+                                                       const S& moment) {
   Instant<S> at;
   at.kinematics = k;
   at.omega = omega;
   at.motor = motor_loads(v.motor, v_t, i, omega);
   at.stroke_velocity = k.stroke_slope * omega;
-  at.aero = aero_loads<has_added_mass>(v.wings, at.stroke_velocity, stroke, pitching);
+  at.aero = aero;
   at.spring_moment = N_k_beta;
   // The motor's own friction acts before the gearbox.
   const S mechanism = load_free_friction(v.friction, omega, direction), own = direction * v.motor.friction_torque;
@@ -253,12 +285,23 @@ template <bool has_added_mass = true, template <Scalar> class V, Scalar S>
   }
 
   // F = A omega' + C of model.md, both sides times g, which saves dividing by it twice.
-  S N_J = v.wing_count * v.wing_inertia;
-  if constexpr (has_added_mass) N_J = N_J + at.aero.added_inertia;
-  at.A_g = N_J * k.stroke_slope;
-  at.C_g = N_J * k.stroke_curve * square(omega) + at.aero.moment + at.spring_moment;
+  at.A_g = inertia * k.stroke_slope;
+  at.C_g = inertia * k.stroke_curve * square(omega) + moment + at.spring_moment;
   at.force_switch = at.inertia * at.C_g + at.A_g * at.drive;
   return at;
+}
+
+/// The same of wings under the pitch law: `stroke` and `direction` are the signs of beta' and omega (model.md section
+/// 2), `pitching` and `gear` as in Branch. Without `has_added_mass` that of the air is left out.
+template <bool has_added_mass = true, template <Scalar> class V, Scalar S>
+[[gnu::always_inline]] inline Instant<S> instant_at(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta,
+                                                    const S& omega, const S& i, const S& v_t, const S& stroke,
+                                                    const S& direction, const S& pitching = S(1.0),
+                                                    const S& gear = S(1.0)) {
+  const AeroLoads<S> aero = aero_loads<has_added_mass>(v.wings, S(k.stroke_slope * omega), stroke, pitching);
+  S inertia = v.wing_count * v.wing_inertia;
+  if constexpr (has_added_mass) inertia = inertia + aero.added_inertia;
+  return instant_under<V, S>(v, k, N_k_beta, omega, i, v_t, direction, gear, aero, inertia, aero.moment);
 }
 
 /// Rod force and accelerations of an instant, on a given branch (model.md section 2, eqs 1, 5-11, 21).

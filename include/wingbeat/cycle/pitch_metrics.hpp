@@ -1,0 +1,102 @@
+// How the wings pitch over a recorded cycle, under either drive (model.md section 12).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/cycle/pitch_stops.hpp"
+#include "wingbeat/solve/iterate.hpp"
+
+namespace wingbeat {
+
+struct PitchMetrics {
+  double amplitude;  ///< half of psi from peak to peak [rad]
+  /// Of the first harmonics in time, by how much pitching is ahead of the pitch that opposes the stroke velocity [rad],
+  /// -pi to pi: 0 where wings flip symmetrically about the reversal, positive where they flip early (advanced).
+  double phase;
+  double angle_of_attack_min, angle_of_attack_max;  ///< [rad]; beyond pi/2 the wing over-rotates, its lift is negative
+  double hinge_power;                               ///< mean loss in damping and stops of all hinges [W]
+  double over_rotation;                             ///< share of the period with alpha beyond pi/2, roughly [1]
+};
+
+/// What the metrics of a vehicle are under the pitch law and, of wings that pitch, are not.
+inline void set_pitch_metrics(const PitchMetrics& pitching, Metrics<double>& m) {
+  m[Metric::angle_of_attack_min] = degrees_per_radian * pitching.angle_of_attack_min;
+  m[Metric::angle_of_attack_max] = degrees_per_radian * pitching.angle_of_attack_max;
+  m[Metric::pitch_amplitude] = degrees_per_radian * pitching.amplitude;
+  m[Metric::pitch_phase] = degrees_per_radian * pitching.phase;
+  m[Metric::power_hinge] = pitching.hinge_power;
+}
+
+namespace detail {
+
+/// psi [rad] at the start of step n of a cycle, at its end where there is no step n. Where steps meet at a reversal of
+/// a stroke whose velocity is a state, at the reversal itself: switches are located to the square root of the
+/// tolerance, which is enough for the solution, but the angle of attack jumps there.
+template <class System>
+double pitch_at_start(const solver::Iterate<System>& cycle, std::size_t n) {
+  constexpr std::size_t psi = System::pitch;
+  if (n == cycle.steps.size()) return cycle.end[psi];
+  const auto& step = cycle.steps[n];
+  if constexpr (requires { System::velocity; }) {
+    if (n > 0 && step.signs[System::velocity] != cycle.steps[n - 1].signs[System::velocity]) {
+      const auto& dy = step.first.dy;
+      return step.y[psi] - dy[psi] * step.y[System::shaft] / dy[System::shaft];
+    }
+  }
+  return step.y[psi];
+}
+
+}  // namespace detail
+
+/// Extremes are where the pitch velocity or the stroke velocity changes sign or a stop holds the wings, which is where
+/// steps end.
+template <class System>
+PitchMetrics pitch_metrics(const System& system, const solver::Iterate<System>& cycle) {
+  double lowest = infinity, highest = -infinity, period = 0.0;
+  PitchMetrics m{0.0, 0.0, infinity, -infinity, impact_loss(system, cycle), 0.0};
+  for (std::size_t n = 0; n < cycle.steps.size(); ++n) {
+    const auto& step = cycle.steps[n];
+    for (const double psi : {detail::pitch_at_start(cycle, n), detail::pitch_at_start(cycle, n + 1)}) {
+      lowest = std::min(lowest, psi);
+      highest = std::max(highest, psi);
+      const double alpha = 0.5 * pi + System::stroke_sign(step.signs) * psi;
+      m.angle_of_attack_min = std::min(m.angle_of_attack_min, alpha);
+      m.angle_of_attack_max = std::max(m.angle_of_attack_max, alpha);
+    }
+    period += step.dq[std::size_t(Integral::time)];
+    m.hinge_power += step.dq[System::hinge_work];
+  }
+  m.hinge_power /= period;
+  m.amplitude = 0.5 * (highest - lowest);
+
+  // Integrals of stroke and pitch times exp(-j w t), by Gauss's rule of five points on each step.
+  constexpr std::array nodes = {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640};
+  constexpr std::array weights = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
+                                  0.2369268850561891};
+  std::complex<double> stroke = 0.0, pitching = 0.0;
+  double time = 0.0;
+  for (const auto& step : cycle.steps) {
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      const double x = step.x + 0.5 * (1.0 + nodes[k]) * step.h;
+      const auto inside = solver::evaluate_inside<true>(system, cycle, step, x);
+      const double t = time + inside.dq[std::size_t(Integral::time)];
+      const double dt = system.template rates<true>(x, inside.y, step.signs).dq[std::size_t(Integral::time)];
+      const auto weighted = std::polar(0.5 * step.h * weights[k] * dt, -two_pi * t / period);
+      if (system.stroke_sign(step.signs) * inside.y[System::pitch] > 0.0) m.over_rotation += std::abs(weighted);
+      stroke += weighted * system.stroke_angle(x, inside.y);
+      pitching += weighted * inside.y[System::pitch];
+    }
+    time += step.dq[std::size_t(Integral::time)];
+  }
+  m.over_rotation /= period;
+  // The pitch that opposes the stroke velocity is along -j stroke.
+  m.phase = std::arg(pitching / (std::complex<double>(0.0, -1.0) * stroke));
+  return m;
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,128 @@
+// Stops of the pitching as events of a periodic system, whatever drives the stroke (model.md section 12).
+//
+// A stop takes the pitch velocity in an inelastic impact, at which the stroke velocity jumps too, and holds the wings
+// as long as they press on it. A system has among its signs `turn` (of psi'), `stop` (the switch), `held` (-1 where a
+// stop holds the wings) and `impacts` (turned over by each, so that a recorded cycle tells), among its states psi and
+// psi' at `pitch` and the next, and the speed of its shaft at `shaft`.
+#pragma once
+
+#include <cmath>
+
+#include "wingbeat/solve/iterate.hpp"
+#include "wingbeat/vehicle/pitch_motion.hpp"
+
+namespace wingbeat::pitch_stops {
+
+/// At which stop the wings are, or nearer to which: +1 or -1.
+template <class System>
+typename System::Real side(const typename System::State& y) {
+  return typename System::Real(value_of(y[System::pitch]) >= 0.0 ? 1.0 : -1.0);
+}
+
+template <class System>
+bool is_held(const typename System::Signs& signs) {
+  return value_of(signs[System::held]) < 0.0;
+}
+
+/// What the switch `stop` is: room to the stop [rad], of wings that it holds how they press on it [N m].
+template <class System>
+typename System::Real switch_of(const System& system, const PitchMotion<typename System::Real>& m,
+                                const typename System::State& y, const typename System::Signs& signs) {
+  using S = typename System::Real;
+  if (!has_stop(system.vehicle.pitch.hinge)) return S(1.0);
+  const S at = side<System>(y);
+  return is_held<System>(signs) ? S(at * m.stop_moment) : S(system.vehicle.pitch.hinge.stop - at * y[System::pitch]);
+}
+
+/// True of a state with which a recorded cycle may begin at a stop.
+template <class System>
+bool rests_at_stop(const System& system, const typename System::State& y) {
+  return has_stop(system.vehicle.pitch.hinge) && value_of(y[System::pitch + 1]) == 0.0 &&
+         std::abs(value_of(y[System::pitch])) >= value_of(system.vehicle.pitch.hinge.stop);
+}
+
+/// Decides whether wings that rest at a stop are held there.
+template <class System>
+void hold_or_leave(const System& system, const typename System::Real& x, const typename System::State& y,
+                   typename System::Signs& signs) {
+  using S = typename System::Real;
+  const S at = side<System>(y);
+  signs[System::held] = S(-1.0);
+  signs[System::turn] = -at;
+  if (value_of(S(at * system.pitch_motion(x, y, signs).stop_moment)) < 0.0) signs[System::held] = S(1.0);
+}
+
+template <class System>
+StopImpact<typename System::Real> impact_at(const System& system, const typename System::Real& x,
+                                            const typename System::State& y) {
+  return stop_impact(system.vehicle, system.vehicle.pitch, system.kinematics(x), y[System::shaft], y[System::pitch],
+                     y[System::pitch + 1]);
+}
+
+template <class System>
+typename System::State after_impact(const System& system, const typename System::Real& x, typename System::State y) {
+  using S = typename System::Real;
+  y[System::pitch] = side<System>(y) * system.vehicle.pitch.hinge.stop;
+  y[System::shaft] = y[System::shaft] + impact_at(system, x, y).shaft_speed;
+  y[System::pitch + 1] = S(0.0);
+  return y;
+}
+
+/// The switch `stop` is crossed: wings that were held leave, others meet the stop.
+template <class System>
+void event_transition(const System& system, const typename System::Real& x, typename System::State& y,
+                      typename System::Signs& signs) {
+  using S = typename System::Real;
+  if (is_held<System>(signs)) {
+    signs[System::held] = S(1.0);
+    signs[System::turn] = -side<System>(y);
+  } else {
+    y = after_impact(system, x, y);
+    signs[System::impacts] = -signs[System::impacts];
+    hold_or_leave(system, x, y, signs);
+  }
+}
+
+/// A solution next to a recorded one that met a stop at x: it meets it a little earlier or later.
+template <bool quadratures, class System>
+void reset_map(const System& system, const typename System::Real& x, typename System::State& y,
+               const typename System::Signs& from, const typename System::Signs& to,
+               typename System::Quadrature* totals) {
+  using S = typename System::Real;
+  if (value_of(from[System::impacts]) != value_of(to[System::impacts])) {
+    const auto before = system.template rates<quadratures>(x, y, from);
+    const S late = (side<System>(y) * system.vehicle.pitch.hinge.stop - y[System::pitch]) / before.dy[System::pitch];
+    for (std::size_t n = 0; n < y.size(); ++n) y[n] = y[n] + before.dy[n] * late;
+    y = after_impact(system, S(x + late), y);
+    const auto after = system.template rates<quadratures>(S(x + late), y, to);
+    for (std::size_t n = 0; n < y.size(); ++n) y[n] = y[n] - after.dy[n] * late;
+    if constexpr (quadratures) {
+      for (std::size_t q = 0; q < before.dq.size(); ++q) {
+        (*totals)[q] = (*totals)[q] + (before.dq[q] - after.dq[q]) * late;
+      }
+    }
+  }
+  if (is_held<System>(to)) {
+    y[System::pitch] = side<System>(y) * system.vehicle.pitch.hinge.stop;
+    y[System::pitch + 1] = S(0.0);
+  }
+}
+
+}  // namespace wingbeat::pitch_stops
+
+namespace wingbeat {
+
+/// Energy that impacts on the stops take from a recorded cycle [J].
+template <class System>
+double impact_loss(const System& system, const solver::Iterate<System>& cycle) {
+  double lost = 0.0;
+  for (std::size_t n = 1; n < cycle.steps.size(); ++n) {
+    const auto& before = cycle.steps[n - 1];
+    if (before.signs[System::impacts] == cycle.steps[n].signs[System::impacts]) continue;
+    const double x = before.x + before.h;
+    lost += pitch_stops::impact_at(system, x, solver::evaluate_inside<false>(system, cycle, before, x).y).energy;
+  }
+  return lost;
+}
+
+}  // namespace wingbeat

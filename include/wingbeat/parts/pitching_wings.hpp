@@ -1,0 +1,260 @@
+// Wings that pitch about an elastic hinge, pitch being a degree of freedom beside the stroke: inertia with the air that
+// moves along, loads of blade elements, and what of it the stroke sees; model.md section 12.
+//
+// Everything is of all wings together. The kinetic energy of wings and added mass is
+//   T = 1/2 M_bb beta'^2 + M_bp beta' psi' + 1/2 M_pp psi'^2,
+// the equations of motion are M (beta'', psi'') + (h_b, h_p) = loads. Neither of them knows what drives the stroke: a
+// crank and a direct drive take the same parts, by the condensed inertia and moment of wings_at_pitch().
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/core/members.hpp"
+#include "wingbeat/core/names.hpp"
+#include "wingbeat/core/range.hpp"
+#include "wingbeat/core/scalar.hpp"
+#include "wingbeat/parts/blade_element.hpp"
+#include "wingbeat/parts/pitch_hinge.hpp"
+#include "wingbeat/parts/planform.hpp"
+
+namespace wingbeat {
+
+/// C_rot of an axis along the leading edge: pi (0.75 - x_0), x_0 = 0 being its position over the chord (Sane and
+/// Dickinson, J. Exp. Biol. 205, 2002).
+inline constexpr double leading_edge_rotational_coefficient = 0.75 * pi;
+/// C_rd of rotational damping [1] (Whitney and Wood, J. Fluid Mech. 660, 2010).
+inline constexpr double rotational_damping_coefficient = 5.0;
+
+/// A normal-force coefficient that is odd in the angle of attack and symmetric about 90 degrees,
+/// C_N = first sin(alpha) + third sin(3 alpha).
+template <Scalar S>
+struct NormalForceCoefficient {
+  S first;  ///< [1]
+  S third;  ///< [1]
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.first, of.third);
+  }
+};
+
+/// "normal-force-robofly": C_N = 1.8 sin(2 alpha) cos(alpha) + 1.95 sin(alpha) - 1.5 cos(2 alpha) sin(alpha), that is
+/// C_L = 1.8 sin(2 alpha) and C_D = 1.95 - 1.5 cos(2 alpha) along the normal of the chord, in the form above.
+inline NormalForceCoefficient<double> normal_force_robofly() { return {3.6, 0.15}; }
+
+/// How vehicle files name it.
+inline constexpr const char* normal_force_set = "normal-force-robofly";
+
+/// The same as C_L and C_D along the normal, of which every coefficient is a number of its own.
+inline ForceCoefficients<double> force_coefficients_robofly() {
+  return {{0.0, 1.8, 2.0, 0.0}, {1.95, -1.5, 2.0, 0.0}, {}};
+}
+
+/// The force coefficients of that name in vehicle files; none for any other.
+inline std::optional<ForceCoefficients<double>> named_coefficients(std::string_view name) {
+  if (name == "translational-2022") return translational_2022();
+  if (name == normal_force_set) return force_coefficients_robofly();
+  return std::nullopt;
+}
+
+/// Where the coefficient of the force normal to the chord comes from.
+enum class NormalForce {
+  lift_and_drag,  ///< C_L cos(alpha) + C_D sin(alpha) of the ForceCoefficients
+  normal_force    ///< a NormalForceCoefficient
+};
+
+/// Added mass of strips that move normal to their chord, of all wings; zero in vacuum.
+template <Scalar S>
+struct PitchAddedMass {
+  S rr = S(0);  ///< m_rr = (pi/4) rho S_22 [kg m2]
+  S rp = S(0);  ///< m_rp = (pi/8) rho S_31 [kg m2]
+  S pp = S(0);  ///< m_pp = (9 pi/128) rho S_40 [kg m2]
+  S r = S(0);   ///< (pi/4) rho S_21 [kg m]: momentum normal to the chord per stroke velocity
+  S p = S(0);   ///< (pi/8) rho S_30 [kg m]: the same per pitch velocity
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.rr, of.rp, of.pp, of.r, of.p);
+  }
+};
+
+template <Scalar S>
+PitchAddedMass<S> pitch_added_mass(const S& air_density, const PitchChordMoments<S>& s) {
+  const S quarter = S(0.25 * pi) * air_density, eighth = S(0.125 * pi) * air_density;
+  return {quarter * s.s22, eighth * s.s31, S(9.0 / 128.0 * pi) * air_density * s.s40, quarter * s.s21, eighth * s.s30};
+}
+
+/// What pitch as a degree of freedom needs of all wings beside their BladeElement, from which air density, S_2, S_3 and
+/// force coefficients are taken.
+template <Scalar S>
+struct PitchingWings {
+  PitchHinge<S> hinge;  ///< all hinges together
+  /// N_w I_psi = N_w integral x^2 dm, x from the axis along the chord [kg m2], > 0; 0 where the wings do not pitch so
+  S pitch_inertia = S(0);
+  S mass_product = S(0);  ///< N_w P = N_w integral r x dm [kg m2], P^2 <= J_w I_psi
+  PitchChordMoments<S> moments;
+  PitchAddedMass<S> air;
+  S rotational_coefficient = S(leading_edge_rotational_coefficient);  ///< C_rot [1]; 0 without rotational lift
+  S damping_coefficient = S(rotational_damping_coefficient);          ///< C_rd [1], >= 0
+  NormalForce normal_force = NormalForce::lift_and_drag;
+  NormalForceCoefficient<S> coefficient = {S(3.6), S(0.15)};
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.hinge, of.pitch_inertia, of.mass_product, of.moments, of.air, of.rotational_coefficient,
+               of.damping_coefficient, of.normal_force, of.coefficient);
+  }
+};
+
+/// Keys, units and ranges; the table of parameters has them from here.
+namespace pitch_key {
+inline constexpr ParameterKey pitch_inertia{"wing.pitch_inertia", "kg m2", range::positive};
+inline constexpr ParameterKey mass_product{"wing.mass_product", "kg m2", range::any};
+inline constexpr ParameterKey damping_coefficient{"pitch.damping_coefficient", "1", range::not_negative};
+}  // namespace pitch_key
+
+/// `stroke_inertia`: N_w J_w [kg m2], within which the mass product must stay (Cauchy and Schwarz).
+void validate(const PitchingWings<double>& wings, double stroke_inertia);
+
+/// How the wings stand and turn.
+template <Scalar S>
+struct PitchState {
+  S sin_psi, cos_psi;
+  S psi;              ///< pitch angle [rad]
+  S velocity;         ///< psi' [rad/s]
+  S stroke_velocity;  ///< beta' [rad/s]
+};
+
+template <Scalar S>
+PitchState<S> pitch_state(const S& psi, const S& velocity, const S& stroke_velocity) {
+  using std::cos;
+  using std::sin;
+  return {sin(psi), cos(psi), psi, velocity, stroke_velocity};
+}
+
+/// Inertia of wings and added mass in stroke and pitch [kg m2].
+template <Scalar S>
+struct PitchInertia {
+  S bb;  ///< M_bb = N_w J_w + I_psi sin^2(psi) + m_rr cos^2(psi)
+  S bp;  ///< M_bp = (P + m_rp) cos(psi)
+  S pp;  ///< M_pp = I_psi + m_pp
+};
+
+/// `stroke_inertia`: N_w J_w [kg m2], of what else turns with the stroke as the caller likes.
+template <Scalar S>
+PitchInertia<S> pitch_inertia(const PitchingWings<S>& w, const S& stroke_inertia, const PitchState<S>& at) {
+  return {stroke_inertia + w.pitch_inertia * square(at.sin_psi) + w.air.rr * square(at.cos_psi),
+          (w.mass_product + w.air.rp) * at.cos_psi, w.pitch_inertia + w.air.pp};
+}
+
+/// Kinetic energy [J] of an inertia at pitch and stroke velocity.
+template <Scalar S>
+S kinetic_energy(const PitchInertia<S>& m, const PitchState<S>& at) {
+  return S(0.5) * (m.bb * square(at.stroke_velocity) + m.pp * square(at.velocity)) +
+         m.bp * at.stroke_velocity * at.velocity;
+}
+
+/// C_N at the angle of attack alpha [rad].
+template <Scalar S>
+S normal_force_coefficient(const BladeElement<S>& w, const PitchingWings<S>& p, const S& alpha) {
+  using std::cos;
+  using std::sin;
+  if (p.normal_force == NormalForce::normal_force) {
+    return p.coefficient.first * sin(alpha) + p.coefficient.third * sin(S(S(3.0) * alpha));
+  }
+  return lift_coefficient(w.coefficients, alpha) * cos(alpha) + drag_coefficient(w.coefficients, alpha) * sin(alpha);
+}
+
+/// Centre of pressure behind the leading edge over the chord at the angle of attack alpha [rad]: the first terms of the
+/// Fourier series of 0.05 + 0.82 alpha / pi (Dickson and others, AIAA 2006-34; Whitney and Wood 2010), which is kinked
+/// at 0 and 180 degrees.
+template <Scalar S>
+S centre_of_pressure(const S& alpha) {
+  using std::cos;
+  return S(0.46) - S(0.332) * cos(alpha) - S(0.037) * cos(S(S(3.0) * alpha)) - S(0.013) * cos(S(S(5.0) * alpha));
+}
+
+/// What the air does to wings that pitch, without added mass. Moments oppose positive velocities.
+template <Scalar S>
+struct PitchAeroLoads {
+  S angle_of_attack;  ///< alpha = pi/2 + sign(beta') psi [rad], over 90 degrees where the wing over-rotates
+  S normal_force;     ///< F_N + F_rot, normal to the chord, against a positive velocity [N]
+  S stroke_moment;    ///< M_aero about the stroke hinges [N m]
+  S pitch_moment;     ///< M_pitch about the pitch hinges [N m]
+  S power;            ///< M_aero beta' + M_pitch psi' [W]
+};
+
+/// `stroke` and `turn` are the signs of beta' and psi'.
+template <Scalar S>
+PitchAeroLoads<S> aero_loads(const BladeElement<S>& w, const PitchingWings<S>& p, const PitchState<S>& at,
+                             const S& stroke, const S& turn) {
+  const S& rho = w.air_density;
+  const S speed = stroke * at.stroke_velocity;
+  const S alpha = S(0.5 * pi) + stroke * at.psi;
+  const S translation = S(0.5) * rho * normal_force_coefficient(w, p, alpha) * speed * at.stroke_velocity;
+  const S rotation = p.rotational_coefficient * rho * speed * at.velocity;
+  const S damping = S(0.125) * rho * p.damping_coefficient * turn * square(at.velocity) * p.moments.s40;
+  PitchAeroLoads<S> loads;
+  loads.angle_of_attack = alpha;
+  loads.normal_force = translation * w.s2 + rotation * p.moments.s21;
+  loads.stroke_moment = (translation * w.s3 + rotation * p.moments.s22) * at.cos_psi;
+  // The force of translation acts at the centre of pressure, that of rotation at mid-chord.
+  loads.pitch_moment =
+      translation * centre_of_pressure(alpha) * p.moments.s22 + S(0.5) * rotation * p.moments.s31 + damping;
+  loads.power = loads.stroke_moment * at.stroke_velocity + loads.pitch_moment * at.velocity;
+  return loads;
+}
+
+/// Wings that pitch, as the stroke sees them: (inertia) beta'' + moment is the moment that turns them, and
+/// psi'' = free_acceleration + coupling beta''.
+template <Scalar S>
+struct WingsAtPitch {
+  PitchAeroLoads<S> aero;
+  PitchHingeLoads<S> hinge;
+  S inertia;            ///< M_bb - M_bp^2 / M_pp; M_bb where the wings are held at a stop [kg m2]
+  S moment;             ///< of all that acts on the wings but the springs of the stroke [N m]
+  S free_acceleration;  ///< psi'' of a stroke at constant velocity [rad/s2]
+  S coupling;           ///< of psi'' to beta'' [1]
+  /// Of wings that are held at a stop: with coupling_moment beta'' it is the moment that presses towards a positive psi
+  /// [N m], and the stop's reaction its negative.
+  S pitching_moment;
+  S coupling_moment;  ///< -M_bp [kg m2]
+};
+
+/// The wings with `stroke_inertia` N_w J_w [kg m2]. `stroke` and `turn` as in aero_loads(); `held` is -1 where a stop
+/// holds them (psi' is 0 then), else +1.
+template <Scalar S>
+WingsAtPitch<S> wings_at_pitch(const BladeElement<S>& w, const PitchingWings<S>& p, const S& stroke_inertia,
+                               const PitchState<S>& at, const S& stroke, const S& turn, const S& held) {
+  const PitchInertia<S> m = pitch_inertia(p, stroke_inertia, at);
+  WingsAtPitch<S> of;
+  of.aero = aero_loads(w, p, at, stroke, turn);
+  of.hinge = hinge_loads(p.hinge, at.psi, at.velocity);
+  const S sc = (p.pitch_inertia - p.air.rr) * at.sin_psi * at.cos_psi;
+  const S h_b =
+      S(2.0) * sc * at.stroke_velocity * at.velocity - (p.mass_product + p.air.rp) * at.sin_psi * square(at.velocity);
+  const S h_p = -sc * square(at.stroke_velocity);
+  of.pitching_moment = -(h_p + of.hinge.moment + of.aero.pitch_moment);
+  of.coupling_moment = -m.bp;
+  const S per_inertia = select(held >= S(0.0), inverse_of(m.pp), S(0.0));
+  of.free_acceleration = of.pitching_moment * per_inertia;
+  of.coupling = of.coupling_moment * per_inertia;
+  of.inertia = m.bb + m.bp * of.coupling;
+  of.moment = h_b + of.aero.stroke_moment + m.bp * of.free_acceleration;
+  return of;
+}
+
+/// Lift of all wings normal to the stroke plane [N] at the accelerations beta'' and psi'' [rad/s2]: that of the forces
+/// normal to the chord, of which the air's inertia is one.
+template <Scalar S>
+S lift_at_pitch(const PitchingWings<S>& p, const WingsAtPitch<S>& of, const PitchState<S>& at,
+                const S& stroke_acceleration, const S& pitch_acceleration) {
+  const S F_am = p.air.r * (stroke_acceleration * at.cos_psi - at.stroke_velocity * at.velocity * at.sin_psi) +
+                 p.air.p * pitch_acceleration;
+  return -(of.aero.normal_force + F_am) * at.sin_psi;
+}
+
+}  // namespace wingbeat

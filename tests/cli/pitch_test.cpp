@@ -1,0 +1,152 @@
+// Wings that pitch on a hinge, as users meet them.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "program.hpp"
+#include "wingbeat/files/netcdf.hpp"
+
+namespace cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+const std::string hinged = data + "/designs/pitch-hinge.toml";
+constexpr const char* pitch_metric_keys[] = {"power_hinge_w", "pitch_amplitude_deg", "pitch_phase_deg",
+                                             "angle_of_attack_max_deg"};
+
+class Pitch : public Program {
+ protected:
+  std::string complaint(const std::vector<std::string>& set, const std::string& vehicle = hinged) const {
+    std::vector<std::string> arguments{"run", vehicle};
+    for (const std::string& s : set) arguments.insert(arguments.end(), {"--set", s});
+    const Outcome o = run(arguments);
+    EXPECT_EQ(o.status, 2) << o.out;
+    return o.err;
+  }
+};
+
+TEST_F(Pitch, RunsByBothMethods) {
+  for (const std::string stop : {"", "20 deg"}) {
+    std::vector<std::string> arguments{"run", hinged, "--json"};
+    if (!stop.empty()) arguments.insert(arguments.end(), {"--set", "pitch.stop=" + stop});
+    const Outcome orbit = run(arguments);
+    ASSERT_EQ(orbit.status, 0) << orbit.err;
+    const Json json = orbit.json();
+    arguments.insert(arguments.end(), {"--method", "transient"});
+    const Json transient = run(arguments).json();
+    for (const char* key : {"lift_mean_n", "power_electrical_w", "power_aerodynamic_w", "stroke_amplitude_rad",
+                            "current_peak_a", "power_hinge_w", "pitch_amplitude_deg", "pitch_phase_deg",
+                            "angle_of_attack_min_deg", "angle_of_attack_max_deg", "power_reactive_w"}) {
+      ASSERT_TRUE(json[key].is_number()) << key;
+      EXPECT_NEAR(transient[key].get<double>() / json[key].get<double>(), 1.0, 3e-6) << key << ", stop " << stop;
+    }
+    const double given = json["power_electrical_w"].get<double>();
+    double taken = 0.0;
+    for (const char* key : {"power_copper_w", "power_viscous_w", "power_friction_w", "power_hinge_w",
+                            "power_aerodynamic_w", "power_residual_w"}) {
+      taken += json[key].get<double>();
+    }
+    EXPECT_NEAR(taken, given, 1e-6 * given);
+    if (!stop.empty()) {
+      EXPECT_NEAR(json["pitch_amplitude_deg"].get<double>(), 20.0, 1e-6);
+    }
+  }
+}
+
+TEST_F(Pitch, TheTableNamesItsLossAndItsAngles) {
+  const Outcome o = run({"run", hinged});
+  ASSERT_EQ(o.status, 0) << o.err;
+  for (const char* line : {"pitch hinges", "largest angle of attack", "pitch amplitude", "pitch phase"}) {
+    EXPECT_THAT(o.out, HasSubstr(line));
+  }
+  const std::string direct = data + "/designs/direct-drive.toml";
+  EXPECT_THAT(run({"run", direct}).out, Not(HasSubstr("pitch hinges")));
+  const Json json = run({"run", direct, "--json"}).json();
+  for (const char* key : pitch_metric_keys) EXPECT_TRUE(json[key].is_null()) << key;
+}
+
+TEST_F(Pitch, WaveformsHaveThePitchAngle) {
+  for (const char* method : {"orbit", "transient"}) {
+    const std::string name = path(std::string(method) + ".csv");
+    const Outcome o = run({"run", hinged, "--method", method, "--waveforms", name});
+    ASSERT_EQ(o.status, 0) << o.err;
+    std::istringstream lines(read(name));
+    std::string header, row;
+    std::getline(lines, header);
+    EXPECT_THAT(header, testing::EndsWith(",pitch_angle_rad"));
+    std::getline(lines, row);
+    EXPECT_GT(std::abs(std::stod(row.substr(row.rfind(',') + 1))), 1e-3);
+  }
+  ASSERT_EQ(run({"run", plain, "--waveforms", path("plain.csv")}).status, 0);
+  EXPECT_EQ(read(path("plain.csv")).find("pitch_angle_rad"), std::string::npos);
+}
+
+TEST_F(Pitch, SweepsItsStiffness) {
+  std::ofstream(path("s.toml")) << "[study]\nvehicle = \"" << hinged
+                                << "\"\n[[axis]]\nkey = \"pitch.stiffness\"\n"
+                                   "values = [\"2e-4 N m/rad\", \"3e-4 N m/rad\", \"1e-3 N m/rad\"]\n";
+  const Outcome o = run({"sweep", path("s.toml"), "-o", path("s.nc")});
+  ASSERT_EQ(o.status, 0) << o.err;
+  const wingbeat::NetcdfReader sweep(path("s.nc"));
+  const Json json = run({"run", hinged, "--json"}).json();
+  for (const char* key : {"lift_mean_n", "pitch_amplitude_deg", "power_hinge_w"}) {
+    EXPECT_EQ(sweep.read(key).at(1), json[key].get<double>()) << key;
+  }
+  const auto amplitude = sweep.read("pitch_amplitude_deg");
+  EXPECT_GT(amplitude.at(0), amplitude.at(2));
+}
+
+TEST_F(Pitch, BadInputIsRefusedInOneSentence) {
+  EXPECT_THAT(complaint({"pitch.stop=200 deg"}), HasSubstr("must be > 0 and < pi"));
+  EXPECT_THAT(complaint({"pitch.stop=0 deg"}), HasSubstr("must be > 0 and < pi"));
+  EXPECT_THAT(complaint({"wing.planform={shape=\"moments\", s2=2.457e-6, s3=1.048e-7}"}),
+              HasSubstr("needs the wing's outline"));
+  EXPECT_THAT(complaint({"friction.type=constant", "friction.torque=1e-6 N m"}), HasSubstr("constant friction"));
+  EXPECT_THAT(complaint({"aerodynamics.pitch_coefficient=5 ms"}), HasSubstr("has no place in this vehicle"));
+  EXPECT_THAT(complaint({"wing.pitch_inertia=3e-9 kg m2"}), HasSubstr("follows from wing.areal_density"));
+  EXPECT_THAT(complaint({"pitch.stiffnes=3e-4 N m/rad"}), HasSubstr("pitch.stiffness"));
+  EXPECT_THAT(complaint({"aerodynamics.coefficients=normal-force"}), HasSubstr("normal-force-robofly"));
+  const std::string direct = data + "/designs/direct-drive.toml";
+  EXPECT_THAT(complaint({"pitch.damping=1e-8 N m s/rad"}, direct), HasSubstr("pitch.stiffness"));
+  EXPECT_THAT(complaint({"aerodynamics.coefficients=normal-force-robofly"}, direct),
+              HasSubstr("is for wings that pitch on a hinge"));
+  std::string text = read(hinged);
+  const auto replace = [&](const std::string& old, const std::string& by) {
+    std::string t = text;
+    t.replace(t.find(old), old.size(), by);
+    std::ofstream(path("bad.toml")) << t;
+    return path("bad.toml");
+  };
+  EXPECT_THAT(complaint({}, replace("stiffness = \"3e-4 N m/rad\"\n", "")), HasSubstr("pitch.stiffness"));
+  const std::string drawn = "areal_density = \"17 g/m2\"\nspar_density = \"0.614 g/m\"\n";
+  EXPECT_THAT(complaint({}, replace(drawn, "inertia = 7.2e-8\n")), HasSubstr("wing.pitch_inertia: missing"));
+  EXPECT_THAT(complaint({}, replace(drawn, "inertia = 7.2e-8\npitch_inertia = 3e-9\nmass_product = 2e-8\n")),
+              HasSubstr("no wing has that much"));
+}
+
+TEST_F(Pitch, AnOptimumIsRefusedByName) {
+  std::ofstream(path("o.toml")) << "[study]\nvehicle = \"" << hinged
+                                << "\"\n[objective]\nmaximise = \"lift_mean_n\"\n[[parameter]]\n"
+                                   "key = \"pitch.stiffness\"\nlower = \"1e-4 N m/rad\"\nupper = \"1e-3 N m/rad\"\n";
+  const Outcome o = run({"optimise", path("o.toml")});
+  EXPECT_EQ(o.status, 2) << o.out;
+  EXPECT_THAT(o.err, HasSubstr("do not have yet; sweep them instead"));
+}
+
+TEST_F(Pitch, ACrankIsRefusedByName) {
+  std::string text = read(plain);
+  const auto planform = text.find("\nplanform");
+  text.erase(planform, text.find('\n', planform + 1) - planform);
+  text.insert(text.find("[wing]\n") + 7,
+              "pitch_inertia = 3e-9\nmass_product = 5e-9\n"
+              "planform = { shape = \"semi-ellipse\", length = \"63 mm\", root_chord = \"25 mm\" }\n");
+  const auto law = text.find("\npitch_coefficient");
+  text.erase(law, text.find('\n', law + 1) - law);
+  std::ofstream(path("crank.toml")) << text << "\n[pitch]\nstiffness = 3e-4\n";
+  EXPECT_THAT(complaint({}, path("crank.toml")), HasSubstr("is solved for a direct drive only"));
+}
+
+}  // namespace
+}  // namespace cli

@@ -1,0 +1,106 @@
+// A direct drive with wings that pitch in time: against the orbit, with and without stops; energy of a free swing.
+#include "time/pitch_direct_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "time/simulation.hpp"
+#include "vehicle/pitching_vehicle.hpp"
+#include "wingbeat/core/jet.hpp"
+#include "wingbeat/cycle/pitch_direct_system.hpp"
+#include "wingbeat/solve/periodic.hpp"
+
+namespace wingbeat {
+namespace {
+
+using detail::PitchDirectModel, detail::step_to, detail::StepOutcome;
+static_assert(detail::TimeModel<PitchDirectModel>);
+
+// From rest, through every impact, to the orbit that the search finds without it.
+TEST(PitchDirectModel, ReachesTheOrbitFromRest) {
+  using System = PitchDirectSystem<double, 5>;
+  for (const double stop : {infinity, 0.5}) {
+    Vehicle<double> of = pitching_vehicle(2e-4);
+    of.pitch.hinge.stop = stop;
+    const System system{of, {0.5, 60.0, 0.5, 60.0, 0.1}};
+    solver::Iterate<System> cycle;
+    const auto found = solver::solve_periodic(system, {}, {.tolerance = 1e-10, .max_steps = 2000}, cycle);
+    ASSERT_EQ(found.status, solver::PeriodicStatus::converged) << describe(found.status);
+
+    PitchDirectModel model(of);
+    model.start({});
+    constexpr int periods = 30;
+    ASSERT_EQ(step_to(model, periods * model.period, 1e-11), StepOutcome::reached);
+    const double sizes[] = {0.5, 60.0, 0.5, 60.0, 0.1};
+    for (std::size_t n = 0; n < 5; ++n) {
+      EXPECT_NEAR(model.now.y[n], cycle.steps.front().y[n], 1e-6 * sizes[n]) << n << ", stop " << stop;
+    }
+    // One more period, by what each says that impacts take.
+    const double before = model.now.impact_loss;
+    ASSERT_EQ(step_to(model, (periods + 1) * model.period, 1e-11), StepOutcome::reached);
+    EXPECT_EQ(before > 0.0, stop < infinity);
+    EXPECT_NEAR(model.now.impact_loss - before, impact_loss(system, cycle), 1e-6 * before);
+  }
+}
+
+TEST(PitchDirectModel, ReachesTheOrbitsOfRandomVehicles) {
+  using System = PitchDirectSystem<double, 5>;
+  std::mt19937_64 random(2611);
+  int stopped = 0;
+  for (int n = 0; n < 60; ++n) {
+    const Vehicle<double> of = random_pitching_vehicle(random, n % 2 == 1);
+    validate(of.pitch, of.wing_count * of.wing_inertia);
+    const System system{of, {0.5, 60.0, 0.5, 60.0, 0.1}};
+    solver::Iterate<System> cycle;
+    const auto found = solver::solve_periodic(system, {}, {.tolerance = 1e-9, .max_steps = 2000}, cycle);
+    ASSERT_EQ(found.status, solver::PeriodicStatus::converged) << n << ": " << describe(found.status);
+    stopped += impact_loss(system, cycle) > 0.0;
+    // What is left of the start after so many periods is a ten-millionth.
+    const double periods = std::ceil(std::max(20.0, std::log(1e-7) / std::log(found.floquet_multiplier_max)));
+    PitchDirectModel model(of);
+    model.start({});
+    ASSERT_EQ(step_to(model, periods * model.period, 1e-10), StepOutcome::reached) << n;
+    const double sizes[] = {0.5, 60.0, 0.5, 60.0, 0.1};
+    for (std::size_t k = 0; k < 5; ++k) {
+      EXPECT_NEAR(model.now.y[k], cycle.steps.front().y[k], 1e-6 * sizes[k]) << "vehicle " << n << ", state " << k;
+    }
+  }
+  EXPECT_GE(stopped, 10);
+}
+
+// No supply, no damping, no air: a free swing keeps its energy, to what impacts take of it.
+TEST(PitchDirectModel, FreeSwingKeepsItsEnergy) {
+  for (const double stop : {infinity, 0.6}) {
+    Vehicle<double> of = pitching_vehicle(2e-4, 0.0, Condition::vacuum);
+    of.motor.viscous_damping = of.friction.damping = of.pitch.hinge.damping = 0.0;
+    of.motor.armature_inductance = 0.0;
+    of.motor.armature_resistance = 1e15;
+    of.pitch.hinge.stop = stop;
+    PitchDirectModel model(of);
+    model.start({0.8, 0.0, 0.3, 100.0, 0.0});
+    const double before = model.stored_energy();
+    ASSERT_EQ(step_to(model, 3.0 * model.period, 1e-12), StepOutcome::reached);
+    EXPECT_NEAR(model.stored_energy() + model.now.impact_loss, before, 1e-9 * before);
+    EXPECT_EQ(model.now.impact_loss > 0.0, stop < infinity);
+  }
+}
+
+// The same from a saved state, to the bit.
+TEST(PitchDirectModel, RepeatsFromASavedState) {
+  Vehicle<double> of = pitching_vehicle(2e-4);
+  of.pitch.hinge.stop = 0.5;
+  PitchDirectModel model(of);
+  model.start({});
+  ASSERT_EQ(step_to(model, 2.3 * model.period, 1e-9), StepOutcome::reached);
+  const PitchDirectModel::State saved = model.now;
+  ASSERT_EQ(step_to(model, 4.7 * model.period, 1e-9), StepOutcome::reached);
+  const PitchDirectModel::State first = model.now;
+  model.now = saved;
+  ASSERT_EQ(step_to(model, 4.7 * model.period, 1e-9), StepOutcome::reached);
+  for (int n = 0; n < 5; ++n) EXPECT_EQ(model.now.y[n], first.y[n]);
+  EXPECT_EQ(model.now.impact_loss, first.impact_loss);
+}
+
+}  // namespace
+}  // namespace wingbeat

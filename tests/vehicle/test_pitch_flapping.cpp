@@ -1,0 +1,170 @@
+// Steady flapping of direct drives whose wings pitch on a hinge, as it is asked for: from a design, by the orbit search
+// and by a simulation from rest.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "vehicle/direct_design.hpp"
+#include "vehicle/pitching_vehicle.hpp"
+#include "wingbeat/core/jet.hpp"
+#include "wingbeat/cycle/energy_audit.hpp"
+#include "wingbeat/cycle/orbit_gradient.hpp"
+#include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/study/run.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
+
+namespace wingbeat {
+namespace {
+
+using testing::HasSubstr;
+
+/// The direct drive with wings of membrane and spar on hinges.
+Design<double> hinged_design(double stiffness) {
+  Design<double> d = direct_design();
+  d.wing.planform = {};
+  d.wing.planform.shape = PlanformShape::semi_ellipse;
+  d.wing.planform.length = 63e-3;
+  d.wing.planform.root_chord = 25e-3;
+  d.wing.areal_density = 17e-3;
+  d.wing.spar_density = 0.614e-3;
+  d.pitch.stiffness = stiffness;
+  d.pitch.damping = 2e-8;
+  d.aerodynamics.pitch_coefficient = 0.0;
+  d.aerodynamics.added_mass = true;
+  d.aerodynamics.coefficients_name = normal_force_set;
+  d.aerodynamics.coefficients = force_coefficients_robofly();
+  return d;
+}
+
+Design<double> random_hinged_design(std::mt19937_64& random, bool stops) {
+  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  Design<double> d = hinged_design(std::exp(uniform(std::log(1e-4), std::log(3e-3))));
+  d.supply.voltage = uniform(0.5, 5.0);
+  d.supply.frequency = uniform(14.0, 32.0);
+  d.wing.areal_density = 17e-3 * std::exp(uniform(-0.7, 0.7));
+  d.pitch.damping *= std::exp(uniform(-2.0, 4.0));
+  d.pitch.rotational_lift = uniform(0.0, 1.0) < 0.7;
+  d.aerodynamics.added_mass = uniform(0.0, 1.0) < 0.7;
+  if (uniform(0.0, 1.0) < 0.3) {
+    d.aerodynamics.coefficients_name = "translational-2022";
+    d.aerodynamics.coefficients = translational_2022();
+  }
+  if (uniform(0.0, 1.0) < 0.3) d.motor.constants.armature_inductance = 0.0;
+  if (uniform(0.0, 1.0) < 0.3) d.friction = {FrictionLaw::viscous, 2e-6};
+  if (stops) d.pitch.stop = uniform(0.05, 0.5);
+  return d;
+}
+
+/// Largest deviation of a metric, over its error_scale().
+double worst_metric(const Metrics<double>& a, const Metrics<double>& b, std::string& where) {
+  double worst = 0.0;
+  for (int m = 0; m < metric_count; ++m) {
+    const Metric which = Metric(m);
+    if (which == Metric::floquet_multiplier_max || which == Metric::lift_to_weight) continue;
+    EXPECT_EQ(std::isnan(a[which]), std::isnan(b[which])) << metric_info(which).key;
+    const double off = std::abs(a[which] - b[which]) / error_scale(b, which);
+    if (off > worst) worst = off, where = metric_info(which).key;
+  }
+  return worst;
+}
+
+TEST(PitchFlapping, OrbitAgreesWithTheSimulationOfRandomVehicles) {
+  std::mt19937_64 random(14);
+  int flapping = 0, stopped = 0;
+  for (int n = 0; n < 100; ++n) {
+    const Design<double> design = random_hinged_design(random, n % 2 == 1);
+    validate(design);
+    const Vehicle<double> vehicle = resolve(design);
+    const SteadyFlapping orbit = find_steady_flapping(vehicle, {.tolerance = 1e-8}, start_up_in_time());
+    TransientOptions options;
+    options.tolerance = 1e-7;
+    const TransientResult transient = simulate_start_up(vehicle, options);
+    ASSERT_EQ(orbit.status, transient.status)
+        << "vehicle " << n << ": " << describe(orbit.evidence) << " / " << describe(transient.evidence);
+    if (orbit.status != FlappingStatus::flapping) continue;
+    ++flapping;
+    for (const TransientEvent& e : transient.events) {
+      if (e.kind == TransientEvent::Kind::stop_impact && e.time > transient.end_time - 1.0 / vehicle.drive_frequency) {
+        ++stopped;
+        break;
+      }
+    }
+    ASSERT_TRUE(transient.metrics) << "vehicle " << n;
+    std::string where;
+    EXPECT_LT(worst_metric(orbit.metrics, *transient.metrics, where), 1e-6) << "vehicle " << n << ", " << where;
+    EXPECT_LT(std::abs(energy_audit(orbit.metrics).imbalance), 1e-7 * orbit.metrics[Metric::power_electrical]) << n;
+  }
+  EXPECT_GT(flapping, 90);
+  EXPECT_GT(stopped, 20);
+}
+
+TEST(PitchFlapping, DesignGivesTheWingsOfItsDrawing) {
+  Design<double> d = hinged_design(3e-4);
+  d.pitch.stop = 0.7;
+  const Vehicle<double> v = resolve(d);
+  ASSERT_TRUE(pitches(v));
+  const WingMass<double> one = *wing_mass(d.wing);
+  EXPECT_DOUBLE_EQ(v.pitch.pitch_inertia, 2.0 * one.pitch_inertia);
+  EXPECT_DOUBLE_EQ(v.pitch.mass_product, 2.0 * one.mass_product);
+  EXPECT_DOUBLE_EQ(v.pitch.hinge.stiffness, 6e-4);
+  EXPECT_EQ(v.pitch.hinge.stop, 0.7);
+  EXPECT_GT(v.pitch.air.rr, 0.0);
+  d.aerodynamics.added_mass = false;
+  d.pitch.rotational_lift = false;
+  EXPECT_EQ(resolve(d).pitch.air.rr, 0.0);
+  EXPECT_EQ(resolve(d).pitch.rotational_coefficient, 0.0);
+  EXPECT_EQ(resolve(d, Condition::vacuum).pitch.air.pp, 0.0);
+  EXPECT_FALSE(pitches(resolve(d, Condition::wingless)));
+  EXPECT_FALSE(pitches(resolve(direct_design())));
+  d.motors = 3.0;
+  EXPECT_DOUBLE_EQ(resolve(d).pitch.pitch_inertia, 6.0 * one.pitch_inertia);
+}
+
+// M motors, each with its wings, are M times one motor at the same voltage.
+TEST(PitchFlapping, SeveralMotorsAreAsManyTimesOne) {
+  Design<double> d = hinged_design(4e-4);
+  const SteadyFlapping one = find_steady_flapping(resolve(d));
+  d.motors = 2.0;
+  const SteadyFlapping two = find_steady_flapping(resolve(d));
+  ASSERT_EQ(one.status, FlappingStatus::flapping);
+  for (const Metric m : {Metric::lift_mean, Metric::power_electrical, Metric::power_hinge}) {
+    EXPECT_NEAR(two.metrics[m] / one.metrics[m], 2.0, 1e-6) << metric_info(m).key;
+  }
+  EXPECT_NEAR(two.metrics[Metric::pitch_amplitude], one.metrics[Metric::pitch_amplitude], 1e-5);
+}
+
+TEST(PitchFlapping, EnsemblesLeaveItToTheScalarSolver) {
+  const Vehicle<double> v = resolve(hinged_design(3e-4));
+  const EnsembleMember member{v, {}};
+  EnsembleOutcome outcome;
+  solve_ensemble(std::span(&member, 1), {}, {}, std::span(&outcome, 1));
+  const SteadyFlapping alone = find_steady_flapping(v, {.tolerance = EnsembleOptions{}.tolerance});
+  EXPECT_EQ(outcome.status, FlappingStatus::flapping);
+  EXPECT_TRUE(outcome.scalar);
+  for (const Metric m : {Metric::lift_mean, Metric::pitch_amplitude, Metric::power_hinge}) {
+    EXPECT_EQ(outcome.metrics[m], alone.metrics[m]) << metric_info(m).key;
+  }
+}
+
+// A soft hinge turns the wing late, beyond 90 degrees of attack after each reversal: that is said.
+TEST(PitchFlapping, OverRotationIsNamed) {
+  Design<double> d = hinged_design(3e-5);
+  const SteadyFlapping soft = find_steady_flapping(resolve(d), {}, start_up_in_time());
+  ASSERT_EQ(soft.status, FlappingStatus::flapping) << describe(soft.evidence);
+  EXPECT_THAT(describe(soft.evidence), HasSubstr("the wings over-rotate"));
+  EXPECT_GT(soft.metrics[Metric::angle_of_attack_max], 90.0);
+}
+
+TEST(PitchFlapping, HasNoDerivatives) {
+  const Design<double> d = hinged_design(3e-4);
+  const SteadyFlapping found = find_steady_flapping(resolve(d));
+  const OrbitGradient g = orbit_gradient(found, gradient_vehicle(cast<GradientJet>(d), Condition::air));
+  EXPECT_FALSE(g.regular);
+  EXPECT_EQ(g.metrics[Metric::lift_mean].a, found.metrics[Metric::lift_mean]);
+  EXPECT_TRUE(std::isnan(g.metrics[Metric::lift_mean].v[0]));
+}
+
+}  // namespace
+}  // namespace wingbeat
