@@ -172,7 +172,7 @@ int run(const RunArguments& arguments) {
       waveforms->commit();
     }
     if (cycle_plot) {
-      plot_cycle(result.cycle, title, *cycle_format, cycle_plot->temporary());
+      plot_cycle(result.cycle, result.design, title, *cycle_format, cycle_plot->temporary());
       cycle_plot->commit();
     }
     if (power_plot) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "report/figure.hpp"
+#include "report/mechanism_drawing.hpp"
 
 namespace wingbeat {
 
@@ -20,8 +21,8 @@ std::optional<PlotFormat> plot_format(const std::filesystem::path& file) {
   return std::nullopt;
 }
 
-void plot_cycle(std::span<const WaveformRow> rows, const std::string& title, PlotFormat format,
-                const std::filesystem::path& file) {
+void plot_cycle(std::span<const WaveformRow> rows, const Design<double>& design, const std::string& title,
+                PlotFormat format, const std::filesystem::path& file) {
   if (rows.size() < 2) throw std::runtime_error("no cycle to plot");
   const double period = rows.back().time - rows.front().time;
 
@@ -29,8 +30,10 @@ void plot_cycle(std::span<const WaveformRow> rows, const std::string& title, Plo
   const bool in_seconds = period >= 10.0;
   const double time_scale = in_seconds ? 1.0 : 1e3;
   double lift_mean = 0.0, lift_most = 0.0, power_most = 0.0;
+  StrokeRange stroke{rows.front().stroke_angle, rows.front().stroke_angle};
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (k > 0) lift_mean += 0.5 * (rows[k].lift + rows[k - 1].lift) * (rows[k].time - rows[k - 1].time) / period;
+    stroke = {std::min(stroke.low, rows[k].stroke_angle), std::max(stroke.high, rows[k].stroke_angle)};
     lift_most = std::max(lift_most, std::abs(rows[k].lift));
     power_most = std::max(power_most, std::abs(rows[k].power_electrical));
   }
@@ -39,8 +42,13 @@ void plot_cycle(std::span<const WaveformRow> rows, const std::string& title, Plo
 
   // Without a rod its panel shows the current.
   const bool rod = std::isfinite(rows.front().rod_force);
+  const Vehicle<double> vehicle = resolve(design);
+  const std::string force = internal_force_name(vehicle.transmission.type);
 
-  Figure figure(format, 3.5, 5.6);
+  // The mechanism stands above the waveforms; both heights in inches.
+  constexpr double page_width = 3.5, mechanism_height = 1.9, page_height = 5.45 + mechanism_height;
+  constexpr double waveforms = 1.0 - mechanism_height / page_height;  ///< their share of the page
+  Figure figure(format, page_width, page_height);
   figure.add("$cycle << END\n");
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const WaveformRow& r = rows[k];
@@ -49,18 +57,29 @@ void plot_cycle(std::span<const WaveformRow> rows, const std::string& title, Plo
                rod ? r.rod_force : 1e3 * r.current, power_scale * r.power_electrical, power_scale * r.power_motor,
                power_scale * r.power_aerodynamic);
   }
-  figure.add("END\nset multiplot\nset xrange [0:{}]\n", time_scale * period);
-
   // Margins of the page, in its fractions.
-  constexpr double left = 0.15, right = 0.85, top = 0.93, bottom = 0.075, gap = 0.05;
+  constexpr double left = 0.15, right = 0.85;
+  constexpr double top = 0.955 * waveforms, bottom = 0.075 * waveforms, gap = 0.052 * waveforms;
   constexpr double height = (top - bottom - 3.0 * gap) / 4.0;
-  figure.add("set lmargin at screen {}\nset rmargin at screen {}\n", left, right);
-  figure.text(title, 8.0, "screen 0.5,0.982 center");
+  figure.add("END\nset multiplot\n");
+  figure.text(title, 8.0, fmt::format("screen 0.5,{} center", 1.0 - 0.1 / page_height));
+  figure.text(mechanism_caption(vehicle), 7.0, fmt::format("screen 0.5,{} center", 1.0 - 0.28 / page_height));
+  const bool law = vehicle.transmission.type == TransmissionType::tabulated;
+  draw_mechanism_panel(figure, vehicle, stroke,
+                       {.left = law ? left : 0.03,
+                        .right = law ? right : 0.97,
+                        .bottom = waveforms + (law ? 0.25 : 0.06) / page_height,
+                        .top = 1.0 - 0.4 / page_height,
+                        .page_width = page_width,
+                        .page_height = page_height});
+  figure.next_panel();
+  figure.add("set lmargin at screen {}\nset rmargin at screen {}\nset xrange [0:{}]\n", left, right,
+             time_scale * period);
   double key_height = 0.0;
   const auto panel = [&](int index, const std::string& name) {
     if (index > 0) figure.next_panel();
     const double panel_top = top - index * (height + gap);
-    key_height = panel_top + 0.014;
+    key_height = panel_top + 0.014 * waveforms;
     figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", panel_top, panel_top - height);
     figure.add("set format x {}\n", index == 3 ? "'%g'" : "''");
     figure.text(name, 7.5, fmt::format("screen 0.026,{} center rotate by 90", panel_top - 0.5 * height));
@@ -83,12 +102,13 @@ void plot_cycle(std::span<const WaveformRow> rows, const std::string& title, Plo
   figure.add("plot $cycle using 1:4 with lines {}, {} with lines {}\n", blue_solid, lift_scale * lift_mean,
              vermillion_dashed);
 
-  panel(2, rod ? "rod force (N)" : "current (mA)");
-  figure.key_entry(left, key_height, blue_solid, rod ? "rod force, positive as it raises the stroke angle" : "current");
+  panel(2, rod ? force + " (N)" : "current (mA)");
+  figure.key_entry(left, key_height, blue_solid, rod ? force + ", above 0 raises the stroke angle" : "current");
   figure.add("plot $cycle using 1:5 with lines {}\n", blue_solid);
 
   panel(3, power_in_watt ? "power (W)" : "power (mW)");
-  figure.text(in_seconds ? "time (s)" : "time (ms)", 7.5, fmt::format("screen {},0.014 center", 0.5 * (left + right)));
+  figure.text(in_seconds ? "time (s)" : "time (ms)", 7.5,
+              fmt::format("screen {},{} center", 0.5 * (left + right), 0.014 * waveforms));
   figure.key_entry(left, key_height, black_dotted, "electrical");
   figure.key_entry(left + 0.205, key_height, blue_solid, "motor output");
   figure.key_entry(left + 0.465, key_height, vermillion_dashed, "aerodynamic");

@@ -81,6 +81,7 @@ void power_group(Table& table, const Metrics<double>& m) {
   const EnergyAudit a = energy_audit(m);
   const auto share = [&](double power) {
     const double percent = 100.0 * power / a.electrical;
+    if (!std::isfinite(percent)) return fmt::format("{:>9}", "-");  // of no input
     return fmt::format("{:>7.2f} %", std::abs(percent) < 0.005 ? 0.0 : percent);
   };
   table.group("Power, mean over a cycle                              of input");
@@ -95,8 +96,10 @@ void power_group(Table& table, const Metrics<double>& m) {
   if (std::isfinite(m[Metric::power_hinge])) power("  pitch hinges", a.hinge, "c_psi psi'^2, impacts on stops");
   power("  aerodynamic", a.aerodynamic, "M_aero beta'");
   power("  formulation residual", a.residual, "F (h omega - g beta')");
+  const double error = std::abs(a.imbalance / a.electrical);
   table.line("  energy-balance error", readable(a.imbalance, "W"),
-             fmt::format("{:>9.0e}   input minus the above", std::abs(a.imbalance / a.electrical)));
+             std::isfinite(error) ? fmt::format("{:>9.0e}   input minus the above", error)
+                                  : fmt::format("{:>9}   input minus the above", "-"));
   power("motor output", m[Metric::power_motor], "T_m omega");
   if (std::isfinite(m[Metric::power_motor_reference])) {
     power("  as a test bench estimates it", m[Metric::power_motor_reference], "2 pi f K_ref i");

@@ -2,6 +2,7 @@
 
 #include "time/crank_start_up.hpp"
 #include "time/direct_transient.hpp"
+#include "wingbeat/cycle/static_balance.hpp"
 
 namespace wingbeat {
 
@@ -20,6 +21,15 @@ const char* name_of(TransientEvent::Kind kind) {
 }
 
 TransientResult simulate_start_up(const Vehicle<double>& vehicle, const TransientOptions& options) {
+  if (heats_up(vehicle.thermal) && vehicle.motor.torque_constant == 0.0) {
+    // The magnet is too hot to have a field, which the models of the drives do not describe: the motor stands.
+    TransientResult result;
+    result.status = FlappingStatus::stalled;
+    result.settled = true;
+    result.evidence = {
+        .kind = StatusEvidence::Kind::weak_motor, .torque = 0.0, .friction_torque = breakaway_torque(vehicle)};
+    return result;
+  }
   if (!drive_of(vehicle).rotates) return detail::simulate_direct_start_up(vehicle, options);
   return detail::CrankStartUp(vehicle, options).run();
 }

@@ -144,5 +144,20 @@ TEST(Simulation, EndsWhereItJams) {
   EXPECT_NEAR(model.now.theta, r.end_crank_angle, 1e-6);
 }
 
+TEST(Simulation, MotorTooHotToHaveAFieldStands) {
+  Design<double> design = reference_design();
+  design.motor.thermal.resistance_winding = 20.0;
+  design.motor.thermal.resistance_case = 48.0;
+  design.motor.thermal.magnet_temperature_coefficient = -1e-3;
+  const Vehicle<double> hot = with_motor_at(resolve(design), {1500.0, 1400.0});
+  ASSERT_EQ(hot.motor.torque_constant, 0.0);
+  TransientOptions options;
+  options.supply = constant(3.0);
+  const TransientResult result = simulate_start_up(hot, options);
+  EXPECT_EQ(result.status, FlappingStatus::stalled);
+  EXPECT_TRUE(result.settled);
+  EXPECT_EQ(result.evidence.torque, 0.0);
+}
+
 }  // namespace
 }  // namespace wingbeat

@@ -3,7 +3,11 @@
 //   check_wide [COUNT]            vehicles of each box, 500 unless given
 //     --box NAME                  that box alone
 //     --vehicle N                 that vehicle of the box alone, with its file and every decision
+//     --rung NAME                 with added_mass, gear, heat or all_rungs on top of every vehicle
 //     --seed S  --threads T
+//   check_wide --rungs [COUNT]    slider-cranks, four-bars, tabulated laws and direct drives with each rung
+//   check_wide --packs [COUNT]    batched against scalar orbit alone, slider-cranks around the reference and wide, with
+//                                 and without rungs; 10,000 unless given
 // Exit status 1 if any two statuses, or the orbits reached, differ.
 #include <algorithm>
 #include <atomic>
@@ -16,6 +20,8 @@
 #include <thread>
 #include <vector>
 
+#include "vehicle/random_vehicle.hpp"
+#include "vehicle/rungs.hpp"
 #include "vehicle/wide_boxes.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/report/describe.hpp"
@@ -64,7 +70,14 @@ Answer by_run(const WideVehicle& vehicle, Method method, double tolerance_wanted
   options.method = method;
   options.tolerance = tolerance_wanted;
   RunResult result;
-  answer.seconds = seconds_of([&] { result = run_design(vehicle.design, options); });
+  try {
+    answer.seconds = seconds_of([&] { result = run_design(vehicle.design, options); });
+  } catch (const std::exception& error) {
+    answer.decided = false;
+    answer.status = FlappingStatus::undecided;
+    answer.detail = std::string("threw: ") + error.what();
+    return answer;
+  }
   answer.decided = result.status != FlappingStatus::undecided;
   answer.status = result.status;
   answer.metrics = result.metrics;
@@ -149,7 +162,16 @@ void print_design(const WideVehicle& vehicle) {
   if (d.spring.stiffness) set("spring.stiffness", *d.spring.stiffness);
   if (d.spring.resonance) set("spring.resonance", *d.spring.resonance);
   set("wing.inertia", d.wing.inertia);
-  std::printf(" --set 'wing.planform={shape=\"moments\", s2=%.17g, s3=%.17g}'", d.wing.planform.s2, d.wing.planform.s3);
+  std::printf(" --set 'wing.planform={shape=\"moments\", s2=%.17g, s3=%.17g", d.wing.planform.s2, d.wing.planform.s3);
+  if (d.wing.planform.s22) std::printf(", s22=%.17g", *d.wing.planform.s22);
+  std::printf("}'");
+  if (d.aerodynamics.added_mass) choose("aerodynamics.added_mass", "true");
+  if (d.motor.gear_efficiency) set("motor.gear_efficiency", *d.motor.gear_efficiency);
+  if (d.motor.thermal.resistance_winding) {
+    set("motor.thermal_resistance_winding", *d.motor.thermal.resistance_winding);
+    set("motor.thermal_resistance_case", *d.motor.thermal.resistance_case);
+    set("motor.magnet_temperature_coefficient", d.motor.thermal.magnet_temperature_coefficient);
+  }
   set("aerodynamics.pitch_coefficient", d.aerodynamics.pitch_coefficient);
   if (d.aerodynamics.angle_of_attack_min) {
     set("aerodynamics.angle_of_attack_min", degrees_per_radian * *d.aerodynamics.angle_of_attack_min);
@@ -178,15 +200,15 @@ bool on_another_orbit(const Answer& a, const Answer& b) {
 }
 
 void print_header() {
-  std::printf("%-17s %5s | %-34s | %-15s | %-15s | %-21s | %s\n", "", "", "by simulation in time", "status differs",
+  std::printf("%-24s %5s | %-34s | %-15s | %-15s | %-21s | %s\n", "", "", "by simulation in time", "status differs",
               "another orbit", "metrics off by > 1e-6", "processor time, largest");
-  std::printf("%-17s %5s | %5s %6s %5s %4s %10s | %7s %7s | %7s %7s | %7s %6s %6s | %10s %8s %10s\n", "box", "count",
+  std::printf("%-24s %5s | %5s %6s %5s %4s %10s | %7s %7s | %7s %7s | %7s %6s %6s | %10s %8s %10s\n", "box", "count",
               "flap", "stall", "lock", "jam", "undecided", "batched", "orbit", "batched", "orbit", "batched", "orbit",
               "time", "batch, mean", "orbit", "simulation");
 }
 
 void print_row(const std::string& name, const Counts& c) {
-  std::printf("%-17s %5d | %5d %6d %5d %4d %10d | %7d %7d | %7d %7d | %7d %6d %6d | %8.2f ms %6.3f s %8.2f s\n",
+  std::printf("%-24s %5d | %5d %6d %5d %4d %10d | %7d %7d | %7d %7d | %7d %6d %6d | %8.2f ms %6.3f s %8.2f s\n",
               name.c_str(), c.vehicles, c.by_status[0], c.by_status[1], c.by_status[2], c.by_status[3], c.by_status[4],
               c.batched_differs, c.orbit_differs, c.batched_other, c.orbit_other, c.batched_outside, c.orbit_outside,
               c.transient_outside, 1e3 * c.batched_seconds / std::max(1, c.vehicles), c.orbit_seconds,
@@ -212,6 +234,8 @@ void add(Counts& to, const Counts& c) {
 struct Arguments {
   int count = 500, only_box = -1, only_vehicle = -1, threads = int(std::thread::hardware_concurrency());
   std::uint32_t seed = 12;
+  Rung rung = Rung::none;
+  bool rungs = false, packs = false;
 };
 
 Arguments read_arguments(int argc, char** argv) {
@@ -228,6 +252,16 @@ Arguments read_arguments(int argc, char** argv) {
       }
       if (a.only_box < 0) std::fprintf(stderr, "--box: none of that name\n"), std::exit(2);
       ++k;
+    } else if (word == "--rung") {
+      for (std::size_t r = 0; value && r < rung_names.size(); ++r) {
+        if (rung_names[r] == value) a.rung = Rung(r);
+      }
+      if (a.rung == Rung::none) std::fprintf(stderr, "--rung: none of that name\n"), std::exit(2);
+      ++k;
+    } else if (word == "--rungs") {
+      a.rungs = true, a.count = 200;
+    } else if (word == "--packs") {
+      a.packs = true, a.count = 10000;
     } else if (word == "--vehicle") {
       a.only_vehicle = number();
     } else if (word == "--seed") {
@@ -248,6 +282,7 @@ Counts check_box(FarBox box, const Arguments& arguments) {
   std::vector<WideVehicle> vehicles(count);
   for (std::size_t n = 0; n < count; ++n) {
     vehicles[n] = wide_vehicle(box, number_of(n), arguments.seed);
+    add_rung(vehicles[n].design, arguments.rung, number_of(n), arguments.seed);
     validate(vehicles[n].design);
   }
   std::vector<Comparison> found(count);
@@ -336,18 +371,90 @@ Counts check_box(FarBox box, const Arguments& arguments) {
   return c;
 }
 
+std::string name_with_rung(std::string_view name, Rung rung) {
+  return std::string(name) + (rung == Rung::none ? "" : "+" + std::string(rung_names[std::size_t(rung)]));
+}
+
+/// Packs against the scalar orbit search, both at the tolerance; no simulation in time, which the ensemble asks by
+/// itself where a start is needed. Returns how many statuses differ.
+int check_packs(const Arguments& arguments) {
+  std::printf("%-28s %6s %9s | %8s %14s | %s\n", "", "count", "by packs", "statuses", "metrics apart", "largest");
+  std::printf("%-28s %6s %9s | %8s %14s | %s\n", "box", "", "", "differ", "> 2e-6", "relative");
+  int other = 0;
+  for (const bool wide : {false, true}) {
+    for (const Rung rung : {Rung::none, Rung::added_mass, Rung::gear, Rung::heat, Rung::all}) {
+      std::vector<EnsembleMember> members;
+      std::vector<WideVehicle> vehicles;
+      std::mt19937_64 random(arguments.seed);
+      for (int n = 0; n < arguments.count; ++n) {
+        WideVehicle v;
+        if (wide) v = wide_vehicle(FarBox::friction_laws, std::uint32_t(n), arguments.seed);
+        else v.design = box_design(random);
+        add_rung(v.design, rung, std::uint32_t(n), arguments.seed);
+        validate(v.design);
+        members.push_back({resolve(v.design, v.condition), reporting_of(v.design)});
+        vehicles.push_back(v);
+      }
+      std::vector<EnsembleOutcome> outcomes(members.size());
+      solve_ensemble(members, {}, start_up_in_time(), outcomes);
+      std::vector<Answer> scalar(members.size());
+      std::atomic<std::size_t> next{0};
+      const auto work = [&] {
+        for (std::size_t n = next++; n < scalar.size(); n = next++)
+          scalar[n] = by_run(vehicles[n], Method::orbit, tolerance);
+      };
+      std::vector<std::thread> threads;
+      for (int t = 1; t < arguments.threads; ++t) threads.emplace_back(work);
+      work();
+      for (std::thread& t : threads) t.join();
+      int by_packs = 0, statuses = 0, apart = 0;
+      double largest = 0.0;
+      for (std::size_t n = 0; n < scalar.size(); ++n) {
+        by_packs += !outcomes[n].scalar;
+        if (outcomes[n].status != scalar[n].status) {
+          ++statuses;
+          std::printf("%s %zu: batched %s, orbit %s: %s\n",
+                      name_with_rung(wide ? "friction_laws" : "reference", rung).c_str(), n,
+                      name_of(outcomes[n].status), scalar[n].name(), scalar[n].detail.c_str());
+        } else if (scalar[n].status == FlappingStatus::flapping) {
+          const double error = largest_error(outcomes[n].metrics, scalar[n].metrics);
+          apart += !(error <= 2.0 * tolerance);
+          largest = std::max(largest, error);
+        }
+      }
+      std::printf("%-28s %6d %9d | %8d %14d | %.2g\n",
+                  name_with_rung(wide ? "friction_laws" : "reference", rung).c_str(), arguments.count, by_packs,
+                  statuses, apart, largest);
+      std::fflush(stdout);
+      other += statuses;
+    }
+  }
+  return other;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const Arguments arguments = read_arguments(argc, argv);
+  if (arguments.packs) return check_packs(arguments) > 0 ? 1 : 0;
   std::vector<std::pair<std::string, Counts>> rows;
   Counts total;
   const auto start = std::chrono::steady_clock::now();
-  {
+  const auto check = [&](FarBox box, Rung rung) {
+    Arguments with = arguments;
+    with.rung = rung;
+    rows.emplace_back(name_with_rung(far_box_names[std::size_t(box)], rung), check_box(box, with));
+    add(total, rows.back().second);
+  };
+  if (arguments.rungs) {
+    for (const FarBox box : {FarBox::friction_laws, FarBox::four_bar, FarBox::tabulated, FarBox::direct}) {
+      for (const Rung rung : {Rung::added_mass, Rung::gear, Rung::heat, Rung::all}) {
+        if (rung != Rung::gear || box != FarBox::direct) check(box, rung);  // no gear efficiency of a direct drive
+      }
+    }
+  } else {
     for (int b = 0; b < int(far_box_names.size()); ++b) {
-      if (arguments.only_box >= 0 && b != arguments.only_box) continue;
-      rows.emplace_back(far_box_names[std::size_t(b)], check_box(FarBox(b), arguments));
-      add(total, rows.back().second);
+      if (arguments.only_box < 0 || b == arguments.only_box) check(FarBox(b), arguments.rung);
     }
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

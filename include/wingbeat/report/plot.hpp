@@ -8,6 +8,7 @@
 
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/cycle/record.hpp"
+#include "wingbeat/vehicle/design.hpp"
 
 namespace wingbeat {
 
@@ -18,10 +19,11 @@ inline constexpr const char* plot_extensions = ".svg .pdf .png";
 /// By the extension; empty for any other.
 std::optional<PlotFormat> plot_format(const std::filesystem::path& file);
 
-/// One flapping cycle against time: stroke angle and flapping velocity, lift, rod force, powers. Throws
-/// std::runtime_error, with what to do, where gnuplot is missing or fails.
-void plot_cycle(std::span<const WaveformRow> rows, const std::string& title, PlotFormat format,
-                const std::filesystem::path& file);
+/// One flapping cycle against time: stroke angle and flapping velocity, lift, the force in rod or coupler, powers;
+/// above them the mechanism that the design has. Throws std::runtime_error, with what to do, where gnuplot is missing
+/// or fails.
+void plot_cycle(std::span<const WaveformRow> rows, const Design<double>& design, const std::string& title,
+                PlotFormat format, const std::filesystem::path& file);
 
 /// One case of a power breakdown.
 struct PowerBar {
