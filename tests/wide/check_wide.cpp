@@ -88,6 +88,7 @@ Answer by_run(const WideVehicle& vehicle, Method method, double tolerance_wanted
 /// What an error of a metric is measured by: the metric, but for those that may vanish.
 double scale_of(Metric metric, const Metrics<double>& m) {
   switch (metric) {
+    case Metric::power_gear:
     case Metric::power_residual:
     case Metric::power_loss: return std::max(std::abs(m[metric]), std::abs(m[Metric::power_motor]));
     case Metric::current_mean: return std::max(std::abs(m[metric]), 0.01 * std::abs(m[Metric::current_peak]));
@@ -383,6 +384,7 @@ int check_packs(const Arguments& arguments) {
   int other = 0;
   for (const bool wide : {false, true}) {
     for (const Rung rung : {Rung::none, Rung::added_mass, Rung::gear, Rung::heat, Rung::all}) {
+      const std::string box = name_with_rung(wide ? "friction_laws" : "reference", rung);
       std::vector<EnsembleMember> members;
       std::vector<WideVehicle> vehicles;
       std::mt19937_64 random(arguments.seed);
@@ -413,18 +415,19 @@ int check_packs(const Arguments& arguments) {
         by_packs += !outcomes[n].scalar;
         if (outcomes[n].status != scalar[n].status) {
           ++statuses;
-          std::printf("%s %zu: batched %s, orbit %s: %s\n",
-                      name_with_rung(wide ? "friction_laws" : "reference", rung).c_str(), n,
-                      name_of(outcomes[n].status), scalar[n].name(), scalar[n].detail.c_str());
+          std::printf("%s %zu: batched %s, orbit %s: %s\n", box.c_str(), n, name_of(outcomes[n].status),
+                      scalar[n].name(), scalar[n].detail.c_str());
         } else if (scalar[n].status == FlappingStatus::flapping) {
-          const double error = largest_error(outcomes[n].metrics, scalar[n].metrics);
-          apart += !(error <= 2.0 * tolerance);
+          const char* where = "";
+          const double error = largest_error(outcomes[n].metrics, scalar[n].metrics, &where);
           largest = std::max(largest, error);
+          if (error <= 2.0 * tolerance) continue;
+          ++apart;
+          std::printf("%s %zu: %s apart by %.2g\n", box.c_str(), n, where, error);
         }
       }
-      std::printf("%-28s %6d %9d | %8d %14d | %.2g\n",
-                  name_with_rung(wide ? "friction_laws" : "reference", rung).c_str(), arguments.count, by_packs,
-                  statuses, apart, largest);
+      std::printf("%-28s %6d %9d | %8d %14d | %.2g\n", box.c_str(), arguments.count, by_packs, statuses, apart,
+                  largest);
       std::fflush(stdout);
       other += statuses;
     }
