@@ -137,6 +137,7 @@ int run(const RunArguments& arguments) {
   auto power_plot = reserved("--plot-power", arguments.plot_power, drawing);
   if (waveforms || cycle_plot) options.waveform_rows = waveform_rows;
 
+  options.endurance = arguments.json;
   const RunResult result = run_design(design, options);
   if (result.search && result.search->outcome != FrequencyOutcome::reached &&
       result.status == FlappingStatus::flapping) {

@@ -41,6 +41,7 @@ const std::array<MetricInfo, metric_count>& metric_table() {
       {"case_temperature_degc", "degC", "case temperature of the motor"},
       {"winding_temperature_margin_k", "K", "largest winding temperature allowed, less the winding temperature"},
       {"added_mass_inertia_ratio", "1", "inertia of the air that moves with the wings over the wings' own"},
+      {"endurance_s", "s", "flight time until the battery's end"},
   }};
   return table;
 }
@@ -68,6 +69,7 @@ const char* lacking_of_heat(Metric metric, const Design<double>& design) {
 
 const char* lacking_for(Metric metric, const Design<double>& design) {
   if (metric == Metric::added_mass_inertia_ratio && !design.aerodynamics.added_mass) return "aerodynamics.added_mass";
+  if (metric == Metric::endurance && design.supply.type != SupplyType::battery) return "supply.type = \"battery\"";
   return lacking_of_heat(metric, design);
 }
 

@@ -65,6 +65,7 @@ std::pair<std::size_t, DomainStatus> outside(const EnduranceResult& result) {
 Json metrics_json(const Metrics<double>& metrics) {
   Json json = Json::object();
   for (int m = 0; m < metric_count; ++m) {
+    if (Metric(m) == Metric::endurance) continue;
     json[metric_info(Metric(m)).key] = number_or_null(metrics.values[std::size_t(m)]);
   }
   return json;
@@ -332,8 +333,14 @@ void write_endurance(const EnduranceResult& result, const Provenance& provenance
   for (const Column& c : columns) {
     variables.push_back(file.define_variable(c.key, {time}, c.unit, c.long_name));
   }
-  for (const MetricInfo& m : metric_table())
-    variables.push_back(file.define_variable(m.key, {time}, m.unit, m.long_name));
+  std::vector<Metric> metrics;
+  for (int m = 0; m < metric_count; ++m) {
+    if (Metric(m) != Metric::endurance) metrics.push_back(Metric(m));
+  }
+  for (const Metric m : metrics) {
+    const MetricInfo& info = metric_info(m);
+    variables.push_back(file.define_variable(info.key, {time}, info.unit, info.long_name));
+  }
   const auto domain = file.define_dense("domain", {time}, "1", "limits of the model's domain that are exceeded",
                                         NetcdfFile::Storage::flag);
   std::vector<std::string> limits;
@@ -354,8 +361,8 @@ void write_endurance(const EnduranceResult& result, const Provenance& provenance
   std::vector<std::int8_t> exceeded;
   for (const EnduranceRow& row : result.rows) exceeded.push_back(std::int8_t(row.domain.to_ulong()));
   file.write_run(domain, 0, std::span<const std::int8_t>(exceeded));
-  for (std::size_t m = 0; m < std::size_t(metric_count); ++m) {
-    write(variables[std::size(columns) + m], [&](const EnduranceRow& row) { return row.metrics.values[m]; });
+  for (std::size_t n = 0; n < metrics.size(); ++n) {
+    write(variables[std::size(columns) + n], [&](const EnduranceRow& row) { return row.metrics[metrics[n]]; });
   }
   file.close();
 }

@@ -215,7 +215,9 @@ class Flight {
     std::array<Totals, Piece::count> samples;
     constexpr int last = Piece::count - 1;
     for (int n = 0; n <= last; ++n) {
-      samples[std::size_t(n)] = at_voltage(0.5 * (low + high) + 0.5 * (high - low) * std::cos(pi * n / last));
+      const double between = 0.5 * (low + high) + 0.5 * (high - low) * std::cos(pi * n / last);
+      // Not beyond the ends by rounding: a crank that still turns at the lower one does not below it.
+      samples[std::size_t(n)] = at_voltage(std::clamp(between, low, high));
     }
     double tail = 0.0;
     bool finite = true;

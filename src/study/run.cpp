@@ -5,6 +5,7 @@
 
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/cycle/thermal_equilibrium.hpp"
+#include "wingbeat/study/endurance.hpp"
 
 namespace wingbeat {
 namespace {
@@ -253,6 +254,10 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
     run_transient(vehicle, options, result);
   }
   note_domain(vehicle, result);
+  const bool flies = supply.type == SupplyType::battery && result.status == FlappingStatus::flapping;
+  if (options.endurance && flies) {
+    result.metrics[Metric::endurance] = endurance_of(design, options.condition, options.tolerance).time;
+  }
   return result;
 }
 

@@ -47,9 +47,10 @@ enum class Metric {
   winding_temperature,
   case_temperature,
   winding_temperature_margin,
-  added_mass_inertia_ratio
+  added_mass_inertia_ratio,
+  endurance  ///< of a flight, not of a cycle: absent unless a study asks for it
 };
-inline constexpr int metric_count = int(Metric::added_mass_inertia_ratio) + 1;
+inline constexpr int metric_count = int(Metric::endurance) + 1;
 
 /// How a metric is named outside the program.
 struct MetricInfo {
@@ -230,6 +231,7 @@ Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, cons
   const auto weighs = v.wings.added_inertia > S(0.0);
   m[Metric::added_mass_inertia_ratio] =
       select(weighs, ratio(v.wings.added_inertia, v.wing_count * v.wing_inertia), S(absent));
+  m[Metric::endurance] = S(absent);
   return m;
 }
 

@@ -9,9 +9,11 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "wingbeat/cycle/domain.hpp"
+#include "wingbeat/cycle/orbit_gradient.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/vehicle/design.hpp"
 
@@ -75,5 +77,18 @@ struct EnduranceResult {
 /// Flies the design's battery from its charge until it is empty, at its cut-off voltage, or no longer turns the crank.
 /// Throws ParameterError for a supply that is no battery and for options out of range.
 EnduranceResult simulate_discharge(const Design<double>& design, const EnduranceOptions& options = {});
+
+/// Metric::endurance of a design on a battery.
+struct Endurance {
+  double time = absent;  ///< EnduranceResult::endurance() [s]
+  /// Its derivatives, SI; absent where there are none, as where the vehicle never starts.
+  std::vector<double> by_parameter;
+};
+
+/// The endurance to a relative `tolerance`, for some fifty orbits, and its derivatives: exact, for eleven orbits with
+/// gradients, where the battery is emptied to its cut-off or to the end; by central differences where no orbit is left
+/// before that, or where the motor's temperatures are states of the flight. Throws as simulate_discharge().
+Endurance endurance_of(const Design<double>& design, Condition condition, double tolerance,
+                       std::span<const DesignParameter> parameters = {});
 
 }  // namespace wingbeat

@@ -30,6 +30,7 @@ struct RunOptions {
   std::optional<double> lift = {};
   bool allow_extrapolation = false;  ///< a search for a frequency or a lift may leave the model's domain
   int waveform_rows = 0;             ///< instants of one cycle to return, both ends included; 0: none
+  bool endurance = false;            ///< of a vehicle on a battery: Metric::endurance, too
 };
 
 /// In words: describe() of report/describe.hpp.
