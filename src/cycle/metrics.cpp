@@ -69,7 +69,7 @@ const char* lacking_of_heat(Metric metric, const Design<double>& design) {
 
 const char* lacking_for(Metric metric, const Design<double>& design) {
   if (metric == Metric::added_mass_inertia_ratio && !design.aerodynamics.added_mass) return "aerodynamics.added_mass";
-  if (metric == Metric::endurance && design.supply.type != SupplyType::battery) return "supply.type = \"battery\"";
+  if (metric == Metric::endurance && !has_battery(design.supply.type)) return "supply.type = \"battery\"";
   return lacking_of_heat(metric, design);
 }
 

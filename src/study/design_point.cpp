@@ -39,7 +39,7 @@ DesignPoint design_point(const Design<double>& given, const DesignPointOptions& 
   if (orbit.status != FlappingStatus::flapping) return point;
   point.metrics = orbit.metrics;
   Endurance endurance;
-  if (options.endurance && design.supply.type == SupplyType::battery) {
+  if (options.endurance && has_battery(design.supply.type)) {
     endurance = endurance_of(design, options.condition, options.tolerance, parameters);
     point.metrics[Metric::endurance] = endurance.time;
   }

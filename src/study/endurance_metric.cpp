@@ -72,7 +72,8 @@ class VoltageNodes {
   std::vector<double> voltages_, weights_;
 };
 
-/// By differences, where the flight ends at a fold of the orbits or its temperatures are states.
+/// By differences, where the flight ends at a fold of the orbits or its temperatures are states, and for a bridge, on
+/// which a flight is one orbit.
 std::vector<double> by_differences(const Design<double>& design, Condition condition, double tolerance,
                                    std::span<const DesignParameter> parameters) {
   std::vector<double> result;
@@ -104,7 +105,7 @@ Endurance endurance_of(const Design<double>& design, Condition condition, double
   result.by_parameter.assign(parameters.size(), absent);
   if (!(result.time > 0.0)) return result;
   const bool warms_up = design.motor.thermal.resistance_winding && design.motor.thermal.time_constant_winding;
-  if (flight.end == EnduranceEnd::stops || warms_up) {
+  if (design.supply.type == SupplyType::battery_sine || flight.end == EnduranceEnd::stops || warms_up) {
     result.by_parameter = by_differences(design, condition, tolerance, parameters);
     return result;
   }

@@ -160,7 +160,7 @@ void SweepSolver::solve(SweepColumns& columns, std::size_t begin, std::size_t en
     }
     if (sweep_.options.metrics[std::size_t(Metric::endurance)]) {
       const SweepDesign of = design_at(sweep_, columns.first + row);
-      const bool flies = of.design.supply.type == SupplyType::battery;
+      const bool flies = has_battery(of.design.supply.type);
       if (flies)
         columns.metrics[kept_.size() - 1][row] = endurance_of(of.design, of.condition, sweep_.options.tolerance).time;
     }

@@ -159,6 +159,29 @@ TEST_F(Endurance, ALargerBatteryWeighsMore) {
   EXPECT_THAT(both.err, HasSubstr("not both"));
 }
 
+TEST_F(Endurance, OfADirectDriveThroughABridge) {
+  const std::vector<std::string> fed = {
+      "--set", "supply.type=battery-sine",           "--set", "supply.cell_voltage=3.7 V",
+      "--set", "supply.internal_resistance=0.5 ohm", "--set", "supply.capacity=30 mA h"};
+  const auto with = [&](std::vector<std::string> arguments, const std::vector<std::string>& more) {
+    arguments.insert(arguments.end(), fed.begin(), fed.end());
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  };
+  const std::string direct = data + "/designs/direct-drive.toml";
+  const Outcome flight = with({"endurance", direct}, {"--json"});
+  ASSERT_EQ(flight.status, 0) << flight.err;
+  const Json json = flight.json();
+  EXPECT_EQ(json["end"], "empty");
+  const double power = run({"run", direct, "--json"}).json()["power_electrical_w"].get<double>();
+  EXPECT_NEAR(json["power_electrical_w"].get<double>(), power, 1e-5 * power);
+  EXPECT_EQ(json["history"]["terminal_voltage_v"].size(), json["history"]["time_s"].size());
+  EXPECT_THAT(with({"endurance", direct}, {}).out, HasSubstr("terminal voltage"));
+  const Outcome high = with({"run", direct}, {"--set", "supply.amplitude=4 V"});
+  EXPECT_EQ(high.status, 2);
+  EXPECT_THAT(high.err, HasSubstr("4 V exceed what the bridge has from the battery, 3.7 V without load"));
+}
+
 /// The endurance of the shipped battery as runs, sweeps and optima tell it.
 TEST_F(Endurance, AsAMetric) {
   const double flight = run({"endurance", battery, "--json"}).json()["endurance_s"].get<double>();

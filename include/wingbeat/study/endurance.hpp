@@ -6,6 +6,9 @@
 // first charge; from then on it turns, and flight goes on while a rotating orbit exists. A motor that heats up has
 // settled at every charge, or, where its time constants are given, warms up from its surroundings: two more states,
 // d(T_w - T_case)/dt and dT_case/dt, beside the charge.
+//
+// A bridge between battery and motor loses nothing and holds its amplitude: the battery gives the mean electrical power
+// P_e of a cycle at the direct current that its terminal voltage asks for, (E - R_i I) I = P_e.
 #pragma once
 
 #include <optional>
@@ -32,6 +35,7 @@ enum class EnduranceEnd {
   never_starts,  ///< does not flap from rest at the first charge
   empty,         ///< no charge is left
   cutoff,        ///< the mean terminal voltage has fallen to the cut-off voltage
+  bridge,        ///< the terminal voltage under load has fallen to the amplitude of the bridge's sine
   stops          ///< no rotating orbit is left
 };
 
@@ -54,6 +58,8 @@ struct EnduranceRow {
   double lift_impulse = 0.0;          ///< time integral of the mean lift since the start [N s]
   Metrics<double> metrics;            ///< of steady flapping at this charge
   DomainStatus domain = {};           ///< limits of the model that are exceeded there
+  double terminal_voltage = absent;   ///< mean at the battery's terminals [V]
+  double battery_current = absent;    ///< mean from the battery [A]
 };
 
 /// In words: describe() of report/describe.hpp.
