@@ -33,8 +33,9 @@ int run(const EnduranceArguments& arguments) {
     throw InputError("-o " + arguments.output, 0, 0, "", "the name must end in .nc");
   }
   const Design<double> design = read_design(arguments.vehicle, arguments.overrides);
-  if (design.supply.type != SupplyType::battery) {
-    throw InputError(arguments.vehicle, 0, 0, "supply.type", "only a battery runs down; expected battery");
+  if (!has_battery(design.supply.type)) {
+    throw InputError(arguments.vehicle, 0, 0, "supply.type",
+                     "only a battery runs down; expected battery or battery-sine");
   }
   std::optional<OutputFile> output, plot;
   if (!arguments.output.empty()) output.emplace("-o", arguments.output, OutputRules{".nc", arguments.force});

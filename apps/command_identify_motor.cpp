@@ -19,7 +19,7 @@ namespace {
 struct IdentifyMotorArguments {
   std::string file, output, frequency;
   std::vector<std::string> fallbacks;
-  bool json = false, force = false;
+  bool json = false, force = false, motor_shaft = false;
 };
 
 int run(const IdentifyMotorArguments& arguments) {
@@ -43,6 +43,9 @@ int run(const IdentifyMotorArguments& arguments) {
                        "must be inertia=solid-steel-cylinder or viscous_damping=typical");
     }
   }
+  if (arguments.motor_shaft && arguments.output.empty()) {
+    throw InputError("--motor-shaft", 0, 0, "", "says how -o writes the motor; give -o FILE.toml");
+  }
   std::optional<OutputFile> output;
   if (!arguments.output.empty()) output.emplace("-o", arguments.output, OutputRules{".toml", arguments.force});
   const MotorIdentification motor = identify_motor(sheet, frequency);
@@ -55,7 +58,8 @@ int run(const IdentifyMotorArguments& arguments) {
   if (output) {
     output->write(motor_section(motor, sheet,
                                 fmt::format("Identified by wingbeat {} identify-motor from {}", version,
-                                            one_line(std::filesystem::path(arguments.file).filename().string(), 200))));
+                                            one_line(std::filesystem::path(arguments.file).filename().string(), 200)),
+                                arguments.motor_shaft ? Shaft::motor : Shaft::output));
     output->commit();
   }
   return done;
@@ -68,6 +72,8 @@ void add_identify_motor(CLI::App& program, Action& action) {
   const auto a = std::make_shared<IdentifyMotorArguments>();
   add_input(command, a->file, "datasheet", "Data sheet (TOML)", "DATASHEET");
   command->add_option("-o,--output", a->output, "Write the [motor] section of a vehicle file")->type_name("FILE.toml");
+  command->add_flag("--motor-shaft", a->motor_shaft,
+                    "Write gear_ratio and the constants at the motor shaft, so that the ratio stays free");
   command->add_option("--frequency", a->frequency, "Flapping frequency in mind, for the inductance's effect")
       ->type_name("QUANTITY");
   command

@@ -70,13 +70,13 @@ std::string case_title(const Design<double>& design, const RunResult& result, Co
   std::string title = fmt::format("{}, {}", readable(result.metrics[Metric::voltage], "V"),
                                   readable(result.metrics[Metric::frequency], "Hz"));
   if (condition != Condition::air) title += fmt::format(", {}", name_of(condition));
-  if (design.supply.type == SupplyType::sine) title = fmt::format("sine supply, {}", title);
+  if (is_sine(design.supply.type)) title = fmt::format("sine supply, {}", title);
   if (result.domain.any()) title += fmt::format("; OUTSIDE THE DOMAIN ({})", name_of(result.domain));
   return title;
 }
 
 void apply_voltage(Supply<double>& supply, const std::string& text) {
-  if (supply.type == SupplyType::sine) {
+  if (is_sine(supply.type)) {
     throw InputError("--voltage", 0, 0, "", "the supply is a sine; use --set supply.amplitude=\"3 V\"");
   }
   if (supply.type == SupplyType::battery) {
@@ -137,6 +137,7 @@ int run(const RunArguments& arguments) {
   auto power_plot = reserved("--plot-power", arguments.plot_power, drawing);
   if (waveforms || cycle_plot) options.waveform_rows = waveform_rows;
 
+  options.endurance = arguments.json;
   const RunResult result = run_design(design, options);
   if (result.search && result.search->outcome != FrequencyOutcome::reached &&
       result.status == FlappingStatus::flapping) {

@@ -45,6 +45,7 @@ const std::array<MetricInfo, metric_count>& metric_table() {
       {"pitch_amplitude_deg", "degree", "pitch amplitude, half peak to peak"},
       {"pitch_phase_deg", "degree", "lead of the pitching over the pitch that opposes the flapping velocity"},
       {"angle_of_attack_max_deg", "degree", "largest angle of attack of wings that pitch on a hinge"},
+      {"endurance_s", "s", "flight time until the battery's end"},
   }};
   return table;
 }
@@ -72,6 +73,7 @@ const char* lacking_of_heat(Metric metric, const Design<double>& design) {
 
 const char* lacking_for(Metric metric, const Design<double>& design) {
   if (metric == Metric::added_mass_inertia_ratio && !design.aerodynamics.added_mass) return "aerodynamics.added_mass";
+  if (metric == Metric::endurance && !has_battery(design.supply.type)) return "supply.type = \"battery\"";
   switch (metric) {
     case Metric::power_hinge:
     case Metric::pitch_amplitude:

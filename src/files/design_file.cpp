@@ -74,7 +74,7 @@ class Reader {
     });
     read_numbers(d);
     attempt([&] {
-      if (d.supply.type == SupplyType::battery) read_discharge_curve(d.supply.battery);
+      if (has_battery(d.supply.type)) read_discharge_curve(d.supply.battery);
     });
     attempt([&] {
       if (d.wing.planform.shape == PlanformShape::tabulated) read_chords(d.wing.planform);

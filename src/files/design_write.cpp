@@ -80,7 +80,7 @@ std::vector<WrittenKey> written_keys(const Design<double>& design) {
     if (key.path == "wing.planform.chords") {
       if (design.wing.planform.shape == PlanformShape::tabulated) write(key, chord_rows(design.wing.planform));
     } else if (key.path == "supply.discharge_curve") {
-      const bool battery = design.supply.type == SupplyType::battery;
+      const bool battery = has_battery(design.supply.type);
       if (battery && !design.supply.battery.discharge_curve.empty()) write(key, discharge_rows(design.supply.battery));
     } else if (key.path == "transmission.stroke_table") {
       if (const auto& curve = design.transmission.table.curve) write(key, stroke_rows(*curve));

@@ -89,7 +89,7 @@ std::string StudySections::vehicle_text(const std::filesystem::path& vehicle) co
     origins.emplace_back(place_of(value), shown);
   };
   for (const auto& [key, value] : set_) set(key, *value, "set." + key);
-  const char* voltage = alone.supply.type == SupplyType::sine ? "supply.amplitude" : "supply.voltage";
+  const char* voltage = is_sine(alone.supply.type) ? "supply.amplitude" : "supply.voltage";
   if (held_voltage_) set(voltage, *held_voltage_, "study.hold.voltage");
   const std::size_t own = overrides.size();
   overrides.insert(overrides.end(), overrides_.begin(), overrides_.end());

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace wingbeat {
 namespace {
 
@@ -128,7 +130,7 @@ std::string describe(const EnduranceResult& r) {
                        r.first_charge, r.first_voltage, describe(r.evidence));
   }
   const EnduranceRow& last = r.rows.back();
-  const double v = last.metrics[Metric::voltage];
+  const double v = last.terminal_voltage;
   switch (r.end) {
     case EnduranceEnd::empty:
       return last.time > 0.0 ? fmt::format("the battery is empty after {:.4g} s", last.time)
@@ -143,6 +145,22 @@ std::string describe(const EnduranceResult& r) {
                        "the terminal voltage of {:.4g} V is not above the cut-off voltage, {:.4g} V in all, from the "
                        "start",
                        v, *r.cutoff_voltage);
+    case EnduranceEnd::bridge: {
+      const double amplitude = last.metrics[Metric::voltage];
+      if (last.time > 0.0) {
+        return fmt::format(
+            "the battery's terminal voltage falls to the amplitude of the bridge's sine, {:.4g} V, after {:.4g} s, at a "
+            "charge of {:.4g}",
+            amplitude, last.time, last.charge);
+      }
+      if (std::isnan(v)) {
+        return fmt::format("the battery cannot give the {:.4g} W that the bridge takes from it",
+                           last.metrics[Metric::power_electrical]);
+      }
+      return fmt::format(
+          "under load the battery gives the bridge {:.4g} V, less than the amplitude of its sine, {:.4g} V", v,
+          amplitude);
+    }
     case EnduranceEnd::stops:
       return fmt::format(
           "after {:.4g} s, at a charge of {:.4g} and {:.4g} V at the terminals, the battery no longer turns the crank",

@@ -48,6 +48,8 @@ constexpr Column columns[] = {
     {"time_s", "s", "time since the start", &EnduranceRow::time},
     {"charge", "1", "state of charge", &EnduranceRow::charge},
     {"open_circuit_voltage_v", "V", "open-circuit voltage of the battery", &EnduranceRow::open_circuit_voltage},
+    {"terminal_voltage_v", "V", "mean voltage at the battery's terminals", &EnduranceRow::terminal_voltage},
+    {"battery_current_a", "A", "mean current from the battery", &EnduranceRow::battery_current},
     {"energy_electrical_j", "J", "energy delivered at the terminals since the start", &EnduranceRow::energy_electrical},
     {"energy_internal_j", "J", "energy lost inside the battery since the start", &EnduranceRow::energy_internal},
     {"energy_aerodynamic_j", "J", "energy given to the air since the start", &EnduranceRow::energy_aerodynamic}};
@@ -65,6 +67,7 @@ std::pair<std::size_t, DomainStatus> outside(const EnduranceResult& result) {
 Json metrics_json(const Metrics<double>& metrics) {
   Json json = Json::object();
   for (int m = 0; m < metric_count; ++m) {
+    if (Metric(m) == Metric::endurance) continue;
     json[metric_info(Metric(m)).key] = number_or_null(metrics.values[std::size_t(m)]);
   }
   return json;
@@ -86,6 +89,7 @@ const char* name_of(EnduranceEnd end) {
     case EnduranceEnd::never_starts: return "never starts";
     case EnduranceEnd::empty: return "empty";
     case EnduranceEnd::cutoff: return "cut-off voltage";
+    case EnduranceEnd::bridge: return "bridge";
     case EnduranceEnd::stops: return "stops flapping";
   }
   return "unknown";
@@ -188,9 +192,9 @@ std::string text_endurance(const Design<double>& design, const EnduranceResult& 
       const EnduranceRow& at = *result.hover_lost;
       line("hover lost after", duration(at.time), minutes(at.time));
       line("  at a charge of", charge(at.charge));
-      line("  terminal voltage", readable(at.metrics[Metric::voltage], "V"),
+      line("  terminal voltage", readable(at.terminal_voltage, "V"),
            fmt::format("{} without load", readable(at.open_circuit_voltage, "V")));
-      line("  mean current", readable(at.metrics[Metric::current_mean], "A"));
+      line("  mean current", readable(at.battery_current, "A"));
       line("  flapping frequency", readable(at.metrics[Metric::frequency], "Hz"));
       break;
     }
@@ -214,8 +218,12 @@ std::string text_endurance(const Design<double>& design, const EnduranceResult& 
                    readable(f.last.metrics[m], unit));
   };
   const auto percent = [](double x) { return std::isfinite(x) ? fmt::format("{:.2f} %", 100.0 * x) : "-"; };
-  over_flight("terminal voltage", Metric::voltage, "V", ratio(f.last.energy_electrical, f.drawn));
-  over_flight("mean current", Metric::current_mean, "A", f.current);
+  const auto of_battery = [&](const char* name, double EnduranceRow::* value, const char* unit, double mean) {
+    fmt::format_to(out, "  {:<22}{:>14}{:>14}{:>14}\n", name, readable(first.*value, unit), readable(mean, unit),
+                   readable(f.last.*value, unit));
+  };
+  of_battery("terminal voltage", &EnduranceRow::terminal_voltage, "V", ratio(f.last.energy_electrical, f.drawn));
+  of_battery("mean current", &EnduranceRow::battery_current, "A", f.current);
   over_flight("electrical power", Metric::power_electrical, "W", f.power);
   over_flight("aerodynamic power", Metric::power_aerodynamic, "W", f.aerodynamic);
   fmt::format_to(out, "  {:<22}{:>14}{:>14}{:>14}\n", "system efficiency",
@@ -259,7 +267,7 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
   for (const EnduranceRow& r : rows) {
     figure.add("{} {} {} {} {} {} {}\n", time_scale * r.time, lift_scale * r.metrics[Metric::lift_mean],
                power_scale * r.metrics[Metric::power_electrical], power_scale * r.metrics[Metric::power_aerodynamic],
-               r.metrics[Metric::voltage], r.open_circuit_voltage, 100.0 * r.charge);
+               r.terminal_voltage, r.open_circuit_voltage, 100.0 * r.charge);
   }
   figure.add("END\nset multiplot\nset xrange [0:{}]\n", time_scale * result.endurance());
 
@@ -332,8 +340,14 @@ void write_endurance(const EnduranceResult& result, const Provenance& provenance
   for (const Column& c : columns) {
     variables.push_back(file.define_variable(c.key, {time}, c.unit, c.long_name));
   }
-  for (const MetricInfo& m : metric_table())
-    variables.push_back(file.define_variable(m.key, {time}, m.unit, m.long_name));
+  std::vector<Metric> metrics;
+  for (int m = 0; m < metric_count; ++m) {
+    if (Metric(m) != Metric::endurance) metrics.push_back(Metric(m));
+  }
+  for (const Metric m : metrics) {
+    const MetricInfo& info = metric_info(m);
+    variables.push_back(file.define_variable(info.key, {time}, info.unit, info.long_name));
+  }
   const auto domain = file.define_dense("domain", {time}, "1", "limits of the model's domain that are exceeded",
                                         NetcdfFile::Storage::flag);
   std::vector<std::string> limits;
@@ -354,8 +368,8 @@ void write_endurance(const EnduranceResult& result, const Provenance& provenance
   std::vector<std::int8_t> exceeded;
   for (const EnduranceRow& row : result.rows) exceeded.push_back(std::int8_t(row.domain.to_ulong()));
   file.write_run(domain, 0, std::span<const std::int8_t>(exceeded));
-  for (std::size_t m = 0; m < std::size_t(metric_count); ++m) {
-    write(variables[std::size(columns) + m], [&](const EnduranceRow& row) { return row.metrics.values[m]; });
+  for (std::size_t n = 0; n < metrics.size(); ++n) {
+    write(variables[std::size(columns) + n], [&](const EnduranceRow& row) { return row.metrics[metrics[n]]; });
   }
   file.close();
 }

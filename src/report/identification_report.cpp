@@ -19,14 +19,15 @@ struct Constant {
   std::string_view key;  ///< of [motor]
   std::string_view name, unit;
   IdentifiedConstant MotorIdentification::* value;
+  int power = 0;  ///< of the gear ratio in the value at the output shaft
 };
 constexpr Constant constants[] = {
     {"armature_resistance", "armature resistance", "ohm", &MotorIdentification::armature_resistance},
     {"armature_inductance", "armature inductance", "H", &MotorIdentification::armature_inductance},
-    {"torque_constant", "torque constant", "N m/A", &MotorIdentification::torque_constant},
-    {"inertia", "inertia", "kg m2", &MotorIdentification::inertia},
-    {"viscous_damping", "viscous damping", "N m s/rad", &MotorIdentification::viscous_damping},
-    {"friction_torque", "friction torque", "N m", &MotorIdentification::friction_torque}};
+    {"torque_constant", "torque constant", "N m/A", &MotorIdentification::torque_constant, 1},
+    {"inertia", "inertia", "kg m2", &MotorIdentification::inertia, 2},
+    {"viscous_damping", "viscous damping", "N m s/rad", &MotorIdentification::viscous_damping, 2},
+    {"friction_torque", "friction torque", "N m", &MotorIdentification::friction_torque, 1}};
 
 /// What [motor] has from the sheet as it stands there.
 struct SheetValue {
@@ -50,15 +51,19 @@ std::string scientific(double x, std::string_view unit) { return fmt::format("{:
 
 }  // namespace
 
-std::string motor_section(const MotorIdentification& motor, const MotorDatasheet& sheet, const std::string& made_by) {
+std::string motor_section(const MotorIdentification& motor, const MotorDatasheet& sheet, const std::string& made_by,
+                          Shaft shaft) {
   motor.motor();
-  std::string text = fmt::format("# {}\n# {}; constants at the output shaft.\n",
-                                 sheet.name.empty() ? "Motor of a data sheet" : one_line(sheet.name, 100), made_by);
+  std::string text = fmt::format("# {}\n# {}; constants at the {} shaft.\n",
+                                 sheet.name.empty() ? "Motor of a data sheet" : one_line(sheet.name, 100), made_by,
+                                 shaft == Shaft::motor ? "motor" : "output");
   for (const Contradiction& c : motor.contradictions) text += fmt::format("# On the sheet, {}.\n", sentence(c));
   for (const std::string& remark : motor.remarks) text += fmt::format("# {}.\n", remark);
   text += "\n[motor]\n";
+  const double n = shaft == Shaft::motor ? sheet.gear_ratio : 1.0;
+  if (shaft == Shaft::motor) text += fmt::format("gear_ratio = {}\n", n);
   for (const Constant& c : constants) {
-    text += fmt::format("{} = \"{} {}\"\n", c.key, *(motor.*c.value).value, c.unit);
+    text += fmt::format("{} = \"{} {}\"\n", c.key, *(motor.*c.value).value / std::pow(n, c.power), c.unit);
   }
   if (sheet.gear_efficiency) text += fmt::format("gear_efficiency = {}\n", *sheet.gear_efficiency);
   for (const SheetValue& v : thermal_values) {

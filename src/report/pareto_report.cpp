@@ -298,7 +298,10 @@ void write_front(const ParetoStudy& study, const ParetoResult& r, const std::str
     }
     return along;
   };
-  const auto along = designs("design", "", "", r.front, all_metrics());
+  MetricSet shown = all_metrics();
+  for (const ParetoObjective& o : study.objectives) shown.set(std::size_t(o.metric));
+  for (const MetricConstraint& c : study.constraints) shown.set(std::size_t(c.metric));
+  const auto along = designs("design", "", "", r.front, shown);
   std::vector<std::string> picks(r.front.size());
   for (const auto& [name, place] : named_picks(study, r)) picks[place] += (picks[place].empty() ? "" : " ") + name;
   data.define_texts("pick", along, picks, "names under which the design is picked");

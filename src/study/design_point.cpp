@@ -1,5 +1,7 @@
 #include "wingbeat/study/design_point.hpp"
 
+#include "wingbeat/study/endurance.hpp"
+
 namespace wingbeat {
 
 DesignPoint design_point(const Design<double>& given, const DesignPointOptions& options,
@@ -36,6 +38,11 @@ DesignPoint design_point(const Design<double>& given, const DesignPointOptions& 
   point.evidence = orbit.evidence;
   if (orbit.status != FlappingStatus::flapping) return point;
   point.metrics = orbit.metrics;
+  Endurance endurance;
+  if (options.endurance && has_battery(design.supply.type)) {
+    endurance = endurance_of(design, options.condition, options.tolerance, parameters);
+    point.metrics[Metric::endurance] = endurance.time;
+  }
   point.domain_excess = domain_excess(vehicle, orbit.metrics);
   point.domain = domain_of(point.domain_excess);
   if (parameters.empty() || orbit.record.empty()) return point;
@@ -45,6 +52,9 @@ DesignPoint design_point(const Design<double>& given, const DesignPointOptions& 
   if (!gradients.regular) return point;
   point.gradients = gradients.by_parameter;
   for (std::size_t k = 0; k < parameters.size(); ++k) {
+    if (!endurance.by_parameter.empty()) {
+      point.gradients[k][std::size_t(Metric::endurance)] = endurance.by_parameter[k];
+    }
     point.domain_slopes[k] = domain_excess_slopes(vehicle, orbit.metrics, Metrics<double>{point.gradients[k]});
   }
   return point;

@@ -53,6 +53,7 @@ class Flight {
  public:
   Flight(const Design<double>& design, const EnduranceOptions& options)
       : battery_(design.supply.battery),
+        bridged_(design.supply.type == SupplyType::battery_sine),
         options_(options),
         vehicle_(resolve(design, options.condition)),
         winding_time_(design.motor.thermal.time_constant_winding),
@@ -92,19 +93,22 @@ class Flight {
     return solve_at(open_circuit_voltage(battery_, charge), start_up);
   }
   State solve_at(double voltage, const StartUp& start_up) {
+    if (on_bridge_) return *on_bridge_;
     ++result_.evaluations;
-    vehicle_.voltage = voltage;
+    if (!bridged_) vehicle_.voltage = voltage;
     const SteadyFlapping found = find_steady_flapping(vehicle_, steady_, start_up);
     const bool flaps = found.status == FlappingStatus::flapping;
-    return {flaps, found.status, found.evidence, found.metrics,
-            flaps ? domain_of(vehicle_, found.metrics) : DomainStatus()};
+    const State state{flaps, found.status, found.evidence, found.metrics,
+                      flaps ? domain_of(vehicle_, found.metrics) : DomainStatus()};
+    if (bridged_) on_bridge_ = state;
+    return state;
   }
 
   /// The vehicle at an instant of a flight on which its motor has not settled: temperatures and domain are that
   /// instant's.
   State solve_at(double voltage, const MotorTemperatures<double>& T, const StartUp& start_up) {
     ++result_.evaluations;
-    vehicle_.voltage = voltage;
+    if (!bridged_) vehicle_.voltage = voltage;
     const SteadyFlapping found = detail::find_flapping_as_it_is(with_motor_at(vehicle_, T), steady_, start_up);
     State state{found.status == FlappingStatus::flapping, found.status, found.evidence, found.metrics, {}};
     if (!state.flaps) return state;
@@ -124,13 +128,29 @@ class Flight {
     return known_[charge] = solve(charge, {});
   }
 
-  bool above_cutoff(const State& s) const {
-    return !battery_.cutoff_voltage || s.metrics[Metric::voltage] > battery_.cells * *battery_.cutoff_voltage;
+  /// What the battery gives, on the average, at an open-circuit voltage.
+  struct Load {
+    double voltage, current;  ///< at its terminals [V], [A]; absent where it cannot give the power
+    double internal_power;    ///< [W]
+  };
+  Load load_of(const Metrics<double>& m, double voltage) const {
+    const double R_i = source_resistance(battery_);
+    if (!bridged_) return {m[Metric::voltage], m[Metric::current_mean], R_i * square(m[Metric::current_rms])};
+    // The smaller of the two currents that give the power.
+    const double P_e = m[Metric::power_electrical],
+                 current = 2.0 * P_e / (voltage + std::sqrt(square(voltage) - 4.0 * R_i * P_e));
+    return {voltage - R_i * current, current, R_i * square(current)};
   }
-  bool flies(double charge) {
-    const State& s = at(charge);
-    return s.flaps && above_cutoff(s);
+
+  /// Why there is no flight at that charge; empty where there is.
+  std::optional<EnduranceEnd> end_at(const State& s, double charge) const {
+    if (!s.flaps) return EnduranceEnd::stops;
+    const double v = load_of(s.metrics, open_circuit_voltage(battery_, charge)).voltage;
+    if (bridged_ && !(v >= vehicle_.voltage)) return EnduranceEnd::bridge;
+    if (battery_.cutoff_voltage && !(v > battery_.cells * *battery_.cutoff_voltage)) return EnduranceEnd::cutoff;
+    return std::nullopt;
   }
+  bool flies(double charge) { return !end_at(at(charge), charge); }
 
   /// Charges from the first down to `last`, the rows of a short discharge curve among them.
   std::vector<double> grid(double last) const {
@@ -155,11 +175,11 @@ class Flight {
       if (flies(charges[n])) continue;
       // A voltage at the cut-off counts as below, also where that is so from the start.
       if (n == 0) {
-        result_.end = EnduranceEnd::cutoff;
+        result_.end = end_at(at(charges[0]), charges[0]).value();
         return charges[0];
       }
       const auto edge = bisect([&](double c) { return flies(c); }, charges[n - 1], charges[n]);
-      result_.end = at(edge.after).flaps ? EnduranceEnd::cutoff : EnduranceEnd::stops;
+      result_.end = end_at(at(edge.after), edge.after).value();
       return edge.before;
     }
     result_.end = EnduranceEnd::empty;
@@ -190,9 +210,9 @@ class Flight {
   /// charge acts on the vehicle.
   Totals at_voltage(double voltage) {
     const Metrics<double> m = solve_at(voltage, {}).metrics;
-    const double per_current = battery_.capacity / m[Metric::current_mean];
-    const double internal_power = vehicle_.source_resistance * square(m[Metric::current_rms]);
-    return {per_current, m[Metric::power_electrical] * per_current, internal_power * per_current,
+    const Load load = load_of(m, voltage);
+    const double per_current = battery_.capacity / load.current;
+    return {per_current, m[Metric::power_electrical] * per_current, load.internal_power * per_current,
             m[Metric::power_aerodynamic] * per_current, m[Metric::lift_mean] * per_current};
   }
 
@@ -215,7 +235,9 @@ class Flight {
     std::array<Totals, Piece::count> samples;
     constexpr int last = Piece::count - 1;
     for (int n = 0; n <= last; ++n) {
-      samples[std::size_t(n)] = at_voltage(0.5 * (low + high) + 0.5 * (high - low) * std::cos(pi * n / last));
+      const double between = 0.5 * (low + high) + 0.5 * (high - low) * std::cos(pi * n / last);
+      // Not beyond the ends by rounding: a crank that still turns at the lower one does not below it.
+      samples[std::size_t(n)] = at_voltage(std::clamp(between, low, high));
     }
     double tail = 0.0;
     bool finite = true;
@@ -302,16 +324,11 @@ class Flight {
     }
   }
 
-  EnduranceRow row(double charge, const Totals& sum) {
-    return {sum[time],
-            charge,
-            open_circuit_voltage(battery_, charge),
-            sum[electrical],
-            sum[internal],
-            sum[aerodynamic],
-            sum[lift],
-            at(charge).metrics,
-            at(charge).domain};
+  EnduranceRow row(double charge, const Totals& sum, const State& s) const {
+    const double voltage = open_circuit_voltage(battery_, charge);
+    const Load load = load_of(s.metrics, voltage);
+    return {sum[time], charge,    voltage,  sum[electrical], sum[internal], sum[aerodynamic],
+            sum[lift], s.metrics, s.domain, load.voltage,    load.current};
   }
 
   void discharge(double last, const std::optional<double>& hover) {
@@ -328,7 +345,7 @@ class Flight {
         const Totals piece = integral_between_rows(charges[n], charges[n - 1]);
         for (std::size_t q = 0; q < total_count; ++q) sum[q] += piece[q];
       }
-      result_.rows.push_back(row(charges[n], sum));
+      result_.rows.push_back(row(charges[n], sum, at(charges[n])));
       if (hover && charges[n] == *hover) result_.hover_lost = result_.rows.back();
     }
   }
@@ -348,22 +365,23 @@ class Flight {
       const State s = state_at(drawn, y);
       if (!s.flaps) return std::nullopt;
       const Metrics<double>& m = s.metrics;
-      const double per_charge = battery_.capacity / m[Metric::current_mean];
+      const Load load = load_of(m, open_circuit_voltage(battery_, std::max(first - drawn, 0.0)));
+      const double per_charge = battery_.capacity / load.current;
+      if (!std::isfinite(per_charge)) return std::nullopt;
       const double P_cu = m[Metric::power_copper], P_visc = m[Metric::power_viscous];
       const MotorTemperatures<double> target = settled_temperatures(thermal, P_cu, P_visc);
       return Path{per_charge,
                   m[Metric::power_electrical] * per_charge,
-                  vehicle_.source_resistance * square(m[Metric::current_rms]) * per_charge,
+                  load.internal_power * per_charge,
                   m[Metric::power_aerodynamic] * per_charge,
                   m[Metric::lift_mean] * per_charge,
                   (target.winding - target.casing - y[over_case]) / *winding_time_ * per_charge,
                   (target.casing - y[casing]) / *case_time_ * per_charge};
     };
     const auto row_at = [&](double drawn, const Path& y, const State& s) {
-      const double charge = std::max(first - drawn, 0.0);
-      return EnduranceRow{y[time],       charge,      open_circuit_voltage(battery_, charge),
-                          y[electrical], y[internal], y[aerodynamic],
-                          y[lift],       s.metrics,   s.domain};
+      Totals sum;
+      std::copy_n(y.begin(), sum.size(), sum.begin());
+      return row(std::max(first - drawn, 0.0), sum, s);
     };
     const auto lifts = [](const State& s) { return s.metrics[Metric::lift_to_weight] >= 1.0; };
     const auto hovers = [&](const State& s) {
@@ -382,8 +400,8 @@ class Flight {
     detail::FlightPath<state_count, decltype(rates)> path(rates, scale, options_.tolerance, 0.01 * first);
 
     double drawn = 0.0;
-    if (!above_cutoff(start)) {
-      result_.end = EnduranceEnd::cutoff;
+    if (const auto end = end_at(start, first)) {
+      result_.end = *end;
       return;
     }
     const bool weighed = std::isfinite(steady_.reporting.mass);
@@ -403,27 +421,27 @@ class Flight {
         const State state = state_at(drawn + length, next);
         // The last moment of this step at which something still holds: its row.
         const auto last_row = [&](const auto& holds) {
-          EnduranceRow row = result_.rows.back();
+          EnduranceRow row_there = result_.rows.back();
           bisect(
               [&](double h) {
                 const auto part = path.take(drawn, y, h);
                 if (!part) return false;
                 const State s = state_at(drawn + h, part->y);
-                if (holds(s)) row = row_at(drawn + h, part->y, s);
-                return holds(s);
+                const bool still = holds(s, drawn + h);
+                if (still) row_there = row_at(drawn + h, part->y, s);
+                return still;
               },
               0.0, length, [&](const Bracket<double>& h) { return h.after - h.before <= 1e-13 * first; });
-          return row;
+          return row_there;
         };
         if (result_.hover == Hover::kept && !hovers(state)) {
           result_.hover = Hover::lost;
-          result_.hover_lost = last_row(hovers);
+          result_.hover_lost = last_row([&](const State& s, double) { return hovers(s); });
           end_here(*result_.hover_lost);
         }
-        const auto goes_on = [&](const State& s) { return s.flaps && above_cutoff(s); };
-        if (!goes_on(state)) {
-          result_.end = state.flaps ? EnduranceEnd::cutoff : EnduranceEnd::stops;
-          return end_here(last_row(goes_on));
+        if (const auto why = end_at(state, std::max(first - drawn - length, 0.0))) {
+          result_.end = *why;
+          return end_here(last_row([&](const State& s, double at) { return !end_at(s, std::max(first - at, 0.0)); }));
         }
         drawn = length < end - drawn ? drawn + length : end;
         y = next;
@@ -436,11 +454,14 @@ class Flight {
     // Not twice at the same charge.
     if (result_.rows.back().charge != last.charge) result_.rows.push_back(last);
   }
+
   Battery<double> battery_;
+  bool bridged_;
   EnduranceOptions options_;
   Vehicle<double> vehicle_;
   std::optional<double> winding_time_, case_time_;  ///< tau_w, tau_c [s]
   SteadyOptions steady_;
+  std::optional<State> on_bridge_;  ///< the same at any charge: the bridge holds its amplitude
   std::map<double, State> known_;
   std::vector<Piece> pieces_;  ///< in the order of voltages
   EnduranceResult result_;
@@ -452,8 +473,8 @@ EnduranceResult simulate_discharge(const Design<double>& design, const Endurance
   require(options.tolerance >= 1e-10 && options.tolerance <= 1e-2, "endurance.tolerance",
           "must lie between 1e-10 and 1e-2", "1", options.tolerance);
   require(options.intervals >= 1, "endurance.intervals", "must be >= 1", "1", options.intervals);
-  if (design.supply.type != SupplyType::battery) {
-    throw ParameterError("supply.type", "only a battery runs down; expected battery");
+  if (!has_battery(design.supply.type)) {
+    throw ParameterError("supply.type", "only a battery runs down; expected battery or battery-sine");
   }
   return Flight(design, options).run();
 }

@@ -23,7 +23,7 @@ OptimiseProblem::Evaluation OptimiseProblem::evaluate(const Vector& u, bool grad
   Evaluation e;
   std::span<const DesignParameter> wanted;
   if (gradients) wanted = parameters_;
-  e.point = design_point(design(u), study_.options, wanted, start_up_);
+  e.point = design_point(design(u), options_, wanted, start_up_);
   const Eigen::Index m = constraints();
   e.gradient = Vector::Zero(size());
   e.constraints = Vector::Constant(m, 1.0);

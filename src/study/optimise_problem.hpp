@@ -17,8 +17,13 @@ inline constexpr double feasible_to = 1e-6;  ///< of a constraint, relative to i
 /// The problem in coordinates from 0 to 1 between the bounds.
 class OptimiseProblem {
  public:
-  OptimiseProblem(const OptimiseStudy& study, const StartUp& start_up) : study_(study), start_up_(start_up) {
+  OptimiseProblem(const OptimiseStudy& study, const StartUp& start_up)
+      : study_(study), options_(study.options), start_up_(start_up) {
     for (const OptimisedParameter& p : study.parameters) parameters_.push_back(p.parameter);
+    options_.endurance = options_.endurance || study.objective == Metric::endurance;
+    for (const MetricConstraint& c : study.constraints) {
+      options_.endurance = options_.endurance || c.metric == Metric::endurance;
+    }
   }
 
   Eigen::Index size() const { return Eigen::Index(study_.parameters.size()); }
@@ -71,6 +76,7 @@ class OptimiseProblem {
   double stroke_slope(const Vector& u, Eigen::Index k) const;
 
   const OptimiseStudy& study_;
+  DesignPointOptions options_;  ///< of the study, with the endurance where it is asked for
   const StartUp& start_up_;
   std::vector<DesignParameter> parameters_;
 };

@@ -275,7 +275,7 @@ ParetoResult pareto_front(const ParetoStudy& study, Evolve evolve, const StartUp
   std::vector<ParetoDesign> front;
   for (const std::size_t k : nondominated(feasible)) front.push_back(result.evaluated[places[k]]);
   std::vector<SweepStatus> status(front.size());
-  problem.solve(front, status, study.tolerance, all_metrics());
+  problem.solve(front, status, study.tolerance, all_metrics() | problem.wanted());
   std::vector<ObjectivePoint> objectives;
   for (std::size_t k = 0; k < front.size(); ++k) {
     if (status[k] != SweepStatus::flapping || problem.violation(front[k]) > 0.0) continue;

@@ -5,6 +5,7 @@
 
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/cycle/thermal_equilibrium.hpp"
+#include "wingbeat/study/endurance.hpp"
 
 namespace wingbeat {
 namespace {
@@ -245,6 +246,7 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
     } else {
       set_voltage(result.design.supply, result.search->voltage);
     }
+    if (supply.type == SupplyType::battery_sine) validate(result.design);  // its amplitude may not exceed the battery's
     vehicle.voltage = result.search->voltage;
   }
   if (options.method == Method::orbit) {
@@ -253,6 +255,10 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
     run_transient(vehicle, options, result);
   }
   note_domain(vehicle, result);
+  const bool flies = has_battery(supply.type) && result.status == FlappingStatus::flapping;
+  if (options.endurance && flies) {
+    result.metrics[Metric::endurance] = endurance_of(design, options.condition, options.tolerance).time;
+  }
   return result;
 }
 

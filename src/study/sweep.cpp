@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "wingbeat/core/status.hpp"
+#include "wingbeat/study/endurance.hpp"
 #include "wingbeat/study/ensemble_frequency.hpp"
 
 namespace wingbeat {
@@ -156,6 +157,12 @@ void SweepSolver::solve(SweepColumns& columns, std::size_t begin, std::size_t en
     columns.error_estimate[row] = out.error_estimate;
     for (std::size_t m = 0; m < kept_.size(); ++m) {
       columns.metrics[m][row] = out.metrics.values[std::size_t(kept_[m])];
+    }
+    if (sweep_.options.metrics[std::size_t(Metric::endurance)]) {
+      const SweepDesign of = design_at(sweep_, columns.first + row);
+      const bool flies = has_battery(of.design.supply.type);
+      if (flies)
+        columns.metrics[kept_.size() - 1][row] = endurance_of(of.design, of.condition, sweep_.options.tolerance).time;
     }
   }
 }

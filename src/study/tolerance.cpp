@@ -253,7 +253,8 @@ ToleranceResult assess_tolerance(const ToleranceStudy& study, const SweepColumns
     p.parameter.set(centre, p.distribution.mean());
     parameters.push_back(p.parameter);
   }
-  const DesignPointOptions options{study.condition, study.frequency, study.options.tolerance, true};
+  const DesignPointOptions options{study.condition, study.frequency, study.options.tolerance, true,
+                                   study.options.metrics[std::size_t(Metric::endurance)]};
   result.centre = design_point(centre, options, parameters, start_up);
   const auto covariance = parameter_covariance(study);
 

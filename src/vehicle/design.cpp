@@ -23,8 +23,8 @@ void validate_slider_crank(const Design<double>& d) {
 
 /// What a direct drive needs and cannot have.
 void validate_direct(const Design<double>& d) {
-  if (d.supply.type != SupplyType::sine) {
-    throw ParameterError("supply.type", "a direct drive swings as its supply does: expected sine");
+  if (!is_sine(d.supply.type)) {
+    throw ParameterError("supply.type", "a direct drive swings as its supply does: expected sine or battery-sine");
   }
   if (d.motor.gear_efficiency && *d.motor.gear_efficiency < 1.0) {
     throw ParameterError("motor.gear_efficiency",
@@ -53,6 +53,19 @@ void validate_direct(const Design<double>& d) {
                          "needs springs to resonate with; give spring.stiffness or "
                          "spring.resonance");
   }
+}
+
+/// A bridge swings a direct drive, by no more than its battery's voltage; under load simulate_discharge() tells.
+void validate_bridge(const Design<double>& d) {
+  if (d.transmission.type != TransmissionType::direct) {
+    throw ParameterError("supply.type", "the sine that a bridge makes is for a direct drive: expected battery");
+  }
+  const double E = open_circuit_voltage(d.supply.battery, d.supply.battery.charge);
+  if (d.supply.voltage <= E) return;
+  throw ParameterError(supply_key::amplitude.path,
+                       detail::format("%.4g V exceed what the bridge has from the battery, %.4g V without load at a "
+                                      "charge of %.4g",
+                                      d.supply.voltage, E, d.supply.battery.charge));
 }
 
 /// Added mass takes inertia away where the wings pitch fast (model.md section 10): what is left must stay positive at
@@ -120,13 +133,14 @@ void validate(const Design<double>& d) {
     throw ParameterError(std::string(parameter.path),
                          range_message(parameter.range.expected, std::string(parameter.unit).c_str(), *x));
   }
-  if (d.supply.type == SupplyType::battery) {
+  if (has_battery(d.supply.type)) {
     validate(d.supply.battery);
     if (d.supply.battery.specific_energy && d.masses.supply) {
       throw ParameterError(battery_key::specific_energy.path,
                            "gives the mass of the battery, which supply.mass states; give one of them");
     }
   }
+  if (d.supply.type == SupplyType::battery_sine) validate_bridge(d);
 
   const TransmissionType type = d.transmission.type;
   if (d.masses.rod_linear_density && !rod_length(d.transmission)) {

@@ -153,7 +153,7 @@ constexpr Parameter<S> replaceable(const ParameterText& text, Access, Others...)
 /// A battery's voltage at any charge, in place of its discharge curve.
 template <Scalar S>
 constexpr Parameter<S> battery_voltage(const ParameterText& text) {
-  using Where = SupplyIs<SupplyType::battery>;
+  using Where = SupplyIs<SupplyType::battery, SupplyType::battery_sine>;
   return {placed<Where>(text),
           [](Design<S>& d, const S& x) {
             if (!Where::holds(d)) return false;

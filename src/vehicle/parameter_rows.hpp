@@ -21,10 +21,10 @@ std::span<const Parameter<S>> parameter_table() {
       detail::WeighedSprings;
   using enum PlanformShape;
   using Powered = SupplyIs<SupplyType::constant, SupplyType::pwm>;
-  using Sine = SupplyIs<SupplyType::sine>;
-  using Periodic = SupplyIs<SupplyType::sine, SupplyType::pwm>;
+  using Sine = SupplyIs<SupplyType::sine, SupplyType::battery_sine>;
+  using Periodic = SupplyIs<SupplyType::sine, SupplyType::pwm, SupplyType::battery_sine>;
   using Pwm = SupplyIs<SupplyType::pwm>;
-  using OnBattery = SupplyIs<SupplyType::battery>;
+  using OnBattery = SupplyIs<SupplyType::battery, SupplyType::battery_sine>;
   using Crank = TransmissionIs<TransmissionType::slider_crank>;
   using Linkage = TransmissionIs<TransmissionType::slider_crank, TransmissionType::four_bar>;
   using Bars = TransmissionIs<TransmissionType::four_bar>;

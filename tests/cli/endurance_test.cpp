@@ -159,4 +159,71 @@ TEST_F(Endurance, ALargerBatteryWeighsMore) {
   EXPECT_THAT(both.err, HasSubstr("not both"));
 }
 
+TEST_F(Endurance, OfADirectDriveThroughABridge) {
+  const std::vector<std::string> fed = {
+      "--set", "supply.type=battery-sine",           "--set", "supply.cell_voltage=3.7 V",
+      "--set", "supply.internal_resistance=0.5 ohm", "--set", "supply.capacity=30 mA h"};
+  const auto with = [&](std::vector<std::string> arguments, const std::vector<std::string>& more) {
+    arguments.insert(arguments.end(), fed.begin(), fed.end());
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  };
+  const std::string direct = data + "/designs/direct-drive.toml";
+  const Outcome flight = with({"endurance", direct}, {"--json"});
+  ASSERT_EQ(flight.status, 0) << flight.err;
+  const Json json = flight.json();
+  EXPECT_EQ(json["end"], "empty");
+  const double power = run({"run", direct, "--json"}).json()["power_electrical_w"].get<double>();
+  EXPECT_NEAR(json["power_electrical_w"].get<double>(), power, 1e-5 * power);
+  EXPECT_EQ(json["history"]["terminal_voltage_v"].size(), json["history"]["time_s"].size());
+  EXPECT_THAT(with({"endurance", direct}, {}).out, HasSubstr("terminal voltage"));
+  const Outcome high = with({"run", direct}, {"--set", "supply.amplitude=4 V"});
+  EXPECT_EQ(high.status, 2);
+  EXPECT_THAT(high.err, HasSubstr("4 V exceed what the bridge has from the battery, 3.7 V without load"));
+}
+
+/// The endurance of the shipped battery as runs, sweeps and optima tell it.
+TEST_F(Endurance, AsAMetric) {
+  const double flight = run({"endurance", battery, "--json"}).json()["endurance_s"].get<double>();
+  EXPECT_NEAR(run({"run", battery, "--json"}).json()["endurance_s"].get<double>(), flight, 1e-5 * flight);
+  EXPECT_TRUE(run({"run", plain, "--json"}).json()["endurance_s"].is_null());
+
+  const auto study = [&](const std::string& vehicle, const std::string& more, const std::string& sections) {
+    std::ofstream(path("study.toml")) << "[study]\nvehicle = \"" << vehicle << "\"\n" << more << sections;
+    return path("study.toml");
+  };
+  const std::string axis = "[[axis]]\nkey = \"supply.capacity\"\nvalues = [\"30 mA h\", \"60 mA h\"]\n";
+  const std::string named = "metrics = [\"endurance_s\", \"lift_to_weight\"]\n";
+  ASSERT_EQ(run({"sweep", study(battery, named, axis), "-o", path("named.nc")}).status, 0);
+  const auto time = wingbeat::NetcdfReader(path("named.nc")).read("endurance_s");
+  ASSERT_EQ(time.size(), 2U);
+  EXPECT_NEAR(time[0], flight, 1e-5 * flight);
+  EXPECT_NEAR(time[1], 2.0 * flight, 2e-5 * flight);
+  ASSERT_EQ(run({"sweep", study(battery, "", axis), "-o", path("all.nc")}).status, 0);
+  EXPECT_EQ(read(path("all.nc")).find("endurance_s"), std::string::npos);
+
+  const std::string capacity =
+      "[objective]\nmaximise = \"endurance_s\"\nstarts = 2\nscreen = 16\n"
+      "[[parameter]]\nkey = \"spring.stiffness\"\nlower = 1e-3\nupper = 2e-3\n";
+  const Outcome none = run({"optimise", study(plain, "", capacity)});
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.err, HasSubstr("endurance_s needs supply.type = \"battery\" in the vehicle file"));
+  const Outcome best = run({"optimise", study(battery, "", capacity), "--json"});
+  ASSERT_EQ(best.status, 0) << best.err;
+  const Json json = best.json();
+  EXPECT_EQ(json["objective"], "endurance_s");
+  EXPECT_GT(json["value"].get<double>(), 0.9 * flight);
+  EXPECT_EQ(json["value"], json["metrics"]["endurance_s"]);
+}
+
+TEST_F(Endurance, TheLongestFlightOnTwoCells) {
+  const Outcome o = run({"optimise", data + "/studies/optimise-endurance.toml", "--json", "-o", path("best.toml")});
+  ASSERT_EQ(o.status, 0) << o.err;
+  const Json json = o.json();
+  EXPECT_EQ(json["active"][0]["limit"], "lift_to_weight >= 1.2");
+  EXPECT_NEAR(json["metrics"]["lift_to_weight"].get<double>(), 1.2, 1e-4);
+  const double flight = run({"endurance", path("best.toml"), "--json"}).json()["endurance_s"].get<double>();
+  EXPECT_NEAR(json["value"].get<double>(), flight, 1e-5 * flight);
+}
+
 }  // namespace

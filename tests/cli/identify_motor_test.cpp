@@ -25,6 +25,36 @@ TEST_F(IdentifyMotor, WritesAMotorThatAVehicleFileTakes) {
   EXPECT_EQ(run({"run", path("vehicle.toml"), "--condition", "wingless"}).status, 0);
 }
 
+// A vehicle with either section is the same; with the motor shaft's constants the gear ratio can be varied.
+TEST_F(IdentifyMotor, TheMotorShaftsConstantsLeaveTheGearRatioFree) {
+  const auto vehicle_with = [&](const std::string& section) {
+    std::string vehicle = read(plain);
+    const auto from = vehicle.find("[motor]"), to = vehicle.find("[transmission]");
+    vehicle.replace(from, to - from, read(section) + "\n");
+    std::ofstream(path("vehicle.toml")) << vehicle;
+    return path("vehicle.toml");
+  };
+  EXPECT_EQ(run({"identify-motor", faulhaber, "-o", path("output.toml")}).status, 0);
+  EXPECT_EQ(run({"identify-motor", faulhaber, "-o", path("motor.toml"), "--motor-shaft"}).status, 0);
+  EXPECT_THAT(read(path("motor.toml")), HasSubstr("constants at the motor shaft"));
+  EXPECT_THAT(read(path("motor.toml")), HasSubstr("[motor]\ngear_ratio = 20\n"));
+  const std::vector<std::string> wingless = {"--condition", "wingless", "--json"};
+  const auto frequency = [&](const std::string& section, std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"run", vehicle_with(section)};
+    arguments.insert(arguments.end(), wingless.begin(), wingless.end());
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome o = run(arguments);
+    EXPECT_EQ(o.status, 0) << o.err;
+    return o.json()["frequency_hz"].get<double>();
+  };
+  const double one = frequency(path("output.toml"), {});
+  EXPECT_NEAR(frequency(path("motor.toml"), {}) / one, 1.0, 1e-9);
+  EXPECT_LT(frequency(path("motor.toml"), {"--set", "motor.gear_ratio=30"}), one);
+  const Outcome lost = run({"identify-motor", faulhaber, "--motor-shaft"});
+  EXPECT_EQ(lost.status, 2);
+  EXPECT_THAT(lost.err, HasSubstr("says how -o writes the motor"));
+}
+
 TEST_F(IdentifyMotor, HandsOnWhatTheSheetSaysOfHeat) {
   const std::string heat = "thermal_resistance_winding = \"20 K/W\"\n", rest = "thermal_resistance_case = \"48 K/W\"\n";
   std::ofstream(path("sheet.toml")) << read(faulhaber) << heat << rest << "winding_temperature_max = \"85 degC\"\n";

@@ -64,7 +64,8 @@ const std::vector<std::string> contract_keys = {"status",
                                                 "power_hinge_w",
                                                 "pitch_amplitude_deg",
                                                 "pitch_phase_deg",
-                                                "angle_of_attack_max_deg"};
+                                                "angle_of_attack_max_deg",
+                                                "endurance_s"};
 
 void expect_same_metrics(const Json& a, const Json& b, double tolerance) {
   for (const std::string& key : contract_keys) {
@@ -86,7 +87,8 @@ TEST_F(Run, JsonIsOneObjectWithTheContractsKeysAndNothingElse) {
   for (std::size_t k = 5; k < contract_keys.size(); ++k) {
     const std::string& key = contract_keys[k];
     const bool option = key.find("temperature") != std::string::npos || key == "added_mass_inertia_ratio" ||
-                        key.find("pitch") == 0 || key == "power_hinge_w" || key == "angle_of_attack_max_deg";
+                        key.find("pitch") == 0 || key == "power_hinge_w" || key == "angle_of_attack_max_deg" ||
+                        key == "endurance_s";
     EXPECT_EQ(json[key].is_number(), !option) << key;
   }
   EXPECT_EQ(json["voltage_v"], 3.0);

@@ -90,8 +90,9 @@ TEST(DesignErrors, Batteries) {
             "discharge_curve instead");
   EXPECT_EQ(spoiled("capacity = \"50 mA h\"\n", ""),
             "v.toml:3:2: supply.capacity: missing in [supply]; expected an electric charge such as \"50 mA h\"");
-  EXPECT_EQ(refusal(with("\"3 V\"", "\"3 V\"\ncapacity = 3")),
-            "v.toml:6:1: supply.capacity: belongs to supply.type = battery, but supply.type is \"constant\"");
+  EXPECT_EQ(
+      refusal(with("\"3 V\"", "\"3 V\"\ncapacity = 3")),
+      "v.toml:6:1: supply.capacity: belongs to supply.type = battery or battery-sine, but supply.type is \"constant\"");
 }
 
 TEST(DesignErrors, MissingKeyOrSection) {
@@ -107,7 +108,7 @@ TEST(DesignErrors, MissingKeyOrSection) {
             "virtual-work conserves power and is the choice for a new vehicle, rod-force is equation (1) of the 2022 "
             "paper as printed");
   EXPECT_EQ(refusal(without_line("type = \"constant\"")),
-            "v.toml:3:2: supply.type: missing in [supply]; expected constant, sine, pwm or battery");
+            "v.toml:3:2: supply.type: missing in [supply]; expected constant, sine, pwm, battery or battery-sine");
   EXPECT_EQ(refusal(with("[friction]\ntype = \"load-proportional\"\nradius = \"2.5 mm\"\n", "")),
             "v.toml:23:1: friction: missing section [friction]: the friction law; without friction write type = "
             "\"none\"");
@@ -133,7 +134,7 @@ TEST(DesignErrors, WrongType) {
   EXPECT_EQ(refusal(with("[motor]", "[[motor]]")),
             "v.toml:6:3: motor: expected a section [motor], got a list of tables");
   EXPECT_EQ(refusal(with("\"constant\"", "\"steady\"")),
-            "v.toml:4:1: supply.type: expected constant, sine, pwm or battery, got \"steady\"");
+            "v.toml:4:1: supply.type: expected constant, sine, pwm, battery or battery-sine, got \"steady\"");
   EXPECT_EQ(refusal(with("\"slider-crank\"", "\"geared\"")),
             "v.toml:13:1: transmission.type: expected slider-crank, four-bar, tabulated or direct, got \"geared\"");
 }
@@ -173,8 +174,9 @@ TEST(DesignErrors, KeyOfAnotherChoice) {
   EXPECT_EQ(refusal(with("radius = \"2.5 mm\"", "radius = \"2.5 mm\"\ndamping = 1e-6")),
             "v.toml:21:1: friction.damping: belongs to friction.type = viscous, but friction.type is "
             "\"load-proportional\"");
-  EXPECT_EQ(refusal(with("\"3 V\"", "\"3 V\"\nfrequency = 20")),
-            "v.toml:6:1: supply.frequency: belongs to supply.type = sine or pwm, but supply.type is \"constant\"");
+  EXPECT_EQ(
+      refusal(with("\"3 V\"", "\"3 V\"\nfrequency = 20")),
+      "v.toml:6:1: supply.frequency: belongs to supply.type = sine or pwm or battery-sine, but supply.type is \"constant\"");
   EXPECT_EQ(refusal(with("[motor]", "[motor]\ngear_inertia = 1e-9")),
             "v.toml:7:1: motor.gear_inertia: needs motor.gear_ratio, which is not given");
   EXPECT_EQ(refusal(with("\"moments\"", "\"moments\", length = 1")),

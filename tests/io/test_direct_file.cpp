@@ -92,7 +92,7 @@ TEST(DirectFile, RefusesWithPlaceAndKey) {
       "expected none, viscous, quadratic or constant");
   EXPECT_EQ(refusal(with("type = \"sine\"\namplitude = \"3 V\"\nfrequency = \"22 Hz\"",
                          "type = \"constant\"\nvoltage = 3\n")),
-            "v.toml:2:1: supply.type: a direct drive swings as its supply does: expected sine");
+            "v.toml:2:1: supply.type: a direct drive swings as its supply does: expected sine or battery-sine");
   EXPECT_EQ(refusal(with("type = \"direct\"", "type = \"direct\"\ncrank_radius = \"5 mm\"")),
             "v.toml:13:1: transmission.crank_radius: belongs to transmission.type = slider-crank or four-bar, but "
             "transmission.type is \"direct\"");

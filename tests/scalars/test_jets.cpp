@@ -68,6 +68,7 @@ void expect_derivatives(const F& f, const Inputs<double>& at, double tolerance, 
   const auto jets = f(dual);
   const auto values = f(at);
   for (std::size_t out = 0; out < values.size(); ++out) {
+    if (std::isnan(values[out])) continue;  // a metric that no cycle has
     const double beside = out == residual ? values[motor_work] : 0.0;
     EXPECT_NEAR(jets[out].a, values[out], 1e-13 * (std::abs(values[out]) + std::abs(beside))) << "output " << out;
   }
@@ -82,6 +83,10 @@ void expect_derivatives(const F& f, const Inputs<double>& at, double tolerance, 
     };
     const auto p1 = moved(h), m1 = moved(-h), p2 = moved(2.0 * h), m2 = moved(-2.0 * h);
     for (std::size_t out = 0; out < values.size(); ++out) {
+      if (std::isnan(values[out])) {
+        EXPECT_TRUE(std::isnan(jets[out].a)) << "output " << out;
+        continue;
+      }
       const double difference = (8.0 * (p1[out] - m1[out]) - (p2[out] - m2[out])) / (12.0 * h);
       const double derivative = jets[out].v[n];
       double size = std::abs(derivative) + std::abs(values[out] / value);

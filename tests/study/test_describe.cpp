@@ -162,7 +162,7 @@ TEST(DescribeEndurance, EveryEnd) {
       "stall torque 0.001 N m does not exceed the constant friction 0.002 N m");
   r.rows.resize(1);
   EnduranceRow& last = r.rows.back();
-  last.metrics[Metric::voltage] = 5.25;
+  last.terminal_voltage = 5.25;
   r.cutoff_voltage = 5.4;
   r.end = EnduranceEnd::empty;
   EXPECT_EQ(describe(r), "the battery is empty from the start");
@@ -178,6 +178,18 @@ TEST(DescribeEndurance, EveryEnd) {
   r.end = EnduranceEnd::stops;
   EXPECT_EQ(describe(r),
             "after 120 s, at a charge of 0.125 and 5.25 V at the terminals, the battery no longer turns the crank");
+  r.end = EnduranceEnd::bridge;
+  last.metrics[Metric::voltage] = 5.25;
+  EXPECT_EQ(
+      describe(r),
+      "the battery's terminal voltage falls to the amplitude of the bridge's sine, 5.25 V, after 120 s, at a charge "
+      "of 0.125");
+  last.time = 0.0;
+  last.terminal_voltage = 5.0;
+  EXPECT_EQ(describe(r), "under load the battery gives the bridge 5 V, less than the amplitude of its sine, 5.25 V");
+  last.terminal_voltage = absent;
+  last.metrics[Metric::power_electrical] = 2.0;
+  EXPECT_EQ(describe(r), "the battery cannot give the 2 W that the bridge takes from it");
 }
 
 }  // namespace

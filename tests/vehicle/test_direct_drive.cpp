@@ -312,7 +312,7 @@ TEST(DirectDrive, ValidateNamesWhatItCannotHave) {
             "friction.type: load-proportional friction follows the rod force, and a direct drive has no rod; expected "
             "none, viscous, quadratic or constant");
   EXPECT_EQ(refused([](D& d) { d.supply.type = SupplyType::constant; }),
-            "supply.type: a direct drive swings as its supply does: expected sine");
+            "supply.type: a direct drive swings as its supply does: expected sine or battery-sine");
   EXPECT_EQ(refused([](D& d) { d.supply_resonance_ratio = 0.0; }), "supply.resonance_ratio: must be > 0 [1], got 0");
   EXPECT_EQ(refused([](D& d) { d.spring = {}, d.supply_resonance_ratio = 1.0; }),
             "supply.resonance_ratio: needs springs to resonate with; give spring.stiffness or spring.resonance");

@@ -102,7 +102,7 @@ TEST(Parameters, RangesSayWhatTheyHold) {
 }
 
 TEST(Parameters, PlacesAreNamedAsTheirChoices) {
-  EXPECT_EQ(find_parameter<double>("supply.frequency")->only_with, "supply.type = sine|pwm");
+  EXPECT_EQ(find_parameter<double>("supply.frequency")->only_with, "supply.type = sine|pwm|battery-sine");
   EXPECT_EQ(find_parameter<double>("friction.radius")->only_with, "friction.type = load-proportional");
   EXPECT_EQ(find_parameter<double>("friction.type")->range.text,
             "none, load-proportional, viscous, quadratic or constant");

@@ -51,9 +51,10 @@ enum class Metric {
   power_hinge,
   pitch_amplitude,
   pitch_phase,
-  angle_of_attack_max
+  angle_of_attack_max,
+  endurance  ///< of a flight, not of a cycle: absent unless a study asks for it
 };
-inline constexpr int metric_count = int(Metric::angle_of_attack_max) + 1;
+inline constexpr int metric_count = int(Metric::endurance) + 1;
 
 /// How a metric is named outside the program.
 struct MetricInfo {
@@ -239,6 +240,7 @@ Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, cons
        {Metric::power_hinge, Metric::pitch_amplitude, Metric::pitch_phase, Metric::angle_of_attack_max}) {
     m[which] = S(absent);
   }
+  m[Metric::endurance] = S(absent);
   return m;
 }
 

@@ -12,18 +12,30 @@
 
 namespace wingbeat {
 
-enum class SupplyType { constant, sine, pwm, battery };
+enum class SupplyType {
+  constant,
+  sine,
+  pwm,
+  battery,
+  battery_sine  ///< a bridge that makes a sine of a battery's voltage
+};
 template <>
-inline constexpr std::pair<const char*, SupplyType> names_of<SupplyType>[] = {{"constant", SupplyType::constant},
-                                                                              {"sine", SupplyType::sine},
-                                                                              {"pwm", SupplyType::pwm},
-                                                                              {"battery", SupplyType::battery}};
+inline constexpr std::pair<const char*, SupplyType> names_of<SupplyType>[] = {
+    {"constant", SupplyType::constant},
+    {"sine", SupplyType::sine},
+    {"pwm", SupplyType::pwm},
+    {"battery", SupplyType::battery},
+    {"battery-sine", SupplyType::battery_sine}};
+
+constexpr bool is_sine(SupplyType type) { return type == SupplyType::sine || type == SupplyType::battery_sine; }
+constexpr bool has_battery(SupplyType type) { return type == SupplyType::battery || type == SupplyType::battery_sine; }
 
 template <Scalar S>
 struct Supply {
   SupplyType type = SupplyType::constant;
-  S voltage = S(0);    ///< constant: v; sine: amplitude; pwm: voltage while switched on [V], >= 0; battery: not used
-  S frequency = S(0);  ///< sine: drive frequency; pwm: switching frequency [Hz], > 0
+  S voltage = S(
+      0);  ///< constant: v; sine, battery_sine: amplitude; pwm: voltage while switched on [V], >= 0; battery: not used
+  S frequency = S(0);  ///< sine, battery_sine: drive frequency; pwm: switching frequency [Hz], > 0
   S duty = S(1);       ///< pwm: fraction of a period switched on [1], 0 to 1
   Battery<S> battery = {};
 
@@ -42,8 +54,9 @@ inline constexpr ParameterKey duty{"supply.duty", "1", range::zero_to_one};
 }  // namespace supply_key
 
 inline void validate(const Supply<double>& s) {
-  if (s.type == SupplyType::battery) return validate(s.battery);
-  require(s.type == SupplyType::sine ? supply_key::amplitude : supply_key::voltage, s.voltage);
+  if (has_battery(s.type)) validate(s.battery);
+  if (s.type == SupplyType::battery) return;
+  require(is_sine(s.type) ? supply_key::amplitude : supply_key::voltage, s.voltage);
   if (s.type != SupplyType::constant) require(supply_key::frequency, s.frequency);
   if (s.type == SupplyType::pwm) require(supply_key::duty, s.duty);
 }
@@ -56,7 +69,8 @@ S mean_voltage(const Supply<S>& s) {
   return s.type == SupplyType::pwm ? s.duty * s.voltage : s.voltage;
 }
 
-/// Resistance [ohm] between that voltage and the motor terminals: that of a battery; none otherwise.
+/// Resistance [ohm] between that voltage and the motor terminals: that of a battery; none otherwise, for a bridge holds
+/// its amplitude.
 template <Scalar S>
 S source_resistance(const Supply<S>& s) {
   return s.type == SupplyType::battery ? source_resistance(s.battery) : S(0.0);
@@ -64,7 +78,7 @@ S source_resistance(const Supply<S>& s) {
 
 /// Voltage [V] at time t [s] that the supply drives through its resistance.
 inline double voltage_at(const Supply<double>& s, double t) {
-  if (s.type == SupplyType::sine) return s.voltage * std::sin(two_pi * s.frequency * t);
+  if (is_sine(s.type)) return s.voltage * std::sin(two_pi * s.frequency * t);
   if (s.type == SupplyType::pwm) {
     const double phase = s.frequency * t - std::floor(s.frequency * t);
     return phase < s.duty ? s.voltage : 0.0;

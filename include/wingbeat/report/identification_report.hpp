@@ -7,9 +7,11 @@
 
 namespace wingbeat {
 
-/// The [motor] section of a vehicle file, constants at the output shaft, with what it rests on as comments. Numbers
-/// read back to the same double. The identification must be complete.
-std::string motor_section(const MotorIdentification& motor, const MotorDatasheet& sheet, const std::string& made_by);
+/// The [motor] section of a vehicle file with what it rests on as comments: constants at the output shaft, or
+/// gear_ratio and those at the motor shaft, so that the ratio may be changed. Numbers read back to the same double. The
+/// identification must be complete.
+std::string motor_section(const MotorIdentification& motor, const MotorDatasheet& sheet, const std::string& made_by,
+                          Shaft shaft = Shaft::output);
 
 /// A table of at most 90 columns.
 std::string text_identification(const MotorIdentification& motor, const MotorDatasheet& sheet);

@@ -17,6 +17,7 @@ struct DesignPointOptions {
   std::optional<double> frequency = {};  ///< held [Hz]; the voltage follows
   double tolerance = 1e-6;               ///< of the orbit
   bool peaks = true;                     ///< differentiate metrics that are peaks
+  bool endurance = false;                ///< of a vehicle on a battery: Metric::endurance, too
 };
 
 /// What a design does, and how its metrics change with parameters; in words: describe() of report/describe.hpp.

@@ -6,12 +6,17 @@
 // first charge; from then on it turns, and flight goes on while a rotating orbit exists. A motor that heats up has
 // settled at every charge, or, where its time constants are given, warms up from its surroundings: two more states,
 // d(T_w - T_case)/dt and dT_case/dt, beside the charge.
+//
+// A bridge between battery and motor loses nothing and holds its amplitude: the battery gives the mean electrical power
+// P_e of a cycle at the direct current that its terminal voltage asks for, (E - R_i I) I = P_e.
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "wingbeat/cycle/domain.hpp"
+#include "wingbeat/cycle/orbit_gradient.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/vehicle/design.hpp"
 
@@ -30,6 +35,7 @@ enum class EnduranceEnd {
   never_starts,  ///< does not flap from rest at the first charge
   empty,         ///< no charge is left
   cutoff,        ///< the mean terminal voltage has fallen to the cut-off voltage
+  bridge,        ///< the terminal voltage under load has fallen to the amplitude of the bridge's sine
   stops          ///< no rotating orbit is left
 };
 
@@ -52,6 +58,8 @@ struct EnduranceRow {
   double lift_impulse = 0.0;          ///< time integral of the mean lift since the start [N s]
   Metrics<double> metrics;            ///< of steady flapping at this charge
   DomainStatus domain = {};           ///< limits of the model that are exceeded there
+  double terminal_voltage = absent;   ///< mean at the battery's terminals [V]
+  double battery_current = absent;    ///< mean from the battery [A]
 };
 
 /// In words: describe() of report/describe.hpp.
@@ -75,5 +83,18 @@ struct EnduranceResult {
 /// Flies the design's battery from its charge until it is empty, at its cut-off voltage, or no longer turns the crank.
 /// Throws ParameterError for a supply that is no battery and for options out of range.
 EnduranceResult simulate_discharge(const Design<double>& design, const EnduranceOptions& options = {});
+
+/// Metric::endurance of a design on a battery.
+struct Endurance {
+  double time = absent;  ///< EnduranceResult::endurance() [s]
+  /// Its derivatives, SI; absent where there are none, as where the vehicle never starts.
+  std::vector<double> by_parameter;
+};
+
+/// The endurance to a relative `tolerance`, for some fifty orbits, and its derivatives: exact, for eleven orbits with
+/// gradients, where the battery is emptied to its cut-off or to the end; by central differences where no orbit is left
+/// before that, or where the motor's temperatures are states of the flight. Throws as simulate_discharge().
+Endurance endurance_of(const Design<double>& design, Condition condition, double tolerance,
+                       std::span<const DesignParameter> parameters = {});
 
 }  // namespace wingbeat

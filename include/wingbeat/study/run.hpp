@@ -30,6 +30,7 @@ struct RunOptions {
   std::optional<double> lift = {};
   bool allow_extrapolation = false;  ///< a search for a frequency or a lift may leave the model's domain
   int waveform_rows = 0;             ///< instants of one cycle to return, both ends included; 0: none
+  bool endurance = false;            ///< of a vehicle on a battery: Metric::endurance, too
 };
 
 /// In words: describe() of report/describe.hpp.
@@ -54,7 +55,7 @@ struct RunResult {
 
 /// Computes one validated design. Throws ParameterError for a crank on a sine supply where Method::orbit, a frequency
 /// or a lift is asked for (it has no periodic orbit in crank angle), for a battery where a frequency or a lift is, for
-/// a duty above 1 and for options out of range.
+/// a duty above 1, for a lift that takes more than the battery behind a bridge has and for options out of range.
 RunResult run_design(const Design<double>& design, const RunOptions& options = {});
 
 }  // namespace wingbeat

@@ -247,7 +247,7 @@ std::optional<S> total_mass(const Design<S>& design) {
   const S& M = design.motors;
   S mass = *design.mass;
   if (items.supply) mass = mass + *items.supply;
-  if (design.supply.type == SupplyType::battery) {
+  if (has_battery(design.supply.type)) {
     if (const std::optional<S> battery = battery_mass(design.supply.battery)) mass = mass + *battery;
   }
   if (items.motor) mass = mass + M * *items.motor;

@@ -150,7 +150,7 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
   S stiffness = design.spring.stiffness ? *design.spring.stiffness : S(0.0);
   if (design.wing.resonance) wing_inertia = stiffness / square(S(two_pi) * *design.wing.resonance) - rotor_share;
   const S inertia = rotor_share + wing_inertia;
-  const bool sine = design.supply.type == SupplyType::sine;
+  const bool sine = is_sine(design.supply.type);
   v.drive_frequency = sine ? design.supply.frequency : S(0.0);
   if (design.spring.resonance) stiffness = stiffness_for_resonance(inertia, *design.spring.resonance);
   if (design.spring.resonance_ratio) {
