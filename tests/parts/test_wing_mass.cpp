@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "parts/outline.hpp"
 #include "wingbeat/core/jet.hpp"
 #include "wingbeat/core/members.hpp"
 
@@ -14,11 +15,7 @@ namespace {
 constexpr double drawn_length = 63e-3, drawn_chord = 25e-3;
 
 Planform<double> outline(PlanformShape shape, double hub_offset) {
-  Planform<double> p;
-  p.shape = shape;
-  p.length = drawn_length;
-  p.root_chord = drawn_chord;
-  p.hub_offset = hub_offset;
+  Planform<double> p = outline_of(shape, hub_offset, drawn_length, drawn_chord);
   if (shape == PlanformShape::tabulated) p.chord_table = {{0.0, 10e-3}, {20e-3, 25e-3}, {drawn_length, 5e-3}};
   return p;
 }
