@@ -49,6 +49,27 @@ TEST(WingMass, IsTheSumOverItsStrips) {
   }
 }
 
+// Each rib by itself as a rod of the chord's length where it is.
+TEST(WingMass, RibsAddTheirRods) {
+  for (const PlanformShape shape : {PlanformShape::semi_ellipse, PlanformShape::rectangle, PlanformShape::tabulated}) {
+    const Planform<double> p = outline(shape, 4e-3);
+    const WingMass<double> plain = wing_mass(WingMaterial<double>{0.02, 1e-3}, p),
+                           ribbed = wing_mass(WingMaterial<double>{0.02, 1e-3, 3e-4, 3.0}, p);
+    WingMass<double> ribs{};
+    for (const double part : {0.25, 0.5, 0.75}) {
+      const double x = part * drawn_length, c = chord(shape, x), r = x + 4e-3;
+      ribs.mass += 3e-4 * c;
+      ribs.inertia += 3e-4 * c * r * r;
+      ribs.pitch_inertia += 3e-4 * c * c * c / 3.0;
+      ribs.mass_product += 3e-4 * c * c * r / 2.0;
+    }
+    EXPECT_NEAR((ribbed.mass - plain.mass) / ribs.mass, 1.0, 1e-12);
+    EXPECT_NEAR((ribbed.inertia - plain.inertia) / ribs.inertia, 1.0, 1e-12);
+    EXPECT_NEAR((ribbed.pitch_inertia - plain.pitch_inertia) / ribs.pitch_inertia, 1.0, 1e-12);
+    EXPECT_NEAR((ribbed.mass_product - plain.mass_product) / ribs.mass_product, 1.0, 1e-12);
+  }
+}
+
 // A plate: m R^2/3 about the hinge, m c^2/3 about the edge, m (R/2) (c/2) between; a rod along the edge: m R^2/3 alone.
 TEST(WingMass, OfAPlateAndARod) {
   const Planform<double> p = outline(PlanformShape::rectangle, 0.0);
