@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "wingbeat/files/waveform_file.hpp"
 #include "wingbeat/wingbeat.hpp"
 
 namespace wingbeat {
@@ -64,6 +65,47 @@ TEST(Door, BadParametersAreNamed) {
   } catch (const ParameterError& error) {
     EXPECT_EQ(error.key(), "transmission.crank_radius");
     EXPECT_THAT(error.what(), testing::HasSubstr("design 1: must"));
+  }
+}
+
+TEST(Door, DesignsFromValuesOfKeys) {
+  const Design<double> design = read_design(springs);
+  const std::vector<std::string> values = {"transmission.crank_radius=\"7 mm\"", "wing.count=4", "supply.voltage=2 V"};
+  const Design<double> other = design_with(values, &design);
+  EXPECT_EQ(other.transmission.crank_radius, 0.007);
+  EXPECT_EQ(other.wing.count, 4.0);
+  EXPECT_EQ(other.supply.voltage, 2.0);
+  EXPECT_EQ(write_design(design_with({}, &design)), write_design(design));
+
+  const std::vector<std::string> wrong = {"motor.inertia=-1", "wing.count=two"};
+  try {
+    design_with(wrong, &design);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "motor.inertia: must be > 0 [kg m2], got -1");
+    EXPECT_EQ(error.file(), "");
+    EXPECT_EQ(error.line(), 0);
+    ASSERT_EQ(error.others().size(), 1U);
+    EXPECT_STREQ(error.others()[0].what(),
+                 "wing.count: expected a number such as 2, got \"two\", which does not begin with a number");
+  }
+  try {
+    design_with({});
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "supply: missing section [supply]: the voltage at the motor terminals");
+  }
+}
+
+TEST(Door, EveryNameIsTheKeyWithoutItsUnit) {
+  EXPECT_EQ(name_without_unit("lift_mean_n", "N"), "lift_mean");
+  EXPECT_EQ(name_without_unit("lift_to_weight", "1"), "lift_to_weight");
+  EXPECT_EQ(name_without_unit("lift_n", "W"), "lift_n");
+  for (const MetricInfo& metric : metric_table()) {
+    EXPECT_EQ(name_without_unit(metric.key, metric.unit) == metric.key, metric.unit == std::string("1")) << metric.key;
+  }
+  for (const WaveformColumn& column : waveform_columns()) {
+    EXPECT_NE(name_without_unit(column.name, column.unit), column.name);
   }
 }
 
