@@ -8,7 +8,6 @@
 #include <chrono>
 #include <cstdint>
 #include <future>
-#include <map>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -348,41 +347,29 @@ py::dict start_up(const Design<double>& design, const std::string& condition, do
 
 // ---- very many
 
-MetricSet metrics_named(const std::optional<std::vector<std::string>>& keys) {
-  if (!keys) return all_metrics();
-  MetricSet metrics;
-  for (const std::string& key : *keys) metrics.set(std::size_t(metric_index(key)));
-  return metrics;
+StudyInput study_input(const std::string& name, const std::string& study, const Design<double>& vehicle) {
+  StudyInput input;
+  input.study_name = name;
+  input.study = study;
+  input.vehicle = write_design(vehicle);
+  return input;
 }
 
-py::dict solve_columns(const Design<double>& base, const std::map<std::string, py::array_t<double>>& columns,
-                       std::size_t count, const std::string& condition, std::optional<double> frequency,
-                       double tolerance, const std::optional<std::vector<std::string>>& metrics, int threads,
-                       const py::object& progress) {
-  Sweep sweep;
-  require_tolerance(sweep.options.tolerance = tolerance);
-  sweep.options.metrics = metrics_named(metrics);
-  sweep.frequency = frequency;
-  SweepAxis axis;
-  axis.name = "design";
+/// Solves a design for each row of the columns, which are in the order of the keys of the study's one axis. That study,
+/// of a single design, is where the program's checks are made.
+py::dict solve_columns(const std::string& study, const Design<double>& base,
+                       const std::vector<py::array_t<double>>& columns, std::size_t count, const std::string& condition,
+                       int threads, const py::object& progress) {
+  Sweep sweep = parse_study(study_input("columns", study, base)).sweep;
+  sweep.variants.at(0).condition = choice<Condition>("condition", condition);
+  SweepAxis& axis = sweep.axes.at(0);
+  if (sweep.axes.size() != 1 || axis.quantities.size() != columns.size()) throw py::value_error("one axis of columns");
   axis.count = count;
   axis.samples = true;
-  for (const auto& [key, values] : columns) {
-    SweptQuantity quantity;
-    quantity.key = quantity.name = key;
-    if (key == "frequency") {
-      quantity.kind = SweptQuantity::Kind::frequency;
-    } else {
-      Design<double> place = base;
-      set_parameter(place, key, 0.0);  // refuses what has none
-      quantity.set = numeric_parameter<double>(key).set;
-    }
-    quantity.values.assign(values.data(), values.data() + values.size());
-    axis.quantities.push_back(std::move(quantity));
+  for (std::size_t q = 0; q < columns.size(); ++q) {
+    if (std::size_t(columns[q].size()) != count) throw py::value_error("columns of different lengths");
+    axis.quantities[q].values.assign(columns[q].data(), columns[q].data() + count);
   }
-  sweep.axes.push_back(std::move(axis));
-  sweep.variants.push_back({base, choice<Condition>("condition", condition), true});
-  sweep.variant_stride = {0};
 
   SweepColumns found = watched(progress, [&](Watch& watch) {
     return solve_sweep(sweep, threads, [&watch](const SweepProgress& now) { watch.report(now); });
@@ -407,11 +394,7 @@ py::dict solve_columns(const Design<double>& base, const std::map<std::string, p
 void write_sweep(const std::string& study, const Design<double>& vehicle, const std::string& output, int threads,
                  bool force, const py::object& progress) {
   forget_files();
-  StudyInput input;
-  input.study_name = "sweep";
-  input.study = study;
-  input.vehicle = write_design(vehicle);
-  const Study parsed = parse_study(input);
+  const Study parsed = parse_study(study_input("sweep", study, vehicle));
   silence_hdf5();  // here xarray will open the file
   watched(progress, [&](Watch& watch) {
     silence_hdf5();

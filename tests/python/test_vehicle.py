@@ -7,6 +7,7 @@ import tempfile
 import unittest
 
 import numpy as np
+import user_script
 import wingbeat as wb
 from shared import DATA, reference
 
@@ -74,6 +75,18 @@ class Vehicles(unittest.TestCase):
     def test_a_name_with_quotes_and_other_alphabets(self):
         name = 'Flügel "zwei" \\ 翼\n\x7f'
         self.assertEqual(reference().replace({"vehicle.name": name}).name, name)
+
+
+    def test_keys_and_metrics_explain_themselves(self):
+        inertia = type(reference().motor).inertia
+        self.assertIn("[kg m2] Range: > 0.", inertia.__doc__)
+        self.assertEqual(wb.RunResult.lift_mean.__doc__, "Mean lift [N].")
+        self.assertIn("motor.inertia", wb.parameters)
+        with self.assertRaises(AttributeError):
+            reference().motor.inerti
+
+    def test_a_users_script(self):
+        self.assertGreater(user_script.main(str(DATA / "designs" / "friction2022.toml")), 20.0)
 
 
 class Errors(unittest.TestCase):

@@ -17,9 +17,10 @@ from ._ensemble import Ensemble, solve_columns
 from ._errors import InputError
 from ._quantity import Quantity
 from ._result import EnergyBalance, RunResult, StartUp, simulate, solve
+from ._sections import Section
 from ._sweep import open_dataset, sweep
 from ._tables import Metric, Parameter, metrics, parameters
-from ._vehicle import Section, Vehicle, read
+from ._vehicle import Vehicle, read
 
 __all__ = [
     "EnergyBalance",

@@ -1,4 +1,4 @@
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 version: str
@@ -47,13 +47,11 @@ def simulate(
     record_interval: float,
 ) -> dict[str, Any]: ...
 def solve_columns(
+    study: str,
     base: Design,
-    columns: Mapping[str, Any],
+    columns: Sequence[Any],
     count: int,
     condition: str,
-    frequency: float | None,
-    tolerance: float,
-    metrics: Sequence[str] | None,
     threads: int,
     progress: Callable[[int, int], object] | None,
 ) -> dict[str, Any]: ...

@@ -10,7 +10,9 @@ import numpy as np
 from . import _core
 from ._progress import shown
 from ._result import quantity
-from ._tables import metric_called, metric_rows, metrics as metric_table, parameters, statuses
+from ._study import study_of_columns, without_place
+from ._tables import metric_called, metric_rows, parameters, statuses
+from ._tables import metrics as metric_table
 from ._vehicle import Vehicle
 
 if TYPE_CHECKING:
@@ -58,7 +60,7 @@ class Ensemble:
             raise AttributeError(f"Ensemble has no attribute {name!r}")
         index = metric_called(name)
         if index not in self._columns:
-            raise AttributeError(f"{name} is not among the metrics that were asked for")
+            raise AttributeError(f"the designs have no {name}, or it was not asked for")
         column: npt.NDArray[np.float64] = self._columns[index]
         return column
 
@@ -131,6 +133,11 @@ def solve_columns(
     }
     held = {key: values for key, values in given.items() if key not in varied}
     frequency = held.pop("frequency", frequency)
+    if vehicle is None:
+        first_row = {key: values[0] for key, values in varied.items() if key != "frequency"}
+        vehicle = Vehicle({**held, **first_row})
+    elif held:
+        vehicle = vehicle.replace(held)
     if not varied:
         raise ValueError("no key has an array of values; wingbeat.solve takes a single vehicle")
     lengths = {key: len(values) for key, values in varied.items()}
@@ -139,16 +146,13 @@ def solve_columns(
         if length != count:
             first = next(iter(lengths))
             raise ValueError(f"{key} has {length} values, {first} has {count}")
-    if vehicle is None:
-        first_row = {key: values[0] for key, values in varied.items() if key != "frequency"}
-        vehicle = Vehicle({**held, **first_row})
-    elif held:
-        vehicle = vehicle.replace(held)
-    kept = None if metrics is None else [metric_rows[metric_called(name)].key for name in metrics]
     held_frequency = quantity("frequency", frequency, "Hz")
-    with shown(progress, count) as tell:
-        return Ensemble(
-            _core.solve_columns(
-                vehicle._design, varied, count, condition, held_frequency, tolerance, kept, threads, tell
-            )
-        )
+    # The checks of a study are made at values that the vehicle allows: a row may be invalid.
+    row = {}
+    for key, values in varied.items():
+        own = vehicle[key] if key in parameters else None
+        row[key] = float(values[0]) if own is None else float(own)
+    study = study_of_columns(row, tolerance=tolerance, metrics=metrics, frequency=held_frequency)
+    with without_place("columns"), shown(progress, count) as tell:
+        found = _core.solve_columns(study, vehicle._design, list(varied.values()), count, condition, threads, tell)
+    return Ensemble(found)

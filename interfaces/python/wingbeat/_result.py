@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple, overload
 import numpy as np
 
 from . import _core
+from ._metrics import WithMetrics
 from ._quantity import Quantity
-from ._tables import Metric, metric_called, metric_rows, metrics, waveforms
+from ._tables import metric_called, metric_rows, waveforms
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -25,30 +26,6 @@ CYCLE_POINTS = 361
 def quantity(name: str, value: Any, unit: str) -> float | None:
     """The SI number of an option."""
     return None if value is None else _core.quantity(name, value, unit)
-
-
-def _number(metric: Metric, value: float) -> Quantity | None:
-    return None if value != value else Quantity(value, metric.unit, metric.long_name)
-
-
-class _WithMetrics:
-    """Metrics as attributes: `lift_mean`, `frequency`, ... (`wingbeat.metrics`); None where there is none."""
-
-    _metrics: npt.NDArray[np.float64]
-
-    def __getattr__(self, name: str) -> Quantity | None:
-        metric = metrics.get(name)
-        if metric is None:
-            raise AttributeError(f"{type(self).__name__} has no attribute {name!r}")
-        return _number(metric, float(self._metrics[metric_called(name)]))
-
-    def __dir__(self) -> list[str]:
-        return sorted({*object.__dir__(self), *metrics})
-
-    @property
-    def metrics(self) -> dict[str, Quantity | None]:
-        """All metrics by name; None where the vehicle does not have one."""
-        return {m.name: _number(m, float(x)) for m, x in zip(metric_rows, self._metrics)}
 
 
 class EnergyBalance(NamedTuple):
@@ -70,7 +47,7 @@ class EnergyBalance(NamedTuple):
         return self.imbalance / self.electrical
 
 
-class RunResult(_WithMetrics):
+class RunResult(WithMetrics):
     """What a vehicle does from rest. A vehicle that does not flap is a result like another.
 
     Metrics are attributes: `result.lift_mean`, None where there is none (no flapping, no mass given).
@@ -242,7 +219,7 @@ def _solve(
     return RunResult(found, vehicle, options)
 
 
-class StartUp(_WithMetrics):
+class StartUp(WithMetrics):
     """A start-up in time. Metrics of the cycle it settles in are attributes, None where there is none."""
 
     status: str  #: "flapping", "stalled", "locked", "jammed" or "undecided"

@@ -13,8 +13,8 @@ import numpy as np
 from . import _core
 from ._progress import shown
 from ._result import quantity
-from ._tables import metric_called, metric_rows
-from ._vehicle import Vehicle, _toml
+from ._study import study_of, without_place
+from ._vehicle import Vehicle
 
 if TYPE_CHECKING:
     import xarray
@@ -22,28 +22,6 @@ if TYPE_CHECKING:
 
 #: netCDF serves one thread at a time.
 _writing = threading.Lock()
-
-
-def study_of(
-    axes: Mapping[str, Any],
-    *,
-    title: str = "",
-    tolerance: float = 1e-6,
-    metrics: Iterable[str] | None = None,
-    frequency: float | None = None,
-) -> str:
-    """The study file of a sweep, with the vehicle named "vehicle"."""
-    lines = ["[study]", 'vehicle = "vehicle"']
-    if title:
-        lines.append(f"title = {_toml(title)}")
-    lines.append(f"tolerance = {_toml(tolerance)}")
-    if metrics is not None:
-        lines.append(f"metrics = {_toml([metric_rows[metric_called(name)].key for name in metrics])}")
-    if frequency is not None:
-        lines.append(f"hold = {{ frequency = {_toml(frequency)} }}")
-    for key, values in axes.items():
-        lines += ["", "[[axis]]", f"key = {_toml(key)}", f"values = {_toml(values)}"]
-    return "\n".join(lines) + "\n"
 
 
 def sweep(
@@ -83,7 +61,7 @@ def sweep(
         axes, title=title, tolerance=tolerance, metrics=metrics, frequency=quantity("frequency", frequency, "Hz")
     )
     total = int(np.prod([len(values) for values in axes.values()]))
-    with _writing, shown(progress, total) as tell:
+    with _writing, without_place("sweep"), shown(progress, total) as tell:
         if output is not None:
             _core.sweep(study, vehicle._design, os.fspath(output), threads, force, tell)
             return open_dataset(output)

@@ -23,7 +23,7 @@ class Parameter(NamedTuple):
     def doc(self) -> str:
         """All of it as text."""
         unit = {"": "", "1": "Number. "}.get(self.unit, f"[{self.unit}] ")
-        lines = [f"{self.meaning[0].upper()}{self.meaning[1:]}.", f"{unit}Range: {self.range}. Default: {self.default}."]
+        lines = [f"{self.meaning}.", f"{unit}Range: {self.range}. Default: {self.default}."]
         if self.only_with:
             lines.append(f"Only with {self.only_with.replace('|', ' or ')}.")
         if self.alternatives:

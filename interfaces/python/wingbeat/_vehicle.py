@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _core
 from ._quantity import Quantity
+from ._sections import Sections, sections
 from ._tables import parameters
 
 if TYPE_CHECKING:
@@ -47,54 +48,7 @@ def _assignments(values: Mapping[str, Any]) -> list[str]:
     return made
 
 
-class Section:
-    """A section of a vehicle: its keys are attributes, numbers in SI with their units, None where there is no value."""
-
-    __slots__ = ("_vehicle", "_path")
-    _vehicle: Vehicle
-    _path: str
-
-    def __init__(self, vehicle: Vehicle, path: str) -> None:
-        object.__setattr__(self, "_vehicle", vehicle)
-        object.__setattr__(self, "_path", path)
-
-    def __getattr__(self, name: str) -> Any:
-        path = f"{self._path}.{name}"
-        if name.startswith("__"):
-            raise AttributeError(name)
-        try:
-            return self._vehicle[path]
-        except KeyError as error:
-            raise AttributeError(error.args[0]) from None
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        raise AttributeError(
-            f"vehicles do not change; vehicle.replace({{{f'{self._path}.{name}'!r}: ...}}) is another one"
-        )
-
-    def __dir__(self) -> list[str]:
-        start = self._path + "."
-        return sorted({key[len(start) :].split(".")[0] for key in parameters if key.startswith(start)})
-
-    def __repr__(self) -> str:
-        values = ((name, getattr(self, name)) for name in self.__dir__())
-        shown = ", ".join(f"{name}={value!r}" for name, value in values if value is not None)
-        return f"{self._path}({shown})"
-
-
-def _sections() -> dict[str, list[str]]:
-    """The sections at the top, each with the paths of all sections within it."""
-    found: dict[str, list[str]] = {}
-    for key in parameters:
-        found.setdefault(key.split(".")[0], [])
-    return found
-
-
-def _is_section(path: str) -> bool:
-    return any(key.startswith(path + ".") for key in parameters)
-
-
-class Vehicle:
+class Vehicle(Sections):
     """A vehicle, by the keys of vehicle files: `Vehicle({"motor": {"inertia": "1.5e-7 kg m2", ...}, ...})`.
 
     Values are SI numbers or texts with a unit ("5 mm"); sections may be nested tables or dotted keys. Keys are
@@ -152,8 +106,8 @@ class Vehicle:
     def __getitem__(self, key: str) -> Any:
         parameter = parameters.get(key)
         if parameter is None:
-            if _is_section(key):
-                return Section(self, key)
+            if key in sections:
+                return sections[key](self)
             raise KeyError(f"there is no key {key!r}")
         value = self._design.value(key)
         if isinstance(value, float):
@@ -186,16 +140,8 @@ class Vehicle:
     def __iter__(self) -> Iterator[str]:
         return iter(self.keys())
 
-    def __getattr__(self, name: str) -> Section:
-        if not name.startswith("_") and _is_section(name):
-            return Section(self, name)
-        raise AttributeError(f"a vehicle has no section {name!r}")
-
     def __setattr__(self, name: str, value: Any) -> None:
         raise AttributeError("vehicles do not change; vehicle.replace({...}) is another one")
-
-    def __dir__(self) -> list[str]:
-        return sorted({*object.__dir__(self), *_sections()})
 
     @property
     def name(self) -> str:
