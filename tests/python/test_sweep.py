@@ -163,10 +163,10 @@ class LongCalls(unittest.TestCase):
         self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
         timer = threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT))
         timer.start()
-        begin = time.monotonic()
+        begin = time.process_time()
         with self.assertRaises(KeyboardInterrupt):
             reference().solve_columns(self.COLUMNS, tolerance=1e-10)
-        self.assertLess(time.monotonic() - begin, 5.0)
+        self.assertLess(time.process_time() - begin, 5.0)
 
     def test_an_exception_of_the_progress_function_ends_it(self):
         calls = []
