@@ -72,10 +72,10 @@ Plan plan_for(const EnsembleOptions& options) {
   finer.approach = PackApproach::resume;
   finer.implicit = true;
   for (PackSettings& again : plan.again) {
+    ++finer.newton_iterations;
     finer.segments = std::min(finer.segments + 2, max_half_segments);
     again = finer;
     finer.intervals = std::min(finer.intervals + 2, solver::max_collocation_intervals);
-    ++finer.newton_iterations;
   }
   plan.from_rest = s;
   plan.from_rest.approach = PackApproach::from_rest;

@@ -68,26 +68,36 @@ struct HalfCycle {
   Branch<S> branch(const S& force) const { return {half, force, S(1.0), S(1.0)}; }
 
   [[gnu::always_inline]] Motion<S> motion(const Configuration<S>& place, const State& y, const S& force) const {
-    return added_mass ? motion_with_added_mass(place, y, &force) : motion_of<false>(place, y, &force);
+    return added_mass ? motion_with_added_mass(place, y, force) : motion_of<false>(place, y, force);
   }
 
   /// The branch that holds is chosen on the spot.
   [[gnu::always_inline]] Motion<S> motion_on_its_branch(const Configuration<S>& place, const State& y) const {
-    return added_mass ? motion_with_added_mass(place, y, nullptr) : motion_of<false>(place, y, nullptr);
-  }
-
-  /// On the branch of the rod force's sign `force`; without, on the one that holds.
-  template <bool has_added_mass>
-  [[gnu::always_inline]] Motion<S> motion_of(const Configuration<S>& place, const State& y, const S* force) const {
     const S i = current(y);
     const S v_t = terminal_voltage(vehicle, vehicle.voltage, i);
-    const Instant<S> at =
-        instant_at<has_added_mass>(vehicle, place.kinematics, place.spring_moment, y[0], i, v_t, half, S(1.0));
-    return motion_on(vehicle, at, i, v_t, branch(force != nullptr ? *force : sign_of(at.force_switch)));
+    const Instant<S> at = added_mass ? instant_with_added_mass(place, y, i, v_t) : instant_of<false>(place, y, i, v_t);
+    return motion_on(vehicle, at, i, v_t, branch(sign_of(at.force_switch)));
   }
-  // Out of the way of vehicles without.
+
+  template <bool has_added_mass>
+  [[gnu::always_inline]] Instant<S> instant_of(const Configuration<S>& place, const State& y, const S& i,
+                                               const S& v_t) const {
+    return instant_at<has_added_mass>(vehicle, place.kinematics, place.spring_moment, y[0], i, v_t, half, S(1.0));
+  }
+  template <bool has_added_mass>
+  [[gnu::always_inline]] Motion<S> motion_of(const Configuration<S>& place, const State& y, const S& force) const {
+    const S i = current(y);
+    const S v_t = terminal_voltage(vehicle, vehicle.voltage, i);
+    return motion_on(vehicle, instant_of<has_added_mass>(place, y, i, v_t), i, v_t, branch(force));
+  }
+
+  // Out of the way of vehicles without: a call in the midst of an evaluation costs registers.
+  [[gnu::noinline, gnu::cold]] Instant<S> instant_with_added_mass(const Configuration<S>& place, const State& y,
+                                                                  const S& i, const S& v_t) const {
+    return instant_of<true>(place, y, i, v_t);
+  }
   [[gnu::noinline, gnu::cold]] Motion<S> motion_with_added_mass(const Configuration<S>& place, const State& y,
-                                                                const S* force) const {
+                                                                const S& force) const {
     return motion_of<true>(place, y, force);
   }
 
@@ -108,22 +118,21 @@ struct HalfCycle {
   }
 };
 
-template <bool quadratures, class System>
-[[gnu::noinline, gnu::cold]] void evaluate_with_added_mass(const System& system,
-                                                           const Configuration<typename System::Real>& place,
-                                                           const typename System::State& y,
-                                                           const typename System::Real& force,
-                                                           solver::Rates<System>& out) {
-  out = system.template rates_of<quadratures>(system.motion_with_added_mass(place, y, &force), y, force);
+// A cycle's code must stay within the processor's instruction cache: the right-hand side is one function.
+template <bool quadratures, bool has_added_mass, class System>
+[[gnu::noinline, gnu::flatten]] void evaluate_of(const System& system,
+                                                 const Configuration<typename System::Real>& place,
+                                                 const typename System::State& y, const typename System::Real& force,
+                                                 solver::Rates<System>& out) {
+  out = system.template rates_of<quadratures>(system.template motion_of<has_added_mass>(place, y, force), y, force);
 }
 
-// A cycle's code must stay within the processor's instruction cache: the right-hand side is one function.
 template <bool quadratures, class System>
-[[gnu::noinline, gnu::flatten]] void evaluate(const System& system, const Configuration<typename System::Real>& place,
-                                              const typename System::State& y, const typename System::Real& force,
-                                              solver::Rates<System>& out) {
-  if (system.added_mass) return evaluate_with_added_mass<quadratures>(system, place, y, force, out);
-  out = system.template rates_of<quadratures>(system.template motion_of<false>(place, y, &force), y, force);
+[[gnu::always_inline]] inline void evaluate(const System& system, const Configuration<typename System::Real>& place,
+                                            const typename System::State& y, const typename System::Real& force,
+                                            solver::Rates<System>& out) {
+  if (system.added_mass) return evaluate_of<quadratures, true>(system, place, y, force, out);
+  evaluate_of<quadratures, false>(system, place, y, force, out);
 }
 
 }  // namespace wingbeat

@@ -322,8 +322,10 @@ void PackOrbit<L, N>::read(const System& system, const L& u, const State& y, con
 
 /// Rates and observables at a node.
 template <class L, int N>
-void PackOrbit<L, N>::visit_node(const System& system, std::size_t node, const L& force, solver::Rates<System>& rates) {
-  const Motion<L> motion = system.motion(configuration_of(node), trajectory_[node], force);
+template <bool has_added_mass>
+void PackOrbit<L, N>::visit_node_of(const System& system, std::size_t node, const L& force,
+                                    solver::Rates<System>& rates) {
+  const Motion<L> motion = system.template motion_of<has_added_mass>(configuration_of(node), trajectory_[node], force);
   rates = system.template rates_of<true>(motion, trajectory_[node], force);
   if (!reads_) return;
   std::array<bool, quantity_count> wanted = wanted_;

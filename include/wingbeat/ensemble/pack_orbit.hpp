@@ -150,8 +150,13 @@ class PackOrbit {
                                                                    const L& force) const;
   L lag_left_out() const;
   L electrical_to_mechanical_time() const;
-  [[gnu::noinline, gnu::flatten]] void visit_node(const System& system, std::size_t node, const L& force,
-                                                  solver::Rates<System>& rates);
+  void visit_node(const System& system, std::size_t node, const L& force, solver::Rates<System>& rates) {
+    if (added_mass_) return visit_node_of<true>(system, node, force, rates);
+    visit_node_of<false>(system, node, force, rates);
+  }
+  template <bool has_added_mass>
+  [[gnu::noinline, gnu::flatten]] void visit_node_of(const System& system, std::size_t node, const L& force,
+                                                     solver::Rates<System>& rates);
   [[gnu::noinline, gnu::flatten]] void add_tails(const std::array<std::array<L, nodes_per_segment>, 4>& controlled,
                                                  std::size_t base, const L& h);
   [[gnu::noinline, gnu::flatten]] void read(const System& system, const L& u, const State& y, const L& force,
