@@ -43,6 +43,8 @@ class Vehicles(unittest.TestCase):
             if parameter.unit and value is not None:
                 self.assertIsInstance(value, wb.Quantity, key)
             self.assertIn("Default", parameter.doc)
+            self.assertFalse(parameter.always and value is None, key)
+        self.assertEqual(vehicle.motor.gear_efficiency, 1.0)
 
     def test_texts_have_units_and_numbers_are_si(self):
         vehicle = reference()

@@ -22,7 +22,7 @@ class VehicleSection(Section):
         [kg] Range: > 0. Default: unknown.
         """
     @property
-    def motors(self) -> Quantity | None:
+    def motors(self) -> Quantity:
         """M, number of motors on the supply, each with a transmission and wings of its own as below, in phase.
         Number. Range: whole number >= 1. Default: 1.
         """
@@ -143,7 +143,7 @@ class MotorSection(Section):
         Only with motor.gear_ratio.
         """
     @property
-    def gear_efficiency(self) -> Quantity | None:
+    def gear_efficiency(self) -> Quantity:
         """eta, torque behind the gearbox over torque before it while the motor drives; 1/eta while the load drives.
         Number. Range: > 0, <= 1. Default: 1.
         """
@@ -173,7 +173,7 @@ class MotorSection(Section):
         [N m s/rad] Range: >= 0. Default: required.
         """
     @property
-    def friction_torque(self) -> Quantity | None:
+    def friction_torque(self) -> Quantity:
         """constant friction torque of the motor itself, at the motor shaft with gear_ratio; adds to every friction law.
         [N m] Range: >= 0. Default: 0 N m.
         """
@@ -469,7 +469,7 @@ class WingPlanformSection(Section):
 
 class WingSection(Section):
     @property
-    def count(self) -> Quantity | None:
+    def count(self) -> Quantity:
         """N_w, number of wings that one motor drives.
         Number. Range: whole number >= 1. Default: 2.
         """

@@ -20,6 +20,12 @@ class Parameter(NamedTuple):
     example: str
 
     @property
+    def always(self) -> bool:
+        """True for a number that every vehicle has: stated, or the default."""
+        has_default = self.default == "required" or self.default[:1].isdigit()
+        return bool(self.unit) and has_default and not self.only_with and not self.alternatives
+
+    @property
     def doc(self) -> str:
         """All of it as text."""
         unit = {"": "", "1": "Number. "}.get(self.unit, f"[{self.unit}] ")

@@ -110,6 +110,8 @@ class Vehicle(Sections):
                 return sections[key](self)
             raise KeyError(f"there is no key {key!r}")
         value = self._design.value(key)
+        if value is None and parameter.always:
+            value = _core.quantity(key, parameter.default, parameter.unit)
         if isinstance(value, float):
             return Quantity(value, parameter.unit, parameter.meaning)
         return value if value is not None else self._table(key)
