@@ -1,8 +1,12 @@
 // wingbeat/wingbeat.hpp says what the storeys below it say.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "wingbeat/files/waveform_file.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 #include "wingbeat/wingbeat.hpp"
 
 namespace wingbeat {
@@ -95,6 +99,41 @@ TEST(Door, DesignsFromValuesOfKeys) {
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(), "supply: missing section [supply]: the voltage at the motor terminals");
   }
+}
+
+/// What design_with makes of one assignment: the vehicle file, or what is wrong.
+std::string text_with(const std::string& assignment, const Design<double>& base) {
+  try {
+    return write_design(design_with(std::span(&assignment, 1), &base));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+TEST(Door, ANumberByItselfIsWhatTheVehicleFileWouldMakeOfIt) {
+  int compared = 0, refused = 0;
+  for (const auto& file : std::filesystem::directory_iterator(WINGBEAT_DATA "/designs")) {
+    if (file.path().extension() != ".toml") continue;
+    const Design<double> design = read_design(file.path());
+    for (const Parameter<double>& key : parameter_table<double>()) {
+      if (!key.get) continue;
+      const double own = key.get(design).value_or(0.5);
+      for (const double value : {own, 0.5 * own + 0.1, -1.0}) {
+        const std::string number = fmt::format("{}", value), path(key.path);
+        // The space makes of it an assignment that is read as one of a vehicle file.
+        const std::string read = text_with(path + "= " + number, design);
+        EXPECT_EQ(text_with(path + "=" + number, design), read) << file.path() << " " << path << " " << value;
+        if (key.unit != "1" && value != own) {
+          const std::string quantity = "\"" + number + " " + std::string(key.unit) + "\"";
+          EXPECT_EQ(text_with(path + "=" + quantity, design), text_with(path + "= " + quantity, design)) << path;
+        }
+        ++compared;
+        refused += read.starts_with(path + ": ");
+      }
+    }
+  }
+  EXPECT_GT(compared - refused, 500);
+  EXPECT_GT(refused, 500);
 }
 
 TEST(Door, EveryNameIsTheKeyWithoutItsUnit) {
