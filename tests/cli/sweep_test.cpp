@@ -375,6 +375,18 @@ TEST_F(Sweep, PlotsAreDrawn) {
        {"crank radius (mm)", "supply voltage (V)", "circle: best", "grey: does not flap", "dashed: lift = weight"}) {
     EXPECT_THAT(contours, HasSubstr(text));
   }
+
+  // Two numbers beside many are two curves.
+  const std::string few = study(
+      "[[axis]]\nkey = \"supply.voltage\"\nvalues = [3, 4]\n"
+      "[[axis]]\nkey = \"spring.stiffness\"\nfrom = 1e-4\nto = 2e-3\ncount = 10\n",
+      "few.toml");
+  const Outcome drawn = run({"sweep", few, "-o", path("c.nc"), "--plot", path("c.svg")});
+  ASSERT_EQ(drawn.status, 0) << drawn.err;
+  const std::string curves = read(path("c.svg"));
+  for (const char* text : {"spring stiffness (mN m/rad)", "supply voltage 3 V", "supply voltage 4 V"}) {
+    EXPECT_THAT(curves, HasSubstr(text));
+  }
 }
 
 // The most efficient designs do not carry their weight: report and plots pass them over alike.
