@@ -164,7 +164,10 @@ void detail::fill_simulated(const StartUpOutcome& outcome, const SteadyOptions& 
 
 SteadyFlapping detail::find_flapping_as_it_is(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                               const StartUp& start_up) {
-  if (pitches(vehicle)) return detail::find_pitching_flapping(vehicle, options, start_up);
+  if (pitches(vehicle)) {
+    return drive_of(vehicle).rotates ? detail::find_pitching_crank_flapping(vehicle, options, start_up)
+                                     : detail::find_pitching_flapping(vehicle, options, start_up);
+  }
   if (!drive_of(vehicle).rotates) return detail::find_direct_flapping(vehicle, options, start_up);
   return vehicle.motor.armature_inductance > 0.0 ? search<2>(vehicle, options, start_up)
                                                  : search<1>(vehicle, options, start_up);

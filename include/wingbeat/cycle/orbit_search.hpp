@@ -18,6 +18,9 @@ SteadyFlapping find_direct_flapping(const Vehicle<double>& vehicle, const Steady
 /// The same of wings that pitch.
 SteadyFlapping find_pitching_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                       const StartUp& start_up);
+/// The same of a crank whose wings pitch.
+SteadyFlapping find_pitching_crank_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
+                                            const StartUp& start_up);
 
 /// The start of every search under a crank: its statics. True, with the decision, of a motor that never starts.
 bool stalls(const StaticBalance& statics, SteadyFlapping& result);
