@@ -1,12 +1,12 @@
 // All that most users of the library need: vehicles read, solved, simulated and differentiated, one or very many of
 // them.
 //
-//   Design<double> design = read_design("friction2022.toml");       // or find_input's shipped ones; fields are plain
-//   numbers RunResult found = solve(design);                                // found.status,
-//   found.metrics[Metric::lift_mean] TransientResult start = simulate(design);                       // from rest, in
-//   time DesignPoint slopes = gradient(design, {"transmission.crank_radius"}); std::vector<EnsembleOutcome> all =
-//   solve_ensemble(designs); metric_table()[std::size_t(Metric::lift_mean)].unit;            // key, unit and meaning
-//   of every metric
+//   Design<double> design = read_design("friction2022.toml");       // or find_input's shipped ones; fields are numbers
+//   RunResult found = solve(design);                                // found.status, found.metrics[Metric::lift_mean]
+//   TransientResult start = simulate(design);                       // from rest, in time
+//   DesignPoint slopes = gradient(design, {"transmission.crank_radius"});
+//   std::vector<EnsembleOutcome> all = solve_ensemble(designs);
+//   metric_table()[std::size_t(Metric::lift_mean)].unit;            // key, unit and meaning of every metric
 //
 // Everything is SI and radians. A vehicle that does not flap is a result, never an exception; parameters out of range
 // throw ParameterError, files InputError.
@@ -14,6 +14,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "wingbeat/ensemble/ensemble.hpp"
@@ -23,6 +24,15 @@
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {
+
+/// A design from values of keys of the vehicle file, each KEY=VALUE as an override of read_design: the value is a TOML
+/// value ("0.01", "\"5 mm\"") or a bare text. With `base` they replace values of that design, without it they state a
+/// whole one. CSV files that they name are sought in the current folder. Throws InputError, with all that is wrong,
+/// whose file is empty: "motor.inertia: must be > 0 [kg m2], got -1".
+Design<double> design_with(std::span<const std::string> assignments, const Design<double>* base = nullptr);
+
+/// The key of a metric or of a waveform's column without its unit: "lift_mean" for "lift_mean_n", "N".
+std::string_view name_without_unit(std::string_view key, std::string_view unit);
 
 /// What a vehicle does from rest: its steady flapping with all metrics, domain status and energy balance, or the status
 /// with the evidence, which describe() puts in words. Start-up is assessed wherever a doubt is left. Throws

@@ -1,7 +1,88 @@
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "files/study_sections.hpp"
 #include "wingbeat/files/design_parameter.hpp"
+#include "wingbeat/files/units.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 #include "wingbeat/wingbeat.hpp"
 
 namespace wingbeat {
+namespace {
+
+/// Without the file, line and column of a text that the caller has not written.
+InputError without_place(const InputError& error) {
+  std::string reason = detail::reason_of(error);
+  const std::string key = error.key() + ": ";
+  if (!error.key().empty() && reason.starts_with(key)) reason.erase(0, key.size());
+  return InputError("", 0, 0, error.key(), reason);
+}
+
+/// A number [SI] of an assignment: a decimal, or a quantity in quotes; empty where it is anything else.
+std::optional<double> number_in(std::string_view text, std::string_view unit) {
+  if (text.size() > 2 && text.front() == '"' && text.find_first_of("\"\\", 1) == text.size() - 1) {
+    try {
+      return parse_quantity(text.substr(1, text.size() - 2), unit, SpeedConstant::inverted);
+    } catch (const UnitError&) {
+      return std::nullopt;
+    }
+  }
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(number)) return std::nullopt;
+  return number;
+}
+
+/// The design with other values of numbers that it has, without a vehicle file in between; empty where that is not all
+/// there is to do.
+std::optional<Design<double>> with_numbers(std::span<const std::string> assignments, const Design<double>& base) {
+  std::optional<Design<double>> design = base;
+  for (const std::string_view assignment : assignments) {
+    const std::size_t equals = assignment.find('=');
+    if (equals == assignment.npos) return std::nullopt;
+    const Parameter<double>* key = find_parameter<double>(assignment.substr(0, equals));
+    if (!key || !key->get || !key->set || !key->get(*design)) return std::nullopt;
+    const std::optional<double> number = number_in(assignment.substr(equals + 1), key->unit);
+    if (!number || !key->range.holds(*number) || !key->set(*design, *number) || key->get(*design) != number) {
+      return std::nullopt;
+    }
+  }
+  try {
+    validate(*design);
+  } catch (const ParameterError&) {
+    return std::nullopt;
+  }
+  return design;
+}
+
+}  // namespace
+
+Design<double> design_with(std::span<const std::string> assignments, const Design<double>* base) {
+  if (base) {
+    if (std::optional<Design<double>> design = with_numbers(assignments, *base)) return *std::move(design);
+  }
+  try {
+    return parse_design(base ? write_design(*base) : std::string(), "vehicle", assignments,
+                        [](const std::string& name) { return read_text_file(name); });
+  } catch (const InputError& error) {
+    InputError placeless = without_place(error);
+    for (const InputError& other : error.others()) placeless.add_other(without_place(other));
+    throw placeless;
+  }
+}
+
+std::string_view name_without_unit(std::string_view key, std::string_view unit) {
+  constexpr std::pair<std::string_view, std::string_view> suffixes[] = {
+      {"V", "_v"},        {"Hz", "_hz"},           {"A", "_a"},       {"W", "_w"},    {"N", "_n"}, {"rad", "_rad"},
+      {"degree", "_deg"}, {"rad/s", "_rad_per_s"}, {"degC", "_degc"}, {"N m", "_nm"}, {"K", "_k"}, {"s", "_s"}};
+  for (const auto& [of, suffix] : suffixes) {
+    if (unit == of && key.ends_with(suffix)) return key.substr(0, key.size() - suffix.size());
+  }
+  return key;
+}
 
 RunResult solve(const Design<double>& design, const RunOptions& options) {
   validate(design);

@@ -29,8 +29,8 @@ std::string message_text(const std::string& file, int line, int column, const st
                          const std::string& message) {
   std::string text = file;
   if (line > 0) text += fmt::format(":{}:{}", line, column);
-  if (!key.empty()) text += ": " + key;
-  return text + ": " + message;
+  if (!key.empty()) text += (text.empty() ? "" : ": ") + key;
+  return text.empty() ? message : text + ": " + message;
 }
 
 constexpr std::string_view wave_coefficients[] = {"aerodynamics.coefficients.lift", "aerodynamics.coefficients.drag"};

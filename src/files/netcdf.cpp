@@ -48,6 +48,8 @@ std::string reason_of(int status, const std::string& file) {
 
 }  // namespace
 
+void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
 NetcdfFile::NetcdfFile(const std::filesystem::path& file) : file_(file.string()) {
   // Nor would it survive the files that an error left open, at the end of the program.
   static const auto once = H5dont_atexit();

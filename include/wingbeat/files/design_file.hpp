@@ -19,7 +19,7 @@ namespace wingbeat {
 /// `friction2022.toml:17:1: motor.torque_constan: unknown key; did you mean motor.torque_constant?`
 class InputError : public std::runtime_error {
  public:
-  /// Line and column count from 1; line 0: the input as a whole. `key` may be empty.
+  /// Line and column count from 1; line 0: the input as a whole. `file` and `key` may be empty.
   InputError(std::string file, int line, int column, std::string key, const std::string& message);
 
   const std::string& file() const { return file_; }  ///< file name, or the override: "--set motor.inertia=-1"

@@ -18,6 +18,10 @@ class NetcdfError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Lets HDF5 print no errors on this thread. It keeps what it prints for each thread, and netCDF, which asks it much
+/// that may fail, silences it on the first thread that uses netCDF alone.
+void silence_hdf5();
+
 /// A new NetCDF-4 file. Text goes into attributes as characters, never as NC_STRING, which Octave cannot read.
 /// Every member throws NetcdfError.
 class NetcdfFile {

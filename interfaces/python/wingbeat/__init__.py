@@ -1,0 +1,45 @@
+"""Electromechanical model of flapping-wing micro air vehicles.
+
+    import wingbeat as wb
+    vehicle = wb.read("friction2022.toml")              # or wb.Vehicle({...}); vehicle.motor.inertia
+    result = vehicle.solve(voltage="3 V")               # result.status, result.lift_mean, result.cycle
+    result.gradient("lift_mean", ["transmission.crank_radius"])
+    vehicle.simulate().time_to_steady
+    vehicle.sweep({"supply.voltage": [2, 3, 4]})        # xarray
+    wb.solve({"supply.voltage": [2, 3, 4]}, vehicle=vehicle).lift_mean
+
+Everything is SI and radians unless a unit says otherwise; wherever a quantity is expected, a number is SI and a text has
+its unit. A vehicle that does not flap is a result, never an exception; input that cannot be used raises InputError.
+"""
+
+from ._core import version as __version__
+from ._ensemble import Ensemble, solve_columns
+from ._errors import InputError
+from ._quantity import Quantity
+from ._result import EnergyBalance, RunResult, StartUp, simulate, solve
+from ._sections import Section
+from ._sweep import open_dataset, sweep
+from ._tables import Metric, Parameter, metrics, parameters
+from ._vehicle import Vehicle, read
+
+__all__ = [
+    "EnergyBalance",
+    "Ensemble",
+    "InputError",
+    "Metric",
+    "Parameter",
+    "Quantity",
+    "RunResult",
+    "Section",
+    "StartUp",
+    "Vehicle",
+    "__version__",
+    "metrics",
+    "open_dataset",
+    "parameters",
+    "read",
+    "simulate",
+    "solve",
+    "solve_columns",
+    "sweep",
+]

@@ -1,0 +1,158 @@
+"""Very many vehicles, as arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _core
+from ._progress import shown
+from ._result import quantity
+from ._study import study_of_columns, without_place
+from ._tables import metric_called, metric_rows, parameters, statuses
+from ._tables import metrics as metric_table
+from ._vehicle import Vehicle
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    import xarray
+
+
+class Ensemble:
+    """What became of each design, as arrays in the order of the designs.
+
+    Metrics are attributes: `result.lift_mean`, NaN where a design does not have one.
+    """
+
+    #: A code for each design: `statuses[code]` is its name, 0 flapping.
+    status_code: npt.NDArray[np.int8]
+    #: Limits of the model that are exceeded, bit by bit as in data sets; 0: inside, or not flapping.
+    domain_code: npt.NDArray[np.int8]
+    #: Estimated relative error of the metrics.
+    error_estimate: npt.NDArray[np.float64]
+    #: 1: by the scalar solver, 0: by the batched one.
+    recomputed: npt.NDArray[np.int8]
+
+    def __init__(self, found: dict[str, Any]) -> None:
+        self.status_code = found["status"]
+        self.domain_code = found["domain"]
+        self.error_estimate = found["error_estimate"]
+        self.recomputed = found["recomputed"]
+        self._columns = dict(zip(found["kept"], found["metrics"]))
+
+    def __len__(self) -> int:
+        return len(self.status_code)
+
+    @property
+    def status(self) -> npt.NDArray[np.str_]:
+        """The status of each design by name."""
+        return np.array(statuses)[self.status_code]
+
+    @property
+    def flapping(self) -> npt.NDArray[np.bool_]:
+        """True for each design that flaps (as asked for)."""
+        return np.equal(self.status_code, 0)
+
+    def __getattr__(self, name: str) -> npt.NDArray[np.float64]:
+        if name.startswith("_") or name not in metric_table:
+            raise AttributeError(f"Ensemble has no attribute {name!r}")
+        index = metric_called(name)
+        if index not in self._columns:
+            raise AttributeError(f"the designs have no {name}, or it was not asked for")
+        column: npt.NDArray[np.float64] = self._columns[index]
+        return column
+
+    def __dir__(self) -> list[str]:
+        return sorted({*object.__dir__(self), *(metric_rows[k].name for k in self._columns)})
+
+    def to_xarray(self) -> xarray.Dataset:
+        """All of it over the dimension `design`, with units and long names."""
+        import xarray
+
+        made: dict[str, Any] = {
+            metric_rows[k].name: (
+                "design",
+                column,
+                {"units": metric_rows[k].unit, "long_name": metric_rows[k].long_name},
+            )
+            for k, column in self._columns.items()
+        }
+        made["status"] = ("design", self.status)
+        made["error_estimate"] = ("design", self.error_estimate, {"units": "1"})
+        return xarray.Dataset(made)
+
+    def __repr__(self) -> str:
+        counts = np.bincount(self.status_code, minlength=len(statuses))
+        return f"<{len(self)} designs: " + ", ".join(f"{n} {s}" for n, s in zip(counts, statuses) if n) + ">"
+
+
+def _column(key: str, values: Any) -> npt.NDArray[np.float64]:
+    """SI numbers of a column; texts are read with their units."""
+    unit = "Hz" if key == "frequency" else parameters[key].unit
+    array = np.asarray(values)
+    if array.dtype.kind in "OU":
+        array = np.array([_core.quantity(key, value, unit) for value in array.ravel()]).reshape(array.shape)
+    return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def solve_columns(
+    columns: Mapping[str, Any],
+    *,
+    vehicle: Vehicle | None = None,
+    frequency: float | str | None = None,
+    condition: str = "air",
+    tolerance: float = 1e-6,
+    metrics: Iterable[str] | None = None,
+    threads: int = 0,
+    progress: bool | Callable[[int, int], object] | None = None,
+) -> Ensemble:
+    """The steady flapping of very many vehicles, on all cores.
+
+    Parameters
+    ----------
+    columns : a dict or DataFrame with an array of SI numbers (or of texts with units) for each numeric key that varies;
+        other values hold for all designs. The key "frequency" is a flapping frequency to be held [Hz].
+    vehicle : what the other keys are; not needed where the columns state a whole vehicle
+    frequency : [Hz], held by all designs: the voltage is found for each
+    condition : "air", "vacuum" or "wingless"
+    tolerance : wanted relative accuracy of every metric, 1e-12 to 1e-2
+    metrics : those wanted, fewer cost less; default: all but endurance
+    threads : at most so many; 0: one for each core
+    progress : True shows a bar (tqdm where it is installed), a function is called with designs done and designs
+
+    A design out of its physical range has the status "invalid". Other Python threads run meanwhile; Ctrl-C ends it.
+    Raises InputError for a key that is unknown or has no place in the vehicle.
+    """
+    given = {str(key): columns[key] for key in columns}
+    varied = {
+        key: _column(key, values)
+        for key, values in given.items()
+        if np.ndim(values) == 1 and (key == "frequency" or (key in parameters and parameters[key].unit))
+    }
+    held = {key: values for key, values in given.items() if key not in varied}
+    frequency = held.pop("frequency", frequency)
+    if vehicle is None:
+        first_row = {key: values[0] for key, values in varied.items() if key != "frequency"}
+        vehicle = Vehicle({**held, **first_row})
+    elif held:
+        vehicle = vehicle.replace(held)
+    if not varied:
+        raise ValueError("no key has an array of values; wingbeat.solve takes a single vehicle")
+    lengths = {key: len(values) for key, values in varied.items()}
+    count = next(iter(lengths.values()))
+    for key, length in lengths.items():
+        if length != count:
+            first = next(iter(lengths))
+            raise ValueError(f"{key} has {length} values, {first} has {count}")
+    held_frequency = quantity("frequency", frequency, "Hz")
+    # The checks of a study are made at values that the vehicle allows: a row may be invalid.
+    row = {}
+    for key, values in varied.items():
+        own = vehicle[key] if key in parameters else None
+        row[key] = float(values[0]) if own is None else float(own)
+    study = study_of_columns(row, tolerance=tolerance, metrics=metrics, frequency=held_frequency)
+    with without_place("columns"), shown(progress, count) as tell:
+        found = _core.solve_columns(study, vehicle._design, list(varied.values()), count, condition, threads, tell)
+    return Ensemble(found)

@@ -1,0 +1,30 @@
+"""What is refused, in the sentences of the program."""
+
+from __future__ import annotations
+
+
+class InputError(ValueError):
+    """Input that cannot be used: a vehicle, a value, an option.
+
+    Its text says where, which key and what was expected: "motor.inertia: must be > 0 [kg m2], got -1".
+
+    Attributes
+    ----------
+    file : the file, or None where the input was no file
+    line, column : from 1, or None
+    key : the key or option it is about, "" where it is about none
+    others : what else is wrong, each an InputError
+    """
+
+    file: str | None = None
+    line: int | None = None
+    column: int | None = None
+    key: str = ""
+    others: list[InputError]
+
+    def __init__(self, text: str = "") -> None:
+        super().__init__(text)
+        self.others = []
+
+    def __str__(self) -> str:
+        return "\n".join([super().__str__(), *map(str, self.others)])

@@ -1,0 +1,26 @@
+"""Numbers that know their unit."""
+
+from __future__ import annotations
+
+
+class Quantity(float):
+    """A float with `unit` (UDUNITS) and `long_name`. Whatever is computed with it is a plain float."""
+
+    __slots__ = ("unit", "long_name")
+    unit: str
+    long_name: str
+
+    def __new__(cls, value: float, unit: str = "1", long_name: str = "") -> Quantity:
+        made = super().__new__(cls, value)
+        made.unit = unit
+        made.long_name = long_name
+        return made
+
+    def __repr__(self) -> str:
+        return super().__repr__() if self.unit == "1" else f"{super().__repr__()} {self.unit}"
+
+    def __str__(self) -> str:
+        return super().__repr__()
+
+    def __reduce__(self) -> tuple[type[Quantity], tuple[float, str, str]]:
+        return Quantity, (float(self), self.unit, self.long_name)

@@ -1,0 +1,298 @@
+"""One vehicle: its steady flapping, and its start-up in time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple, overload
+
+import numpy as np
+
+from . import _core
+from ._metrics import WithMetrics
+from ._quantity import Quantity
+from ._tables import metric_called, metric_rows, waveforms
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    import xarray
+
+    from ._ensemble import Ensemble
+    from ._vehicle import Vehicle
+
+#: Instants of `RunResult.cycle`, both ends included, as `wingbeat run --waveforms` writes them.
+CYCLE_POINTS = 361
+
+
+def quantity(name: str, value: Any, unit: str) -> float | None:
+    """The SI number of an option."""
+    return None if value is None else _core.quantity(name, value, unit)
+
+
+class EnergyBalance(NamedTuple):
+    """Mean powers of a cycle [W]: the electrical input and where it goes."""
+
+    electrical: float
+    copper: float
+    viscous: float
+    gear: float
+    friction: float
+    hinge: float
+    aerodynamic: float
+    residual: float  #: what the transmission's formulation fails to conserve; 0 for virtual-work
+    imbalance: float  #: the input minus all of these: the error of the solution
+
+    @property
+    def error(self) -> float:
+        """The imbalance as a part of the input [1]."""
+        return self.imbalance / self.electrical
+
+
+class RunResult(WithMetrics):
+    """What a vehicle does from rest. A vehicle that does not flap is a result like another.
+
+    Metrics are attributes: `result.lift_mean`, None where there is none (no flapping, no mass given).
+    """
+
+    #: "flapping", "stalled", "locked", "jammed", "undecided", or "unreached": it flaps, but not as asked for.
+    status: str
+    #: One sentence: what shows the status.
+    evidence: str
+    #: False where no steady state was shown within the solver's limits.
+    settled: bool
+    #: "inside", or the limits of the model that the cycle exceeds; "" unless flapping.
+    domain: str
+    #: The vehicle as computed: with the voltage or duty that was found.
+    vehicle: Vehicle
+
+    def __init__(self, found: dict[str, Any], vehicle: Vehicle, options: dict[str, Any]) -> None:
+        self.status = found["status"]
+        self.evidence = found["evidence"]
+        self.settled = found["settled"]
+        self.domain = found["domain"] if self.status == "flapping" else ""
+        self.vehicle = vehicle
+        self._metrics = found["metrics"]
+        self._options = options
+        self._cycle: xarray.Dataset | None = None
+
+    @property
+    def energy_balance(self) -> EnergyBalance | None:
+        """Where the electrical power goes; None unless flapping."""
+        if self.power_electrical is None:
+            return None
+        return EnergyBalance(*_core.energy_balance(self._metrics))
+
+    @property
+    def cycle(self) -> xarray.Dataset:
+        """One flapping cycle, over time [s], with units and long names; computed when first asked for.
+
+        Raises ValueError unless flapping.
+        """
+        if self._cycle is None:
+            if self.status != "flapping":
+                raise ValueError(f"there is no cycle: {self.evidence}")
+            options: dict[str, Any] = {**self._options, "frequency": None, "lift": None, "points": CYCLE_POINTS, "endurance": False}
+            self._cycle = _waveform(_core.run(self.vehicle._design, **options)["cycle"])
+        return self._cycle
+
+    @overload
+    def gradient(self, metric: str, keys: str) -> float: ...
+    @overload
+    def gradient(self, metric: str, keys: list[str] | tuple[str, ...]) -> npt.NDArray[np.float64]: ...
+    def gradient(self, metric: str, keys: str | list[str] | tuple[str, ...]) -> float | npt.NDArray[np.float64]:
+        """Exact derivatives of a metric by numeric keys of the vehicle, SI per SI, in the order of `keys`.
+
+        The voltage is held; where the result was asked for by its frequency, the frequency is. NaN unless flapping,
+        and for metrics without derivatives (floquet_multiplier_max). Raises InputError for an unknown key and for one
+        without a value in the vehicle.
+        """
+        index = metric_called(metric)
+        options = self._options
+        found = _core.gradient(
+            self.vehicle._design,
+            [keys] if isinstance(keys, str) else list(keys),
+            condition=options["condition"],
+            tolerance=options["tolerance"],
+            frequency=options["frequency"],
+            endurance=metric_rows[index].name == "endurance",
+        )
+        slopes: npt.NDArray[np.float64] = found["gradients"][:, index].copy()
+        return float(slopes[0]) if isinstance(keys, str) else slopes
+
+    def __repr__(self) -> str:
+        lines = [f"{self.status}: {self.evidence}"]
+        for name, value in self.metrics.items():
+            if value is not None:
+                lines.append(f"  {name:<28}{value:>14.6g} {'' if value.unit == '1' else value.unit}".rstrip())
+        return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        rows = "".join(
+            f"<tr><td style='text-align:left'>{escape(value.long_name)}</td><td><code>{name}</code></td>"
+            f"<td>{value:.6g}</td><td>{'' if value.unit == '1' else escape(value.unit)}</td></tr>"
+            for name, value in self.metrics.items()
+            if value is not None
+        )
+        return f"<p><b>{escape(self.status)}</b>: {escape(self.evidence)}</p><table>{rows}</table>"
+
+
+def _waveform(columns: Sequence[Any]) -> xarray.Dataset:
+    import xarray
+
+    named = {
+        row.name: ("time", column, {"units": row.unit, "long_name": row.long_name})
+        for row, column in zip(waveforms.values(), columns)
+    }
+    return xarray.Dataset(named).set_coords(["time", "crank_angle"])
+
+
+@overload
+def solve(
+    vehicle: Vehicle,
+    /,
+    *,
+    voltage: float | str | None = None,
+    frequency: float | str | None = None,
+    lift: float | str | None = None,
+    condition: str = "air",
+    method: str = "orbit",
+    tolerance: float = 1e-6,
+    allow_extrapolation: bool = False,
+    endurance: bool = False,
+) -> RunResult: ...
+@overload
+def solve(columns: Mapping[str, Any], /, **options: Any) -> Ensemble: ...
+def solve(vehicle: Vehicle | Mapping[str, Any], /, **options: Any) -> RunResult | Ensemble:
+    """What a vehicle does from rest: its steady flapping with all metrics, or the status with the evidence.
+
+    Parameters
+    ----------
+    vehicle : a Vehicle; or a dict or DataFrame of columns, one design a row: see wingbeat.solve_columns
+    voltage : the supply's [V], in place of the vehicle's
+    frequency : [Hz], given: the voltage is found that yields it (a direct drive's supply has it)
+    lift : [N], given: the voltage (pwm: the duty) is found that yields this mean lift
+    condition : "air", "vacuum" or "wingless"
+    method : "orbit", or "transient": simulated from rest
+    tolerance : wanted relative accuracy of every metric, 1e-12 to 1e-2
+    allow_extrapolation : a search for a frequency or a lift may leave the model's domain
+    endurance : of a vehicle on a battery: its endurance, too, which costs a flight
+
+    Not flapping is a result, never an exception. Raises InputError.
+    """
+    from ._vehicle import Vehicle
+
+    if not isinstance(vehicle, Vehicle):
+        from ._ensemble import solve_columns
+
+        return solve_columns(vehicle, **options)
+    return _solve(vehicle, **options)
+
+
+def _solve(
+    vehicle: Vehicle,
+    *,
+    voltage: float | str | None = None,
+    frequency: float | str | None = None,
+    lift: float | str | None = None,
+    condition: str = "air",
+    method: str = "orbit",
+    tolerance: float = 1e-6,
+    allow_extrapolation: bool = False,
+    endurance: bool = False,
+) -> RunResult:
+    if voltage is not None:
+        vehicle = vehicle.replace({"supply.voltage": voltage})
+    options: dict[str, Any] = {
+        "condition": condition,
+        "method": method,
+        "tolerance": tolerance,
+        "frequency": quantity("frequency", frequency, "Hz"),
+        "lift": quantity("lift", lift, "N"),
+        "allow_extrapolation": allow_extrapolation,
+        "points": 0,
+        "endurance": endurance,
+    }
+    found = _core.run(vehicle._design, **options)
+    if frequency is not None or lift is not None:
+        vehicle = type(vehicle)._of(found["design"])
+    return RunResult(found, vehicle, options)
+
+
+class StartUp(WithMetrics):
+    """A start-up in time. Metrics of the cycle it settles in are attributes, None where there is none."""
+
+    status: str  #: "flapping", "stalled", "locked", "jammed" or "undecided"
+    evidence: str  #: one sentence: what shows the status
+    settled: bool  #: False where time, cycles or steps ran out first
+    end_time: Quantity  #: time simulated [s]
+    time_to_steady: Quantity  #: until every cycle's frequency is within 1 % of the last one's, or until rest [s]
+    inrush_current: Quantity  #: highest current of the whole start-up [A]
+    inrush_current_time: Quantity  #: [s]
+    cycles: int  #: revolutions of the crank
+    events: list[tuple[float, float, str]]  #: time [s], crank angle [rad], what happened
+
+    def __init__(self, found: dict[str, Any]) -> None:
+        self.status = found["status"]
+        self.evidence = found["evidence"]
+        self.settled = found["settled"]
+        self.cycles = found["cycles"]
+        self.events = found["events"]
+        self.end_time = Quantity(found["end_time"], "s", "time simulated")
+        self.time_to_steady = Quantity(found["time_to_steady"], "s", "time to steady flapping, or to rest")
+        self.inrush_current = Quantity(found["inrush_current"], "A", "highest current of the start-up")
+        self.inrush_current_time = Quantity(found["inrush_current_time"], "s", "time of the highest current")
+        self._metrics = found["metrics"]
+        self._samples = found["samples"]
+
+    @property
+    def samples(self) -> xarray.Dataset:
+        """Crank angle [rad], crank speed [rad/s] and current [A] over time [s]."""
+        import xarray
+
+        made = {
+            name: ("time", column, {"units": waveforms[name].unit, "long_name": waveforms[name].long_name})
+            for name, column in zip(("time", "crank_angle", "crank_speed", "current"), self._samples)
+        }
+        made["time"][2]["long_name"] = "time since switching on"
+        return xarray.Dataset(made).set_coords("time")
+
+    def __repr__(self) -> str:
+        return f"{self.status} after {self.time_to_steady!r}: {self.evidence}"
+
+
+def simulate(
+    vehicle: Vehicle,
+    *,
+    condition: str = "air",
+    tolerance: float = 1e-6,
+    max_time: float | str = 0.0,
+    crank_angle: float | str = 0.0,
+    crank_speed: float | str = 0.0,
+    current: float | str = 0.0,
+    record_interval: float | str = 0.0,
+) -> StartUp:
+    """The start-up of a vehicle in time, from rest unless another state is given.
+
+    Parameters
+    ----------
+    condition : "air", "vacuum" or "wingless"
+    tolerance : wanted relative accuracy of the metrics of steady flapping, 1e-11 to 1e-2
+    max_time : gives up after this time [s]; 0: chosen from the vehicle's own time scales
+    crank_angle, crank_speed, current : at the start [rad, rad/s, A]
+    record_interval : between samples [s]; 0: every step of the integrator
+
+    Raises InputError.
+    """
+    return StartUp(
+        _core.simulate(
+            vehicle._design,
+            condition,
+            tolerance,
+            _core.quantity("max_time", max_time, "s"),
+            _core.quantity("crank_angle", crank_angle, "rad"),
+            _core.quantity("crank_speed", crank_speed, "rad/s"),
+            _core.quantity("current", current, "A"),
+            _core.quantity("record_interval", record_interval, "s"),
+        )
+    )

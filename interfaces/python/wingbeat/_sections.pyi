@@ -1,0 +1,626 @@
+# Written by scripts/make-python-stubs from the tables of the library.
+from typing import Any
+
+from ._quantity import Quantity
+
+def class_name(path: str) -> str: ...
+def members(path: str) -> list[str]: ...
+
+class Section:
+    def __init__(self, vehicle: Any) -> None: ...
+    def __dir__(self) -> list[str]: ...
+
+class VehicleSection(Section):
+    @property
+    def name(self) -> str | None:
+        """name of the vehicle, for reports.
+        Range: any text. Default: no name.
+        """
+    @property
+    def mass(self) -> Quantity | None:
+        """mass of the vehicle but for the masses stated for themselves (motor.mass, supply.mass, supply.specific_energy, spring.mass, transmission.rod_linear_density); enables lift_to_weight.
+        [kg] Range: > 0. Default: unknown.
+        """
+    @property
+    def motors(self) -> Quantity:
+        """M, number of motors on the supply, each with a transmission and wings of its own as below, in phase.
+        Number. Range: whole number >= 1. Default: 1.
+        """
+
+class SupplySection(Section):
+    @property
+    def type(self) -> str | None:
+        """what feeds the motor terminals.
+        Range: constant, sine, pwm, battery or battery-sine. Default: required.
+        """
+    @property
+    def voltage(self) -> Quantity | None:
+        """v, terminal voltage; pwm: while switched on.
+        [V] Range: >= 0. Default: required.
+        Only with supply.type = constant or pwm.
+        """
+    @property
+    def amplitude(self) -> Quantity | None:
+        """amplitude of the sine.
+        [V] Range: >= 0. Default: required.
+        Only with supply.type = sine or battery-sine.
+        """
+    @property
+    def frequency(self) -> Quantity | None:
+        """drive frequency (sine) or switching frequency (pwm).
+        [Hz] Range: > 0. Default: required or resonance_ratio.
+        Only with supply.type = sine or pwm or battery-sine.
+        Instead of supply.resonance_ratio.
+        """
+    @property
+    def resonance_ratio(self) -> Quantity | None:
+        """drive frequency over the frequency at which rotor and wings resonate on the springs; 1 drives a direct drive at resonance.
+        Number. Range: > 0. Default: required or frequency.
+        Only with transmission.type = direct.
+        Instead of supply.frequency.
+        """
+    @property
+    def duty(self) -> Quantity | None:
+        """fraction of a period switched on.
+        Number. Range: 0 to 1. Default: required.
+        Only with supply.type = pwm.
+        """
+    @property
+    def cells(self) -> Quantity | None:
+        """cells in series.
+        Number. Range: whole number >= 1. Default: 1.
+        Only with supply.type = battery or battery-sine.
+        """
+    @property
+    def cell_voltage(self) -> Quantity | None:
+        """E, open-circuit voltage of one cell at any charge.
+        [V] Range: > 0. Default: required or discharge_curve.
+        Only with supply.type = battery or battery-sine.
+        Instead of supply.discharge_curve.
+        """
+    @property
+    def discharge_curve(self) -> Any:
+        """open-circuit voltage of one cell: rows [state of charge, voltage], monotone cubics, see below.
+        Range: name of a CSV file, or rows from charge 0 to 1, voltages not falling. Default: required or cell_voltage.
+        Only with supply.type = battery or battery-sine.
+        Instead of supply.cell_voltage.
+        """
+    @property
+    def internal_resistance(self) -> Quantity | None:
+        """R_i of one cell: the terminals see E - R_i i, times cells.
+        [ohm] Range: >= 0. Default: required.
+        Only with supply.type = battery or battery-sine.
+        """
+    @property
+    def capacity(self) -> Quantity | None:
+        """charge that a full cell holds.
+        [C] Range: > 0. Default: required.
+        Only with supply.type = battery or battery-sine.
+        """
+    @property
+    def charge(self) -> Quantity | None:
+        """state of charge: where a run computes, where a flight starts.
+        Number. Range: 0 to 1. Default: 1.
+        Only with supply.type = battery or battery-sine.
+        """
+    @property
+    def cutoff_voltage(self) -> Quantity | None:
+        """mean terminal voltage of one cell at which a flight ends.
+        [V] Range: >= 0. Default: none.
+        Only with supply.type = battery or battery-sine.
+        """
+    @property
+    def specific_energy(self) -> Quantity | None:
+        """energy of the full battery without load over its mass: that mass, which grows with the capacity, is in addition to vehicle.mass.
+        [J/kg] Range: > 0. Default: none: in vehicle.mass.
+        Only with supply.type = battery or battery-sine.
+        Instead of supply.mass.
+        """
+    @property
+    def mass(self) -> Quantity | None:
+        """mass of the battery, in addition to vehicle.mass.
+        [kg] Range: >= 0. Default: none: in vehicle.mass.
+        Only with vehicle.mass.
+        Instead of supply.specific_energy.
+        """
+
+class MotorSection(Section):
+    @property
+    def gear_ratio(self) -> Quantity | None:
+        """n, motor turns per output turn; given, the motor constants below are the motor shaft's.
+        Number. Range: > 0. Default: none: constants at the output shaft.
+        """
+    @property
+    def gear_inertia(self) -> Quantity | None:
+        """J_G, inertia of the gearbox at the output shaft.
+        [kg m2] Range: >= 0. Default: 0 kg m2.
+        Only with motor.gear_ratio.
+        """
+    @property
+    def gear_damping(self) -> Quantity | None:
+        """b_G, viscous damping of the gearbox at the output shaft.
+        [N m s/rad] Range: >= 0. Default: 0 N m s/rad.
+        Only with motor.gear_ratio.
+        """
+    @property
+    def gear_efficiency(self) -> Quantity:
+        """eta, torque behind the gearbox over torque before it while the motor drives; 1/eta while the load drives.
+        Number. Range: > 0, <= 1. Default: 1.
+        """
+    @property
+    def armature_resistance(self) -> Quantity:
+        """R_a, armature resistance.
+        [ohm] Range: > 0. Default: required.
+        """
+    @property
+    def armature_inductance(self) -> Quantity:
+        """L_a, armature inductance; 0 makes the current algebraic.
+        [H] Range: >= 0. Default: required.
+        """
+    @property
+    def torque_constant(self) -> Quantity:
+        """K at the output shaft; K_b at the motor shaft with gear_ratio.
+        [N m/A] Range: > 0. Default: required.
+        """
+    @property
+    def inertia(self) -> Quantity:
+        """J, rotor and gearbox at the output shaft; J_m of the rotor with gear_ratio.
+        [kg m2] Range: > 0. Default: required.
+        """
+    @property
+    def viscous_damping(self) -> Quantity:
+        """b, motor and gearbox at the output shaft; b_m of the motor with gear_ratio.
+        [N m s/rad] Range: >= 0. Default: required.
+        """
+    @property
+    def friction_torque(self) -> Quantity:
+        """constant friction torque of the motor itself, at the motor shaft with gear_ratio; adds to every friction law.
+        [N m] Range: >= 0. Default: 0 N m.
+        """
+    @property
+    def mass(self) -> Quantity | None:
+        """mass of one motor with its gearbox, in addition to vehicle.mass.
+        [kg] Range: >= 0. Default: none: in vehicle.mass.
+        Only with vehicle.mass.
+        """
+    @property
+    def thermal_resistance_winding(self) -> Quantity | None:
+        """R_th1, thermal resistance from winding to case; given, the constants follow the temperatures.
+        [K/W] Range: >= 0. Default: none: constants the same at any load.
+        """
+    @property
+    def thermal_resistance_case(self) -> Quantity | None:
+        """R_th2, thermal resistance from case to air.
+        [K/W] Range: >= 0. Default: required.
+        Only with motor.thermal_resistance_winding.
+        """
+    @property
+    def ambient_temperature(self) -> Quantity | None:
+        """T_amb, of the air about the motor.
+        [K] Range: 173.15 to 1000 K (-100 to 727 degC). Default: 298.15 K.
+        Only with motor.thermal_resistance_winding.
+        """
+    @property
+    def reference_temperature(self) -> Quantity | None:
+        """T_0 at which armature_resistance and torque_constant are stated.
+        [K] Range: 173.15 to 1000 K (-100 to 727 degC). Default: 298.15 K.
+        Only with motor.thermal_resistance_winding.
+        """
+    @property
+    def copper_temperature_coefficient(self) -> Quantity | None:
+        """a_Cu: R_a grows as 1 + a_Cu (T_winding - T_0).
+        [1/K] Range: >= 0. Default: 0.0039 1/K.
+        Only with motor.thermal_resistance_winding.
+        """
+    @property
+    def magnet_temperature_coefficient(self) -> Quantity | None:
+        """a_B: K falls as 1 + a_B (T_case - T_0), about -0.001 1/K of NdFeB.
+        [1/K] Range: <= 0. Default: 0 1/K.
+        Only with motor.thermal_resistance_winding.
+        """
+    @property
+    def winding_temperature_max(self) -> Quantity | None:
+        """largest temperature allowed to the winding: beyond, a result is outside the domain.
+        [K] Range: 173.15 to 1000 K (-100 to 727 degC). Default: none.
+        Only with motor.thermal_resistance_winding.
+        """
+    @property
+    def thermal_time_constant_winding(self) -> Quantity | None:
+        """tau_w, of the winding over the case, for `wingbeat endurance`.
+        [s] Range: > 0. Default: none.
+        Only with motor.thermal_resistance_winding.
+        """
+    @property
+    def thermal_time_constant_case(self) -> Quantity | None:
+        """tau_c, of the case over the air, for `wingbeat endurance`.
+        [s] Range: > 0. Default: none.
+        Only with motor.thermal_resistance_winding.
+        """
+
+class TransmissionSection(Section):
+    @property
+    def type(self) -> str | None:
+        """kind of mechanism between motor and wings; direct: the motor shaft is the wing hinge.
+        Range: slider-crank, four-bar, tabulated or direct. Default: required.
+        """
+    @property
+    def crank_radius(self) -> Quantity | None:
+        """r_c, crank radius.
+        [m] Range: > 0, < every other link. Default: required.
+        Only with transmission.type = slider-crank or four-bar.
+        """
+    @property
+    def rod_length(self) -> Quantity | None:
+        """l, rod length.
+        [m] Range: > crank_radius. Default: required.
+        Only with transmission.type = slider-crank.
+        """
+    @property
+    def hinge_offset(self) -> Quantity | None:
+        """H, horizontal distance from slider to wing hinge.
+        [m] Range: > 0. Default: required or stroke_amplitude.
+        Only with transmission.type = slider-crank.
+        Instead of transmission.stroke_amplitude.
+        """
+    @property
+    def stroke_amplitude(self) -> Quantity | None:
+        """half the peak-to-peak stroke angle; fixes H = r_c / tan(stroke_amplitude); not with mid_stroke_height.
+        [rad] Range: > 0, < pi/2. Default: required or hinge_offset.
+        Only with transmission.type = slider-crank.
+        Instead of transmission.hinge_offset.
+        """
+    @property
+    def mid_stroke_height(self) -> Quantity | None:
+        """y_0, slider height over the crank axis at stroke angle zero.
+        [m] Range: any. Default: rod_length.
+        Only with transmission.type = slider-crank.
+        """
+    @property
+    def rod_linear_density(self) -> Quantity | None:
+        """mass of the rod or coupler over its length: that length times this, in addition to vehicle.mass.
+        [kg/m] Range: >= 0. Default: none: in vehicle.mass.
+        Only with vehicle.mass.
+        """
+    @property
+    def coupler_length(self) -> Quantity | None:
+        """l, from crank pin to rocker pin.
+        [m] Range: > 0. Default: required.
+        Only with transmission.type = four-bar.
+        """
+    @property
+    def rocker_length(self) -> Quantity | None:
+        """p, from rocker axis to rocker pin.
+        [m] Range: > 0. Default: required.
+        Only with transmission.type = four-bar.
+        """
+    @property
+    def ground_length(self) -> Quantity | None:
+        """d, from crank axis to rocker axis.
+        [m] Range: > 0. Default: required.
+        Only with transmission.type = four-bar.
+        """
+    @property
+    def stroke_ratio(self) -> Quantity | None:
+        """n_s, turning angle of the wings over that of the rocker: sector gear or string.
+        Number. Range: > 0. Default: 1.
+        Only with transmission.type = four-bar.
+        """
+    @property
+    def ground_angle(self) -> Quantity | None:
+        """phi_mid, angle of the rocker from the direction crank axis to rocker axis at stroke angle zero.
+        [rad] Range: any. Default: middle of the rocker's swing.
+        Only with transmission.type = four-bar.
+        """
+    @property
+    def file(self) -> str | None:
+        """stroke law: columns crank_angle and stroke_angle, see below.
+        Range: name of a CSV file. Default: required or stroke_table.
+        Only with transmission.type = tabulated.
+        Instead of transmission.stroke_table.
+        """
+    @property
+    def stroke_table(self) -> Any:
+        """stroke law in place: rows [crank angle, stroke angle], periodic spline of degree five.
+        Range: four or more rows within a turn, crank angles growing. Default: required or file.
+        Only with transmission.type = tabulated.
+        Instead of transmission.file.
+        """
+    @property
+    def stroke_scale(self) -> Quantity | None:
+        """multiplies the stroke angles of the table.
+        Number. Range: > 0. Default: 1.
+        Only with transmission.type = tabulated.
+        """
+    @property
+    def reference_radius(self) -> Quantity | None:
+        """r_ref, radius at which the wings' moment is taken up: load-proportional friction acts on that moment over r_ref.
+        [m] Range: > 0. Default: required.
+        Only with transmission.type = tabulated.
+        """
+    @property
+    def formulation(self) -> str | None:
+        """how the rod force turns the wings: the paper's eq (1), or conserving power exactly.
+        Range: rod-force or virtual-work. Default: required.
+        Only with transmission.type = slider-crank.
+        """
+
+class FrictionSection(Section):
+    @property
+    def type(self) -> str | None:
+        """law of the transmission's friction torque T_f on the crank or shaft; load-proportional needs a rod.
+        Range: none, load-proportional, viscous, quadratic or constant. Default: required.
+        """
+    @property
+    def radius(self) -> Quantity | None:
+        """mu r_e, effective friction radius: T_f = mu r_e abs(F).
+        [m] Range: >= 0. Default: required.
+        Only with friction.type = load-proportional.
+        """
+    @property
+    def damping(self) -> Quantity | None:
+        """b_f: T_f = b_f omega.
+        [N m s/rad] Range: >= 0. Default: required.
+        Only with friction.type = viscous.
+        """
+    @property
+    def coefficient(self) -> Quantity | None:
+        """c_f: T_f = c_f omega abs(omega).
+        [N m s2/rad2] Range: >= 0. Default: required.
+        Only with friction.type = quadratic.
+        """
+    @property
+    def torque(self) -> Quantity | None:
+        """T_c: T_f = T_c sign(omega).
+        [N m] Range: >= 0. Default: required.
+        Only with friction.type = constant.
+        """
+
+class SpringSection(Section):
+    @property
+    def stiffness(self) -> Quantity | None:
+        """k, stiffness of one hinge spring, at rest at stroke angle zero.
+        [N m/rad] Range: >= 0. Default: required or resonance.
+        Instead of spring.resonance or spring.resonance_ratio.
+        """
+    @property
+    def resonance(self) -> Quantity | None:
+        """f_s, resonance of one wing on its spring, k = J_w (2 pi f_s)^2; direct drive: of rotor and wings on all springs, N_w k = (J + N_w J_w) (2 pi f_s)^2.
+        [Hz] Range: >= 0. Default: required or stiffness.
+        Instead of spring.stiffness or spring.resonance_ratio.
+        """
+    @property
+    def resonance_ratio(self) -> Quantity | None:
+        """frequency at which rotor and wings resonate on the springs, over the drive frequency; 1 tunes the springs to the supply.
+        Number. Range: > 0. Default: required or stiffness.
+        Only with transmission.type = direct.
+        Instead of spring.stiffness or spring.resonance.
+        """
+    @property
+    def mass(self) -> Quantity | None:
+        """mass of one hinge spring, in addition to vehicle.mass; one for each wing.
+        [kg] Range: >= 0. Default: none: in vehicle.mass.
+        Only with vehicle.mass.
+        """
+
+class WingPlanformSection(Section):
+    @property
+    def shape(self) -> str | None:
+        """how the wing's outline is given.
+        Range: semi-ellipse, rectangle, tabulated or moments. Default: required.
+        """
+    @property
+    def length(self) -> Quantity | None:
+        """R, wing root to tip.
+        [m] Range: > 0. Default: required.
+        Only with wing.planform.shape = semi-ellipse or rectangle.
+        """
+    @property
+    def root_chord(self) -> Quantity | None:
+        """c_0, chord at the root.
+        [m] Range: > 0. Default: required or chord_ratio.
+        Only with wing.planform.shape = semi-ellipse or rectangle.
+        Instead of wing.planform.chord_ratio.
+        """
+    @property
+    def chord_ratio(self) -> Quantity | None:
+        """c_0 / R, chord at the root over the length: it follows when the length changes.
+        Number. Range: > 0. Default: required or root_chord.
+        Only with wing.planform.shape = semi-ellipse or rectangle.
+        Instead of wing.planform.root_chord.
+        """
+    @property
+    def hub_offset(self) -> Quantity | None:
+        """distance from the hinge to the wing root.
+        [m] Range: >= 0. Default: 0 m.
+        Only with wing.planform.shape = semi-ellipse or rectangle or tabulated.
+        """
+    @property
+    def file(self) -> str | None:
+        """chord table: columns distance (from the root) and chord, see below.
+        Range: name of a CSV file. Default: required or chords.
+        Only with wing.planform.shape = tabulated.
+        Instead of wing.planform.chords.
+        """
+    @property
+    def chords(self) -> Any:
+        """chord table in place: rows [distance from the root, chord], linear between.
+        Range: two or more rows, distances growing, chords >= 0. Default: required or file.
+        Only with wing.planform.shape = tabulated.
+        Instead of wing.planform.file.
+        """
+    @property
+    def s2(self) -> Quantity | None:
+        """S_2 = N_w integral c r^2 dr of all wings.
+        [m4] Range: >= 0. Default: required.
+        Only with wing.planform.shape = moments.
+        """
+    @property
+    def s3(self) -> Quantity | None:
+        """S_3 = N_w integral c r^3 dr of all wings.
+        [m5] Range: >= 0. Default: required.
+        Only with wing.planform.shape = moments.
+        """
+    @property
+    def s22(self) -> Quantity | None:
+        """S_22 = N_w integral c^2 r^2 dr of all wings, for added mass.
+        [m5] Range: >= 0. Default: none.
+        Only with wing.planform.shape = moments.
+        """
+
+class WingSection(Section):
+    @property
+    def count(self) -> Quantity:
+        """N_w, number of wings that one motor drives.
+        Number. Range: whole number >= 1. Default: 2.
+        """
+    @property
+    def inertia(self) -> Quantity | None:
+        """J_w, inertia of one wing about its hinge.
+        [kg m2] Range: > 0. Default: required or resonance.
+        Instead of wing.resonance or wing.areal_density.
+        """
+    @property
+    def resonance(self) -> Quantity | None:
+        """frequency at which rotor and wings resonate on springs of a given stiffness: the inertia follows, J + N_w J_w = N_w k / (2 pi f)^2.
+        [Hz] Range: > 0. Default: required or inertia.
+        Only with transmission.type = direct.
+        Instead of wing.inertia or wing.areal_density.
+        """
+    @property
+    def areal_density(self) -> Quantity | None:
+        """sigma of the membrane, glue spread over it: the inertia follows from the planform's outline, J_w = integral (sigma c + lambda) r^2 dr and that of the ribs.
+        [kg/m2] Range: > 0. Default: required or inertia.
+        Instead of wing.inertia or wing.resonance.
+        """
+    @property
+    def spar_density(self) -> Quantity | None:
+        """lambda, mass of the leading-edge spar over its length, from root to tip.
+        [kg/m] Range: >= 0. Default: 0 kg/m.
+        Only with wing.areal_density.
+        """
+    @property
+    def rib_density(self) -> Quantity | None:
+        """lambda_r, mass of a rib over its length, along the chord from edge to edge.
+        [kg/m] Range: >= 0. Default: 0 kg/m.
+        Only with wing.areal_density.
+        """
+    @property
+    def rib_count(self) -> Quantity | None:
+        """n_r, ribs of one wing, which part its length into n_r + 1 equal bays.
+        Number. Range: whole number, 0 to 1000. Default: 0.
+        Only with wing.areal_density.
+        """
+    @property
+    def pitch_inertia(self) -> Quantity | None:
+        """I_psi = integral x^2 dm of one wing about its leading edge; given with mass_product, or both follow from areal_density.
+        [kg m2] Range: > 0. Default: from areal_density.
+        Only with pitch.stiffness.
+        """
+    @property
+    def mass_product(self) -> Quantity | None:
+        """P = integral r x dm of one wing, r from the flapping hinge, x behind the leading edge.
+        [kg m2] Range: any. Default: from areal_density.
+        Only with pitch.stiffness.
+        """
+    @property
+    def planform(self) -> WingPlanformSection:
+        """The section [wing.planform]."""
+
+class PitchSection(Section):
+    @property
+    def stiffness(self) -> Quantity | None:
+        """k_psi of the hinge about which one wing pitches; given, pitch is a degree of freedom (direct drives).
+        [N m/rad] Range: >= 0. Default: none: the pitch law.
+        """
+    @property
+    def damping(self) -> Quantity | None:
+        """c_psi of one hinge.
+        [N m s/rad] Range: >= 0. Default: 0 N m s/rad.
+        Only with pitch.stiffness.
+        """
+    @property
+    def stop(self) -> Quantity | None:
+        """psi_max, pitch angle to either side at which stops hold the wing.
+        [rad] Range: > 0, < pi. Default: none.
+        Only with pitch.stiffness.
+        """
+    @property
+    def rotational_lift(self) -> bool:
+        """the force that the circulation of a pitching wing adds, C_rot = 0.75 pi.
+        Range: true or false. Default: true.
+        Only with pitch.stiffness.
+        """
+    @property
+    def damping_coefficient(self) -> Quantity | None:
+        """C_rd, drag coefficient of a wing that turns about its leading edge.
+        Number. Range: >= 0. Default: 5.
+        Only with pitch.stiffness.
+        """
+
+class AerodynamicsSection(Section):
+    @property
+    def air_density(self) -> Quantity:
+        """rho, air density.
+        [kg/m3] Range: >= 0. Default: required.
+        """
+    @property
+    def pitch_coefficient(self) -> Quantity | None:
+        """C_alpha, passive pitching: alpha = pi/2 - C_alpha abs(beta').
+        [s] Range: >= 0. Default: required unless pitch.stiffness.
+        """
+    @property
+    def angle_of_attack_min(self) -> Quantity | None:
+        """stop of the passive pitching: alpha falls no lower.
+        [rad] Range: >= 0, < pi/2. Default: none.
+        """
+    @property
+    def added_mass(self) -> bool:
+        """air accelerated with the wings: J_a = pi/4 rho S_22 by strip theory, of wings on a pitch hinge the air that their pitching moves, too; takes no mean power.
+        Range: true or false. Default: false.
+        """
+    @property
+    def coefficients(self) -> str | None:
+        """lift and drag coefficient against angle of attack, eqs (12, 13).
+        Range: translational-2022, normal-force-robofly (with pitch.stiffness), or a table of the keys below. Default: translational-2022.
+        """
+
+class BenchSection(Section):
+    @property
+    def torque_constant(self) -> Quantity | None:
+        """K_ref of a test bench, eq (17); enables power_motor_reference_w.
+        [N m/A] Range: > 0. Default: none.
+        """
+
+class Sections:
+    @property
+    def vehicle(self) -> VehicleSection:
+        """The section [vehicle]."""
+    @property
+    def supply(self) -> SupplySection:
+        """The section [supply]."""
+    @property
+    def motor(self) -> MotorSection:
+        """The section [motor]."""
+    @property
+    def transmission(self) -> TransmissionSection:
+        """The section [transmission]."""
+    @property
+    def friction(self) -> FrictionSection:
+        """The section [friction]."""
+    @property
+    def spring(self) -> SpringSection:
+        """The section [spring]."""
+    @property
+    def wing(self) -> WingSection:
+        """The section [wing]."""
+    @property
+    def pitch(self) -> PitchSection:
+        """The section [pitch]."""
+    @property
+    def aerodynamics(self) -> AerodynamicsSection:
+        """The section [aerodynamics]."""
+    @property
+    def bench(self) -> BenchSection:
+        """The section [bench]."""
+
+sections: dict[str, type[Section]]

@@ -1,0 +1,209 @@
+"""A vehicle: the values of its keys."""
+
+from __future__ import annotations
+
+import json
+import os
+import tomllib
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from . import _core
+from ._quantity import Quantity
+from ._sections import Sections, sections
+from ._tables import parameters
+
+if TYPE_CHECKING:
+    import xarray
+
+    from ._ensemble import Ensemble
+    from ._result import RunResult, StartUp
+
+
+def _toml(value: Any) -> str:
+    """A value of Python as a TOML value."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{json.dumps(str(k))} = {_toml(v)}" for k, v in value.items()) + "}"
+    if hasattr(value, "tolist"):  # an array or a number of NumPy
+        return _toml(value.tolist())
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(map(_toml, value)) + "]"
+    if isinstance(value, (int, float)):
+        return float.__repr__(float(value))
+    raise TypeError(f"expected a number, a text with a unit, a table or rows, got {type(value).__name__}")
+
+
+def _assignments(values: Mapping[str, Any]) -> list[str]:
+    """KEY=VALUE of each key; sections may be given as tables, {"motor": {"inertia": ...}}."""
+    made = []
+    for key, value in values.items():
+        if isinstance(value, Mapping) and "." not in key:
+            made += [f"{key}.{name}={_toml(inner)}" for name, inner in value.items()]
+        else:
+            made.append(f"{key}={_toml(value)}")
+    return made
+
+
+class Vehicle(Sections):
+    """A vehicle, by the keys of vehicle files: `Vehicle({"motor": {"inertia": "1.5e-7 kg m2", ...}, ...})`.
+
+    Values are SI numbers or texts with a unit ("5 mm"); sections may be nested tables or dotted keys. Keys are
+    attributes, `vehicle.motor.inertia`, and items, `vehicle["motor.inertia"]`; `wingbeat.parameters` describes them.
+    A vehicle never changes: `replace` makes another one. Equal vehicles have equal values; they can be pickled, and
+    be keys of a dict. `to_toml` writes one as a vehicle file that reads back to the bit.
+
+    Raises InputError with all that is wrong.
+    """
+
+    __slots__ = ("_design", "_toml")
+    _design: _core.Design
+    _toml: str | None
+
+    def __init__(self, values: Mapping[str, Any]) -> None:
+        if not isinstance(values, Mapping):
+            raise TypeError(f"expected a dict of keys, got {type(values).__name__}; wingbeat.read reads files")
+        self._take(_core.with_values(_assignments(values), None))
+
+    def _take(self, design: _core.Design) -> None:
+        object.__setattr__(self, "_design", design)
+        object.__setattr__(self, "_toml", None)
+
+    @classmethod
+    def _of(cls, design: _core.Design) -> Vehicle:
+        made = cls.__new__(cls)
+        made._take(design)
+        return made
+
+    @classmethod
+    def from_toml(cls, text: str, name: str = "vehicle") -> Vehicle:
+        """The vehicle in the text of a vehicle file, in which tables stand in place. `name` stands in messages."""
+        return cls._of(_core.parse(text, name))
+
+    def to_toml(self) -> str:
+        """The vehicle file, complete in itself, that reads back to the equal vehicle."""
+        if self._toml is None:
+            object.__setattr__(self, "_toml", self._design.to_toml())
+        assert self._toml is not None
+        return self._toml
+
+    def to_dict(self) -> dict[str, Any]:
+        """The sections as nested dicts, with numbers as texts with units: what `Vehicle` takes."""
+        return tomllib.loads(self.to_toml())
+
+    def replace(self, values: Mapping[str, Any]) -> Vehicle:
+        """The vehicle with other values of these keys; alternatives (hinge_offset, stroke_amplitude) replace each other.
+
+        Raises InputError.
+        """
+        return Vehicle._of(_core.with_values(_assignments(values), self._design))
+
+    __replace__ = replace
+
+    def __getitem__(self, key: str) -> Any:
+        parameter = parameters.get(key)
+        if parameter is None:
+            if key in sections:
+                return sections[key](self)
+            raise KeyError(f"there is no key {key!r}")
+        value = self._design.value(key)
+        if value is None and parameter.always:
+            value = _core.quantity(key, parameter.default, parameter.unit)
+        if isinstance(value, float):
+            return Quantity(value, parameter.unit, parameter.meaning)
+        return value if value is not None else self._table(key)
+
+    def _table(self, key: str) -> Any:
+        """The rows of a table, or None."""
+        if parameters[key].unit:
+            return None
+        found: Any = self.to_dict()
+        for part in key.split("."):
+            found = found.get(part) if isinstance(found, dict) else None
+        return found
+
+    def keys(self) -> list[str]:
+        """The keys that `to_toml` states; alternatives to them have values, too."""
+        made: list[str] = []
+
+        def enter(table: Mapping[str, Any], start: str) -> None:
+            for name, value in table.items():
+                if isinstance(value, Mapping):
+                    enter(value, f"{start}{name}.")
+                else:
+                    made.append(start + name)
+
+        enter(self.to_dict(), "")
+        return made
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.keys())
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError("vehicles do not change; vehicle.replace({...}) is another one")
+
+    @property
+    def name(self) -> str:
+        """The name, "" where it has none."""
+        return str(self._design.value("vehicle.name") or "")
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Vehicle):
+            return NotImplemented
+        return self.to_toml() == other.to_toml()
+
+    def __hash__(self) -> int:
+        return hash(self.to_toml())
+
+    def __copy__(self) -> Vehicle:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Vehicle:
+        return self
+
+    def __reduce__(self) -> tuple[Any, tuple[str]]:
+        return _restored, (self.to_toml(),)
+
+    def __repr__(self) -> str:
+        return f"<wingbeat.Vehicle {self.name!r}>"
+
+    # ---- what it does
+
+    def solve(self, **options: Any) -> RunResult:
+        """Its steady flapping: see wingbeat.solve."""
+        from ._result import solve
+
+        return solve(self, **options)
+
+    def simulate(self, **options: Any) -> StartUp:
+        """Its start-up in time: see wingbeat.simulate."""
+        from ._result import simulate
+
+        return simulate(self, **options)
+
+    def solve_columns(self, columns: Mapping[str, Any], **options: Any) -> Ensemble:
+        """Very many vehicles like it: see wingbeat.solve."""
+        from ._ensemble import solve_columns
+
+        return solve_columns(columns, vehicle=self, **options)
+
+    def sweep(self, axes: Mapping[str, Any], **options: Any) -> xarray.Dataset:
+        """All combinations of the values of these keys: see wingbeat.sweep."""
+        from ._sweep import sweep
+
+        return sweep(self, axes, **options)
+
+
+def _restored(toml: str) -> Vehicle:
+    return Vehicle.from_toml(toml)
+
+
+def read(file: str | os.PathLike[str]) -> Vehicle:
+    """The vehicle in a vehicle file (TOML). CSV files that it names are sought beside it.
+
+    Raises InputError with file, line and column of all that is wrong.
+    """
+    return Vehicle._of(_core.read(os.fspath(file)))

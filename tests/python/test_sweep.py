@@ -1,0 +1,185 @@
+"""Very many vehicles: columns of designs, and sweeps."""
+
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy as np
+import wingbeat as wb
+import xarray as xr
+from shared import DATA, PROGRAM, reference
+
+
+class Columns(unittest.TestCase):
+    def test_each_design_is_what_it_is_alone(self):
+        vehicle = wb.read(DATA / "designs" / "friction2022-springs.toml")
+        voltages = np.linspace(0.2, 5.0, 25)
+        radii = np.linspace(4e-3, 6e-3, 25)
+        found = wb.solve({"supply.voltage": voltages, "transmission.crank_radius": radii}, vehicle=vehicle)
+        self.assertEqual(len(found), 25)
+        for n in range(25):
+            alone = vehicle.replace({"supply.voltage": voltages[n], "transmission.crank_radius": radii[n]}).solve()
+            self.assertEqual(found.status[n], alone.status)
+            self.assertEqual(found.flapping[n], alone.status == "flapping")
+            if alone.status == "flapping":
+                self.assertAlmostEqual(found.lift_mean[n] / alone.lift_mean, 1.0, 5)
+            else:
+                self.assertTrue(np.isnan(found.lift_mean[n]))
+        self.assertIn("locked", found.status)
+        self.assertEqual(found.to_xarray().lift_mean.attrs["units"], "N")
+        self.assertIn("locked", repr(found))
+
+    def test_a_whole_vehicle_in_columns(self):
+        columns = {**dict(reference()), "supply.voltage": ["2 V", "3 V"]}
+        found = wb.solve(columns, metrics=["lift_mean"])
+        self.assertAlmostEqual(found.lift_mean[1] / reference().solve().lift_mean, 1.0, 5)
+        with self.assertRaisesRegex(AttributeError, "or it was not asked for"):
+            found.frequency
+
+    def test_a_data_frame(self):
+        import pandas
+
+        frame = pandas.DataFrame({"supply.voltage": [2.0, 3.0], "friction.radius": ["2 mm", "2.5 mm"]}, index=[7, 8])
+        found = wb.solve(frame, vehicle=reference())
+        self.assertAlmostEqual(found.lift_mean[1] / reference().solve().lift_mean, 1.0, 5)
+
+    def test_a_frequency_is_held(self):
+        vehicle = reference()
+        found = vehicle.solve_columns({"frequency": [20.0, 22.0], "friction.radius": ["2 mm", "2.5 mm"]})
+        np.testing.assert_allclose(found.frequency, [20.0, 22.0], rtol=1e-6)
+        np.testing.assert_allclose(vehicle.solve_columns({"friction.radius": [2.5e-3]}, frequency="22 Hz").voltage,
+                                   found.voltage[1], rtol=1e-6)
+
+    def test_designs_out_of_range_are_invalid(self):
+        found = reference().solve_columns({"motor.inertia": [1.5e-7, -1.0]})
+        self.assertEqual(list(found.status), ["flapping", "invalid"])
+
+    def test_what_is_refused(self):
+        vehicle = reference()
+        with self.assertRaisesRegex(wb.InputError, "did you mean motor.inertia"):
+            vehicle.solve_columns({"motor.inerti": [1.0], "motor.inertia": [1.0]})
+        with self.assertRaisesRegex(wb.InputError, "spring.resonance_ratio: only with"):
+            vehicle.solve_columns({"spring.resonance_ratio": [1.0]})
+        with self.assertRaisesRegex(wb.InputError, 'supply.voltage: expected a voltage such as "3 V", got "3 m"'):
+            vehicle.solve_columns({"supply.voltage": ["3 m"]})
+        with self.assertRaisesRegex(wb.InputError, "^tolerance: "):
+            vehicle.solve_columns({"supply.voltage": [1.0]}, tolerance=1.0)
+        with self.assertRaisesRegex(wb.InputError, "^supply.voltage: has no effect where the frequency is held"):
+            vehicle.solve_columns({"supply.voltage": [1.0], "frequency": [20.0]})
+        with self.assertRaisesRegex(wb.InputError, "^supply.type: a sine supply gives no steady flapping"):
+            sine = vehicle.replace({"supply": {"type": "sine", "amplitude": "3 V", "frequency": "20 Hz"}})
+            sine.solve_columns({"supply.amplitude": [1.0]})
+        with self.assertRaisesRegex(wb.InputError, "^supply.type: the charge of a battery"):
+            battery = wb.read(DATA / "designs" / "friction2022-battery.toml")
+            battery.solve_columns({"friction.radius": [2e-3]}, frequency=20.0)
+        with self.assertRaisesRegex(ValueError, "motor.inertia has 2 values, supply.voltage has 1"):
+            vehicle.solve_columns({"supply.voltage": [1.0], "motor.inertia": [1.0, 2.0]})
+        with self.assertRaisesRegex(ValueError, "no key has an array"):
+            wb.solve({"supply.voltage": 3.0}, vehicle=vehicle)
+
+    def test_arrays_own_their_numbers(self):
+        lift = reference().solve_columns({"supply.voltage": np.linspace(2, 3, 600)}).lift_mean
+        kept = lift.copy()
+        reference().solve_columns({"supply.voltage": np.linspace(4, 5, 600)})
+        np.testing.assert_array_equal(lift, kept)
+
+
+class Sweeps(unittest.TestCase):
+    AXES = {"supply.voltage": np.linspace(2, 5, 7), "transmission.crank_radius": ["4 mm", "5 mm", "6 mm"]}
+
+    @unittest.skipUnless(PROGRAM, "needs the program")
+    def test_it_is_the_data_set_of_the_program(self):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            (folder / "vehicle").write_text(reference().to_toml())
+            study = (
+                '[study]\nvehicle = "vehicle"\n'
+                '[[axis]]\nkey = "supply.voltage"\nvalues = [2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0]\n'
+                '[[axis]]\nkey = "transmission.crank_radius"\nvalues = ["4 mm", "5 mm", "6 mm"]\n'
+            )
+            (folder / "sweep").write_text(study)
+            command = [PROGRAM, "sweep", "sweep", "-o", "program.nc"]
+            subprocess.run(command, cwd=folder, check=True, capture_output=True)
+            program = wb.open_dataset(folder / "program.nc")
+        ours = reference().sweep(self.AXES)
+        for attribute in ("study", "wingbeat_fingerprint"):  # how the study is spelled
+            del program.attrs[attribute], ours.attrs[attribute]
+        xr.testing.assert_identical(ours, program)
+
+    def test_hdf5_prints_nothing(self):
+        act = "from shared import reference; reference().sweep({'supply.voltage': [2.0, 3.0]})"
+        found = subprocess.run([sys.executable, "-c", act], capture_output=True, text=True)
+        self.assertEqual(found.returncode, 0, found.stderr)
+        self.assertNotIn("HDF5", found.stderr)
+
+    def test_names_of_the_package(self):
+        data = reference().sweep(self.AXES, metrics=["lift_mean", "lift_to_weight"], title="A title")
+        self.assertEqual(data.wingbeat.lift_mean.dims, ("supply_voltage", "transmission_crank_radius"))
+        self.assertTrue((data.wingbeat.status == "flapping").all())
+        self.assertEqual(data.wingbeat.vehicle, reference())
+        self.assertEqual(data.attrs["title"], "A title")
+        with self.assertRaises(AttributeError):
+            data.wingbeat.frequency
+        best = float(data.wingbeat.lift_mean.sel(supply_voltage=3, transmission_crank_radius=0.005))
+        self.assertAlmostEqual(best / reference().solve().lift_mean, 1.0, 5)
+
+    def test_choices_and_held_frequencies(self):
+        axes = {"condition": ["air", "vacuum"], "frequency": ["20 Hz", "22 Hz"]}
+        data = reference().sweep(axes)
+        self.assertEqual(list(data.condition.values), ["air", "vacuum"])
+        np.testing.assert_allclose(data.frequency_hz, [[20, 22], [20, 22]], rtol=1e-6)
+
+    def test_a_file_is_kept_and_computed_once(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "kept.nc"
+            first = reference().sweep(self.AXES, output=file)
+            written = file.stat().st_mtime_ns
+            xr.testing.assert_identical(reference().sweep(self.AXES, output=file), first)
+            self.assertEqual(file.stat().st_mtime_ns, written)
+            with self.assertRaisesRegex(wb.InputError, "kept.nc"):
+                reference().sweep({"supply.voltage": [1.0, 2.0]}, output=file)
+            reference().sweep({"supply.voltage": [1.0, 2.0]}, output=file, force=True)
+            self.assertEqual(os.listdir(folder), ["kept.nc"])
+
+    def test_what_is_refused(self):
+        with self.assertRaisesRegex(wb.InputError, "^supply.voltag: unknown key; did you mean supply.voltage") as caught:
+            reference().sweep({"supply.voltag": [1.0, 2.0]})
+        self.assertIsNone(caught.exception.file)
+        with self.assertRaisesRegex(wb.InputError, "the same value is given twice"):
+            reference().sweep({"supply.voltage": [1.0, 1.0]})
+
+
+class LongCalls(unittest.TestCase):
+    COLUMNS = {"supply.voltage": np.linspace(2, 5, 400_000)}
+
+    def test_ctrl_c_ends_it(self):
+        # A test started in the background ignores it.
+        self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
+        timer = threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT))
+        timer.start()
+        begin = time.process_time()
+        with self.assertRaises(KeyboardInterrupt):
+            reference().solve_columns(self.COLUMNS, tolerance=1e-10)
+        self.assertLess(time.process_time() - begin, 5.0)
+
+    def test_an_exception_of_the_progress_function_ends_it(self):
+        calls = []
+
+        def progress(done, designs):
+            calls.append((done, designs))
+            raise RuntimeError("enough")
+
+        with self.assertRaisesRegex(RuntimeError, "enough"):
+            reference().solve_columns(self.COLUMNS, tolerance=1e-10, progress=progress)
+        self.assertEqual(len(calls), 1)
+        self.assertEqual(calls[0][1], 400_000)
+
+
+if __name__ == "__main__":
+    unittest.main()

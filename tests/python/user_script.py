@@ -1,0 +1,25 @@
+"""A user's script, for mypy --strict: what the package promises about types. test_vehicle.py runs it, too."""
+
+import sys
+
+import numpy as np
+import wingbeat as wb
+
+
+def main(file: str) -> float:
+    vehicle = wb.read(file)
+    inertia: float = 2.0 * vehicle.wing.count
+    result = vehicle.replace({"supply.voltage": "3 V"}).solve(tolerance=1e-8)
+    if result.lift_mean is None or result.frequency is None:
+        raise SystemExit(result.evidence)
+    unit: str = result.lift_mean.unit
+    slope: float = wb.solve(vehicle).gradient("lift_mean", "transmission.crank_radius")
+    slopes = result.gradient("lift_mean", ["transmission.crank_radius", "supply.voltage"])
+    found = wb.solve({"supply.voltage": np.linspace(2, 4, 5)}, vehicle=vehicle)
+    best = float(found.lift_mean[found.flapping].max())
+    print(inertia, unit, slope, slopes.shape, best, vehicle.simulate().time_to_steady.unit)
+    return result.frequency + best
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
