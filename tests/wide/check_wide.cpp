@@ -451,7 +451,7 @@ int main(int argc, char** argv) {
   };
   if (arguments.rungs) {
     for (const FarBox box : {FarBox::friction_laws, FarBox::four_bar, FarBox::tabulated, FarBox::direct}) {
-      for (const Rung rung : {Rung::added_mass, Rung::gear, Rung::heat, Rung::all, Rung::pitch}) {
+      for (const Rung rung : {Rung::added_mass, Rung::gear, Rung::heat, Rung::all}) {
         if (rung != Rung::gear || box != FarBox::direct) check(box, rung);  // no gear efficiency of a direct drive
       }
     }
