@@ -13,9 +13,13 @@ namespace {
 using J = GradientJet;
 constexpr int slots = gradient_slots;
 
-constexpr Metric peak_metrics[] = {Metric::current_peak,           Metric::lift_peak,           Metric::rod_force_peak,
-                                   Metric::flapping_velocity_peak, Metric::angle_of_attack_min, Metric::crank_speed_min,
-                                   Metric::crank_speed_max};
+/// What wings that pitch have instead of the metrics of the pitch law.
+void set_pitch_metrics(const PitchGradient& of, Metrics<J>& m) {
+  m[Metric::pitch_amplitude] = degrees_per_radian * of.amplitude;
+  m[Metric::pitch_phase] = degrees_per_radian * of.phase;
+  m[Metric::angle_of_attack_min] = degrees_per_radian * of.angle_of_attack_min;
+  m[Metric::angle_of_attack_max] = degrees_per_radian * of.angle_of_attack_max;
+}
 
 void make_absent(J& x) { x.v.setConstant(absent); }
 
@@ -42,6 +46,10 @@ OrbitGradient repeat(const SteadyFlapping& orbit, const RecordedCycle<System>& r
   extremes.fill(J(absent));
   if (options.peaks) extremes = cycle.extremes();
   g.metrics = cycle_metrics(vehicle, cycle.integrals(), extremes, J(orbit.metrics[Metric::floquet_multiplier_max]), {});
+  if constexpr (CycleGradient<System>::pitching) {
+    g.metrics[Metric::power_hinge] = cycle.hinge_power();
+    if (options.peaks) set_pitch_metrics(cycle.pitch_gradient(), g.metrics);
+  }
   const J bench = voltage_varies ? given.bench_torque_constant : J(absent);
   g.metrics[Metric::power_motor_reference] =
       two_pi * bench * g.metrics[Metric::frequency] * g.metrics[Metric::current_mean];
@@ -112,7 +120,10 @@ OrbitGradient differentiate(const SteadyFlapping& orbit, const RecordedCycle<Sys
   }
   make_absent(g.metrics[Metric::floquet_multiplier_max]);
   if (!options.peaks) {
-    for (const Metric m : peak_metrics) g.metrics[m] = J(orbit.metrics[m]), make_absent(g.metrics[m]);
+    const Drive drive = drive_of(vehicle);
+    for (int m = 0; m < metric_count; ++m) {
+      if (is_peak(Metric(m), drive)) make_absent(g.metrics.values[std::size_t(m)]);
+    }
   }
   // A value is the orbit's own, to the last digit.
   for (int m = 0; m < metric_count; ++m) g.metrics.values[std::size_t(m)].a = orbit.metrics.values[std::size_t(m)];
@@ -120,6 +131,23 @@ OrbitGradient differentiate(const SteadyFlapping& orbit, const RecordedCycle<Sys
 }
 
 }  // namespace
+
+bool is_peak(Metric which, const Drive& drive) {
+  switch (which) {
+    case Metric::current_peak:
+    case Metric::lift_peak:
+    case Metric::rod_force_peak:
+    case Metric::flapping_velocity_peak:
+    case Metric::angle_of_attack_min:
+    case Metric::angle_of_attack_max:
+    case Metric::pitch_amplitude:
+    case Metric::pitch_phase:
+    case Metric::crank_speed_min:
+    case Metric::crank_speed_max: return true;
+    case Metric::stroke_amplitude: return !drive.stroke_is_fixed;
+    default: return false;
+  }
+}
 
 GradientVehicle gradient_vehicle(const Design<GradientJet>& design, Condition condition) {
   GradientVehicle v;
@@ -131,22 +159,8 @@ GradientVehicle gradient_vehicle(const Design<GradientJet>& design, Condition co
 
 OrbitGradient orbit_gradient(const SteadyFlapping& orbit, const GradientVehicle& vehicle,
                              const GradientOptions& options) {
-  return std::visit(
-      [&](const auto& recorded) {
-        if constexpr (requires { recorded.system.pitch; }) {
-          OrbitGradient none;
-          none.regular = false;
-          for (int m = 0; m < metric_count; ++m) {
-            none.metrics.values[std::size_t(m)] = J(orbit.metrics.values[std::size_t(m)]);
-            make_absent(none.metrics.values[std::size_t(m)]);
-          }
-          none.instants.assign(options.crank_angles.size(), GradientInstant{});
-          return none;
-        } else {
-          return differentiate(orbit, recorded, vehicle, options);
-        }
-      },
-      orbit.record.cycles());
+  return std::visit([&](const auto& recorded) { return differentiate(orbit, recorded, vehicle, options); },
+                    orbit.record.cycles());
 }
 
 MetricGradients metric_gradients(const Design<double>& design, Condition condition, const SteadyFlapping& orbit,

@@ -58,7 +58,7 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
                    const std::filesystem::path& output) {
   std::vector<const SweepAxis*> axes;
   for (const SweepAxis& axis : study.sweep.axes) {
-    if (is_number(axis)) axes.push_back(&axis);
+    if (!makes_curves(study.sweep, axis)) axes.push_back(&axis);
   }
   const Scale x(*axes[0]), y(*axes[1]);
   const std::size_t ny = y.at.size();

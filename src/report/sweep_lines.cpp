@@ -19,13 +19,19 @@ constexpr const char* curve_styles[max_curves] = {blue_solid,
                                                   "dt (6,3) lw 1.3 lc rgb '#56b4e9'"};
 constexpr const char* curve_colours[max_curves] = {"#0072b2", "#d55e00", "#000000", "#009e73", "#cc79a7", "#56b4e9"};
 
-/// "springs on, condition air": the choices of one curve.
+/// "springs on, supply amplitude 3 V": the choices and numbers of one curve.
 std::string curve_name(const Sweep& sweep, std::uint64_t index) {
   const auto place = places(sweep, index);
   std::string name;
   for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
-    if (is_number(sweep.axes[a])) continue;
-    for (const SweptQuantity& q : sweep.axes[a].quantities) {
+    const SweepAxis& axis = sweep.axes[a];
+    if (!makes_curves(sweep, axis)) continue;
+    if (is_number(axis)) {
+      const Scale scale(axis);
+      name += fmt::format("{}{} {}", name.empty() ? "" : ", ", scale.name, scale.value(place[a]));
+      continue;
+    }
+    for (const SweptQuantity& q : axis.quantities) {
       if (q.kind != SweptQuantity::Kind::choice) continue;
       const bool says_itself = q.key == "condition" || q.key == "transmission.formulation";
       name +=
@@ -43,7 +49,7 @@ struct Curves {
 
   explicit Curves(const Sweep& sweep) {
     for (std::size_t a = sweep.axes.size(); a-- > 0;) {
-      if (is_number(sweep.axes[a])) along = a;
+      if (!makes_curves(sweep, sweep.axes[a])) along = a;
     }
     for (std::size_t a = along + 1; a < sweep.axes.size(); ++a) stride *= sweep.axes[a].count;
     for (std::uint64_t n = 0; n < sweep.size(); ++n) {

@@ -22,8 +22,8 @@ std::vector<Metric> metrics_to_plot(const Study& study, std::span<const std::str
   int numbers = 0;
   for (const SweepAxis& axis : sweep.axes) {
     if (axis.samples) refuse("samples have no order to be drawn in; plots are of axes");
-    if (is_number(axis)) ++numbers;
-    else curves *= axis.count;
+    if (makes_curves(sweep, axis)) curves *= axis.count;
+    else ++numbers;
   }
   if (numbers < 1 || numbers > 2) {
     refuse(fmt::format("the study has {} axes of numbers; plots have one or two", numbers));
@@ -60,7 +60,8 @@ std::vector<Metric> metrics_to_plot(const Study& study, std::span<const std::str
 void plot_sweep(const Study& study, const std::filesystem::path& data_set, std::span<const Metric> metrics,
                 PlotFormat format, const std::filesystem::path& file) {
   const NetcdfReader reader(data_set);
-  const auto numbers = std::count_if(study.sweep.axes.begin(), study.sweep.axes.end(), is_number);
+  const auto numbers = std::count_if(study.sweep.axes.begin(), study.sweep.axes.end(),
+                                     [&](const SweepAxis& axis) { return !makes_curves(study.sweep, axis); });
   const std::vector<double> status = reader.read("status");
   const bool nothing = std::none_of(status.begin(), status.end(), [](double s) { return s == 0.0; });
   if (numbers == 1 && nothing) {

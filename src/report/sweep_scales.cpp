@@ -17,7 +17,8 @@ Display display_for(std::string_view unit, double largest, bool efficiency = fal
   if (unit == "1") return {"", 1.0};
   if (unit == "rad") return {"deg", degrees_per_radian};
   if (unit == "degree") return {"deg", 1.0};
-  const bool simple = unit.find_first_of(" /0123456789") == std::string_view::npos;
+  // A prefix stands before one unit, or before the newton of moments, stiffnesses and dampings.
+  const bool simple = unit.find_first_of(" /0123456789") == std::string_view::npos || unit.starts_with("N m");
   if (!simple || unit == "Hz" || unit == "V" || !(largest > 0.0)) return {std::string(unit), 1.0};
   if (unit == "kg") return {"g", 1e3};
   constexpr std::pair<double, const char*> prefixes[] = {{1e-9, "n"}, {1e-6, "u"}, {1e-3, "m"}, {1.0, ""}, {1e3, "k"}};
@@ -35,6 +36,14 @@ bool is_efficiency(Metric m) { return std::string_view(metric_info(m).key).start
 bool is_number(const SweepAxis& axis) {
   return std::none_of(axis.quantities.begin(), axis.quantities.end(),
                       [](const SweptQuantity& q) { return q.kind == SweptQuantity::Kind::choice; });
+}
+
+bool makes_curves(const Sweep& sweep, const SweepAxis& axis) {
+  constexpr std::uint64_t few = 4, many = 10;
+  if (!is_number(axis)) return true;
+  return axis.count < few && std::any_of(
+                                 sweep.axes.begin(), sweep.axes.end(),
+                                 [&](const SweepAxis& other) { return is_number(other) && other.count >= many; });
 }
 
 std::string words(const std::string& key) {

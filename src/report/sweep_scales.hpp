@@ -17,6 +17,9 @@ namespace wingbeat {
 inline constexpr std::uint64_t max_curves = 6;
 
 bool is_number(const SweepAxis& axis);
+/// True of an axis that a plot shows by a curve for each of its values: choices, and so few numbers beside an axis of
+/// many that contours between them would say nothing.
+bool makes_curves(const Sweep& sweep, const SweepAxis& axis);
 /// A parameter in words: "crank radius", "supply voltage"; with its section where the last word alone says too little.
 std::string words(const std::string& key);
 

@@ -6,19 +6,6 @@
 namespace wingbeat {
 namespace {
 
-bool is_peak(Metric m) {
-  switch (m) {
-    case Metric::current_peak:
-    case Metric::lift_peak:
-    case Metric::rod_force_peak:
-    case Metric::flapping_velocity_peak:
-    case Metric::angle_of_attack_min:
-    case Metric::crank_speed_min:
-    case Metric::crank_speed_max: return true;
-    default: return false;
-  }
-}
-
 const GradientJet& at(const GradientInstant& i, WaveformQuantity q) {
   const GradientJet* all[] = {&i.crank_speed, &i.current, &i.flapping_velocity, &i.lift, &i.rod_force, &i.motor_torque};
   return *all[int(q)];
@@ -57,7 +44,7 @@ BenchModel::BenchModel(const BenchFit& fit) : fit_(fit) {
       if (log.waveform) point.crank_angles.push_back(row.crank_angle);
       for (std::size_t c = 0; c < log.columns.size(); ++c) {
         point.observations.push_back(observations_.size());
-        point.peaks = point.peaks || (!log.columns[c].waveform && is_peak(log.columns[c].metric));
+        point.peaks = point.peaks || (!log.columns[c].waveform && is_peak(log.columns[c].metric, drive_of(fit.design)));
         observations_.push_back({l, r, c, log.columns[c], points_.size() - 1,
                                  log.waveform ? point.crank_angles.size() - 1 : 0, row.values[c]});
       }

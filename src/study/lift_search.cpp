@@ -26,6 +26,9 @@ constexpr double max_table_step_deg = 10.0;
 constexpr double max_misfit = 0.02;
 /// Intervals narrower than this, in ln v, are edges or jumps.
 constexpr double narrowest = 1e-5;
+/// The same of edges below which wings that pitch do not settle: they have no sharp place. What the lift does within
+/// this of one passes unseen.
+constexpr double blurred_edge = 0.02;
 /// To which a cubic's zero is found, as a share of its interval.
 constexpr double cubic_width = 0x1p-50;
 
@@ -160,7 +163,8 @@ class LiftTrace {
     // Below the first peak the lift only rises: where it is still small, the edge does not matter.
     if (!a.flaps && b.lift < target_ && b.lift_slope > 0.0 && b.pitching < step_deg_ && b.inside) return std::nullopt;
     const VoltageTrial low = a, high = b;
-    while (log_width(a, b) > narrowest) {
+    const double width = !a.flaps && !trials_.simulates() ? blurred_edge : narrowest;
+    while (log_width(a, b) > width) {
       const VoltageTrial m = between(a, b, 0.5);
       (m.flaps == a.flaps ? a : b) = m;
     }
@@ -353,6 +357,13 @@ FrequencySearch find_voltage_for_lift(const Vehicle<double>& vehicle, double lif
     const SearchFinding finding{
         .kind = Finding::no_wings_in_air, .sought = Sought::lift, .target = lift, .range = where.range};
     return {outcome, absent, t.status, finding, trials.count(), t.flaps ? t.voltage : absent, t.lift};
+  }
+  if (pitches(vehicle)) {
+    // Wings without a spring on their hinges do not settle at low voltages, and a simulation that comes to no decision
+    // takes seconds. Where they do settle the orbit search finds it, as a rule: simulations only if the lift is missed.
+    const VoltageTrials orbits(vehicle, options, start_up, where.range, true, false);
+    const FrequencySearch by_orbits = LiftTrace(orbits, lift, where).run();
+    if (by_orbits.outcome == FrequencyOutcome::reached) return by_orbits;
   }
   return LiftTrace(std::move(trials), lift, where).run();
 }

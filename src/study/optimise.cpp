@@ -75,11 +75,6 @@ std::string bound_of(DomainLimit limit, TransmissionType transmission) {
 }
 
 OptimiseResult optimise(const OptimiseStudy& study, const StartUp& start_up, const ForEach& for_each) {
-  if (study.design.pitch.stiffness && !study.parameters.empty()) {
-    throw ParameterError(pitch_key::stiffness.path,
-                         "an optimum needs derivatives, which vehicles whose wings pitch on a hinge do not have yet; "
-                         "sweep them instead");
-  }
   OptimiseResult result;
   const OptimiseProblem problem(study, start_up);
   if (study.parameters.empty()) {

@@ -8,18 +8,25 @@
 namespace wingbeat::detail {
 
 VoltageTrials::VoltageTrials(const Vehicle<double>& vehicle, const SteadyOptions& options, const StartUp& start_up,
-                             SearchRange range, bool slopes)
-    : vehicle_(vehicle), options_(options), start_up_(start_up), range_(range), slopes_(slopes) {
+                             SearchRange range, bool slopes, bool simulate)
+    : vehicle_(vehicle), options_(options), start_up_(start_up), range_(range), slopes_(slopes), simulate_(simulate) {
   // The root finder must not see the solver's own error.
   closeness_ = std::max(0.1 * options.tolerance, 1e-13);
   options_.tolerance = std::max(0.01 * options.tolerance, 1e-12);
   options_.stability = false;
 }
 
+SteadyFlapping VoltageTrials::solve() const {
+  if (simulate_) return find_steady_flapping(vehicle_, options_, start_up_);
+  const SteadyFlapping found = find_steady_flapping(vehicle_, options_);
+  const bool several = std::isfinite(found.evidence.other_amplitude);
+  return several ? find_steady_flapping(vehicle_, options_, start_up_) : found;
+}
+
 VoltageTrial VoltageTrials::at(double voltage) {
   ++count_;
   vehicle_.voltage = voltage;
-  const SteadyFlapping found = find_steady_flapping(vehicle_, options_, start_up_);
+  const SteadyFlapping found = solve();
   VoltageTrial trial;
   trial.voltage = voltage;
   trial.status = found.status;

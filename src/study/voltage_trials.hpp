@@ -28,14 +28,16 @@ struct VoltageTrial {
 
 class VoltageTrials {
  public:
-  /// `slopes`: with derivatives, each of which costs about as much as its orbit.
+  /// `slopes`: with derivatives, each of which costs about as much as its orbit. Without `simulate`, start-up is asked
+  /// only which of several responses is reached; a vehicle without a response that was found counts as undecided.
   VoltageTrials(const Vehicle<double>& vehicle, const SteadyOptions& options, const StartUp& start_up,
-                SearchRange range, bool slopes);
+                SearchRange range, bool slopes, bool simulate = true);
 
   VoltageTrial at(double voltage);
 
   const Vehicle<double>& vehicle() const { return vehicle_; }
   SearchRange range() const { return range_; }
+  bool simulates() const { return simulate_; }
   int count() const { return count_; }
   /// How close to the value sought is close enough, relative.
   double closeness() const { return closeness_; }
@@ -43,11 +45,14 @@ class VoltageTrials {
   double accuracy() const { return options_.tolerance; }
 
  private:
+  SteadyFlapping solve() const;
+
   Vehicle<double> vehicle_;
   SteadyOptions options_;
   const StartUp& start_up_;
   SearchRange range_;
   bool slopes_;
+  bool simulate_;
   double closeness_;
   int count_ = 0;
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "study/synthetic_bench.hpp"
+#include "vehicle/hinged_design.hpp"
 #include "vehicle/reference_vehicle.hpp"
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/report/fit_report.hpp"
@@ -101,6 +102,40 @@ TEST(BenchFit, WaveformOfTheCurrentDeterminesTheInertia) {
     EXPECT_NEAR(*p.value / truth(p.key), 1.0, 1e-5) << p.key;
     EXPECT_LT(p.standard_error / *p.value, 0.02) << p.key;
   }
+}
+
+// The hinge takes the place of C_alpha: a log of a direct drive over the amplitude of its supply determines it.
+TEST(BenchFit, DirectDriveDeterminesItsPitchHinges) {
+  const Design<double> design = hinged_design(3e-4);
+  const std::vector<Metric> seen = {Metric::current_rms, Metric::lift_mean, Metric::stroke_amplitude,
+                                    Metric::pitch_amplitude, Metric::pitch_phase};
+  const BenchLog exact = bench_log(design, Condition::air, true, spaced_voltages(1.0, 4.0, 5), seen);
+  BenchFit fit;
+  fit.design = design;
+  fit.parameters = {free_parameter("pitch.stiffness", 1e-4, 1e-3, 6e-4),
+                    free_parameter("pitch.damping", 0.0, 2e-7, 5e-8),
+                    free_parameter("motor.viscous_damping", 0.0, 2e-5, 6e-6)};
+  fit.logs = {exact};
+  set_deviations(fit, 0.01);
+  const FitResult r = fit_bench(fit);
+  EXPECT_TRUE(r.converged) << r.message;
+  EXPECT_LT(r.chi_square, 1e-4);
+  for (const FittedParameter& p : r.parameters) {
+    ASSERT_TRUE(p.value) << p.key;
+    EXPECT_NEAR(*p.value / *design_parameter(p.key).value(design), 1.0, 1e-3) << p.key;
+    EXPECT_GT(p.profile_upper_95, *p.value) << p.key;
+  }
+  // Without the lift and the wings' angles the current alone tells of the hinge, if much less.
+  fit.profiles = false;
+  fit.logs = {bench_log(design, Condition::air, true, spaced_voltages(1.0, 4.0, 5), {Metric::current_rms})};
+  fit.deviations.clear();
+  set_deviations(fit, 0.01);
+  const FitResult poor = fit_bench(fit);
+  EXPECT_TRUE(!poor.parameters[0].value || poor.parameters[0].standard_error > 3.0 * r.parameters[0].standard_error);
+  // Nothing of the hinge is seen without wings.
+  fit.logs = {bench_log(design, Condition::wingless, false, spaced_voltages(1.0, 4.0, 5), {Metric::current_rms})};
+  const FitResult blind = fit_bench(fit);
+  EXPECT_EQ(blind.parameters[0].undetermined, Undetermined::without_influence);
 }
 
 TEST(BenchFit, TruthLiesInsideTheIntervals) {

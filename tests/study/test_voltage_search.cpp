@@ -6,6 +6,7 @@
 #include <ctime>
 #include <random>
 
+#include "vehicle/hinged_design.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/report/describe.hpp"
@@ -185,6 +186,35 @@ Traced trace(const Vehicle<double>& vehicle, double low, double high, int count)
 }
 
 // Two hundred voltages each, solved by batches, show the first crossing and the peak that the search has to find.
+// Derivatives by the voltage reach over impacts, so that a few orbits do; without a spring on their hinges the wings do
+// not settle at low voltages, which must cost no simulations.
+TEST(LiftSearch, WingsThatPitchReachItByTheirAmplitude) {
+  for (const bool loose : {false, true}) {
+    Design<double> d = hinged_design(loose ? 1e-5 : 3e-4);
+    if (loose) d.pitch.stop = 0.5;
+    int simulations = 0;
+    const StartUp counted = [&](const Vehicle<double>& v) {
+      ++simulations;
+      return start_up_in_time()(v);
+    };
+    Vehicle<double> v = resolve(d);
+    const double target = 0.03;
+    const FrequencySearch found = find_voltage_for_lift(v, target, {}, counted, {.nominal = d.supply.voltage});
+    ASSERT_EQ(found.outcome, FrequencyOutcome::reached) << describe(found.finding);
+    EXPECT_LT(found.evaluations, loose ? 60 : 25);
+    EXPECT_EQ(simulations, 0);
+    v.voltage = found.voltage;
+    const SteadyFlapping there = find_steady_flapping(v, {.tolerance = 1e-8}, start_up_in_time());
+    EXPECT_NEAR(there.metrics[Metric::lift_mean] / target, 1.0, 1e-5);
+    for (int n = 1; n < 10; ++n) {
+      v.voltage = 0.1 * n * found.voltage;
+      const SteadyFlapping below = find_steady_flapping(v, {}, start_up_in_time());
+      if (below.status != FlappingStatus::flapping) continue;
+      EXPECT_LT(below.metrics[Metric::lift_mean], target) << v.voltage;
+    }
+  }
+}
+
 TEST(LiftSearch, AgreesWithTwoHundredVoltagesOnRandomVehicles) {
   std::mt19937_64 random(20261121);
   std::uniform_real_distribution<double> share(-2.0, 0.6);  // decades

@@ -9,28 +9,53 @@
 #include <utility>
 #include <vector>
 
+#include "wingbeat/core/members.hpp"
 #include "wingbeat/cycle/orbit_gradient.hpp"
+#include "wingbeat/cycle/pitch_metrics.hpp"
 #include "wingbeat/cycle/record.hpp"
 #include "wingbeat/solve/linear.hpp"
 
 namespace wingbeat {
 
-/// The recorded cycle of any system with its switches where the signs change, and its repetition on dual numbers, whose
-/// slots are those of orbit_gradient.hpp.
+/// What is a metric of wings that pitch alone, with derivatives; see PitchMetrics.
+struct PitchGradient {
+  GradientJet amplitude;                                 ///< [rad]
+  GradientJet phase;                                     ///< [rad]
+  GradientJet angle_of_attack_min, angle_of_attack_max;  ///< [rad]
+};
+
+/// The recorded cycle of any system with its switches where the signs change, and its repetition on dual numbers. Those
+/// that it gives have the slots of orbit_gradient.hpp; within, the slots behind the states are shifted where a system
+/// has more states than those leave room for.
 template <class System>
 class CycleGradient {
  public:
   using J = GradientJet;
-  using Jets = decltype(std::declval<System>().template cast<J>());
-  using Along = decltype(std::declval<System>().template cast<Jet<1>>());
   using State = typename System::State;
-  using JetState = typename Jets::State;
   static constexpr int N = int(std::tuple_size_v<State>);
-  static_assert(N <= gradient_first_slot);
+  /// A crank's voltage has a slot of its own; that of a direct drive may be a state's.
+  static constexpr int shift = std::max(0, N - (System::has_rod ? gradient_voltage_slot : gradient_first_slot));
+  static constexpr int slots = gradient_slots + shift;
+  using W = Jet<slots>;
+  using Jets = decltype(std::declval<System>().template cast<W>());
+  using Along = decltype(std::declval<System>().template cast<Jet<1>>());
+  using JetState = typename Jets::State;
+  static constexpr bool pitching = requires { System::pitch; };
 
-  CycleGradient(const RecordedCycle<System>& recorded, const decltype(Jets::vehicle)& vehicle)
-      : system_(recorded.system), cycle_(recorded.cycle), jets_(recorded.system.template cast<J>()) {
-    jets_.vehicle = vehicle;
+  CycleGradient(const RecordedCycle<System>& recorded,
+                const decltype(std::declval<System>().template cast<GradientJet>().vehicle)& vehicle)
+      : system_(recorded.system),
+        cycle_(recorded.cycle),
+        jets_(recorded.system.template cast<W>()),
+        motors_(vehicle.motors) {
+    if constexpr (shift == 0) {
+      jets_.vehicle = vehicle;
+    } else {
+      std::vector<W> numbers;
+      for_each_number(vehicle, [&](const J& x) { numbers.push_back(shifted(x)); });
+      std::size_t n = 0;
+      for_each_number(jets_.vehicle, [&](W& x) { x = numbers[n++]; });
+    }
     sharpen();
     for (auto& constant : absent_slots_) constant = false;
     if (!(recorded.system.vehicle.motor.armature_inductance > 0.0)) {
@@ -47,21 +72,26 @@ class CycleGradient {
   /// One cycle from the orbit's start, its states in the first slots. False where the fixed point is singular.
   bool run() {
     JetState y;
-    for (int n = 0; n < N; ++n) y[n] = J(cycle_.steps.front().y[n], n);
-    totals_.fill(J(0.0));
+    for (int n = 0; n < N; ++n) y[n] = W(cycle_.steps.front().y[n], n);
+    totals_.fill(W(0.0));
     starts_.reserve(cycle_.steps.size());
+    if constexpr (pitching) ends_.reserve(cycle_.steps.size());
     for (std::size_t at = 0; at < cycle_.steps.size(); ++at) {
       const auto& step = cycle_.steps[at];
+      if constexpr (pitching) {
+        if (impact_before(at)) impact_loss_ += impact_energy(at, y);
+      }
       solver::reset_map<true>(jets_, cycle_.steps, at, y, &totals_);
       starts_.push_back(y);
       const auto signs = solver::signs_of<Jets>(step);
-      const auto first = jets_.template rates<true>(J(step.x), y, signs);
-      const auto result = solver::take_step<true>(cycle_.method, jets_, J(step.x), y, J(step.h), signs, first);
+      const auto first = jets_.template rates<true>(W(step.x), y, signs);
+      const auto result = solver::take_step<true>(cycle_.method, jets_, W(step.x), y, W(step.h), signs, first);
       for (std::size_t q = 0; q < totals_.size(); ++q) totals_[q] += result.dq[q];
       y = result.y;
+      if constexpr (pitching) ends_.push_back(y);
     }
     // (I - M) dy/dp = dP/dp, one right-hand side per slot behind the states.
-    for (int k = N; k < gradient_slots; ++k) {
+    for (int k = N; k < slots; ++k) {
       double matrix[N * N], change[N];
       for (int row = 0; row < N; ++row) {
         for (int column = 0; column < N; ++column) {
@@ -76,13 +106,13 @@ class CycleGradient {
   }
 
   /// The total derivative: that of the start added, the slots of the states emptied.
-  J total(J x) const {
-    for (int k = N; k < gradient_slots; ++k) {
+  J total(W x) const {
+    J of(x.a);
+    for (int k = N; k < slots; ++k) {
       for (int n = 0; n < N; ++n) x.v[k] += x.v[n] * start_change_[n][k];
-      if (absent_slots_[k]) x.v[k] = absent;
+      of.v[k - shift] = absent_slots_[k - shift] ? absent : x.v[k];
     }
-    for (int n = 0; n < N; ++n) x.v[n] = 0.0;
-    return x;
+    return of;
   }
 
   CycleIntegrals<J> integrals() const {
@@ -97,12 +127,47 @@ class CycleGradient {
     const std::array<PeakLocation, extreme_count> places = locate();
     for (const Extreme e : System::extremes) {
       const auto c = std::size_t(e);
-      const JetState y = state_at(places[c].step, places[c].x);
-      const auto signs = solver::signs_of<Jets>(cycle_.steps[places[c].step]);
-      const Motion<J> m = jets_.motion(J(places[c].x), y, signs);
+      const PeakLocation& place = places[c];
+      const auto signs = solver::signs_of<Jets>(cycle_.steps[place.step]);
+      W x(place.x);
+      JetState y;
+      if constexpr (pitching) y = state_on(place, x);
+      else y = state_at(place.step, place.x);
+      const Motion<W> m = jets_.motion(x, y, signs);
       peaks[c] = total(jets_.candidates(m, y, signs)[c]);
     }
     return peaks;
+  }
+
+  /// Mean loss in damping and stops of all hinges [W].
+  J hinge_power() const
+    requires pitching
+  {
+    return total((totals_[System::hinge_work] + impact_loss_) / totals_[std::size_t(Integral::time)]);
+  }
+
+  /// What pitch_metrics() finds on plain numbers.
+  PitchGradient pitch_gradient() const
+    requires pitching
+  {
+    std::array<W, 2> psi, alpha;  // least and largest
+    for (std::size_t n = 0; n < cycle_.steps.size(); ++n) {
+      const double way = System::stroke_sign(cycle_.steps[n].signs);
+      for (const std::size_t at : {n, n + 1}) {
+        const W pitch = pitch_at_start(at), attack = 0.5 * pi + way * pitch;
+        const bool first = n == 0 && at == 0;
+        if (first || pitch < psi[0]) psi[0] = pitch;
+        if (first || pitch > psi[1]) psi[1] = pitch;
+        if (first || attack < alpha[0]) alpha[0] = attack;
+        if (first || attack > alpha[1]) alpha[1] = attack;
+      }
+    }
+    PitchGradient of;
+    of.amplitude = total(0.5 * (psi[1] - psi[0]));
+    of.angle_of_attack_min = total(alpha[0]);
+    of.angle_of_attack_max = total(alpha[1]);
+    of.phase = total(phase_of_pitch(totals_[std::size_t(Integral::time)]));
+    return of;
   }
 
   GradientInstant instant(double theta) const {
@@ -110,12 +175,12 @@ class CycleGradient {
     while (n > 0 && cycle_.steps[n].x > theta) --n;
     const JetState y = state_at(n, theta);
     const auto signs = solver::signs_of<Jets>(cycle_.steps[n]);
-    const Motion<J> m = jets_.motion(J(theta), y, signs);
+    const Motion<W> m = jets_.motion(W(theta), y, signs);
     return {total(jets_.shaft_speed(y)),
             total(m.current),
             total(m.stroke_velocity),
             total(m.aero.lift),
-            System::has_rod ? total(m.rod_force) / jets_.vehicle.motors : J(absent),
+            System::has_rod ? total(m.rod_force) / motors_ : J(absent),
             total(m.motor_torque)};
   }
 
@@ -123,18 +188,126 @@ class CycleGradient {
   struct PeakLocation {
     std::size_t step;
     double x;
+    bool at_end = false;  ///< of the step
   };
   struct Sample {
     double x;
     CycleExtremes<Jet<1>> value;  ///< with the derivative along the solution
   };
 
+  /// A number in the slots that are used within.
+  static W shifted(const J& x) {
+    W of(x.a);
+    for (int k = N - shift; k < gradient_slots; ++k) of.v[k + shift] = x.v[k];
+    return of;
+  }
+
   JetState state_at(std::size_t step, double x) const {
     const auto& s = cycle_.steps[step];
     if (x == s.x) return starts_[step];
     const auto signs = solver::signs_of<Jets>(s);
-    const auto first = jets_.template rates<false>(J(s.x), starts_[step], signs);
-    return solver::take_step<false>(cycle_.method, jets_, J(s.x), starts_[step], J(x - s.x), signs, first).y;
+    const auto first = jets_.template rates<false>(W(s.x), starts_[step], signs);
+    return solver::take_step<false>(cycle_.method, jets_, W(s.x), starts_[step], W(x - s.x), signs, first).y;
+  }
+
+  /// True where step n begins with an impact on a stop.
+  bool impact_before(std::size_t n) const {
+    return n > 0 && cycle_.steps[n - 1].signs[System::impacts] != cycle_.steps[n].signs[System::impacts];
+  }
+
+  /// By how much the place where step n begins moves: a sign changes there, of a switch on the branch before.
+  W move_of_node(std::size_t n) const {
+    constexpr std::size_t switches = std::tuple_size_v<typename System::Switches>;
+    if (n == 0 || n >= cycle_.steps.size()) return W(0.0);
+    const auto& before = cycle_.steps[n - 1];
+    const auto& after = cycle_.steps[n];
+    std::size_t which = switches;
+    for (std::size_t k = switches; k-- > 0;) {
+      if (before.signs[k] != after.signs[k]) which = k;
+    }
+    if (impact_before(n) || before.signs[System::held] != after.signs[System::held]) which = System::stop;
+    if (which == switches) return W(0.0);
+    const JetState& y = ends_[n - 1];
+    const auto signs = solver::signs_of<Jets>(before);
+    const W value = jets_.template rates<false>(W(after.x), y, signs).switches[which];
+    State at;
+    for (int i = 0; i < N; ++i) at[i] = y[i].a;
+    const State dy = system_.template rates<false>(after.x, at, before.signs).dy;
+    const double slope =
+        along_.template rates<false>(Jet<1>(after.x, 0), moving(at, dy), solver::signs_of<Along>(before))
+            .switches[which]
+            .v[0];
+    W move(0.0);
+    move.v = -value.v / slope;
+    return move;
+  }
+
+  /// The state at a peak, and in `x` where it is: a peak at the end of a branch, where the value may be kinked or jump,
+  /// moves with that.
+  JetState state_on(const PeakLocation& place, W& x) const {
+    const auto& step = cycle_.steps[place.step];
+    const bool at_start = place.x == step.x;
+    if (!place.at_end && !at_start) return state_at(place.step, place.x);
+    const W move = move_of_node(at_start ? place.step : place.step + 1);
+    JetState y = at_start ? starts_[place.step] : ends_[place.step];
+    const auto dy = jets_.template rates<false>(x, y, solver::signs_of<Jets>(step)).dy;
+    for (int n = 0; n < N; ++n) y[n] += dy[n] * move;
+    x += move;
+    return y;
+  }
+
+  /// What the impact takes with which step n begins [J]; y: the state before it, next to the stop.
+  W impact_energy(std::size_t n, JetState y) const {
+    const W x(cycle_.steps[n].x);
+    const auto dy = jets_.template rates<false>(x, y, solver::signs_of<Jets>(cycle_.steps[n - 1])).dy;
+    const W stop = pitch_stops::side<Jets>(y) * jets_.vehicle.pitch.hinge.stop;
+    const W late = (stop - y[System::pitch]) / dy[System::pitch];
+    for (int i = 0; i < N; ++i) y[i] += dy[i] * late;
+    return pitch_stops::impact_at(jets_, W(x + late), y).energy;
+  }
+
+  /// psi [rad] where step n begins, at a reversal of a stroke whose velocity is a state at the reversal itself.
+  W pitch_at_start(std::size_t n) const {
+    constexpr std::size_t psi = System::pitch;
+    if (n == cycle_.steps.size()) return ends_.back()[psi];
+    if constexpr (requires { System::velocity; }) {
+      const auto& step = cycle_.steps[n];
+      if (n > 0 && step.signs[System::velocity] != cycle_.steps[n - 1].signs[System::velocity]) {
+        const auto& dy = step.first.dy;
+        return starts_[n][psi] - dy[psi] / dy[System::shaft] * starts_[n][System::shaft];
+      }
+    }
+    return starts_[n][psi];
+  }
+
+  /// Of the first harmonics in time, as in pitch_metrics().
+  W phase_of_pitch(const W& period) const {
+    W stroke_cosine(0.0), stroke_sine(0.0), pitch_cosine(0.0), pitch_sine(0.0), time(0.0);
+    for (std::size_t n = 0; n < cycle_.steps.size(); ++n) {
+      const auto& step = cycle_.steps[n];
+      const auto signs = solver::signs_of<Jets>(step);
+      const auto first = jets_.template rates<true>(W(step.x), starts_[n], signs);
+      const auto along = [&](double h) {
+        return solver::take_step<true>(cycle_.method, jets_, W(step.x), starts_[n], W(h), signs, first);
+      };
+      for (std::size_t k = 0; k < detail::gauss_nodes.size(); ++k) {
+        const double h = 0.5 * (1.0 + detail::gauss_nodes[k]) * step.h;
+        const auto inside = along(h);
+        const W x(step.x + h), t = time + inside.dq[std::size_t(Integral::time)];
+        const W dt = jets_.template rates<true>(x, inside.y, signs).dq[std::size_t(Integral::time)];
+        const W weight = 0.5 * step.h * detail::gauss_weights[k] * dt, angle = two_pi * t / period;
+        const W cosine = weight * cos(angle), sine = weight * sin(angle);
+        const W stroke = jets_.stroke_angle(x, inside.y);
+        stroke_cosine += cosine * stroke;
+        stroke_sine += sine * stroke;
+        pitch_cosine += cosine * inside.y[System::pitch];
+        pitch_sine += sine * inside.y[System::pitch];
+      }
+      time += along(step.h).dq[std::size_t(Integral::time)];
+    }
+    // The pitch that opposes the stroke velocity is along -j stroke.
+    return atan2(pitch_cosine * stroke_cosine + pitch_sine * stroke_sine,
+                 pitch_sine * stroke_cosine - pitch_cosine * stroke_sine);
   }
 
   /// The state with its derivative along the solution.
@@ -188,8 +361,13 @@ class CycleGradient {
     for (std::size_t n = 0; n < cycle_.steps.size(); ++n) {
       const auto& step = cycle_.steps[n];
       const bool last = n + 1 == cycle_.steps.size();
-      const State& y1 = last ? cycle_.end : cycle_.steps[n + 1].y;
-      const State& dy1 = last ? cycle_.steps.front().first.dy : cycle_.steps[n + 1].first.dy;
+      State y1 = last ? cycle_.end : cycle_.steps[n + 1].y;
+      State dy1 = last ? cycle_.steps.front().first.dy : cycle_.steps[n + 1].first.dy;
+      if constexpr (pitching) {
+        const double x1 = step.x + step.h;
+        if (!last && impact_before(n + 1)) y1 = solver::evaluate_inside<false>(system_, cycle_, step, x1).y;
+        dy1 = system_.template rates<false>(x1, y1, step.signs).dy;
+      }
       Sample before{};
       for (int k = 0; k <= pieces; ++k) {
         const double t = double(k) / pieces;
@@ -199,9 +377,9 @@ class CycleGradient {
         for (const Extreme e : System::extremes) {
           const auto c = std::size_t(e);
           const Jet<1>& v = sample.value[c];
-          if ((k == 0) && v.a > highest[c]) {
+          if ((k == 0 || (pitching && k == pieces)) && v.a > highest[c]) {
             highest[c] = v.a;
-            best[c] = {n, sample.x};
+            best[c] = {n, sample.x, k == pieces};
           }
           const Jet<1>& u = before.value[c];
           if (k == 0 || !(u.v[0] > 0.0 && v.v[0] <= 0.0)) continue;
@@ -257,10 +435,13 @@ class CycleGradient {
   System system_;
   solver::Iterate<System> cycle_;
   Jets jets_;
+  J motors_;
   Along along_ = system_.template cast<Jet<1>>();
-  CycleIntegrals<J> totals_;
+  typename Jets::Quadrature totals_;
   std::vector<JetState> starts_;
-  double start_change_[N][gradient_slots] = {};
+  std::vector<JetState> ends_;  ///< of the steps, of wings that pitch
+  W impact_loss_ = W(0.0);
+  double start_change_[N][slots] = {};
   bool absent_slots_[gradient_slots];
 };
 

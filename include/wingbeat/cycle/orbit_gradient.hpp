@@ -8,6 +8,8 @@
 // Steps and branches stay frozen although the parameters move the places where the rod force or the stored power
 // changes sign. That is exact: the right-hand side and the integrands are continuous there, so a moving boundary adds
 // nothing to a first derivative. It must lie where the sign changes, though: the recorded nodes are moved there first.
+// An impact on a stop moves the state, and the place where it does moves: its saltation matrix is a part of dP/dy and
+// dP/dp, and what jumps there is differentiated where it goes.
 // A motor that heats up has its temperatures from a fixed point around the orbit, which is closed in the same way.
 // The derivatives are about as accurate as the orbit. Peaks are differentiated at their fixed place (envelope theorem).
 #pragma once
@@ -23,7 +25,7 @@
 namespace wingbeat {
 
 /// Parameters differentiated side by side. A dual number also carries the states: two and the voltage, or the three of
-/// a direct drive with inductance.
+/// a direct drive with inductance. Systems with more states have wider ones of their own (cycle_gradient.hpp).
 inline constexpr int gradient_parameters = 5;
 inline constexpr int gradient_voltage_slot = 2;
 inline constexpr int gradient_first_slot = 3;
@@ -51,9 +53,12 @@ GradientVehicle gradient_vehicle(const Design<GradientJet>& design, Condition co
 
 struct GradientOptions {
   Held held = Held::voltage;
-  bool peaks = true;  ///< false: the metrics that are peaks keep their values, their derivatives are absent
+  bool peaks = true;  ///< false: the metrics that are peaks (is_peak()) have values alone, their derivatives are absent
   std::span<const double> crank_angles = {};  ///< instants of the cycle wanted, 0 to 2 pi [rad]
 };
+
+/// True of metrics whose derivatives cost a search for peaks along the cycle, or as much.
+bool is_peak(Metric which, const Drive& drive);
 
 /// One instant of the cycle at a fixed crank angle, in the order of WaveformRow.
 struct GradientInstant {
@@ -70,8 +75,7 @@ struct GradientInstant {
 struct OrbitGradient {
   Metrics<GradientJet> metrics;
   std::vector<GradientInstant> instants;
-  /// False: I - dP/dy (or df/dv) is singular, the derivatives do not exist; or the wings pitch on a hinge, for which
-  /// there are none.
+  /// False: I - dP/dy (or df/dv) is singular, the derivatives do not exist.
   bool regular = true;
 };
 

@@ -34,6 +34,12 @@ inline void set_pitch_metrics(const PitchMetrics& pitching, Metrics<double>& m) 
 
 namespace detail {
 
+/// Gauss's rule of five points on -1 to 1.
+inline constexpr std::array gauss_nodes = {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831,
+                                           0.9061798459386640};
+inline constexpr std::array gauss_weights = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889,
+                                             0.4786286704993665, 0.2369268850561891};
+
 /// psi [rad] at the start of step n of a cycle, at its end where there is no step n. Where steps meet at a reversal of
 /// a stroke whose velocity is a state, at the reversal itself: switches are located to the square root of the
 /// tolerance, which is enough for the solution, but the angle of attack jumps there.
@@ -74,10 +80,9 @@ PitchMetrics pitch_metrics(const System& system, const solver::Iterate<System>& 
   m.hinge_power /= period;
   m.amplitude = 0.5 * (highest - lowest);
 
-  // Integrals of stroke and pitch times exp(-j w t), by Gauss's rule of five points on each step.
-  constexpr std::array nodes = {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640};
-  constexpr std::array weights = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
-                                  0.2369268850561891};
+  // Integrals of stroke and pitch times exp(-j w t), by Gauss's rule on each step.
+  constexpr const auto& nodes = detail::gauss_nodes;
+  constexpr const auto& weights = detail::gauss_weights;
   std::complex<double> stroke = 0.0, pitching = 0.0;
   double time = 0.0;
   for (const auto& step : cycle.steps) {
