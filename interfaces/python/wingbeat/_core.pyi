@@ -1,6 +1,9 @@
 from collections.abc import Callable, Sequence
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
+
 version: str
 
 class Design:
@@ -63,3 +66,22 @@ def sweep(
     force: bool,
     progress: Callable[[int, int], object] | None,
 ) -> None: ...
+
+class EquationsOfMotion:
+    def __init__(self, design: Design, condition: str) -> None: ...
+    def state_names(self) -> list[str]: ...
+    def rates(self, time: float, state: Any, voltage: float | None) -> npt.NDArray[np.float64]: ...
+
+def endurance(design: Design, allow_extrapolation: bool) -> dict[str, Any]: ...
+def identify_motor(
+    file: str, frequency: float | None, assume_steel_cylinder: bool, assume_typical_damping: bool, shaft: str
+) -> dict[str, Any]: ...
+def fit(file: str, overrides: Sequence[str], profiles: bool, compare_friction: bool) -> dict[str, Any]: ...
+def tolerance(
+    file: str,
+    overrides: Sequence[str],
+    allow_extrapolation: bool,
+    threads: int,
+    progress: Callable[[int, int], object] | None,
+) -> dict[str, Any]: ...
+def optimise(file: str, overrides: Sequence[str], allow_extrapolation: bool, threads: int) -> dict[str, Any]: ...
