@@ -149,8 +149,8 @@ std::string describe(const EnduranceResult& r) {
       const double amplitude = last.metrics[Metric::voltage];
       if (last.time > 0.0) {
         return fmt::format(
-            "the battery's terminal voltage falls to the amplitude of the bridge's sine, {:.4g} V, after {:.4g} s, at a "
-            "charge of {:.4g}",
+            "the battery's terminal voltage falls to the amplitude of the bridge's sine, {:.4g} V, after {:.4g} s, "
+            "at a charge of {:.4g}",
             amplitude, last.time, last.charge);
       }
       if (std::isnan(v)) {

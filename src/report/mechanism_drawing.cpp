@@ -51,14 +51,14 @@ class MechanismSketch {
     see({p.x - radius, p.y - radius});
     see({p.x + radius, p.y + radius});
     joints_ += fmt::format(
-        "set object circle at {:.6g},{:.6g} size {:.6g} front fillcolor rgb '{}' fillstyle solid border lc rgb '#202020' "
-        "lw 0.8\n",
+        "set object circle at {:.6g},{:.6g} size {:.6g} front fillcolor rgb '{}' fillstyle solid border "
+        "lc rgb '#202020' lw 0.8\n",
         p.x, p.y, radius, fill);
   }
   void box(const MechanismPoint& p, double half, const char* fill) {
     joints_ += fmt::format(
-        "set object rectangle from {:.6g},{:.6g} to {:.6g},{:.6g} front fillcolor rgb '{}' fillstyle solid border lc rgb "
-        "'#202020' lw 0.6\n",
+        "set object rectangle from {:.6g},{:.6g} to {:.6g},{:.6g} front fillcolor rgb '{}' fillstyle solid border "
+        "lc rgb '#202020' lw 0.6\n",
         p.x - half, p.y - half, p.x + half, p.y + half, fill);
   }
   /// A name beside a point, `anchor` as gnuplot has it.

@@ -45,22 +45,26 @@ void plot_cycle(std::span<const WaveformRow> rows, const Design<double>& design,
   const Vehicle<double> vehicle = resolve(design);
   const std::string force = internal_force_name(vehicle.transmission.type);
 
-  // The mechanism stands above the waveforms; both heights in inches.
-  constexpr double page_width = 3.5, mechanism_height = 1.9, page_height = 5.45 + mechanism_height;
-  constexpr double waveforms = 1.0 - mechanism_height / page_height;  ///< their share of the page
+  const bool pitching = std::isfinite(rows.front().pitch_angle);
+
+  // The mechanism stands above the panels of waveforms; heights in inches.
+  constexpr double page_width = 3.5, mechanism_height = 1.9, panel_height = 0.987, gap = 0.283, above = 0.245,
+                   below = 0.409;
+  const int panels = pitching ? 5 : 4;
+  const double waveforms = above + panels * panel_height + (panels - 1) * gap + below,
+               page_height = waveforms + mechanism_height;
   Figure figure(format, page_width, page_height);
   figure.add("$cycle << END\n");
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const WaveformRow& r = rows[k];
-    figure.add("{} {} {} {} {} {} {} {}\n", time_scale * (r.time - rows.front().time),
+    figure.add("{} {} {} {} {} {} {} {} {} {}\n", time_scale * (r.time - rows.front().time),
                degrees_per_radian * r.stroke_angle, r.flapping_velocity, lift_scale * r.lift,
                rod ? r.rod_force : 1e3 * r.current, power_scale * r.power_electrical, power_scale * r.power_motor,
-               power_scale * r.power_aerodynamic);
+               power_scale * r.power_aerodynamic, pitching ? degrees_per_radian * r.pitch_angle : 0.0,
+               r.angle_of_attack_deg);
   }
   // Margins of the page, in its fractions.
   constexpr double left = 0.15, right = 0.85;
-  constexpr double top = 0.955 * waveforms, bottom = 0.075 * waveforms, gap = 0.052 * waveforms;
-  constexpr double height = (top - bottom - 3.0 * gap) / 4.0;
   figure.add("END\nset multiplot\n");
   figure.text(title, 8.0, fmt::format("screen 0.5,{} center", 1.0 - 0.1 / page_height));
   figure.text(mechanism_caption(vehicle), 7.0, fmt::format("screen 0.5,{} center", 1.0 - 0.28 / page_height));
@@ -68,7 +72,7 @@ void plot_cycle(std::span<const WaveformRow> rows, const Design<double>& design,
   draw_mechanism_panel(figure, vehicle, stroke,
                        {.left = law ? left : 0.03,
                         .right = law ? right : 0.97,
-                        .bottom = waveforms + (law ? 0.25 : 0.06) / page_height,
+                        .bottom = (waveforms + (law ? 0.25 : 0.06)) / page_height,
                         .top = 1.0 - 0.4 / page_height,
                         .page_width = page_width,
                         .page_height = page_height});
@@ -76,17 +80,22 @@ void plot_cycle(std::span<const WaveformRow> rows, const Design<double>& design,
   figure.add("set lmargin at screen {}\nset rmargin at screen {}\nset xrange [0:{}]\n", left, right,
              time_scale * period);
   double key_height = 0.0;
-  const auto panel = [&](int index, const std::string& name) {
-    if (index > 0) figure.next_panel();
-    const double panel_top = top - index * (height + gap);
-    key_height = panel_top + 0.014 * waveforms;
-    figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", panel_top, panel_top - height);
-    figure.add("set format x {}\n", index == 3 ? "'%g'" : "''");
-    figure.text(name, 7.5, fmt::format("screen 0.026,{} center rotate by 90", panel_top - 0.5 * height));
+  int drawn = 0;
+  double middle = 0.0;  ///< of the panel's height
+  const auto panel = [&](const std::string& name) {
+    if (drawn > 0) figure.next_panel();
+    const double panel_top = waveforms - above - drawn * (panel_height + gap);
+    ++drawn;
+    key_height = (panel_top + 0.0763) / page_height;
+    middle = (panel_top - 0.5 * panel_height) / page_height;
+    figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", panel_top / page_height,
+               (panel_top - panel_height) / page_height);
+    figure.add("set format x {}\n", drawn == panels ? "'%g'" : "''");
+    figure.text(name, 7.5, fmt::format("screen 0.026,{} center rotate by 90", middle));
   };
 
-  panel(0, "stroke angle (deg)");
-  figure.text("velocity (rad/s)", 7.5, fmt::format("screen 0.974,{} center rotate by 90", top - 0.5 * height));
+  panel("stroke angle (deg)");
+  figure.text("velocity (rad/s)", 7.5, fmt::format("screen 0.974,{} center rotate by 90", middle));
   figure.key_entry(left, key_height, blue_solid, "stroke angle");
   figure.key_entry(left + 0.28, key_height, vermillion_dashed, "flapping velocity (right)");
   figure.add("set y2tics nomirror out scale 0.5\nset border 11\n");
@@ -94,21 +103,28 @@ void plot_cycle(std::span<const WaveformRow> rows, const Design<double>& design,
              vermillion_dashed);
   figure.add("unset y2tics\nset border 3\n");
 
+  if (pitching) {
+    panel("pitch (deg)");
+    figure.key_entry(left, key_height, blue_solid, "pitch angle");
+    figure.key_entry(left + 0.28, key_height, vermillion_dashed, "angle of attack");
+    figure.add("plot $cycle using 1:9 with lines {}, '' using 1:10 with lines {}\n", blue_solid, vermillion_dashed);
+  }
+
   const char* lift_unit = lift_in_newton ? "N" : "mN";
-  panel(1, fmt::format("lift ({})", lift_unit));
+  panel(fmt::format("lift ({})", lift_unit));
   figure.key_entry(left, key_height, blue_solid, "lift of all wings");
   figure.key_entry(left + 0.36, key_height, vermillion_dashed,
                    fmt::format("mean, {:.4g} {}", lift_scale * lift_mean, lift_unit));
   figure.add("plot $cycle using 1:4 with lines {}, {} with lines {}\n", blue_solid, lift_scale * lift_mean,
              vermillion_dashed);
 
-  panel(2, rod ? force + " (N)" : "current (mA)");
+  panel(rod ? force + " (N)" : "current (mA)");
   figure.key_entry(left, key_height, blue_solid, rod ? force + ", above 0 raises the stroke angle" : "current");
   figure.add("plot $cycle using 1:5 with lines {}\n", blue_solid);
 
-  panel(3, power_in_watt ? "power (W)" : "power (mW)");
+  panel(power_in_watt ? "power (W)" : "power (mW)");
   figure.text(in_seconds ? "time (s)" : "time (ms)", 7.5,
-              fmt::format("screen {},{} center", 0.5 * (left + right), 0.014 * waveforms));
+              fmt::format("screen {},{} center", 0.5 * (left + right), 0.0763 / page_height));
   figure.key_entry(left, key_height, black_dotted, "electrical");
   figure.key_entry(left + 0.205, key_height, blue_solid, "motor output");
   figure.key_entry(left + 0.465, key_height, vermillion_dashed, "aerodynamic");
@@ -136,13 +152,13 @@ void plot_powers(std::span<const PowerBar> bars, const std::string& title, PlotF
   const auto lost_in = [&](double EnergyAudit::* power) {
     return std::any_of(bars.begin(), bars.end(), [&](const PowerBar& bar) { return bar.audit.*power != 0.0; });
   };
-  // A direct drive has no gearbox, and wings pitch on hinges under direct drives alone.
-  const bool gearbox = lost_in(&EnergyAudit::gear);
-  if (gearbox || lost_in(&EnergyAudit::hinge)) {
-    parts.insert(parts.begin() + 2, gearbox ? Part{"gearbox", &EnergyAudit::gear, "#009e73", false, 0.0}
-                                            : Part{"hinges", &EnergyAudit::hinge, "#009e73", false, 0.0});
-    constexpr double key_x[] = {0.03, 0.174, 0.326, 0.492, 0.64, 0.862};
-    for (std::size_t n = 0; n < parts.size(); ++n) parts[n].key_x = key_x[n];
+  const bool gearbox = lost_in(&EnergyAudit::gear), hinges = lost_in(&EnergyAudit::hinge);
+  if (hinges) parts.insert(parts.begin() + 2, {"hinges", &EnergyAudit::hinge, "#cc79a7", true, 0.0});
+  if (gearbox) parts.insert(parts.begin() + 2, {"gearbox", &EnergyAudit::gear, "#009e73", false, 0.0});
+  if (gearbox || hinges) {
+    constexpr double one_more[] = {0.03, 0.174, 0.326, 0.492, 0.64, 0.862},
+                     two_more[] = {0.01, 0.136, 0.27, 0.42, 0.553, 0.683, 0.878};
+    for (std::size_t n = 0; n < parts.size(); ++n) parts[n].key_x = gearbox && hinges ? two_more[n] : one_more[n];
   }
 
   double most = 0.0;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "study/voltage_trials.hpp"
+#include "wingbeat/core/root.hpp"
 
 namespace wingbeat {
 namespace {
@@ -19,6 +20,11 @@ Place frequency_at(const VoltageTrial& t) { return {t.voltage, t.frequency}; }
 
 /// Widest bracket of the lowest voltage at which a vehicle flaps, relative.
 constexpr double onset_width = 1e-5;
+/// Widest bracket, relative, in which a frequency may be found to jump. Closer to the voltage at which an orbit ceases
+/// to exist a start from rest lingers about it for longer and longer, up to seconds.
+constexpr double jump_width = 1e-4;
+/// Widest bracket of the voltage at which the range ends, relative.
+constexpr double border_width = 1e-4;
 
 class Search {
  public:
@@ -32,9 +38,14 @@ class Search {
       const VoltageTrial trial = trials_.at(voltage);
       if (trial.flaps) follow(trial);
       if (trial.flaps && std::abs(trial.frequency / target_ - 1.0) <= trials_.closeness()) return reached(trial);
+      if (trial.flaps && trial.inside && (!inside_ || trial.voltage > inside_->voltage)) inside_ = trial;
       if (trial.flaps && trial.frequency >= target_) {
+        before_high_ = high_;
         high_ = trial;
+      } else if (!trial.flaps && low_flaps() && high_ && width() < jump_width * high_->voltage) {
+        return jumps();  // between the orbits of either side
       } else if (trial.flaps || !low_flaps() || high_) {
+        before_low_ = low_;
         low_ = trial;
       } else {
         ceiling_ = trial;  // it flaps at a lower voltage, but no longer here
@@ -51,31 +62,49 @@ class Search {
   void follow(const VoltageTrial& t) {
     const double x = std::log(t.voltage), y = std::log(t.frequency);
     const double slope = (y - last_y_) / (x - last_x_);
-    if (std::abs(y - last_y_) > 10.0 * trials_.accuracy() && slope > 0.1 && slope < 10.0) slope_ = slope;
+    // A slope of more is that of a vehicle that has hardly started to flap, if it is not that of a jump past the
+    // target.
+    const bool one_side = (t.frequency < target_) == (last_y_ < std::log(target_));
+    const double steepest = low_flaps() && high_ && one_side ? 1e4 : 10.0;
+    if (std::abs(y - last_y_) > 10.0 * trials_.accuracy() && slope > 0.1 && slope < steepest) slope_ = slope;
     last_x_ = x;
     last_y_ = y;
   }
 
   bool low_flaps() const { return low_ && low_->flaps; }
+  double width() const { return high_->voltage - low_->voltage; }
+
+  /// Between low_ and high_, both of which flap, the frequency jumps past the target. Where an orbit ceases to exist
+  /// its frequency ends like a power of the voltage that is left, f = f_c - c (v_c - v)^p, p = 1/2 at a fold and 1/3 at
+  /// a cusp. By the secant s between two voltages on its side, of which v is the farther, it then still changes by no
+  /// more than s |v_c - v|/p. The target is beyond reach of either side by that with p = 1/4.
+  bool jumps_between() const {
+    if (!(width() < jump_width * high_->voltage)) return false;
+    const auto reaches = [&](const std::optional<VoltageTrial>& far, const VoltageTrial& near, double end) {
+      if (!far || !far->flaps) return true;
+      const double secant = std::abs((near.frequency - far->frequency) / (near.voltage - far->voltage));
+      return std::abs(target_ - near.frequency) <=
+             4.0 * secant * std::abs(end - far->voltage) + 100.0 * trials_.accuracy() * target_;
+    };
+    return !reaches(before_low_, *low_, high_->voltage) && !reaches(before_high_, *high_, low_->voltage);
+  }
 
   std::optional<FrequencySearch> decide(double lowest, double highest) {
+    // No higher voltage is inside, so that the answer is not, wherever it is.
+    if (low_flaps() && low_->beyond) return outside_domain(*low_);
     if (!high_) {
-      if (low_flaps() && low_->beyond) return outside_domain(*low_);
       if (low_->voltage >= highest) return low_->flaps ? too_high() : never_flaps();
       if (ceiling_ && ceiling_->voltage < 1.01 * low_->voltage) return too_high();
       return std::nullopt;
     }
     if (!low_) return high_->voltage > lowest ? std::nullopt : std::optional(too_low());
-    const double width = high_->voltage - low_->voltage;
-    if (!low_->flaps) return width < onset_width * high_->voltage ? std::optional(too_low()) : std::nullopt;
-    if (width > 4e-16 * high_->voltage) return std::nullopt;
+    if (!low_->flaps) return width() < onset_width * high_->voltage ? std::optional(too_low()) : std::nullopt;
+    if (jumps_between()) return jumps();
+    if (width() > 4e-16 * high_->voltage) return std::nullopt;
     // At the last bits of the voltage a smooth frequency is as close as its own rounding allows.
     const double gap = high_->frequency - low_->frequency;
     if (gap < (10.0 * trials_.accuracy() + 2.0 * trials_.closeness()) * target_) return reached(*high_);
-    SearchFinding finding = found(Finding::jumps);
-    finding.at = frequency_at(*high_);
-    finding.least = frequency_at(*low_);
-    return conclude(FrequencyOutcome::jumps, *high_, finding);
+    return jumps();
   }
 
   double next() {
@@ -86,9 +115,8 @@ class Search {
     if (!low_) return secant(*high_, 4.0);
     if (!low_->flaps) return 0.5 * (low_->voltage + high_->voltage);
     // The secant's step from the closer end, which the bracket bounds and halves where steps do not shrink it.
-    const double width = high_->voltage - low_->voltage;
-    const bool slow = width > 0.5 * bracket_;
-    bracket_ = width;
+    const bool slow = width() > 0.5 * bracket_;
+    bracket_ = width();
     const double middle = 0.5 * (low_->voltage + high_->voltage);
     if (slow && (stuck_ = !stuck_)) return middle;
     const VoltageTrial& from = target_ - low_->frequency < high_->frequency - target_ ? *low_ : *high_;
@@ -110,17 +138,33 @@ class Search {
     SearchFinding finding = found(Finding::out_of_range);
     finding.at = frequency_at(trial);
     finding.limits = trial.limits;
-    VoltageTrial outside = trial, inside = trial;
-    for (int n = 0; n < 40 && inside.flaps && !inside.inside; ++n) {
-      outside = inside;
-      inside = trials_.at(0.7 * inside.voltage);
+    VoltageTrial outside = trial;
+    for (int n = 0; n < 40 && !(inside_ && inside_->voltage < outside.voltage); ++n) {
+      const VoltageTrial lower = trials_.at(0.7 * outside.voltage);
+      if (!lower.flaps) break;
+      (lower.inside ? inside_.emplace() : outside) = lower;
     }
-    if (!inside.flaps || !inside.inside) return conclude(FrequencyOutcome::outside_domain, trial, finding);
-    while (outside.voltage - inside.voltage > 1e-4 * outside.voltage) {
-      const VoltageTrial middle = trials_.at(0.5 * (inside.voltage + outside.voltage));
-      if (!middle.flaps) break;
-      (middle.inside ? inside : outside) = middle;
+    if (!inside_ || !(inside_->voltage < outside.voltage)) {
+      return conclude(FrequencyOutcome::outside_domain, trial, finding);
     }
+    // Of the limits those count that are exceeded outside: others may be touched all along.
+    const auto margin = [limits = outside.excess](const VoltageTrial& t) {
+      double most = -1.0;
+      for (std::size_t k = 0; k < limits.size(); ++k) {
+        if (!(limits[k] <= 0.0)) most = std::isfinite(t.excess[k]) ? std::max(most, t.excess[k]) : 1.0;
+      }
+      return -most;
+    };
+    VoltageTrial inside = *inside_;
+    const auto margin_at = [&](double voltage) {
+      const VoltageTrial t = trials_.at(voltage);
+      if (!t.flaps) return -1.0;
+      if (!t.inside) return std::min(margin(t), -1e-12);
+      inside = t;
+      return std::max(margin(t), 0.0);
+    };
+    find_zero(margin_at, inside.voltage, margin(inside), outside.voltage, margin(outside),
+              border_width * outside.voltage);
     finding.most = frequency_at(inside);
     return conclude(FrequencyOutcome::outside_domain, inside, finding);
   }
@@ -131,6 +175,12 @@ class Search {
     finding.status = t.status;
     finding.evidence = t.evidence;
     return {FrequencyOutcome::reached, t.voltage, t.status, finding, trials_.count(), absent, absent};
+  }
+  FrequencySearch jumps() {
+    SearchFinding finding = found(Finding::jumps);
+    finding.at = frequency_at(*high_);
+    finding.least = frequency_at(*low_);
+    return conclude(FrequencyOutcome::jumps, *high_, finding);
   }
   FrequencySearch never_flaps() {
     SearchFinding finding = found(Finding::never_flaps);
@@ -167,11 +217,13 @@ class Search {
 
   VoltageTrials trials_;
   double target_;
-  std::optional<VoltageTrial> low_;           ///< slower than wanted, or not flapping
-  std::optional<VoltageTrial> high_;          ///< faster
-  std::optional<VoltageTrial> ceiling_;       ///< not flapping, above a low_ that flaps
-  double last_x_ = absent, last_y_ = absent;  ///< logarithms of the last trial's voltage and frequency
-  double slope_ = 1.0;                        ///< d ln f / d ln v
+  std::optional<VoltageTrial> low_;                       ///< slower than wanted, or not flapping
+  std::optional<VoltageTrial> high_;                      ///< faster
+  std::optional<VoltageTrial> before_low_, before_high_;  ///< what low_ and high_ were before
+  std::optional<VoltageTrial> inside_;                    ///< highest voltage known to be inside the range
+  std::optional<VoltageTrial> ceiling_;                   ///< not flapping, above a low_ that flaps
+  double last_x_ = absent, last_y_ = absent;              ///< logarithms of the last trial's voltage and frequency
+  double slope_ = 1.0;                                    ///< d ln f / d ln v
   double bracket_ = std::numeric_limits<double>::infinity();
   bool stuck_ = false;
 };

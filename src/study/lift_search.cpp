@@ -260,7 +260,8 @@ class LiftTrace {
   void find_border(VoltageTrial a, VoltageTrial b) {
     if (max_ && std::max(a.lift, b.lift) <= max_->lift) return;
     for (int n = 0; n < 20 && log_width(a, b) > 1e-6; ++n) {
-      const double guess = a.excess / (a.excess - b.excess);
+      const double from = detail::largest_excess(a), to = detail::largest_excess(b);
+      const double guess = from / (from - to);
       const bool usable = n % 3 != 2 && guess > 0.0 && guess < 1.0 && where_.range == SearchRange::domain;
       const VoltageTrial m = between(a, b, usable ? std::clamp(guess, 1e-3, 1.0 - 1e-3) : 0.5);
       if (!m.flaps) return;

@@ -48,18 +48,28 @@ VoltageTrial VoltageTrials::at(double voltage) {
       trial.lift_slope = lift_slope * voltage;
     }
   }
-  const DomainExcess excess = domain_excess(vehicle_, m);
+  DomainExcess excess = domain_excess(vehicle_, m);
   const bool domain = range_ == SearchRange::domain;
   const double alpha = m[Metric::angle_of_attack_min];
   const double flow = excess[std::size_t(DomainLimit::flow_speed)];
   const double heat = excess[std::size_t(DomainLimit::winding_temperature)];
   trial.beyond = domain ? alpha < angle_of_attack_lowest_deg || flow > 0.0 || heat > 0.0
                         : alpha < extrapolation_angle_deg || flow > extrapolation_flow_speed / flow_speed_max - 1.0;
-  trial.excess = -1.0;
-  for (const double e : excess) trial.excess = std::isfinite(e) ? std::max(trial.excess, e) : 1.0;
+  if (!domain) {
+    excess.fill(-1.0);
+    excess[std::size_t(DomainLimit::angle_of_attack)] = (extrapolation_angle_deg - alpha) / -extrapolation_angle_deg;
+    excess[std::size_t(DomainLimit::flow_speed)] = (flow + 1.0) * flow_speed_max / extrapolation_flow_speed - 1.0;
+  }
+  trial.excess = excess;
   trial.inside = domain ? domain_of(excess).none() : !trial.beyond;
   if (!trial.inside && domain) trial.limits = domain_evidence(vehicle_, m);
   return trial;
+}
+
+double largest_excess(const VoltageTrial& t) {
+  double largest = -1.0;
+  for (const double e : t.excess) largest = std::isfinite(e) ? std::max(largest, e) : 1.0;
+  return largest;
 }
 
 double unloaded_voltage(const Vehicle<double>& v, double omega, double friction_torque) {

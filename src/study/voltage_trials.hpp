@@ -20,7 +20,7 @@ struct VoltageTrial {
   double lift_peak = absent;           ///< [N]
   double lift_slope = absent;          ///< d lift / d ln v [N]
   double pitching = absent;            ///< 90 deg less the smallest angle of attack [deg]
-  double excess = absent;              ///< largest domain_excess()
+  DomainExcess excess = {};            ///< over each limit of the range, > 0 outside
   bool inside = false;                 ///< the range that is searched
   bool beyond = false;                 ///< so fast that no higher voltage can be inside
   std::vector<DomainEvidence> limits;  ///< of the domain, where they are exceeded
@@ -51,6 +51,9 @@ class VoltageTrials {
   double closeness_;
   int count_ = 0;
 };
+
+/// The largest of trial.excess; 1 where one is no number.
+double largest_excess(const VoltageTrial& trial);
 
 /// Turns the motor at omega [rad/s] against constant friction [N m] and its own damping alone [V].
 double unloaded_voltage(const Vehicle<double>& vehicle, double omega, double friction_torque);

@@ -12,18 +12,7 @@ constexpr double stiff_decays_per_period = 500.0;
 
 }  // namespace
 
-DirectModel::DirectModel(const Vehicle<double>& of) : vehicle(of) {
-  validate(vehicle.motor);
-  validate(vehicle.friction);
-  validate(vehicle.spring);
-  validate(vehicle.wings);
-  require(vehicle.voltage >= 0.0, "supply.amplitude", "must be >= 0", "V", vehicle.voltage);
-  require(vehicle.drive_frequency > 0.0, "supply.frequency", "must be > 0", "Hz", vehicle.drive_frequency);
-  w = two_pi * vehicle.drive_frequency;
-  period = 1.0 / vehicle.drive_frequency;
-  inductive = vehicle.motor.armature_inductance > 0.0;
-  coupled = inductive ? 3 : 2;
-}
+DirectModel::DirectModel(const Vehicle<double>& of) : DrivenShaft(of), coupled(inductive ? 3 : 2) {}
 
 void DirectModel::start(double beta, double speed, double current) {
   const Motor<double>& m = vehicle.motor;
@@ -31,20 +20,14 @@ void DirectModel::start(double beta, double speed, double current) {
   drive_torque = balance.drive_torque;
   holding_torque = balance.breakaway_torque;
   sticks = holding_torque > 0.0;
-
-  const double inertia = m.inertia + vehicle.wing_count * vehicle.wing_inertia;
-  const double natural = std::max(w, std::sqrt(vehicle.wing_count * vehicle.spring.stiffness / inertia));
   now = {};
   now.y[0] = beta;
   now.y[1] = speed;
   now.y[2] = inductive ? current : 0.0;
-  speed_scale = balance.responses.empty() ? std::max(0.0, drive_torque - holding_torque) / (inertia * w)
-                                          : std::abs(balance.responses.back().speed);
-  speed_scale = std::max({speed_scale, std::abs(now.y[1]), std::abs(now.y[0]) * natural});
-  if (!(speed_scale > 0.0)) speed_scale = 1.0;
-  stroke_scale = std::max(speed_scale / natural, std::abs(now.y[0]));
-  current_scale = std::max({drive_torque / m.torque_constant, std::abs(now.y[2]),
-                            1e-3 * m.torque_constant * speed_scale / m.armature_resistance});
+  const auto typical = typical_from(balance, beta, speed, now.y[2]);
+  stroke_scale = typical[0];
+  speed_scale = typical[1];
+  current_scale = typical[2];
 
   const double damping = m.viscous_damping + vehicle.friction.damping;
   fastest_decay = inductive ? std::max(m.armature_resistance / m.armature_inductance, damping / inertia)
@@ -116,6 +99,30 @@ void DirectModel::tolerated(double relative, const double* y, double* errors) co
 }
 
 bool DirectModel::stiff() const { return fastest_decay * period > stiff_decays_per_period; }
+
+std::optional<TransientEvent::Kind> DirectModel::interrupt() {
+  if (now.stuck) {
+    break_away();
+    return TransientEvent::Kind::breakaway;
+  }
+  come_to_rest();
+  return TransientEvent::Kind::standstill;
+}
+
+double DirectModel::largest_net_torque() const {
+  // The current is a sine and what remains of its start.
+  const Motor<double>& m = vehicle.motor;
+  const double Z = std::hypot(m.armature_resistance, w * m.armature_inductance);
+  const double lag = std::atan2(w * m.armature_inductance, m.armature_resistance);
+  const double remains = inductive ? std::abs(now.y[2] - vehicle.voltage / Z * std::sin(w * now.t - lag)) : 0.0;
+  return drive_torque + std::abs(springs_of(now.y[0])) + m.torque_constant * remains;
+}
+
+void DirectModel::put_state(TransientResult& in) const {
+  in.stroke_angle = now.y[0];
+  in.crank_speed = now.y[1];
+  in.current = current_of(now.t, now.y);
+}
 
 void DirectModel::come_to_rest() {
   now.y[1] = 0.0;

@@ -1,7 +1,6 @@
 #include "time/direct_transient.hpp"
 
 #include <cmath>
-#include <complex>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -9,10 +8,10 @@
 #include "time/direct_model.hpp"
 #include "time/integrator.hpp"
 #include "time/model_problem.hpp"
+#include "time/period_reading.hpp"
 #include "time/pitch_direct_model.hpp"
 #include "time/recorder.hpp"
 #include "time/transient_tools.hpp"
-#include "wingbeat/cycle/pitch_metrics.hpp"
 
 namespace wingbeat::detail {
 namespace {
@@ -38,14 +37,12 @@ class DirectStartUp {
   std::unique_ptr<Integrator> integrator(bool measuring);
 
   void advance(double until);
-  void come_to_rest();
   void step_taken(Integrator& steps, double from);
   WaveformRow row(double t, const double* y) const;
   void add_variation();
   void period_done();
   void settle(double closure, double change);
-  void note_pitching(Integrator& steps, double from);
-  void meet_or_leave_stop();
+  void interrupt();
   bool rests_for_good();
   bool creeps_to_rest();
   void begin_measuring();
@@ -81,8 +78,7 @@ class DirectStartUp {
   double travel_[2] = {}, last_travel_ = infinity;  ///< of this period: backwards, forwards; the longer of the last
   int creeping_ = 0;                                ///< periods so far
   double before_[5] = {};
-  PitchMetrics pitching_{};  ///< of this period, so far
-  double lowest_psi_ = 0.0, highest_psi_ = 0.0, impact_mark_ = 0.0;
+  PeriodReading<Model> reading_;
   std::vector<double> changes_;
 };
 
@@ -91,12 +87,7 @@ DirectStartUp<Model>::DirectStartUp(const Vehicle<double>& vehicle, const Transi
     : options_(options), model_(vehicle) {
   require(options.tolerance >= 1e-11 && options.tolerance <= 1e-2, "transient.tolerance",
           "must lie between 1e-11 and 1e-2", "1", options.tolerance);
-  if constexpr (Model::pitches) {
-    model_.start(
-        {options.crank_angle, options.crank_speed, options.pitch_angle, options.pitch_velocity, options.current});
-  } else {
-    model_.start(options.crank_angle, options.crank_speed, options.current);
-  }
+  model_.start_from(options);
   const auto typical = model_.typical();
   const double speed_scale = typical[1], current_scale = typical.back();
   const Motor<double>& m = model_.vehicle.motor;
@@ -118,12 +109,7 @@ DirectStartUp<Model>::DirectStartUp(const Vehicle<double>& vehicle, const Transi
     }
   };
   for (int k = 0; k < quadrature_count; ++k) quadrature_scale_[k] = model_.period * size(quadratures[k]);
-  if constexpr (Model::pitches) {
-    double* other = quadrature_scale_ + quadrature_count;
-    other[Model::hinge_work] = model_.period * power;
-    other[Model::stroke_cosine] = other[Model::stroke_sine] = model_.period * typical[0];
-    other[Model::pitch_cosine] = other[Model::pitch_sine] = model_.period * typical[2];
-  }
+  model_.other_scales(power, quadrature_scale_ + quadrature_count);
 }
 
 template <class Model>
@@ -145,17 +131,8 @@ std::unique_ptr<Integrator> DirectStartUp<Model>::integrator(bool measuring) {
   p.root_functions = [this, measuring](double t, const double* y, double* values) {
     root_values(t, y, values, measuring);
   };
-  p.longest_step = Model::pitches ? model_.longest_step() : 0.25 * model_.period;
+  p.longest_step = Model::longest_part * model_.period;
   return make_integrator(options_.integrator, std::move(p));
-}
-
-template <class Model>
-void DirectStartUp<Model>::come_to_rest() {
-  if constexpr (Model::can_stick) {
-    const bool was_stuck = now_.stuck;
-    model_.come_to_rest();
-    if (was_stuck && !now_.stuck) event(Event::breakaway);
-  }
 }
 
 /// Integrates to an event or to the time `until`.
@@ -166,7 +143,7 @@ void DirectStartUp<Model>::advance(double until) {
     now_.t = until;
     return;
   }
-  if constexpr (Model::pitches) model_.begin_piece();
+  model_.resume();
   std::unique_ptr<Integrator>& slot = measuring_ ? with_quadratures_ : plain_;
   if (!slot) slot = integrator(measuring_);
   Integrator& steps = *slot;
@@ -196,25 +173,13 @@ void DirectStartUp<Model>::advance(double until) {
     if (outcome == Integrator::Outcome::stop) return;
     if (outcome == Integrator::Outcome::root) {
       if (measuring_) add_variation();
-      if constexpr (Model::pitches) {
-        if (steps.found(Model::stop)) {
-          meet_or_leave_stop();
-          return;
-        }
-      } else if (steps.found(Model::motion_ends)) {
-        if (now_.stuck) {
-          model_.break_away();
-          event(Event::breakaway);
-        } else {
-          event(Event::standstill);
-          come_to_rest();
-        }
+      if (steps.found(Model::interruption)) {
+        interrupt();
         return;
       }
     } else if (model_.branch_lost()) {
       // A reversal or a stop that the integrator did not see.
-      if constexpr (Model::pitches) meet_or_leave_stop();
-      else come_to_rest();
+      interrupt();
       return;
     }
     if (out_of_budget()) return;
@@ -225,7 +190,7 @@ template <class Model>
 WaveformRow DirectStartUp<Model>::row(double t, const double* y) const {
   const Motion<double> m = model_.motion(t, y);
   return waveform_row(model_.vehicle, m, t - double(result_.cycles) * model_.period, y[0], m.stroke_velocity, y[0],
-                      Model::pitches ? y[2] : absent);
+                      Model::pitch_angle(y));
 }
 
 template <class Model>
@@ -242,7 +207,7 @@ void DirectStartUp<Model>::step_taken(Integrator& steps, double from) {
           return extreme_candidates(m, m.stroke_velocity, model_.branch_at(y), y[0]);
         },
         from, now_.t, extremes_);
-    if constexpr (Model::pitches) note_pitching(steps, from);
+    reading_.step_taken(model_, steps, from);
     const int last = options_.cycle_rows - 1;
     while (last > 0 && int(result_.cycle.size()) <= last) {
       const double at = model_.period * (result_.cycles + double(result_.cycle.size()) / last);
@@ -271,37 +236,16 @@ void DirectStartUp<Model>::begin_measuring() {
   variation_ = 0.0;
   energy_mark_ = model_.wing_energy();
   result_.cycle.clear();
-  if constexpr (Model::pitches) {
-    pitching_ = {0.0, 0.0, infinity, -infinity, 0.0, 0.0};
-    lowest_psi_ = infinity;
-    highest_psi_ = -infinity;
-    impact_mark_ = now_.impact_loss;
-  }
+  reading_.begin(model_);
 }
 
-/// How the wings have pitched in the last step: pitch and angle of attack have their extremes at ends of steps.
+/// What ends a piece of the motion: standstill, breakaway, a stop.
 template <class Model>
-void DirectStartUp<Model>::note_pitching(Integrator& steps, double from) {
-  const double* middle = steps.dense(0.5 * (from + now_.t));
-  const double stroke = sign_of(middle[1]);
-  if (stroke * middle[2] > 0.0) pitching_.over_rotation += (now_.t - from) / model_.period;
-  for (const double t : {from, now_.t}) {
-    const double psi = steps.dense(t)[2], alpha = 0.5 * pi + stroke * psi;
-    lowest_psi_ = std::min(lowest_psi_, psi);
-    highest_psi_ = std::max(highest_psi_, psi);
-    pitching_.angle_of_attack_min = std::min(pitching_.angle_of_attack_min, alpha);
-    pitching_.angle_of_attack_max = std::max(pitching_.angle_of_attack_max, alpha);
-  }
-}
-
-template <class Model>
-void DirectStartUp<Model>::meet_or_leave_stop() {
-  const double lost = now_.impact_loss;
+void DirectStartUp<Model>::interrupt() {
   if (measuring_) add_variation();
-  model_.handle(Model::stop);
-  // What the impact takes at once is no power that flows back and forth.
+  if (const auto kind = model_.interrupt()) event(*kind);
+  // What it takes at once is no power that flows back and forth.
   if (measuring_) energy_mark_ = model_.wing_energy();
-  if (now_.impact_loss > lost) event(Event::stop_impact);
 }
 
 template <class Model>
@@ -313,15 +257,7 @@ void DirectStartUp<Model>::take_metrics() {
   integrals[std::size_t(Integral::reactive_work)] = variation_;
   result_.metrics = cycle_metrics(model_.vehicle, integrals, extremes_, absent, options_.reporting);
   result_.averaged_cycles = 1;
-  if constexpr (Model::pitches) {
-    const double* other = q_ + quadrature_count;
-    pitching_.amplitude = 0.5 * (highest_psi_ - lowest_psi_);
-    pitching_.hinge_power = (other[Model::hinge_work] + now_.impact_loss - impact_mark_) / model_.period;
-    const std::complex<double> stroke(other[Model::stroke_cosine], -other[Model::stroke_sine]),
-        psi(other[Model::pitch_cosine], -other[Model::pitch_sine]);
-    pitching_.phase = std::arg(psi / (std::complex<double>(0.0, -1.0) * stroke));
-    set_pitch_metrics(pitching_, *result_.metrics);
-  }
+  reading_.finish(model_, q_ + quadrature_count, *result_.metrics);
 }
 
 /// True, with the decision, where nothing moves the shaft any more.
@@ -330,34 +266,19 @@ bool DirectStartUp<Model>::rests_for_good() {
   const auto typical = model_.typical();
   const bool no_drive = model_.vehicle.voltage == 0.0 && std::abs(now_.y[1]) < 1e-9 * typical[1] &&
                         std::abs(now_.y[0]) < 1e-9 * typical[0] && swing_ < 1e-9 * typical[0];
-  double held = infinity;
-  if constexpr (Model::can_stick) {
-    if (now_.stuck) {
-      // The current is a sine and what remains of its start.
-      const Motor<double>& m = model_.vehicle.motor;
-      const double Z = std::hypot(m.armature_resistance, model_.w * m.armature_inductance);
-      const double lag = std::atan2(model_.w * m.armature_inductance, m.armature_resistance);
-      const double remains =
-          model_.inductive ? std::abs(now_.y[2] - model_.vehicle.voltage / Z * std::sin(model_.w * now_.t - lag)) : 0.0;
-      held = model_.drive_torque + std::abs(model_.springs_of(now_.y[0])) + m.torque_constant * remains;
-    }
-    if (held > model_.holding_torque && !no_drive) return false;
-  } else if (!no_drive) {
-    return false;
-  }
+  const double held = now_.stuck ? model_.largest_net_torque() : infinity;
+  if (held > model_.holding_torque && !no_drive) return false;
   done_ = true;
   result_.settled = true;
   result_.status = FlappingStatus::stalled;
   result_.time_to_steady = now_.t;
   result_.lock_angle = now_.y[0];
-  result_.torque_margin = 0.0;
-  result_.evidence = {.kind = Evidence::no_voltage};
-  if constexpr (Model::can_stick) {
-    if (now_.stuck) {
-      result_.torque_margin = model_.holding_torque - held;
-      result_.evidence = {
-          .kind = Evidence::held_shaft, .angle = now_.y[0], .torque = held, .friction_torque = model_.holding_torque};
-    }
+  result_.torque_margin = now_.stuck ? model_.holding_torque - held : 0.0;
+  if (now_.stuck) {
+    result_.evidence = {
+        .kind = Evidence::held_shaft, .angle = now_.y[0], .torque = held, .friction_torque = model_.holding_torque};
+  } else {
+    result_.evidence = {.kind = Evidence::no_voltage};
   }
   return true;
 }
@@ -367,29 +288,25 @@ bool DirectStartUp<Model>::rests_for_good() {
 /// where there are none.
 template <class Model>
 bool DirectStartUp<Model>::creeps_to_rest() {
-  if constexpr (!Model::can_stick) {
-    return false;
-  } else {
-    const double travel = std::max(travel_[0], travel_[1]), back = std::min(travel_[0], travel_[1]);
-    const bool creeps =
-        now_.stuck && model_.drive_torque <= model_.holding_torque && travel < last_travel_ && back <= 1e-6 * travel;
-    creeping_ = creeps ? creeping_ + 1 : 0;
-    last_travel_ = travel;
-    travel_[0] = travel_[1] = 0.0;
-    if (creeping_ < creep_periods) return false;
-    done_ = true;
-    result_.settled = true;
-    result_.status = FlappingStatus::stalled;
-    result_.time_to_steady = now_.t;
-    result_.lock_angle = now_.y[0];
-    result_.torque_margin = model_.holding_torque - model_.drive_torque;
-    result_.evidence = {.kind = Evidence::creeping_shaft,
-                        .angle = now_.y[0],
-                        .torque = model_.drive_torque,
-                        .friction_torque = model_.holding_torque,
-                        .travel = travel};
-    return true;
-  }
+  const double travel = std::max(travel_[0], travel_[1]), back = std::min(travel_[0], travel_[1]);
+  const bool creeps =
+      now_.stuck && model_.drive_torque <= model_.holding_torque && travel < last_travel_ && back <= 1e-6 * travel;
+  creeping_ = creeps ? creeping_ + 1 : 0;
+  last_travel_ = travel;
+  travel_[0] = travel_[1] = 0.0;
+  if (creeping_ < creep_periods) return false;
+  done_ = true;
+  result_.settled = true;
+  result_.status = FlappingStatus::stalled;
+  result_.time_to_steady = now_.t;
+  result_.lock_angle = now_.y[0];
+  result_.torque_margin = model_.holding_torque - model_.drive_torque;
+  result_.evidence = {.kind = Evidence::creeping_shaft,
+                      .angle = now_.y[0],
+                      .torque = model_.drive_torque,
+                      .friction_torque = model_.holding_torque,
+                      .travel = travel};
+  return true;
 }
 
 /// The decision that it flaps, with the metrics taken: how far periods are from the orbit, and from each other.
@@ -402,21 +319,13 @@ void DirectStartUp<Model>::settle(double closure, double change) {
   std::size_t first = swings_.size();
   while (first > 0 && std::abs(swings_[first - 1] / swings_.back() - 1.0) <= 1e-2) --first;
   result_.time_to_steady = double(first) * model_.period;
-  result_.crank_speed = now_.y[1];
-  result_.current = model_.current_of(now_.t, now_.y);
-  result_.stroke_angle = now_.y[0];
-  if constexpr (Model::pitches) {
-    result_.pitch_angle = now_.y[2];
-    result_.pitch_velocity = now_.y[3];
-  }
+  model_.put_state(result_);
   result_.evidence = {.kind = Evidence::settled_periods,
                       .frequency = model_.vehicle.drive_frequency,
                       .time = result_.time_to_steady,
                       .change = change,
                       .cycles = result_.cycles};
-  if constexpr (Model::pitches) {
-    if (model_.vehicle.wings.air_density > 0.0) result_.evidence.over_rotation = pitching_.over_rotation;
-  }
+  reading_.add_to(result_.evidence, model_);
 }
 
 template <class Model>
@@ -509,7 +418,7 @@ void DirectStartUp<Model>::give_up(StatusEvidence why) {
 
 template <class Model>
 TransientResult DirectStartUp<Model>::run() {
-  if constexpr (Model::can_stick) model_.begin_piece();
+  model_.begin_piece();
   std::copy(now_.y, now_.y + model_.coupled, before_);
   swing_ = std::abs(now_.y[0]);
   stroke_before_ = now_.y[0];

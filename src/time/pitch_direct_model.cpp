@@ -10,34 +10,15 @@ constexpr double stiff_pitch_decays_per_period = 500.0;
 
 }  // namespace
 
-PitchDirectModel::PitchDirectModel(const Vehicle<double>& of) : vehicle(of) {
-  validate(vehicle.motor);
-  validate(vehicle.friction);
-  validate(vehicle.spring);
-  validate(vehicle.wings);
+PitchDirectModel::PitchDirectModel(const Vehicle<double>& of) : DrivenShaft(of), coupled(inductive ? 5 : 4) {
   validate(vehicle.pitch, vehicle.wing_count * vehicle.wing_inertia);
-  require(vehicle.voltage >= 0.0, "supply.amplitude", "must be >= 0", "V", vehicle.voltage);
-  require(vehicle.drive_frequency > 0.0, "supply.frequency", "must be > 0", "Hz", vehicle.drive_frequency);
-  w = two_pi * vehicle.drive_frequency;
-  period = 1.0 / vehicle.drive_frequency;
-  inductive = vehicle.motor.armature_inductance > 0.0;
-  coupled = inductive ? 5 : 4;
-  stroke_inertia = vehicle.motor.inertia + vehicle.wing_count * vehicle.wing_inertia;
   start({});
 }
 
 void PitchDirectModel::start(const std::array<double, 5>& y) {
-  const DirectBalance balance = direct_balance(vehicle);
-  const Motor<double>& m = vehicle.motor;
-  double speed = balance.responses.empty() ? balance.drive_torque / (stroke_inertia * w)
-                                           : std::abs(balance.responses.back().speed);
-  const double natural = std::max(w, std::sqrt(vehicle.wing_count * vehicle.spring.stiffness / stroke_inertia));
-  speed = std::max({speed, std::abs(y[1]), std::abs(y[0]) * natural});
-  if (!(speed > 0.0)) speed = 1.0;
+  const auto [stroke, speed, current] = typical_from(direct_balance(vehicle), y[0], y[1], y[4]);
   const double psi = std::max({typical_pitch(vehicle, speed), std::abs(y[2]), std::abs(y[3]) / w});
-  scale = {std::max(speed / natural, std::abs(y[0])), speed, psi, w * psi,
-           std::max({balance.drive_torque / m.torque_constant, std::abs(y[4]),
-                     1e-3 * m.torque_constant * speed / m.armature_resistance})};
+  scale = {stroke, speed, psi, w * psi, current};
   now = {};
   std::copy(y.begin(), y.end(), now.y);
   if (!inductive) now.y[4] = 0.0;
@@ -75,16 +56,16 @@ bool PitchDirectModel::rates(double t, const double* y, double* dy, bool quadrat
 std::array<double, PitchDirectModel::indicator_count> PitchDirectModel::indicators(double t, const double* y,
                                                                                    bool all) const {
   std::array<double, indicator_count> values = {1.0, y[1] / scale[1], now.held ? 1.0 : y[3] / scale[3], 1.0};
-  if (all) values[stored_moment] = motion(t, y).stored_moment / (stroke_inertia * w * scale[1]);
+  if (all) values[stored_moment] = motion(t, y).stored_moment / (inertia * w * scale[1]);
   if (now.held) {
-    values[stop] = side() * pitch_motion(t, y).stop_moment / (stroke_inertia * w * scale[1]);
+    values[stop] = side() * pitch_motion(t, y).stop_moment / (inertia * w * scale[1]);
   } else if (has_stop(vehicle.pitch.hinge)) {
     values[stop] = (vehicle.pitch.hinge.stop - std::abs(y[2])) / vehicle.pitch.hinge.stop;
   }
   return values;
 }
 
-void PitchDirectModel::begin_piece() {
+void PitchDirectModel::resume() {
   if (!now.held && side() * now.y[2] >= vehicle.pitch.hinge.stop && side() * now.y[3] > 0.0) meet_stop();
 }
 
@@ -92,6 +73,27 @@ void PitchDirectModel::handle(std::size_t indicator) {
   if (indicator != stop) return;
   if (now.held) now.held = false;
   else meet_stop();
+}
+
+std::optional<TransientEvent::Kind> PitchDirectModel::interrupt() {
+  const double lost = now.impact_loss;
+  handle(stop);
+  if (now.impact_loss > lost) return TransientEvent::Kind::stop_impact;
+  return std::nullopt;
+}
+
+void PitchDirectModel::other_scales(double power, double* scales) const {
+  scales[hinge_work] = period * power;
+  scales[stroke_cosine] = scales[stroke_sine] = period * scale[0];
+  scales[pitch_cosine] = scales[pitch_sine] = period * scale[2];
+}
+
+void PitchDirectModel::put_state(TransientResult& in) const {
+  in.stroke_angle = now.y[0];
+  in.crank_speed = now.y[1];
+  in.pitch_angle = now.y[2];
+  in.pitch_velocity = now.y[3];
+  in.current = current_of(now.t, now.y);
 }
 
 void PitchDirectModel::meet_stop() {
@@ -113,15 +115,15 @@ bool PitchDirectModel::stiff() const {
   const Motor<double>& m = vehicle.motor;
   const double damping = m.viscous_damping + vehicle.friction.damping;
   const double electrical = inductive ? m.armature_resistance / m.armature_inductance
-                                      : square(m.torque_constant) / m.armature_resistance / stroke_inertia;
+                                      : square(m.torque_constant) / m.armature_resistance / inertia;
   const double pitching = vehicle.pitch.hinge.damping / vehicle.pitch.pitch_inertia;
-  return std::max({electrical, damping / stroke_inertia, pitching}) * period > stiff_pitch_decays_per_period;
+  return std::max({electrical, damping / inertia, pitching}) * period > stiff_pitch_decays_per_period;
 }
 
 double PitchDirectModel::stored_energy() const {
   const double* y = now.y;
   const PitchState<double> at = pitch_state(y[2], y[3], y[1]);
-  return kinetic_energy(pitch_inertia(vehicle.pitch, stroke_inertia, at), at) +
+  return kinetic_energy(pitch_inertia(vehicle.pitch, inertia, at), at) +
          0.5 * vehicle.wing_count * vehicle.spring.stiffness * square(y[0]) +
          hinge_loads(vehicle.pitch.hinge, y[2], y[3]).energy +
          0.5 * vehicle.motor.armature_inductance * square(current_of(now.t, y));

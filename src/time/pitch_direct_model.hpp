@@ -4,17 +4,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <optional>
 
+#include "time/driven_shaft.hpp"
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/time/transient.hpp"
 #include "wingbeat/vehicle/pitch_motion.hpp"
 
 namespace wingbeat::detail {
 
 /// The unknowns are beta [rad], beta' [rad/s], psi [rad], psi' [rad/s] and, with an inductance, i [A]. Satisfies
 /// TimeModel. Of a vehicle without constant friction.
-class PitchDirectModel {
+class PitchDirectModel : public DrivenShaft {
  public:
-  static constexpr bool can_stick = false, pitches = true;
   /// Behind `quadratures`: loss in the damping of the hinges [J]; integrals of stroke and pitch times cosine and sine
   /// of the supply's phase [rad s].
   enum Other { hinge_work, stroke_cosine, stroke_sine, pitch_cosine, pitch_sine, other_quadratures };
@@ -31,15 +33,21 @@ class PitchDirectModel {
   /// on it; stroke velocity and pitch velocity, at which the loads are kinked; the moment stored in wings and springs.
   enum Indicator { stop, velocity, turn, stored_moment, indicator_count };
   static constexpr std::size_t plain_indicators = 3;  ///< of them where no metrics are taken
+  static constexpr std::size_t interruption = stop;
+  static constexpr double longest_part = 1.0 / 16.0;  ///< of a period, that a step may take
+  /// Nothing holds the shaft [N m].
+  static constexpr double holding_torque = 0.0, drive_torque = infinity;
 
   /// Throws ParameterError for numbers out of range.
   explicit PitchDirectModel(const Vehicle<double>& vehicle);
   /// Sets the state at t = 0.
   void start(const std::array<double, 5>& y);
+  void start_from(const TransientOptions& from) {
+    start({from.crank_angle, from.crank_speed, from.pitch_angle, from.pitch_velocity, from.current});
+  }
 
   // As TimeModel asks.
-  bool ended() const { return false; }
-  void begin_piece();
+  void begin_piece() { resume(); }
   void unknowns(double* y) const { std::copy_n(now.y, coupled, y); }
   void set(double t, const double* y) {
     now.t = t;
@@ -47,38 +55,38 @@ class PitchDirectModel {
   }
   void handle(std::size_t indicator);
   bool branch_lost() const { return !now.held && std::abs(now.y[2]) > vehicle.pitch.hinge.stop * (1.0 + 1e-9); }
-  double next_switch() const { return infinity; }
-  void switch_supply() {}
   void tolerated(double relative, const double* y, double* errors) const;
   std::array<double, 5> typical() const { return scale; }
-  double longest_step() const { return period / 16.0; }
+  double longest_step() const { return longest_part * period; }
   bool stiff() const;
   /// dy/dt and, where asked for, the integrands of `quadratures` and of Other behind them. False: not finite.
   bool rates(double t, const double* y, double* dy, bool quadrature) const;
   std::array<double, indicator_count> indicators(double t, const double* y, bool all = true) const;
   std::array<int, indicator_count> directions() const { return {-1, 0, 0, 0}; }
 
-  double voltage(double t) const { return vehicle.voltage * std::sin(w * t); }
   double current_of(double t, const double* y) const {
     return inductive ? y[4] : algebraic_current(vehicle, voltage(t), y[1]);
   }
   static Branch<double> branch_at(const double* y) { return {sign_of(y[1]), 1.0, sign_of(y[1]), 1.0}; }
   PitchMotion<double> pitch_motion(double t, const double* y) const;
   Motion<double> motion(double t, const double* y) const { return pitch_motion(t, y).stroke; }
-  /// Of what the reactive work is the variation [J].
-  double wing_energy() const {
-    return 0.5 * vehicle.wing_count *
-           (vehicle.wing_inertia * square(now.y[1]) + vehicle.spring.stiffness * square(now.y[0]));
-  }
+  double wing_energy() const { return DrivenShaft::wing_energy(now.y[0], now.y[1]); }
   /// Kinetic energy of rotor, wings and the air that moves with them, elastic energy of springs and hinges, energy of
   /// the inductance [J].
   double stored_energy() const;
 
-  Vehicle<double> vehicle;
-  double w, period;  ///< of the supply: angular frequency [rad/s], duration [s]
-  bool inductive;
+  // What a simulation from rest asks, of a DirectModel as well.
+  /// Meets the stop that the wings are at and move on to.
+  void resume();
+  /// What happens at a sign change of the indicator `interruption`, or where branch_lost(): free wings meet a stop,
+  /// held ones leave it.
+  std::optional<TransientEvent::Kind> interrupt();
+  static double largest_net_torque() { return infinity; }
+  void other_scales(double power, double* scales) const;
+  static double pitch_angle(const double* y) { return y[2]; }
+  void put_state(TransientResult& in) const;
+
   int coupled;                  ///< number of unknowns
-  double stroke_inertia;        ///< of rotor and wings [kg m2]
   std::array<double, 5> scale;  ///< typical size of each unknown
   State now;
 

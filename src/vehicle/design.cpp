@@ -169,6 +169,11 @@ void validate(const Design<double>& d) {
     throw ParameterError(wing_material_key::areal_density.path,
                          "needs the wing's outline: give a planform with a shape, or wing.inertia");
   }
+  if ((d.wing.rib_count > 0.0) != (d.wing.rib_density > 0.0)) {
+    throw ParameterError(
+        d.wing.rib_count > 0.0 ? wing_material_key::rib_density.path : wing_material_key::rib_count.path,
+        "missing: give both rib_count and rib_density, or neither");
+  }
   const MotorThermalDesign<double>& thermal = d.motor.thermal;
   if (thermal.resistance_winding.has_value() != thermal.resistance_case.has_value()) {
     throw ParameterError(thermal.resistance_winding ? motor_thermal_key::resistance_case.path

@@ -303,13 +303,19 @@ std::span<const Parameter<S>> parameter_table() {
            {"inertia", "areal_density"}},
           wing_resonance, areal_density),
       alternative<S>(row(wing_material_key::areal_density, "required",
-                         "sigma of the membrane, ribs and glue spread over it: the inertia follows from the planform's "
-                         "outline, J_w = integral (sigma c + lambda) r^2 dr",
+                         "sigma of the membrane, glue spread over it: the inertia follows from the planform's outline, "
+                         "J_w = integral (sigma c + lambda) r^2 dr and that of the ribs",
                          {"inertia", "resonance"}),
                      areal_density, wing_resonance),
       number<S, Drawn>(row(wing_material_key::spar_density, "0 kg/m",
                            "lambda, mass of the leading-edge spar over its length, from root to tip"),
                        [](auto& d) -> auto& { return d.wing.spar_density; }),
+      number<S, Drawn>(row(wing_material_key::rib_density, "0 kg/m",
+                           "lambda_r, mass of a rib over its length, along the chord from edge to edge"),
+                       [](auto& d) -> auto& { return d.wing.rib_density; }),
+      number<S, Drawn>(row(wing_material_key::rib_count, "0",
+                           "n_r, ribs of one wing, which part its length into n_r + 1 equal bays"),
+                       [](auto& d) -> auto& { return d.wing.rib_count; }),
       number<S, PitchingWing>(
           row(pitch_key::pitch_inertia, "from areal_density",
               "I_psi = integral x^2 dm of one wing about its leading edge; given with mass_product, or "

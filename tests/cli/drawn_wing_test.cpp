@@ -35,6 +35,17 @@ TEST_F(DrawnWing, RunsAsOneOfItsInertia) {
   }
 }
 
+TEST_F(DrawnWing, RibsAreRods) {
+  const std::string material = "areal_density = \"20 g/m2\"\nspar_density = \"1 g/m\"\n";
+  const Json ribbed =
+      run({"run", file_with(outline + material + "rib_density = \"0.5 g/m\"\nrib_count = 2\n"), "--json"}).json();
+  // 0.5 g/m 20 mm ((20 mm)^2 + (40 mm)^2) more
+  const Json stated = run({"run", file_with(outline + "inertia = 1.208e-7\n"), "--json"}).json();
+  for (const char* key : {"frequency_hz", "lift_mean_n"}) {
+    EXPECT_NEAR(ribbed[key].get<double>() / stated[key].get<double>(), 1.0, 1e-9) << key;
+  }
+}
+
 TEST_F(DrawnWing, IsRefusedWhereItSaysTooMuchOrTooLittle) {
   const auto complaint = [&](const std::string& lines) {
     const Outcome o = run({"run", file_with(lines)});

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "parts/expect_error.hpp"
+#include "parts/outline.hpp"
 #include "wingbeat/core/jet.hpp"
 
 namespace wingbeat {
@@ -15,22 +16,13 @@ namespace {
 constexpr double wing_length = 63e-3, wing_root = 25e-3, two_wings = 2.0, sea_level = 1.225;
 constexpr double pair_inertia = 2.0 * 7.205e-8;
 
-Planform<double> outline_of(PlanformShape shape, double offset) {
-  Planform<double> p;
-  p.shape = shape;
-  p.length = wing_length;
-  p.root_chord = wing_root;
-  p.hub_offset = offset;
-  return p;
-}
-
 struct PitchingPair {
   BladeElement<double> w;
   PitchingWings<double> p;
 };
 
 PitchingPair pitching_pair(NormalForce normal_force = NormalForce::lift_and_drag, double air_density = sea_level) {
-  const Planform<double> outline = outline_of(PlanformShape::semi_ellipse, 3e-3);
+  const Planform<double> outline = outline_of(PlanformShape::semi_ellipse, 3e-3, wing_length, wing_root);
   const ChordMoments<double> s = chord_moments(outline, two_wings);
   PitchingPair of;
   of.w = {air_density, 5e-3, s.s2, s.s3, translational_2022()};
@@ -51,7 +43,7 @@ PitchState<double> random_pitching(std::mt19937_64& random) {
 TEST(PitchChordMoments, AgreeWithIntegrals) {
   for (const PlanformShape shape : {PlanformShape::semi_ellipse, PlanformShape::rectangle}) {
     for (const double d : {0.0, 4e-3}) {
-      const Planform<double> p = outline_of(shape, d);
+      const Planform<double> p = outline_of(shape, d, wing_length, wing_root);
       PitchChordMoments<double> sum;
       const int steps = 20000;
       for (int n = 0; n < steps; ++n) {
@@ -77,17 +69,17 @@ TEST(PitchChordMoments, AgreeWithIntegrals) {
 
 TEST(PitchChordMoments, OfTablesAreExact) {
   for (const double d : {0.0, 8e-3}) {
-    Planform<double> table = outline_of(PlanformShape::tabulated, d);
+    Planform<double> table = outline_of(PlanformShape::tabulated, d, wing_length, wing_root);
     table.chord_table = {{0.0, wing_root}, {0.3 * wing_length, wing_root}, {wing_length, wing_root}};
     const auto m = pitch_chord_moments(table, two_wings),
-               exact = pitch_chord_moments(outline_of(PlanformShape::rectangle, d), two_wings);
+               exact = pitch_chord_moments(outline_of(PlanformShape::rectangle, d, wing_length, wing_root), two_wings);
     EXPECT_NEAR(m.s21, exact.s21, 1e-14 * exact.s21);
     EXPECT_NEAR(m.s22, exact.s22, 1e-14 * exact.s22);
     EXPECT_NEAR(m.s30, exact.s30, 1e-14 * exact.s30);
     EXPECT_NEAR(m.s31, exact.s31, 1e-14 * exact.s31);
     EXPECT_NEAR(m.s40, exact.s40, 1e-14 * exact.s40);
   }
-  Planform<double> triangle = outline_of(PlanformShape::tabulated, 0.0);
+  Planform<double> triangle = outline_of(PlanformShape::tabulated, 0.0, wing_length, wing_root);
   triangle.chord_table = {{0.0, wing_root}, {wing_length, 0.0}};
   const auto m = pitch_chord_moments(triangle, 1.0);
   EXPECT_NEAR(m.s31, std::pow(wing_root, 3) * wing_length * wing_length / 20.0, 1e-14 * m.s31);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "parts/outline.hpp"
 #include "wingbeat/core/jet.hpp"
 #include "wingbeat/core/members.hpp"
 
@@ -14,11 +15,7 @@ namespace {
 constexpr double drawn_length = 63e-3, drawn_chord = 25e-3;
 
 Planform<double> outline(PlanformShape shape, double hub_offset) {
-  Planform<double> p;
-  p.shape = shape;
-  p.length = drawn_length;
-  p.root_chord = drawn_chord;
-  p.hub_offset = hub_offset;
+  Planform<double> p = outline_of(shape, hub_offset, drawn_length, drawn_chord);
   if (shape == PlanformShape::tabulated) p.chord_table = {{0.0, 10e-3}, {20e-3, 25e-3}, {drawn_length, 5e-3}};
   return p;
 }
@@ -49,6 +46,27 @@ TEST(WingMass, IsTheSumOverItsStrips) {
       EXPECT_NEAR(m.pitch_inertia / sum.pitch_inertia, 1.0, 1e-8);
       EXPECT_NEAR(m.mass_product / sum.mass_product, 1.0, 1e-8);
     }
+  }
+}
+
+// Each rib by itself as a rod of the chord's length where it is.
+TEST(WingMass, RibsAddTheirRods) {
+  for (const PlanformShape shape : {PlanformShape::semi_ellipse, PlanformShape::rectangle, PlanformShape::tabulated}) {
+    const Planform<double> p = outline(shape, 4e-3);
+    const WingMass<double> plain = wing_mass(WingMaterial<double>{0.02, 1e-3}, p),
+                           ribbed = wing_mass(WingMaterial<double>{0.02, 1e-3, 3e-4, 3.0}, p);
+    WingMass<double> ribs{};
+    for (const double part : {0.25, 0.5, 0.75}) {
+      const double x = part * drawn_length, c = chord(shape, x), r = x + 4e-3;
+      ribs.mass += 3e-4 * c;
+      ribs.inertia += 3e-4 * c * r * r;
+      ribs.pitch_inertia += 3e-4 * c * c * c / 3.0;
+      ribs.mass_product += 3e-4 * c * c * r / 2.0;
+    }
+    EXPECT_NEAR((ribbed.mass - plain.mass) / ribs.mass, 1.0, 1e-12);
+    EXPECT_NEAR((ribbed.inertia - plain.inertia) / ribs.inertia, 1.0, 1e-12);
+    EXPECT_NEAR((ribbed.pitch_inertia - plain.pitch_inertia) / ribs.pitch_inertia, 1.0, 1e-12);
+    EXPECT_NEAR((ribbed.mass_product - plain.mass_product) / ribs.mass_product, 1.0, 1e-12);
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "study/battery_design.hpp"
 #include "study/optimised_parameters.hpp"
 #include "vehicle/reference_vehicle.hpp"
 #include "wingbeat/files/design_parameter.hpp"
@@ -13,19 +14,6 @@
 
 namespace wingbeat {
 namespace {
-
-Design<double> flying_design() {
-  Design<double> d = reference_design();
-  d.spring.stiffness = 1.377e-3;
-  d.supply = {};
-  d.supply.type = SupplyType::battery;
-  Battery<double>& b = d.supply.battery;
-  b.cells = 2.0;
-  b.discharge_curve = {{0.0, 2.4}, {0.1, 2.8}, {0.5, 3.0}, {0.8, 3.3}, {1.0, 3.6}};
-  b.internal_resistance = 0.4;
-  b.capacity = 108.0;
-  return d;
-}
 
 /// Derivatives of the endurance against central differences of whole flights.
 void expect_derivatives(const Design<double>& d, std::initializer_list<const char*> keys, double tolerance,
@@ -48,7 +36,7 @@ void expect_derivatives(const Design<double>& d, std::initializer_list<const cha
 }
 
 TEST(EnduranceMetric, IsTheTimeOfAFlight) {
-  Design<double> d = flying_design();
+  Design<double> d = hovering_design();
   for (const std::optional<double> cutoff : {std::optional<double>(), std::optional(2.7)}) {
     d.supply.battery.cutoff_voltage = cutoff;
     const double flight = simulate_discharge(d).endurance();
@@ -58,14 +46,14 @@ TEST(EnduranceMetric, IsTheTimeOfAFlight) {
 }
 
 TEST(EnduranceMetric, DerivativesOfAFlightToTheEnd) {
-  expect_derivatives(flying_design(),
+  expect_derivatives(hovering_design(),
                      {"supply.capacity", "supply.internal_resistance", "spring.stiffness", "motor.torque_constant",
                       "transmission.hinge_offset", "aerodynamics.air_density", "vehicle.mass"},
                      1e-4);
 }
 
 TEST(EnduranceMetric, DerivativesOfAFlightToTheCutoff) {
-  Design<double> d = flying_design();
+  Design<double> d = hovering_design();
   d.supply.battery.cutoff_voltage = 2.7;
   expect_derivatives(d,
                      {"supply.capacity", "supply.cutoff_voltage", "supply.internal_resistance", "supply.charge",
@@ -74,7 +62,7 @@ TEST(EnduranceMetric, DerivativesOfAFlightToTheCutoff) {
 }
 
 TEST(EnduranceMetric, DerivativesOfAFlightAtOneVoltage) {
-  Design<double> d = flying_design();
+  Design<double> d = hovering_design();
   d.supply.battery.discharge_curve.clear();
   d.supply.battery.cell_voltage = 3.0;
   d.supply.battery.charge = 0.8;
@@ -85,7 +73,7 @@ TEST(EnduranceMetric, DerivativesOfAFlightAtOneVoltage) {
 }
 
 TEST(EnduranceMetric, DerivativesWhereTheMotorWarmsUpOrTheCrankStops) {
-  Design<double> warm = flying_design();
+  Design<double> warm = hovering_design();
   MotorThermalDesign<double>& t = warm.motor.thermal;
   t.resistance_winding = t.resistance_case = 20.0;
   expect_derivatives(warm, {"supply.internal_resistance", "spring.stiffness"}, 1e-4);  // settled
@@ -93,7 +81,7 @@ TEST(EnduranceMetric, DerivativesWhereTheMotorWarmsUpOrTheCrankStops) {
   t.time_constant_case = 60.0;
   expect_derivatives(warm, {"spring.stiffness"}, 1e-3, 1e-8);
 
-  Design<double> stops = flying_design();
+  Design<double> stops = hovering_design();
   stops.friction = {FrictionLaw::constant, 2e-3};
   stops.supply.battery.discharge_curve = {{0.0, 0.5}, {1.0, 3.0}};
   ASSERT_EQ(simulate_discharge(stops).end, EnduranceEnd::stops);
@@ -101,7 +89,7 @@ TEST(EnduranceMetric, DerivativesWhereTheMotorWarmsUpOrTheCrankStops) {
 }
 
 TEST(EnduranceMetric, NothingThatNeverStartsHasDerivatives) {
-  Design<double> d = flying_design();
+  Design<double> d = hovering_design();
   d.supply.battery.internal_resistance = 500.0;
   d.motor.constants.friction_torque = 1e-3;
   const DesignParameter parameters[] = {design_parameter("supply.capacity")};
@@ -112,7 +100,7 @@ TEST(EnduranceMetric, NothingThatNeverStartsHasDerivatives) {
 
 TEST(EnduranceMetric, IsComputedWhereItIsAskedFor) {
   EXPECT_FALSE(all_metrics()[std::size_t(Metric::endurance)]);
-  const Design<double> d = flying_design();
+  const Design<double> d = hovering_design();
   const double time = simulate_discharge(d).endurance();
   EXPECT_TRUE(std::isnan(run_design(d).metrics[Metric::endurance]));
   EXPECT_NEAR(run_design(d, {.endurance = true}).metrics[Metric::endurance], time, 1e-5 * time);
@@ -129,7 +117,7 @@ TEST(EnduranceMetric, IsComputedWhereItIsAskedFor) {
 // Lift does not depend on the capacity: the largest battery that the vehicle carries has a closed form.
 TEST(EnduranceMetric, TheLargestBatteryThatTheVehicleCarries) {
   OptimiseStudy study;
-  study.design = flying_design();
+  study.design = hovering_design();
   study.design.mass = 2.5e-3;
   study.design.supply.battery.specific_energy = 160.0 * 3600.0;
   study.objective = Metric::endurance;

@@ -344,6 +344,69 @@ TEST(FrequencySearch, ReachesTheToleranceAskedFor) {
   }
 }
 
+/// Flaps at 243.6 Hz up to 89.778 V and at 268.5 Hz above: there an orbit ceases to exist, and a start from rest
+/// lingers about it the longer the closer the voltage is.
+Vehicle<double> jumping_vehicle() {
+  std::mt19937_64 random(7);
+  Design<double> d;
+  for (int n = 0; n <= 84; ++n) d = random_design(random, 2.0);
+  return resolve(d);
+}
+
+TEST(FrequencySearch, AJumpIsSaidAfterOneBracket) {
+  const Vehicle<double> v = jumping_vehicle();
+  for (const double target : {250.0, 253.3, 265.0}) {
+    SCOPED_TRACE(target);
+    const FrequencySearch found = find_voltage_for_frequency(v, target, {}, start_up_in_time());
+    ASSERT_EQ(found.outcome, FrequencyOutcome::jumps) << describe(found.finding);
+    EXPECT_LT(found.evaluations, 24);
+    ASSERT_TRUE(found.finding.at && found.finding.least);
+    EXPECT_NEAR(found.finding.least->value, 243.2, 0.5);
+    EXPECT_NEAR(found.finding.at->value, 268.55, 0.1);
+    EXPECT_LT(found.finding.at->voltage / found.finding.least->voltage, 1.0 + 2e-4);
+    EXPECT_NEAR(found.finding.at->voltage, 89.778, 0.01);
+  }
+}
+
+TEST(FrequencySearch, WhatLiesBesideAJumpIsReached) {
+  Vehicle<double> v = jumping_vehicle();
+  for (const double target : {242.0, 243.0}) {
+    SCOPED_TRACE(target);
+    const FrequencySearch found = find_voltage_for_frequency(v, target, {}, start_up_in_time());
+    ASSERT_EQ(found.outcome, FrequencyOutcome::reached) << describe(found.finding);
+    v.voltage = found.voltage;
+    const SteadyFlapping there = find_steady_flapping(v, {}, start_up_in_time());
+    EXPECT_NEAR(there.metrics[Metric::frequency] / target, 1.0, 1e-6);
+  }
+  // What it reaches above is outside the range.
+  EXPECT_EQ(find_voltage_for_frequency(v, 268.6, {}, start_up_in_time()).outcome, FrequencyOutcome::outside_domain);
+}
+
+// Frequencies below the bound of the stroke that are nevertheless outside: two trials or so show it, and a few more
+// where the domain ends.
+TEST(FrequencySearch, OutsideTheDomainIsSaidAfterOneBracket) {
+  std::mt19937_64 random(7);
+  int outside = 0, evaluations = 0;
+  for (int n = 0; n < 40; ++n) {
+    SCOPED_TRACE(n);
+    const Vehicle<double> v = resolve(random_design(random, 2.0));
+    const double target = 0.9 * highest_frequency(v, SearchRange::domain);
+    const FrequencySearch found = find_voltage_for_frequency(v, target, {}, start_up_in_time(), SearchRange::domain);
+    if (found.outcome != FrequencyOutcome::outside_domain) continue;
+    ++outside;
+    evaluations += found.evaluations;
+    EXPECT_LT(found.evaluations, 24) << describe(found.finding);
+    ASSERT_TRUE(found.finding.most) << describe(found.finding);
+    Vehicle<double> at = v;
+    at.voltage = (1.0 - 1e-4) * found.finding.most->voltage;
+    EXPECT_TRUE(domain_of(at, find_steady_flapping(at, {}, start_up_in_time()).metrics).none());
+    at.voltage = (1.0 + 2e-4) * found.finding.most->voltage;
+    EXPECT_FALSE(domain_of(at, find_steady_flapping(at, {}, start_up_in_time()).metrics).none());
+  }
+  EXPECT_GT(outside, 25);
+  EXPECT_LT(evaluations, 10 * outside);
+}
+
 TEST(FrequencySearch, ManyUnreachedDesignsCostNothing) {
   std::mt19937_64 random(5);
   std::vector<EnsembleMember> members;

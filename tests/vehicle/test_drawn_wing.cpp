@@ -1,6 +1,8 @@
 // A wing whose inertia follows from its drawing, in a design.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "vehicle/reference_vehicle.hpp"
 #include "wingbeat/core/jet.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
@@ -65,6 +67,22 @@ TEST(DrawnWing, NeedsAnOutline) {
   d = drawn();
   d.wing.spar_density = -1.0;
   EXPECT_EQ(refusal(d), "wing.spar_density: must be >= 0 [kg/m], got -1");
+}
+
+TEST(DrawnWing, MayHaveRibs) {
+  Design<double> d = drawn();
+  const double plain = resolve(d).wing_inertia;
+  d.wing.rib_count = 1.0;
+  EXPECT_EQ(refusal(d), "wing.rib_density: missing: give both rib_count and rib_density, or neither");
+  d.wing.rib_density = 3e-4;
+  EXPECT_EQ(refusal(d), "accepted");
+  // One rib at half the length, where the chord is c_0 sqrt(3)/2.
+  const double rib = 3e-4 * 25e-3 * std::sqrt(0.75) * 31.5e-3 * 31.5e-3;
+  EXPECT_NEAR((resolve(d).wing_inertia - plain) / rib, 1.0, 1e-9);
+  d.wing.rib_count = 2.5;
+  EXPECT_EQ(refusal(d), "wing.rib_count: must be a whole number from 0 to 1000 [1], got 2.5");
+  d.wing.rib_count = 0.0;
+  EXPECT_EQ(refusal(d), "wing.rib_count: missing: give both rib_count and rib_density, or neither");
 }
 
 }  // namespace

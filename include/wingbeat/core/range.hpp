@@ -38,6 +38,8 @@ inline constexpr ParameterRange zero_to_acute{">= 0, < pi/2", "must be >= 0 and 
 inline constexpr ParameterRange below_straight{"> 0, < pi", "must be > 0 and < pi", 0.0, pi, true, true};
 inline constexpr ParameterRange count{
     "whole number >= 1", "must be a whole number >= 1", 1.0, endless, false, false, true};
+inline constexpr ParameterRange at_most_thousand{
+    "whole number, 0 to 1000", "must be a whole number from 0 to 1000", 0.0, 1000.0, false, false, true};
 
 }  // namespace range
 

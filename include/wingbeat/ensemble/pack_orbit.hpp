@@ -282,65 +282,6 @@ auto PackOrbit<L, N>::jacobian_at(const System& system, const Configuration<L>& 
   });
 }
 
-/// exp(h jacobian) by its (1, 1) Pade approximation (1 - z)^-1 (1 + z), z = h jacobian / 2.
-template <class L, int N>
-void PackOrbit<L, N>::propagator(const Matrix& jacobian, const L& h, Matrix& out) {
-  const L half_h = L(0.5) * h;
-  if constexpr (N == 1) {
-    out[0][0] = L(2.0) * inverse_of(L(L(1.0) - half_h * jacobian[0][0])) - L(1.0);
-  } else {
-    const L z01 = half_h * jacobian[0][1], z10 = half_h * jacobian[1][0];
-    const L p = L(1.0) - half_h * jacobian[0][0], q = L(1.0) - half_h * jacobian[1][1];
-    const L twice_per_det = L(2.0) * inverse_of(L(p * q - z01 * z10));
-    out[0][0] = q * twice_per_det - L(1.0);
-    out[0][1] = z01 * twice_per_det;
-    out[1][0] = z10 * twice_per_det;
-    out[1][1] = p * twice_per_det - L(1.0);
-  }
-}
-
-/// product := step product.
-template <class L, int N>
-void PackOrbit<L, N>::append(const Matrix& step, Matrix& product) {
-  const Matrix before = product;
-  for (std::size_t row = 0; row < N; ++row) {
-    for (std::size_t column = 0; column < N; ++column) {
-      L sum = step[row][0] * before[0][column];
-      if constexpr (N == 2) sum = sum + step[row][1] * before[1][column];
-      product[row][column] = sum;
-    }
-  }
-}
-
-/// Largest modulus of the eigenvalues.
-template <class L, int N>
-L PackOrbit<L, N>::largest_modulus(const Matrix& M) {
-  if constexpr (N == 1) {
-    return abs(M[0][0]);
-  } else {
-    const L mean = L(0.5) * (M[0][0] + M[1][1]), half_difference = L(0.5) * (M[0][0] - M[1][1]);
-    const L discriminant = square(half_difference) + M[0][1] * M[1][0];
-    const L determinant = M[0][0] * M[1][1] - M[0][1] * M[1][0];
-    const L real = abs(mean) + sqrt(max(discriminant, L(0.0)));
-    return select<L>(discriminant >= L(0.0), real, sqrt(max(determinant, L(0.0))));
-  }
-}
-
-/// off := (1 - M)^-1 off: what an iterate's start must move by for its end to meet it, the end being off it by so much.
-template <class L, int N>
-void PackOrbit<L, N>::close_iterate(State& off) const {
-  const auto& M = monodromy_;
-  if constexpr (N == 1) {
-    off[0] = off[0] * inverse_of(L(L(1.0) - M[0][0]));
-  } else {
-    const L p = L(1.0) - M[0][0], q = L(1.0) - M[1][1];
-    const L per_det = inverse_of(L(p * q - M[0][1] * M[1][0]));
-    const L d0 = off[0], d1 = off[1];
-    off[0] = (q * d0 + M[0][1] * d1) * per_det;
-    off[1] = (M[1][0] * d0 + p * d1) * per_det;
-  }
-}
-
 /// Sign changes of the rod force between the samples force[0..count] at u[0..count] of half an iterate, by parabolas.
 /// Returns the largest distance from the switches known before [rad].
 template <class L, int N>

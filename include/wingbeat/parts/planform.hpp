@@ -2,6 +2,7 @@
 // eqs 2, 3), those of higher powers of the chord for added mass and for pitch as a degree of freedom (sections 10, 12).
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -145,6 +146,25 @@ S squared_chord_moment(const Planform<S>& p, const S& count) {
     sum = sum + S(weight * chord * chord) * square(S(S(x) + d));
   });
   return count * sum;
+}
+
+/// R [m], of a planform that has a shape.
+template <Scalar S>
+S length_of(const Planform<S>& p) {
+  return p.shape == PlanformShape::tabulated && !p.chord_table.empty() ? S(p.chord_table.back().first) : p.length;
+}
+
+/// Chord [m] at this part of the length from the root, of a planform that has a shape.
+template <Scalar S>
+S chord_at(const Planform<S>& p, double part) {
+  if (p.shape == PlanformShape::semi_ellipse) return detail::root_chord_of(p) * S(std::sqrt(1.0 - part * part));
+  if (p.shape == PlanformShape::rectangle) return detail::root_chord_of(p);
+  const auto& rows = p.chord_table;
+  const double x = part * rows.back().first;
+  const auto next = std::lower_bound(rows.begin() + 1, rows.end() - 1, x,
+                                     [](const std::pair<double, double>& row, double at) { return row.first < at; });
+  const auto [x0, c0] = *(next - 1);
+  return S(c0 + (next->second - c0) * (x - x0) / (next->first - x0));
 }
 
 /// Area of one wing [m2], of a planform that has a shape.

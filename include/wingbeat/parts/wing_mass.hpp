@@ -1,4 +1,4 @@
-// Mass properties of a wing from its drawing: a membrane behind a straight leading edge that carries a spar.
+// Mass properties of a wing from its drawing: a membrane behind a straight leading edge that carries a spar, and ribs.
 #pragma once
 
 #include "wingbeat/core/range.hpp"
@@ -8,15 +8,17 @@
 
 namespace wingbeat {
 
-/// What a wing is made of. Ribs and glue count in the areal density, spread over the membrane.
+/// What a wing is made of. Glue counts in the areal density, spread over the membrane.
 template <Scalar S>
 struct WingMaterial {
   S areal_density = S(0);  ///< sigma of the membrane [kg/m2], > 0
   S spar_density = S(0);   ///< lambda, mass of the leading-edge spar over its length, from root to tip [kg/m], >= 0
+  S rib_density = S(0);    ///< lambda_r, mass of a rib over its length, from leading to trailing edge [kg/m], >= 0
+  S rib_count = S(0);      ///< n_r, ribs along the chord that part the length into n_r + 1 equal bays
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
-    return use(of.areal_density, of.spar_density);
+    return use(of.areal_density, of.spar_density, of.rib_density, of.rib_count);
   }
 };
 
@@ -24,6 +26,8 @@ struct WingMaterial {
 namespace wing_material_key {
 inline constexpr ParameterKey areal_density{"wing.areal_density", "kg/m2", range::positive};
 inline constexpr ParameterKey spar_density{"wing.spar_density", "kg/m", range::not_negative};
+inline constexpr ParameterKey rib_density{"wing.rib_density", "kg/m", range::not_negative};
+inline constexpr ParameterKey rib_count{"wing.rib_count", "1", range::at_most_thousand};
 }  // namespace wing_material_key
 
 /// Of one wing. r is the distance from the flapping hinge, x that behind the leading edge, about which the wing
@@ -42,12 +46,21 @@ WingMass<S> wing_mass(const WingMaterial<S>& material, const Planform<S>& p) {
   const S& sigma = material.areal_density;
   const S& lambda = material.spar_density;
   const S d = p.hub_offset;
-  const S R = p.shape == PlanformShape::tabulated && !p.chord_table.empty() ? S(p.chord_table.back().first) : p.length;
+  const S R = length_of(p);
   const S tip = d + R;
   const PitchChordMoments<S> s = pitch_chord_moments(p, S(1.0));
-  return {sigma * wing_area(p) + lambda * R,
-          sigma * one_wing_moments(p).s2 + lambda * (tip * tip * tip - d * d * d) / S(3.0), sigma * s.s30 / S(3.0),
-          S(0.5) * sigma * s.s21};
+  WingMass<S> wing{sigma * wing_area(p) + lambda * R,
+                   sigma * one_wing_moments(p).s2 + lambda * (tip * tip * tip - d * d * d) / S(3.0),
+                   sigma * s.s30 / S(3.0), S(0.5) * sigma * s.s21};
+  const double bays = value_of(material.rib_count) + 1.0;
+  for (double n = 1.0; n < bays; n += 1.0) {
+    const S c = chord_at(p, n / bays), r = d + S(n / bays) * R, rib = material.rib_density * c;
+    wing.mass = wing.mass + rib;
+    wing.inertia = wing.inertia + rib * r * r;
+    wing.pitch_inertia = wing.pitch_inertia + rib * c * c / S(3.0);
+    wing.mass_product = wing.mass_product + S(0.5) * rib * c * r;
+  }
+  return wing;
 }
 
 }  // namespace wingbeat

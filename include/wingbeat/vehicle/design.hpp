@@ -131,13 +131,15 @@ struct WingDesign {
   std::optional<S> resonance;
   std::optional<S> areal_density;  ///< sigma of the membrane [kg/m2]; given, the inertia follows from the outline
   S spar_density = S(0);           ///< lambda of the leading-edge spar [kg/m], only with areal_density
+  S rib_density = S(0);            ///< lambda_r of a rib [kg/m], only with areal_density
+  S rib_count = S(0);              ///< n_r, ribs of one wing, only with areal_density
   std::optional<S> pitch_inertia;  ///< I_psi of one wing about its leading edge [kg m2], only with a pitch hinge
   std::optional<S> mass_product;   ///< P = integral r x dm of one wing [kg m2], only with a pitch hinge
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
-    return use(of.count, of.inertia, of.planform, of.resonance, of.areal_density, of.spar_density, of.pitch_inertia,
-               of.mass_product);
+    return use(of.count, of.inertia, of.planform, of.resonance, of.areal_density, of.spar_density, of.rib_density,
+               of.rib_count, of.pitch_inertia, of.mass_product);
   }
 };
 
@@ -222,7 +224,8 @@ bool has_springs(const Design<S>& design) {
 template <Scalar S>
 std::optional<WingMass<S>> wing_mass(const WingDesign<S>& wing) {
   if (!wing.areal_density) return std::nullopt;
-  return wing_mass(WingMaterial<S>{*wing.areal_density, wing.spar_density}, wing.planform);
+  return wing_mass(WingMaterial<S>{*wing.areal_density, wing.spar_density, wing.rib_density, wing.rib_count},
+                   wing.planform);
 }
 
 /// Length of the rod, of a four-bar the coupler [m]; empty where there is none.

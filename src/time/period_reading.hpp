@@ -1,0 +1,74 @@
+// What the metrics of a direct drive's period need beside its quadratures and extremes.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "time/direct_model.hpp"
+#include "time/integrator.hpp"
+#include "time/pitch_direct_model.hpp"
+#include "time/transient_tools.hpp"
+#include "wingbeat/cycle/pitch_metrics.hpp"
+
+namespace wingbeat::detail {
+
+template <class Model>
+class PeriodReading;
+
+/// Under the pitch law: nothing.
+template <>
+class PeriodReading<DirectModel> {
+ public:
+  void begin(const DirectModel&) {}
+  void step_taken(const DirectModel&, Integrator&, double) {}
+  void finish(const DirectModel&, const double*, Metrics<double>&) {}
+  void add_to(StatusEvidence&, const DirectModel&) const {}
+};
+
+/// How wings that pitch on hinges have pitched.
+template <>
+class PeriodReading<PitchDirectModel> {
+ public:
+  void begin(const PitchDirectModel& model) {
+    metrics_ = {0.0, 0.0, infinity, -infinity, 0.0, 0.0};
+    lowest_psi_ = infinity;
+    highest_psi_ = -infinity;
+    impact_mark_ = model.now.impact_loss;
+  }
+
+  /// The step from the time `from` [s] to where the model stands: pitch and angle of attack have their extremes at ends
+  /// of steps.
+  void step_taken(const PitchDirectModel& model, Integrator& steps, double from) {
+    const double* middle = steps.dense(0.5 * (from + model.now.t));
+    const double stroke = sign_of(middle[1]);
+    if (stroke * middle[2] > 0.0) metrics_.over_rotation += (model.now.t - from) / model.period;
+    for (const double t : {from, model.now.t}) {
+      const double psi = steps.dense(t)[2], alpha = 0.5 * pi + stroke * psi;
+      lowest_psi_ = std::min(lowest_psi_, psi);
+      highest_psi_ = std::max(highest_psi_, psi);
+      metrics_.angle_of_attack_min = std::min(metrics_.angle_of_attack_min, alpha);
+      metrics_.angle_of_attack_max = std::max(metrics_.angle_of_attack_max, alpha);
+    }
+  }
+
+  /// At the period's end, `other` being the model's integrals behind `quadratures`.
+  void finish(const PitchDirectModel& model, const double* other, Metrics<double>& metrics) {
+    metrics_.amplitude = 0.5 * (highest_psi_ - lowest_psi_);
+    metrics_.hinge_power = (other[PitchDirectModel::hinge_work] + model.now.impact_loss - impact_mark_) / model.period;
+    const std::complex<double> stroke(other[PitchDirectModel::stroke_cosine], -other[PitchDirectModel::stroke_sine]),
+        psi(other[PitchDirectModel::pitch_cosine], -other[PitchDirectModel::pitch_sine]);
+    metrics_.phase = std::arg(psi / (std::complex<double>(0.0, -1.0) * stroke));
+    set_pitch_metrics(metrics_, metrics);
+  }
+
+  void add_to(StatusEvidence& evidence, const PitchDirectModel& model) const {
+    if (model.vehicle.wings.air_density > 0.0) evidence.over_rotation = metrics_.over_rotation;
+  }
+
+ private:
+  PitchMetrics metrics_{};  ///< of this period, so far
+  double lowest_psi_ = 0.0, highest_psi_ = 0.0, impact_mark_ = 0.0;
+};
+
+}  // namespace wingbeat::detail
