@@ -1,7 +1,11 @@
 """Studies are those of the program."""
 
 import json
+import os
+import signal
 import subprocess
+import threading
+import time
 import unittest
 
 import wingbeat as wb
@@ -79,6 +83,19 @@ class Studies(unittest.TestCase):
         found = wb.optimise(study, vehicle=reference())
         self.assertIsNone(found.vehicle)
         self.assertIn("lift_mean", str(found))
+
+    def test_ctrl_c_ends_a_search(self):
+        self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
+        keys = {"supply.voltage": (2, 8), "transmission.crank_radius": (4e-3, 7e-3), "motor.inertia": (1e-7, 2e-7)}
+        study = {
+            "objective": {"minimise": "power_electrical_w", "starts": 2000, "screen": 100_000},
+            "parameter": [{"key": key, "lower": low, "upper": high} for key, (low, high) in keys.items()],
+        }
+        threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+        begin = time.process_time()
+        with self.assertRaises(KeyboardInterrupt):
+            wb.optimise(study, vehicle=reference())
+        self.assertLess(time.process_time() - begin, 10.0)
 
 
 if __name__ == "__main__":
