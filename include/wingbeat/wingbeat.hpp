@@ -4,6 +4,7 @@
 //   Design<double> design = read_design("friction2022.toml");       // or find_input's shipped ones; fields are numbers
 //   RunResult found = solve(design);                                // found.status, found.metrics[Metric::lift_mean]
 //   TransientResult start = simulate(design);                       // from rest, in time
+//   EquationsOfMotion(design).rates(t, state, derivatives);         // for an integrator of one's own
 //   DesignPoint slopes = gradient(design, {"transmission.crank_radius"});
 //   std::vector<EnsembleOutcome> all = solve_ensemble(designs);
 //   metric_table()[std::size_t(Metric::lift_mean)].unit;            // key, unit and meaning of every metric
@@ -12,6 +13,7 @@
 // throw ParameterError, files InputError.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -43,6 +45,33 @@ RunResult solve(const Design<double>& design, const RunOptions& options = {});
 /// Throws ParameterError.
 TransientResult simulate(const Design<double>& design, TransientOptions options = {},
                          Condition condition = Condition::air);
+
+/// The equations of motion (1, 5-11, 21), for integrators of the user's own. The state is crank angle, not wrapped
+/// [rad], crank speed [rad/s] and, with an armature inductance, current [A]; of a direct drive stroke angle [rad],
+/// flapping velocity [rad/s] and current. The motor is as warm as its surroundings, as in simulate.
+///
+/// The rates are continuous but for standstill, where friction changes its direction, and for what the supply does;
+/// they have kinks where the rod force, the stroke velocity or the torque of a lossy gearbox changes sign. Standstill
+/// itself is no part of them: where friction holds a crank, rates() is that of a crank about to turn forwards.
+class EquationsOfMotion {
+ public:
+  /// Throws ParameterError for parameters out of range, and for wings that pitch on a hinge.
+  explicit EquationsOfMotion(const Design<double>& design, Condition condition = Condition::air);
+
+  /// Of waveform_columns(), without units: "crank_angle", "crank_speed", "current".
+  std::vector<std::string> state_names() const;
+  std::size_t state_count() const { return inductive_ ? 3 : 2; }
+  /// Derivatives of the state at a time [s], under the supply or, given one, under a voltage that is driven in its
+  /// place through the same resistance [V]. Both hold state_count() numbers.
+  void rates(double time, const double* state, double* derivatives, std::optional<double> voltage = {}) const;
+
+ private:
+  Motion<double> motion(const double* state, double current, double voltage) const;
+
+  Vehicle<double> vehicle_;
+  Supply<double> supply_;
+  bool direct_, inductive_;
+};
 
 /// The metrics and their exact derivatives by the numeric keys of the vehicle file: gradients[k][Metric] is SI per SI
 /// unit of keys[k]. With `options.frequency` the flapping frequency is held, otherwise the voltage. Throws

@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -15,10 +16,21 @@
 #include <vector>
 
 #include "wingbeat/cycle/energy_audit.hpp"
+#include "wingbeat/files/bench_file.hpp"
+#include "wingbeat/files/datasheet_file.hpp"
+#include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/files/file_record.hpp"
 #include "wingbeat/files/netcdf.hpp"
+#include "wingbeat/files/optimise_file.hpp"
+#include "wingbeat/files/tolerance_file.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/files/waveform_file.hpp"
+#include "wingbeat/report/endurance_report.hpp"
+#include "wingbeat/report/fit_report.hpp"
+#include "wingbeat/report/identification_report.hpp"
+#include "wingbeat/report/optimise_report.hpp"
+#include "wingbeat/report/tolerance_report.hpp"
+#include "wingbeat/run/parallel.hpp"
 #include "wingbeat/run/sweep_run.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 #include "wingbeat/wingbeat.hpp"
@@ -345,6 +357,32 @@ py::dict start_up(const Design<double>& design, const std::string& condition, do
   return result;
 }
 
+// ---- equations of motion
+
+/// Derivatives of states in rows, one column or many.
+py::array_t<double> rates(const EquationsOfMotion& equations, double time,
+                          const py::array_t<double, py::array::c_style | py::array::forcecast>& state,
+                          std::optional<double> voltage) {
+  const std::size_t rows = equations.state_count();
+  if (state.ndim() < 1 || state.ndim() > 2 || std::size_t(state.shape(0)) != rows) {
+    throw py::value_error("expected a state of " + std::to_string(rows) + " numbers, or an array with as many rows");
+  }
+  py::array_t<double> derivatives(std::vector<py::ssize_t>(state.shape(), state.shape() + state.ndim()));
+  if (state.ndim() == 1) {
+    equations.rates(time, state.data(), derivatives.mutable_data(), voltage);
+    return derivatives;
+  }
+  const auto from = state.unchecked<2>();
+  auto to = derivatives.mutable_unchecked<2>();
+  std::array<double, 3> column, slopes;
+  for (py::ssize_t n = 0; n < state.shape(1); ++n) {
+    for (std::size_t r = 0; r < rows; ++r) column[r] = from(py::ssize_t(r), n);
+    equations.rates(time, column.data(), slopes.data(), voltage);
+    for (std::size_t r = 0; r < rows; ++r) to(py::ssize_t(r), n) = slopes[r];
+  }
+  return derivatives;
+}
+
 // ---- very many
 
 StudyInput study_input(const std::string& name, const std::string& study, const Design<double>& vehicle) {
@@ -409,6 +447,122 @@ void write_sweep(const std::string& study, const Design<double>& vehicle, const 
   });
 }
 
+// ---- studies
+
+/// What a study found, as `--json` and as the program's readable report.
+py::dict told(const std::string& json, const std::string& text) {
+  py::dict result;
+  result["json"] = json;
+  result["text"] = text;
+  return result;
+}
+
+py::dict endurance(const Design<double>& design, bool allow_extrapolation) {
+  if (!has_battery(design.supply.type)) {
+    throw ParameterError("supply.type", "only a battery runs down; expected battery or battery-sine");
+  }
+  EnduranceOptions options;
+  options.allow_extrapolation = allow_extrapolation;
+  EnduranceResult found;
+  {
+    const py::gil_scoped_release others;
+    found = simulate_discharge(design, options);
+  }
+  py::dict result = told(json_endurance(found), text_endurance(design, found));
+  const auto column = [&](const auto& value) {
+    std::vector<double> numbers;
+    numbers.reserve(found.rows.size());
+    for (const EnduranceRow& row : found.rows) numbers.push_back(value(row));
+    return array_of(std::move(numbers));
+  };
+  result["time"] = column([](const EnduranceRow& row) { return row.time; });
+  result["charge"] = column([](const EnduranceRow& row) { return row.charge; });
+  py::list metrics;
+  for (int m = 0; m < metric_count; ++m) {
+    metrics.append(column([m](const EnduranceRow& row) { return row.metrics[Metric(m)]; }));
+  }
+  result["metrics"] = metrics;
+  return result;
+}
+
+py::dict identify(const std::string& file, std::optional<double> frequency, bool assume_steel_cylinder,
+                  bool assume_typical_damping, const std::string& shaft) {
+  forget_files();
+  const Shaft stated = choice<Shaft>("shaft", shaft);
+  MotorDatasheet sheet = read_datasheet(file);
+  sheet.assume_steel_cylinder |= assume_steel_cylinder;
+  sheet.assume_typical_damping |= assume_typical_damping;
+  const MotorIdentification found = identify_motor(sheet, frequency);
+  py::dict result = told(json_identification(found, sheet), text_identification(found, sheet));
+  result["motor"] =
+      found.complete()
+          ? py::object(py::str(motor_section(found, sheet, "Identified by wingbeat " WINGBEAT_VERSION, stated)))
+          : py::none();
+  return result;
+}
+
+py::dict fit(const std::string& file, const std::vector<std::string>& overrides, bool profiles,
+             bool compare_friction_laws) {
+  forget_files();
+  BenchFit bench = read_bench(file, overrides);
+  bench.profiles = profiles;
+  FitResult found;
+  std::vector<FrictionCandidate> candidates;
+  watched(py::none(), [&](const Watch&) {
+    found = fit_bench(bench, {});
+    if (compare_friction_laws) candidates = compare_friction(bench, design_parameter, {});
+    return true;
+  });
+  py::dict result = told(json_fit(bench, found, candidates),
+                         text_fit(bench, found) + (candidates.empty() ? "" : text_friction(candidates)));
+  result["design"] = found.misfit ? py::none() : py::cast(found.design);
+  return result;
+}
+
+py::dict tolerance(const std::string& file, const std::vector<std::string>& overrides, bool allow_extrapolation,
+                   int threads, const py::object& progress) {
+  forget_files();
+  ToleranceStudy study = read_tolerance_study(file, overrides);
+  study.allow_extrapolation |= allow_extrapolation;
+  const ToleranceResult found = watched(progress, [&](Watch& watch) {
+    const SweepColumns columns =
+        solve_sweep(tolerance_sweep(study), threads, [&watch](const SweepProgress& now) { watch.report(now); });
+    return assess_tolerance(study, columns, start_up_in_time());
+  });
+  return told(json_tolerance(study, found), text_tolerance(study, found));
+}
+
+/// Of one objective.
+py::dict find_optimum(const std::string& file, const std::vector<std::string>& overrides, bool allow_extrapolation,
+                      int threads) {
+  forget_files();
+  OptimiseFile study = read_optimise_study(file, overrides);
+  if (!study.objectives.empty()) {
+    throw InputError(file, 0, 0, "objective", "several objectives give a front: wingbeat optimise computes it");
+  }
+  study.study.allow_extrapolation |= allow_extrapolation;
+  std::vector<MotorTrial> trials = trials_of(study);
+  watched(py::none(), [&](const Watch& watch) {
+    const ForEach for_each = [&](std::size_t count, const std::function<void(std::size_t)>& act) {
+      const auto unless_stopped = [&](std::size_t n) {
+        if (watch.stopped()) throw Interrupted();
+        act(n);
+      };
+      for_each_in_parallel(count, unless_stopped, threads);
+    };
+    for (MotorTrial& trial : trials) {
+      if (!trial.refused()) trial.result = optimise(trial_study(study, trial), start_up_in_time(), for_each);
+    }
+    return true;
+  });
+  const MotorTrial* best = best_trial(study, trials);
+  const bool single = trials.size() == 1 && !trials[0].motor;
+  py::dict result = single ? told(json_optimum(study, trials[0].result), text_optimum(study, trials[0].result))
+                           : told(json_motors(study, trials), text_motors(study, trials));
+  result["design"] = best ? py::cast(best->result.design) : py::none();
+  return result;
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_core, m) {
@@ -435,8 +589,19 @@ PYBIND11_MODULE(_core, m) {
   m.def("gradient", &differentiate, "design"_a, "keys"_a, "condition"_a, "tolerance"_a, "frequency"_a, "endurance"_a);
   m.def("energy_balance", &balance);
   m.def("simulate", &start_up);
+  py::class_<EquationsOfMotion>(m, "EquationsOfMotion")
+      .def(py::init([](const Design<double>& design, const std::string& condition) {
+        return EquationsOfMotion(design, choice<Condition>("condition", condition));
+      }))
+      .def("state_names", &EquationsOfMotion::state_names)
+      .def("rates", &rates);
   m.def("solve_columns", &solve_columns);
   m.def("sweep", &write_sweep);
+  m.def("endurance", &endurance);
+  m.def("identify_motor", &identify);
+  m.def("fit", &fit);
+  m.def("tolerance", &tolerance);
+  m.def("optimise", &find_optimum);
 }
 
 }  // namespace wingbeat::python

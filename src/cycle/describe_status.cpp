@@ -32,6 +32,9 @@ std::string describe_pitching(const StatusEvidence& e) {
     text += format("; the wings over-rotate: their angle of attack is beyond 90 deg for %.0f %% of the period",
                    100.0 * e.over_rotation);
   }
+  if (std::isfinite(e.other_frequency)) {
+    text += format("; a second stable orbit exists, at %.4g Hz", e.other_frequency);
+  }
   if (std::isfinite(e.other_amplitude)) {
     text += format("; a second stable response to the same supply exists, with a stroke of +-%.1f deg",
                    in_degrees(e.other_amplitude));
@@ -48,7 +51,7 @@ std::string describe_flapping(const StatusEvidence& e) {
                            : "; the crank also locks at crank angles ";
         text += lock_list(e);
       }
-      return text;
+      return text + describe_pitching(e);
     }
     case StatusEvidence::Kind::response: {
       std::string text = format("steady flapping at the supply's %.4g Hz", e.frequency);
@@ -65,12 +68,14 @@ std::string describe_flapping(const StatusEvidence& e) {
           e.frequency, e.change,
           e.repeats_after > 1 ? format(", which repeats after %d turns", e.repeats_after).c_str() : "", phase_of(e),
           describe(e.search));
-    case StatusEvidence::Kind::settled_cycles:
-      return format("flaps steadily at %.6g Hz from %.4g s on; after %d cycles they repeat to %.1g%s", e.frequency,
-                    e.time, e.cycles, e.change,
-                    e.extrapolated        ? " (slow convergence, extrapolated)"
-                    : e.repeats_after > 1 ? format(" every %d cycles", e.repeats_after).c_str()
-                                          : "");
+    case StatusEvidence::Kind::settled_cycles: {
+      const std::string text = format("flaps steadily at %.6g Hz from %.4g s on; after %d cycles they repeat to %.1g%s",
+                                      e.frequency, e.time, e.cycles, e.change,
+                                      e.extrapolated        ? " (slow convergence, extrapolated)"
+                                      : e.repeats_after > 1 ? format(" every %d cycles", e.repeats_after).c_str()
+                                                            : "");
+      return text + describe_pitching(e);
+    }
     case StatusEvidence::Kind::averaged_cycles:
       return format(
           "flaps at %.6g Hz, averaged over %d cycles whose durations differ by up to %.2g %% from their mean%s",

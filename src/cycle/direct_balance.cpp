@@ -56,8 +56,12 @@ DirectBalance direct_balance(const Vehicle<double>& v) {
 }
 
 double typical_pitch(const Vehicle<double>& vehicle, double stroke_velocity) {
+  return typical_pitch(vehicle, stroke_velocity, two_pi * vehicle.drive_frequency);
+}
+
+double typical_pitch(const Vehicle<double>& vehicle, double stroke_velocity, double angular_frequency) {
   const PitchingWings<double>& p = vehicle.pitch;
-  const double w = two_pi * vehicle.drive_frequency;
+  const double w = angular_frequency;
   const double drag = 0.5 * vehicle.wings.air_density * normal_force_coefficient(vehicle.wings, p, 0.5 * pi);
   const double moment = (std::abs(p.mass_product) + p.air.rp) * w * stroke_velocity +
                         drag * centre_of_pressure(0.5 * pi) * p.moments.s22 * square(stroke_velocity);

@@ -14,18 +14,8 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
   using System = DirectSystem<double, N>;
   using State = typename System::State;
   SteadyFlapping result;
-  result.metrics.values.fill(absent);
   const DirectBalance balance = direct_balance(vehicle);
-  result.balance.stall_torque = balance.drive_torque;
-  result.balance.breakaway_torque = balance.breakaway_torque;
-  if (balance.stalled()) {
-    result.status = FlappingStatus::stalled;
-    result.evidence = {.kind = Evidence::weak_supply,
-                       .frequency = vehicle.drive_frequency,
-                       .torque = balance.drive_torque,
-                       .friction_torque = balance.breakaway_torque};
-    return result;
-  }
+  if (stalls(vehicle, balance, result)) return result;
 
   const auto state = [](double stroke, double speed, double current) {
     State y{};

@@ -77,17 +77,7 @@ SteadyFlapping PitchingSearch<N>::run(const StartUp& start_up) {
   constexpr double same = 1e-3;                              // orbits that are nearer to each other are one
   constexpr double pitch_guesses[] = {0.25 * pi, 0.5 * pi};  // [rad]
   SteadyFlapping result;
-  result.metrics.values.fill(absent);
-  result.balance.stall_torque = balance_.drive_torque;
-  result.balance.breakaway_torque = balance_.breakaway_torque;
-  if (balance_.stalled()) {
-    result.status = FlappingStatus::stalled;
-    result.evidence = {.kind = PitchEvidence::weak_supply,
-                       .frequency = vehicle_.drive_frequency,
-                       .torque = balance_.drive_torque,
-                       .friction_torque = balance_.breakaway_torque};
-    return result;
-  }
+  if (stalls(vehicle_, balance_, result)) return result;
 
   const System system{vehicle_, typical_};
   std::vector<OrbitSearch<System>> stable;

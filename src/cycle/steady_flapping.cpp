@@ -42,28 +42,11 @@ class CrankSearch : public OrbitSearch<CrankSystem<double, N>> {
   double crank_speed() const { return this->start()[0]; }
 };
 
-StatusEvidence jam_evidence(const StaticBalance& s) {
-  if (s.lever_min <= 0.0) return {.kind = Evidence::lever_may_vanish, .angle = s.lever_angle, .lever = s.lever_min};
-  return {.kind = Evidence::inertia_may_vanish, .angle = s.inertia_angle, .inertia = s.inertia_min};
-}
-
-void add_locks(const Vehicle<double>& vehicle, const StaticBalance& statics, StatusEvidence& evidence) {
-  evidence.can_lock = statics.can_lock();
-  if (evidence.can_lock) evidence.locks = lock_intervals(vehicle);
-}
-
 template <int N>
 SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& options, const StartUp& start_up) {
   SteadyFlapping result;
-  result.metrics.values.fill(absent);
-  result.balance = static_balance(vehicle);
-  const StaticBalance& statics = result.balance;
-  if (statics.stalled()) {
-    result.status = FlappingStatus::stalled;
-    result.evidence = {
-        .kind = Evidence::weak_motor, .torque = statics.stall_torque, .friction_torque = statics.breakaway_torque};
-    return result;
-  }
+  const StaticBalance statics = static_balance(vehicle);
+  if (detail::stalls(statics, result)) return result;
 
   CrankSearch<N> orbit(vehicle, options);
   bool found = false, ambiguous = false;
@@ -101,7 +84,7 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
   if (found) {
     result.status = FlappingStatus::flapping;
     result.evidence = {.kind = Evidence::orbit, .frequency = orbit.frequency(), .assessed = bool(start_up)};
-    add_locks(vehicle, statics, result.evidence);
+    detail::add_locks(vehicle, statics, result.evidence);
     orbit.fill(result);
     return result;
   }
@@ -111,7 +94,7 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
   }
   if (statics.can_jam()) {
     result.status = FlappingStatus::jammed;
-    result.evidence = jam_evidence(statics);
+    result.evidence = detail::jam_evidence(statics);
   } else if (result.summary.status == solver::PeriodicStatus::converged) {
     result.status = FlappingStatus::undecided;
     result.evidence = {
@@ -119,12 +102,45 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
   } else {
     result.status = FlappingStatus::locked;
     result.evidence = {.kind = Evidence::no_orbit, .angle = result.summary.stop, .search = result.summary.status};
-    add_locks(vehicle, statics, result.evidence);
+    detail::add_locks(vehicle, statics, result.evidence);
   }
   return result;
 }
 
 }  // namespace
+
+bool detail::stalls(const StaticBalance& statics, SteadyFlapping& result) {
+  result.metrics.values.fill(absent);
+  result.balance = statics;
+  if (!statics.stalled()) return false;
+  result.status = FlappingStatus::stalled;
+  result.evidence = {
+      .kind = Evidence::weak_motor, .torque = statics.stall_torque, .friction_torque = statics.breakaway_torque};
+  return true;
+}
+
+bool detail::stalls(const Vehicle<double>& vehicle, const DirectBalance& balance, SteadyFlapping& result) {
+  result.metrics.values.fill(absent);
+  result.balance.stall_torque = balance.drive_torque;
+  result.balance.breakaway_torque = balance.breakaway_torque;
+  if (!balance.stalled()) return false;
+  result.status = FlappingStatus::stalled;
+  result.evidence = {.kind = Evidence::weak_supply,
+                     .frequency = vehicle.drive_frequency,
+                     .torque = balance.drive_torque,
+                     .friction_torque = balance.breakaway_torque};
+  return true;
+}
+
+StatusEvidence detail::jam_evidence(const StaticBalance& s) {
+  if (s.lever_min <= 0.0) return {.kind = Evidence::lever_may_vanish, .angle = s.lever_angle, .lever = s.lever_min};
+  return {.kind = Evidence::inertia_may_vanish, .angle = s.inertia_angle, .inertia = s.inertia_min};
+}
+
+void detail::add_locks(const Vehicle<double>& vehicle, const StaticBalance& statics, StatusEvidence& evidence) {
+  evidence.can_lock = statics.can_lock();
+  if (evidence.can_lock) evidence.locks = lock_intervals(vehicle);
+}
 
 void detail::fill_simulated(const StartUpOutcome& outcome, const SteadyOptions& options, bool direct,
                             SteadyFlapping& result) {
@@ -148,7 +164,10 @@ void detail::fill_simulated(const StartUpOutcome& outcome, const SteadyOptions& 
 
 SteadyFlapping detail::find_flapping_as_it_is(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                               const StartUp& start_up) {
-  if (pitches(vehicle)) return detail::find_pitching_flapping(vehicle, options, start_up);
+  if (pitches(vehicle)) {
+    return drive_of(vehicle).rotates ? detail::find_pitching_crank_flapping(vehicle, options, start_up)
+                                     : detail::find_pitching_flapping(vehicle, options, start_up);
+  }
   if (!drive_of(vehicle).rotates) return detail::find_direct_flapping(vehicle, options, start_up);
   return vehicle.motor.armature_inductance > 0.0 ? search<2>(vehicle, options, start_up)
                                                  : search<1>(vehicle, options, start_up);

@@ -115,7 +115,7 @@ class EnsembleRun {
       const Vehicle<double>& v = members_[n].vehicle;
       if (!takes(v)) continue;
       if (options_.scalar_only || !has_packs || v.wings.coefficients.table || has_pitch_stop(v.wings) ||
-          has_gear_loss(v.motor) || v.transmission.type != TransmissionType::slider_crank) {
+          has_gear_loss(v.motor) || pitches(v) || v.transmission.type != TransmissionType::slider_crank) {
         solve_by_scalar(n);
       } else if (stall_torque(v) <= breakaway_torque(v)) {
         settle(n, FlappingStatus::stalled);

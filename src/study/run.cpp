@@ -149,7 +149,7 @@ void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunRes
     TransientOptions transient;
     transient.tolerance = std::max(options.tolerance, transient_tightest);
     transient.cycle_rows = options.waveform_rows;
-    if (!drive_of(vehicle).rotates) {
+    if (!drive_of(vehicle).rotates || pitches(vehicle)) {
       result.cycle = simulate_start_up(warm, transient).cycle;
     } else {
       last_cycle(warm, {SupplyType::constant, vehicle.voltage, 0.0, 1.0, {}}, transient, options.waveform_rows, result);
@@ -185,7 +185,8 @@ void run_transient(Vehicle<double> vehicle, const RunOptions& options, RunResult
   transient.reporting = reporting_of(result.design);
   const Drive drive = drive_of(vehicle);
   if (!drive.alternating) transient.supply = result.design.supply;
-  transient.cycle_rows = !drive.rotates && options.waveform_rows > 1 ? options.waveform_rows : 0;
+  const bool keeps_cycle = !drive.rotates || pitches(vehicle);
+  transient.cycle_rows = keeps_cycle && options.waveform_rows > 1 ? options.waveform_rows : 0;
   result.start_up =
       heats_up(vehicle.thermal) ? simulate_warm(vehicle, transient) : simulate_start_up(vehicle, transient);
   const TransientResult& found = *result.start_up;
@@ -194,7 +195,7 @@ void run_transient(Vehicle<double> vehicle, const RunOptions& options, RunResult
   result.settled = found.settled;
   if (found.metrics && found.status == FlappingStatus::flapping) {
     result.metrics = *found.metrics;
-    if (!drive.rotates) {
+    if (keeps_cycle) {
       result.cycle = found.cycle;
     } else if (options.waveform_rows > 1) {
       last_cycle(vehicle, result.design.supply, transient, options.waveform_rows, result);

@@ -43,7 +43,7 @@ bool CrankStartUp::captured() {
   const bool friction = model_.holding_torque(theta) > 1e-9 * scale;
   const double inertia = effective_inertia(model_.vehicle, model_.kinematics(now_.theta), 0.0);
   const double energy = inertia * square(now_.omega) - slope * square(theta - now_.theta) +
-                        m.armature_inductance * square(now_.i - final_current);
+                        m.armature_inductance * square(now_.i - final_current) + 2.0 * model_.pitch_energy();
   if (energy > -slope * square(friction ? captured_creep : captured_amplitude)) return false;
   rest(theta, friction);
   return true;
@@ -98,6 +98,7 @@ void CrankStartUp::flap() {
                         .cycles = int(crossings_.size()),
                         .repeats_after = int(turns_),
                         .extrapolated = jumped_};
+    if (model_.pitching && options_.metrics) pitching_.add_to(result_.evidence, model_);
     return;
   }
   result_.settled = result_.cycle_scatter < cycle_spread_settled;
@@ -154,9 +155,8 @@ void CrankStartUp::jam(double theta) {
     result_.evidence = {.kind = Evidence::lever_vanishes, .angle = *result_.jam_angle, .lever = k.wing_lever};
     return;
   }
-  const double inertia =
-      std::min(effective_inertia(model_.vehicle, k, 1.0), effective_inertia(model_.vehicle, k, -1.0));
-  result_.evidence = {.kind = Evidence::inertia_vanishes, .angle = *result_.jam_angle, .inertia = inertia};
+  result_.evidence = {
+      .kind = Evidence::inertia_vanishes, .angle = *result_.jam_angle, .inertia = model_.least_inertia_now()};
 }
 
 void CrankStartUp::give_up(StatusEvidence why) {

@@ -25,7 +25,7 @@ bool cancels(const Metrics<double>& m) {
 /// A forward crossing of theta = 2 pi n. True if the integrator must start afresh.
 bool CrankStartUp::cycle_done() {
   const double before = crossings_.empty() ? 0.0 : crossings_.back().time + crossings_.back().skipped;
-  crossings_.push_back({now_.t, now_.omega, now_.i, now_.t - before, 0.0});
+  crossings_.push_back({now_.t, now_.omega, now_.i, now_.t - before, 0.0, now_.psi, now_.pitch_velocity});
   event(Kind::revolution);
   next_cycle_ += two_pi;
   const bool restart = model_.supply.type == SupplyType::constant ? cycle_done_constant() : cycle_done_averaging();
@@ -54,8 +54,7 @@ bool CrankStartUp::cycle_done_constant() {
   const Crossing& before = crossings_[crossings_.size() - 1 - turns_];
   const double noise = 30.0 * relative_tolerance_;
   const double previous = change_;
-  change_ = std::max(std::abs(now_.omega - before.omega) / (std::abs(now_.omega) + 1e-6 * model_.speed_scale),
-                     std::abs(now_.i - before.current) / (std::abs(now_.i) + 0.01 * model_.current_scale));
+  change_ = state_change(before);
   if (cycles_compared_ >= 3 && previous > noise && !measuring_) {
     last_rate_ = rate_;
     rate_ = std::min(change_ / previous, 10.0);
@@ -137,11 +136,8 @@ void CrankStartUp::cycle_measured(double rate) {
   if (!closed && contraction_ > 0.0 && cycles_since_jump_ >= 2) {
     const Crossing& last = crossings_[crossings_.size() - 2];
     const double share = contraction_ / (1.0 - contraction_);
-    now_.omega += share * (now_.omega - last.omega);
-    now_.i = model_.inductive ? now_.i + share * (now_.i - last.current)
-                              : algebraic_current(model_.vehicle, model_.voltage(now_.t), now_.omega);
-    crossings_.back().omega = now_.omega;
-    crossings_.back().current = now_.i;
+    move_state({share * (now_.omega - last.omega), share * (now_.i - last.current), share * (now_.psi - last.psi),
+                share * (now_.pitch_velocity - last.pitch_velocity)});
     cycles_since_jump_ = 0;
     change_before_jump_ = change_;
   }
@@ -154,13 +150,47 @@ bool CrankStartUp::repeats_after(std::size_t cycles) const {
   if (n < 4 * cycles) return false;
   for (std::size_t k = n - 2 * cycles; k < n; ++k) {
     const Crossing &a = crossings_[k - cycles], &b = crossings_[k], &next = crossings_[k - cycles + 1];
-    const double off =
+    double off =
         std::abs(a.omega - b.omega) / model_.speed_scale + std::abs(a.current - b.current) / model_.current_scale;
-    const double within =
+    double within =
         std::abs(a.omega - next.omega) / model_.speed_scale + std::abs(a.current - next.current) / model_.current_scale;
+    if (model_.pitching) {
+      off += std::abs(a.psi - b.psi) / model_.pitch_scale +
+             std::abs(a.pitch_velocity - b.pitch_velocity) / model_.pitch_velocity_scale;
+      within += std::abs(a.psi - next.psi) / model_.pitch_scale +
+                std::abs(a.pitch_velocity - next.pitch_velocity) / model_.pitch_velocity_scale;
+    }
     if (!(off < 1e-2 * within) || within < 1e-5) return false;
   }
   return true;
+}
+
+/// Largest relative change of the state since a crossing.
+double CrankStartUp::state_change(const Crossing& before) const {
+  double change = std::max(std::abs(now_.omega - before.omega) / (std::abs(now_.omega) + 1e-6 * model_.speed_scale),
+                           std::abs(now_.i - before.current) / (std::abs(now_.i) + 0.01 * model_.current_scale));
+  if (!model_.pitching) return change;
+  const auto of_pitch = [](double now, double then, double scale) {
+    return std::abs(now - then) / (std::abs(now) + 0.1 * scale);
+  };
+  change = std::max(change, of_pitch(now_.psi, before.psi, model_.pitch_scale));
+  return std::max(change, of_pitch(now_.pitch_velocity, before.pitch_velocity, model_.pitch_velocity_scale));
+}
+
+/// Moves the state, at a crossing, by omega, i, psi and psi'. Wings that a stop holds stay there.
+void CrankStartUp::move_state(const std::array<double, 4>& by) {
+  now_.omega += by[0];
+  now_.i = model_.inductive ? now_.i + by[1] : algebraic_current(model_.vehicle, model_.voltage(now_.t), now_.omega);
+  if (model_.pitching && !now_.held) {
+    const double stop = model_.vehicle.pitch.hinge.stop;
+    now_.psi = std::clamp(now_.psi + by[2], -stop, stop);
+    now_.pitch_velocity += by[3];
+  }
+  Crossing& here = crossings_.back();
+  here.omega = now_.omega;
+  here.current = now_.i;
+  here.psi = now_.psi;
+  here.pitch_velocity = now_.pitch_velocity;
 }
 
 /// Where cycles converge slowly along one direction, skips ahead. Blocks of cycles of one size show by how much each
@@ -183,21 +213,27 @@ bool CrankStartUp::jump_by_blocks(std::size_t n, std::size_t block) {
   const auto difference = [&](std::size_t back) {
     const Crossing& a = crossings_[n - 1 - (back + 1) * block];
     const Crossing& b = crossings_[n - 1 - back * block];
-    return std::pair{(b.omega - a.omega) / model_.speed_scale,
-                     model_.inductive ? (b.current - a.current) / model_.current_scale : 0.0};
+    std::array<double, 4> d{(b.omega - a.omega) / model_.speed_scale,
+                            model_.inductive ? (b.current - a.current) / model_.current_scale : 0.0};
+    if (model_.pitching) {
+      d[2] = (b.psi - a.psi) / model_.pitch_scale;
+      d[3] = (b.pitch_velocity - a.pitch_velocity) / model_.pitch_velocity_scale;
+    }
+    return d;
   };
   const auto ratio = [&](std::size_t back) {
-    const auto [w0, c0] = difference(back + 1);
-    const auto [w1, c1] = difference(back);
-    return (w0 * w1 + c0 * c1) / (w0 * w0 + c0 * c0);
+    const auto a = difference(back + 1), b = difference(back);
+    return (a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]) /
+           (a[0] * a[0] + a[1] * a[1] + a[2] * a[2] + a[3] * a[3]);
   };
   const double newer = ratio(0), older = ratio(1);
   if (!(newer > 0.0 && newer < 0.9999)) return false;
   const double gain = newer / (1.0 - newer), per_cycle = std::pow(newer, 1.0 / double(block));
-  const auto [speed, current] = difference(0);
+  const auto [speed, current, pitch, pitch_velocity] = difference(0);
   const double to_come =
-      std::max(std::abs(speed) * model_.speed_scale / std::abs(now_.omega),
-               std::abs(current) * model_.current_scale / (std::abs(now_.i) + 0.01 * model_.current_scale)) *
+      std::max({std::abs(speed) * model_.speed_scale / std::abs(now_.omega),
+                std::abs(current) * model_.current_scale / (std::abs(now_.i) + 0.01 * model_.current_scale),
+                std::abs(pitch), std::abs(pitch_velocity)}) *
       gain;
   const bool to_the_limit = to_come <= 1e-3;
   if (std::abs(newer - older) > (to_the_limit ? 0.05 : 0.2) * (1.0 - newer)) return false;
@@ -208,12 +244,9 @@ bool CrankStartUp::jump_by_blocks(std::size_t n, std::size_t block) {
     skipped = std::log1p(-share) / std::log(per_cycle);
     if (skipped < double(2 * block)) return false;
   }
-  now_.omega += share * gain * speed * model_.speed_scale;
-  now_.i = model_.inductive ? now_.i + share * gain * current * model_.current_scale
-                            : algebraic_current(model_.vehicle, model_.voltage(now_.t), now_.omega);
+  move_state({share * gain * speed * model_.speed_scale, share * gain * current * model_.current_scale,
+              share * gain * pitch * model_.pitch_scale, share * gain * pitch_velocity * model_.pitch_velocity_scale});
   Crossing& here = crossings_.back();
-  here.omega = now_.omega;
-  here.current = now_.i;
   here.skipped = skipped * here.cycle;
   now_.t += here.skipped;
   end_time_ += here.skipped;
@@ -266,6 +299,11 @@ void CrankStartUp::begin_measuring() {
   extremes_.fill(-infinity);
   variation_ = 0.0;
   energy_mark_ = model_.wing_energy();
+  rotor_mark_ = now_.rotor_gain;
+  measured_from_ = now_.t;
+  measured_angle_ = next_cycle_ - two_pi;
+  result_.cycle.clear();
+  pitching_.begin(model_);
 }
 
 void CrankStartUp::add_variation() {
@@ -287,9 +325,16 @@ void CrankStartUp::take_metrics(int cycles) {
     const auto total = [&](Integral which) { return integrals[std::size_t(which)]; };
     integrals[std::size_t(Integral::gear_work)] =
         total(Integral::electrical_work) - m.armature_resistance * total(Integral::current_square) -
-        m.viscous_damping * total(Integral::speed_square) - total(Integral::motor_work);
+        m.viscous_damping * total(Integral::speed_square) - total(Integral::motor_work) +
+        (now_.rotor_gain - rotor_mark_) / cycles;
+  }
+  if (model_.pitching) {
+    // Of a crank that stands for a while, what rounding leaves of the speed is none.
+    double& slowest = extremes_[std::size_t(Extreme::crank_speed_min)];
+    if (std::abs(slowest) < 1e-9 * model_.speed_scale) slowest = 0.0;
   }
   result_.metrics = cycle_metrics(model_.vehicle, integrals, extremes_, absent, options_.reporting);
+  if (model_.pitching) pitching_.finish(model_, start, now_.t, cycles, *result_.metrics);
   result_.averaged_cycles = cycles;
   if (ripple_count_ > 0) result_.current_ripple = ripple_sum_ / double(ripple_count_);
 }

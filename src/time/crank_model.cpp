@@ -6,6 +6,7 @@
 #include "time/transient_tools.hpp"
 #include "wingbeat/core/minimise.hpp"
 #include "wingbeat/core/root.hpp"
+#include "wingbeat/cycle/direct_balance.hpp"
 
 namespace wingbeat::detail {
 namespace {
@@ -27,19 +28,23 @@ CrankModel::CrankModel(const Vehicle<double>& of, const Supply<double>& on) : ve
   require(vehicle.wing_inertia >= 0.0, "wing.inertia", "must be >= 0", "kg m2", vehicle.wing_inertia);
   require(vehicle.source_resistance >= 0.0, "supply.internal_resistance", "must be >= 0", "ohm",
           vehicle.source_resistance);
+  pitching = pitches(vehicle);
+  if (pitching) validate(vehicle.pitch, vehicle.wing_count * vehicle.wing_inertia);
   vehicle.voltage = mean_voltage(supply);
   const bool steady_pwm = supply.type == SupplyType::pwm && (supply.duty <= 0.0 || supply.duty >= 1.0);
   if (steady_pwm || supply.type == SupplyType::battery) supply = {SupplyType::constant, vehicle.voltage, 0.0, 1.0};
 }
 
-void CrankModel::start(double theta, double omega, double current) {
+void CrankModel::start(double theta, double omega, double current, double psi, double pitch_velocity) {
   const Motor<double>& m = vehicle.motor;
   const double R = circuit_resistance(vehicle), K = m.torque_constant;
   now = {};
   now.theta = theta;
   now.omega = omega;
   inductive = m.armature_inductance > 0.0;
-  coupled = inductive ? 3 : 2;
+  coupled = (inductive ? 3 : 2) + (pitching ? 2 : 0);
+  now.psi = psi;
+  now.pitch_velocity = pitch_velocity;
   wingless = vehicle.wing_count * vehicle.wing_inertia == 0.0 && vehicle.wing_count * vehicle.spring.stiffness == 0.0 &&
              vehicle.wings.air_density * vehicle.wings.s3 == 0.0;
   constant_friction = breakaway_torque(vehicle);
@@ -61,12 +66,40 @@ void CrankModel::start(double theta, double omega, double current) {
   drive_period = supply.type == SupplyType::constant ? 0.0 : 1.0 / supply.frequency;
   time_scale = two_pi / speed_scale;
   force_scale = (m.inertia + wings) * K * current_scale / typical_stroke_slope(vehicle.transmission);
-  now.jammed = !wingless && uniqueness(theta) <= smallest_margin;
+  if (pitching) {
+    const double slope = typical_stroke_slope(vehicle.transmission);
+    pitch_scale = std::max({typical_pitch(vehicle, slope * speed_scale, speed_scale), std::abs(psi),
+                            std::abs(pitch_velocity) / speed_scale});
+    pitch_velocity_scale = speed_scale * pitch_scale;
+  }
+  now.jammed = !wingless && uniqueness_now() <= smallest_margin;
   fastest_decay = inductive ? std::max(1.0 / electrical_time, damping / smallest_inertia)
                             : (damping + K * K / R) / smallest_inertia;
 }
 
+PitchMotion<double> CrankModel::pitch_motion(double t, const double* y, Branch<double>* used) const {
+  const CrankKinematics<double> k = kinematics(y[0]);
+  Branch<double> branch = now.branch;
+  branch.stroke = sign_of(k.stroke_slope * y[1]);
+  const double i = current_of(t, y), v_t = terminal_voltage(vehicle, voltage(t), i);
+  const double N_k_beta = spring_moment(vehicle, k);
+  const double psi = y[pitch_at()], velocity = now.held ? 0.0 : y[pitch_at() + 1];
+  const auto on_branch = [&] {
+    return pitch_motion_on<Vehicle, double>(vehicle, vehicle.pitch, k, N_k_beta, y[1], i, v_t, psi, velocity, branch,
+                                            {sign_of(velocity), now.held ? -1.0 : 1.0});
+  };
+  branch.gear = 1.0;
+  PitchMotion<double> m = on_branch();
+  if (m.stroke.gear_torque < 0.0) {
+    branch.gear = -1.0;
+    m = on_branch();
+  }
+  if (used) *used = branch;
+  return m;
+}
+
 Motion<double> CrankModel::motion(double t, const double* y, Branch<double>* used) const {
+  if (pitching) return pitch_motion(t, y, used).stroke;
   const CrankKinematics<double> k = kinematics(y[0]);
   const double stroke_velocity = k.stroke_slope * y[1];
   Branch<double> branch = now.branch;
@@ -93,10 +126,35 @@ bool CrankModel::rates(double t, const double* y, double* dy, bool quadrature) c
   if (now.stuck) {
     dy[0] = dy[1] = 0.0;
     if (inductive) dy[2] = (voltage(t) - circuit_resistance(vehicle) * y[2]) / vehicle.motor.armature_inductance;
+    if (!pitching) return true;
+    const WingsAtPitch<double> wings = wings_standing(y);
+    const CrankKinematics<double> k = kinematics(y[0]);
+    dy[pitch_at()] = now.held ? 0.0 : y[pitch_at() + 1];
+    dy[pitch_at() + 1] = wings.free_acceleration;
+    const double i = current_of(t, y);
+    for (int n = 0; quadrature && n < quadrature_count; ++n) {
+      double& rate = dy[coupled + n] = 0.0;
+      switch (quadratures[n]) {
+        case Integral::current: rate = i; break;
+        case Integral::current_square: rate = square(i); break;
+        case Integral::electrical_work: rate = i * terminal_voltage(vehicle, voltage(t), i); break;
+        case Integral::rod_force: rate = std::abs(spring_moment(vehicle, k) + wings.moment) / k.wing_lever; break;
+        case Integral::aero_work: rate = wings.aero.power; break;
+        default: break;
+      }
+    }
     return true;
   }
   Branch<double> branch;
-  const Motion<double> m = motion(t, y, &branch);
+  Motion<double> m;
+  if (pitching) {
+    const PitchMotion<double> all = pitch_motion(t, y, &branch);
+    m = all.stroke;
+    dy[pitch_at()] = now.held ? 0.0 : y[pitch_at() + 1];
+    dy[pitch_at() + 1] = all.acceleration;
+  } else {
+    m = motion(t, y, &branch);
+  }
   dy[0] = y[1];
   dy[1] = m.crank_acceleration;
   if (inductive) dy[2] = m.inductive_voltage / vehicle.motor.armature_inductance;
@@ -162,10 +220,94 @@ double CrankModel::uniqueness(double theta) const {
   return std::min(lever, min_inertia(vehicle, k) / vehicle.motor.inertia);
 }
 
+double CrankModel::rotor_inertia() const {
+  return has_gear_loss(vehicle.motor) ? vehicle.motor.gear_efficiency * vehicle.motor.inertia : vehicle.motor.inertia;
+}
+
+/// The wings at the pitch of the unknowns y while the crank stands.
+WingsAtPitch<double> CrankModel::wings_standing(const double* y) const {
+  const double velocity = now.held ? 0.0 : y[pitch_at() + 1];
+  return wings_at_pitch(vehicle.wings, vehicle.pitch, vehicle.wing_count * vehicle.wing_inertia,
+                        pitch_state(y[pitch_at()], velocity, 0.0), 1.0, sign_of(velocity), now.held ? -1.0 : 1.0);
+}
+
+double CrankModel::uniqueness_at(const double* y) const {
+  if (!pitching) return uniqueness(y[0]);
+  const CrankKinematics<double> k = kinematics(y[0]);
+  const double lever = k.wing_lever / typical_lever(vehicle.transmission);
+  if (!(lever > 0.0)) return lever;
+  const double A = wings_standing(y).inertia * k.stroke_slope / k.wing_lever, radius = vehicle.friction.radius;
+  const double least = rotor_inertia() + std::min(A * (k.crank_lever + radius), A * (k.crank_lever - radius));
+  return std::min(lever, least / vehicle.motor.inertia);
+}
+
+double CrankModel::uniqueness_now() const {
+  double y[5];
+  unknowns(y);
+  return uniqueness_at(y);
+}
+
+double CrankModel::least_inertia_now() const {
+  if (!pitching) return min_inertia(vehicle, kinematics(now.theta));
+  return uniqueness_now() * vehicle.motor.inertia;
+}
+
+StandingTorques<double> CrankModel::standing_torques(const double* y) const {
+  const CrankKinematics<double> k = kinematics(y[0]);
+  return wingbeat::standing_torques(vehicle, k, (spring_moment(vehicle, k) + wings_standing(y).moment) / k.wing_lever);
+}
+
+double CrankModel::pitch_energy() const {
+  if (!pitching) return 0.0;
+  return hinge_loads(vehicle.pitch.hinge, now.psi, now.pitch_velocity).energy +
+         0.5 * (vehicle.pitch.pitch_inertia + vehicle.pitch.air.pp) * square(now.pitch_velocity);
+}
+
+void CrankModel::resume() {
+  const double stop_angle = vehicle.pitch.hinge.stop, side = sign_of(now.psi);
+  if (pitching && !now.held && side * now.psi >= stop_angle && side * now.pitch_velocity > 0.0) meet_stop();
+}
+
+/// The wings meet a stop. A crank that friction holds gives way to the blow where the lever of the rod exceeds that of
+/// friction.
+void CrankModel::meet_stop() {
+  const double side = sign_of(now.psi), J = vehicle.motor.inertia;
+  now.psi = side * vehicle.pitch.hinge.stop;
+  now.held = true;
+  if (uniqueness_now() <= smallest_margin) {
+    now.jammed = true;
+    return;
+  }
+  const CrankKinematics<double> k = kinematics(now.theta);
+  double omega = now.omega;
+  if (omega == 0.0) {
+    // Of no size, in the direction in which the blow would turn the crank.
+    const double coupling = (vehicle.pitch.mass_product + vehicle.pitch.air.rp) * std::cos(now.psi);
+    omega = sign_of(coupling * now.pitch_velocity * k.crank_lever) * std::numeric_limits<double>::min();
+  }
+  StopImpact<double> impact = stop_impact(vehicle, vehicle.pitch, k, omega, now.psi, now.pitch_velocity);
+  if (now.omega == 0.0 && !(impact.shaft_speed * omega > 0.0)) {
+    impact = {0.0, pitch_energy() - hinge_loads(vehicle.pitch.hinge, now.psi, 0.0).energy};
+  }
+  now.rotor_gain += J * impact.shaft_speed * (now.omega + 0.5 * impact.shaft_speed);
+  now.omega += impact.shaft_speed;
+  now.pitch_velocity = 0.0;
+  now.impact_loss += impact.energy;
+  if (impact.shaft_speed != 0.0) now.stuck = false;
+  if (!inductive) now.i = algebraic_current(vehicle, voltage(now.t), now.omega);
+  now.branch.direction = now.omega != 0.0 ? sign_of(now.omega) : now.branch.direction;
+  double y[5];
+  unknowns(y);
+  const bool stands = now.stuck || now.omega == 0.0;
+  const double presses = stands ? wings_standing(y).pitching_moment : pitch_motion(now.t, y).stop_moment;
+  if (side * presses < 0.0) now.held = false;
+}
+
 /// Nearest crank angles on either side of the start that the crank cannot pass.
 void CrankModel::find_jams() {
   smallest_inertia = vehicle.motor.inertia;
   if (wingless) return;
+  // Of wings that pitch it depends on how they stand: indicators() looks at that.
   constexpr int count = 720;
   constexpr double spacing = two_pi / count;
   double margin[count];
@@ -189,6 +331,7 @@ void CrankModel::find_jams() {
     return direction * infinity;
   };
   smallest_inertia *= std::clamp(*std::min_element(margin, margin + count), 1e-3, 1.0);
+  if (pitching) return;
   jam_above = first(1);
   if (std::isfinite(jam_above)) jam_below = first(-1);
 }
@@ -200,18 +343,28 @@ double CrankModel::next_switch() const {
   return (double(next / 2) + (next % 2 == 1 ? supply.duty : 0.0)) / supply.frequency;
 }
 
+/// Room to the stop or, of wings that it holds, how they press on it [1].
+double CrankModel::stop_room(double t, const double* y) const {
+  const double stop_angle = vehicle.pitch.hinge.stop;
+  if (!has_stop(vehicle.pitch.hinge)) return 1.0;
+  if (!now.held) return (stop_angle - std::abs(y[pitch_at()])) / stop_angle;
+  const double moment = now.stuck ? wings_standing(y).pitching_moment : pitch_motion(t, y).stop_moment;
+  return sign_of(y[pitch_at()]) * moment / (vehicle.pitch.pitch_inertia * speed_scale * pitch_velocity_scale);
+}
+
 void CrankModel::choose_force_branch() {
   if (wingless) return;
   if (now.force_branch_known) {
     now.force_branch_known = false;
     return;
   }
-  double y[3] = {now.theta, now.omega, now.i};
+  double y[5];
+  unknowns(y);
   double value = motion(now.t, y).force_switch / force_scale;
   if (std::abs(value) < 1e-9) {
     // The sign is about to be decided: look a little ahead, by the midpoint rule.
     const double ahead = 1e-5 * time_scale;
-    double dy[3] = {}, mid[3] = {}, dmid[3] = {};
+    double dy[5] = {}, mid[5] = {}, dmid[5] = {};
     rates(now.t, y, dy, false);
     for (int k = 0; k < coupled; ++k) mid[k] = y[k] + 0.5 * ahead * dy[k];
     rates(now.t + 0.5 * ahead, mid, dmid, false);
@@ -225,28 +378,50 @@ std::array<double, CrankModel::indicator_count> CrankModel::indicators(double t,
   std::array<double, indicator_count> values;
   values[standstill] = y[1] / speed_scale;
   if (now.stuck) {
-    const double hold = holding_torque(y[0]);
     values.fill(1.0);
+    if (pitching) {
+      const StandingTorques<double> at = standing_torques(y);
+      const double torque = vehicle.motor.torque_constant * current_of(t, y);
+      values[standstill] =
+          std::min(at.high - torque, torque - at.low) / (vehicle.motor.torque_constant * current_scale);
+      values[stop] = stop_room(t, y);
+      values[turn] = now.held ? 1.0 : y[pitch_at() + 1] / pitch_velocity_scale;
+      return values;
+    }
+    const double hold = holding_torque(y[0]);
     values[standstill] = (hold - std::abs(net_static_torque(y[0], current_of(t, y)))) / hold;
     return values;
   }
-  values[jam] = std::min({1.0, jam_above - y[0], y[0] - jam_below});
-  values[force] = values[stored_moment] = values[reversal] = 1.0;
+  values[jam] = pitching ? std::min(1.0, uniqueness_at(y) - smallest_margin)
+                         : std::min({1.0, jam_above - y[0], y[0] - jam_below});
+  values[force] = values[stored_moment] = values[reversal] = values[stop] = values[turn] = 1.0;
   if (wingless) return values;
   const Motion<double> m = motion(t, y);
   values[force] = m.force_switch / force_scale;
   values[stored_moment] = m.stored_moment / (force_scale / vehicle.motor.inertia);
   values[reversal] = m.kinematics.stroke_slope / typical_stroke_slope(vehicle.transmission);
+  if (pitching) {
+    values[stop] = stop_room(t, y);
+    values[turn] = now.held ? 1.0 : y[pitch_at() + 1] / pitch_velocity_scale;
+  }
   return values;
 }
 
 /// At a standstill it is held, or moves on in the direction of the torque.
 void CrankModel::begin_piece() {
-  if (now.stuck) return;
+  resume();
+  if (now.stuck || now.jammed) return;
   now.branch.direction = sign_of(now.omega);
   if (now.omega == 0.0) {
     if (!inductive) now.i = algebraic_current(vehicle, voltage(now.t), 0.0);
-    const double net = net_static_torque(now.theta, now.i), hold = holding_torque(now.theta);
+    double net = net_static_torque(now.theta, now.i), hold = holding_torque(now.theta);
+    if (pitching) {
+      double y[5];
+      unknowns(y);
+      const StandingTorques<double> at = standing_torques(y);
+      net = vehicle.motor.torque_constant * now.i - 0.5 * (at.low + at.high);
+      hold = 0.5 * (at.high - at.low);
+    }
     now.branch.direction = sign_of(net);
     now.stuck = hold > 0.0 && std::abs(net) <= hold;
     if (now.stuck) return;
@@ -258,6 +433,10 @@ void CrankModel::unknowns(double* y) const {
   y[0] = now.theta;
   y[1] = now.omega;
   if (inductive) y[2] = now.i;
+  if (pitching) {
+    y[pitch_at()] = now.psi;
+    y[pitch_at() + 1] = now.pitch_velocity;
+  }
 }
 
 void CrankModel::set(double t, const double* y) {
@@ -265,10 +444,21 @@ void CrankModel::set(double t, const double* y) {
   now.theta = y[0];
   now.omega = y[1];
   now.i = current_of(t, y);
+  if (pitching) {
+    now.psi = y[pitch_at()];
+    now.pitch_velocity = y[pitch_at() + 1];
+  }
+}
+
+std::array<double, 5> CrankModel::typical() const {
+  std::array<double, 5> sizes = {0.1, speed_scale, current_scale};
+  sizes[pitch_at()] = pitch_scale;
+  sizes[std::min<std::size_t>(pitch_at() + 1, 4)] = pitch_velocity_scale;
+  return sizes;
 }
 
 std::array<int, CrankModel::indicator_count> CrankModel::directions() const {
-  return {int(-now.branch.force), now.stuck ? -1 : int(-now.branch.direction), -1, 0, 0};
+  return {int(-now.branch.force), now.stuck ? -1 : int(-now.branch.direction), -1, 0, 0, -1, 0};
 }
 
 void CrankModel::handle(std::size_t indicator) {
@@ -281,13 +471,21 @@ void CrankModel::handle(std::size_t indicator) {
     now.branch.force = -now.branch.force;
     now.force_branch_known = now.omega != 0.0;
   }
+  if (indicator == stop) {
+    if (now.held) now.held = false;
+    else meet_stop();
+  }
 }
 
 /// True where a sign was wrong from the start of the piece, which an integrator may not see as a change.
 bool CrankModel::branch_lost() {
+  if (pitching && !now.held && std::abs(now.psi) > vehicle.pitch.hinge.stop * (1.0 + 1e-9)) {
+    meet_stop();
+    return true;
+  }
   if (now.stuck) return false;
   if (now.branch.direction * now.omega < -1e-9 * speed_scale) return true;
-  double y[3];
+  double y[5];
   unknowns(y);
   if (wingless || now.branch.force * indicators(now.t, y)[force] >= -1e-8) return false;
   now.branch.force = -now.branch.force;
@@ -300,11 +498,17 @@ void CrankModel::tolerated(double relative, const double* y, double* errors) con
   errors[0] = relative;
   errors[1] = relative * (std::abs(y[1]) + 0.01 * speed_scale);
   if (inductive) errors[2] = relative * (std::abs(y[2]) + 0.01 * current_scale);
+  if (pitching) {
+    const std::size_t at = pitch_at();
+    errors[at] = relative * (std::abs(y[at]) + 0.01 * pitch_scale);
+    errors[at + 1] = relative * (std::abs(y[at + 1]) + 0.01 * pitch_velocity_scale);
+  }
 }
 
 bool CrankModel::stiff() const {
   const double span = drive_period > 0.0 ? std::min(time_scale, drive_period) : time_scale;
-  return fastest_decay * span > stiff_decays_per_cycle;
+  const double pitch_decay = pitching ? vehicle.pitch.hinge.damping / vehicle.pitch.pitch_inertia : 0.0;
+  return std::max(fastest_decay, pitch_decay) * span > stiff_decays_per_cycle;
 }
 
 void CrankModel::switch_supply() {

@@ -1,5 +1,5 @@
-// A slider-crank vehicle on its supply, in time: its equations, its events, and the state that goes with them;
-// model.md section 2.
+// A crank-driven vehicle on its supply, in time: its equations, its events, and the state that goes with them; model.md
+// sections 2 and 12.
 #pragma once
 
 #include <array>
@@ -9,11 +9,13 @@
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
 #include "wingbeat/parts/supply.hpp"
+#include "wingbeat/vehicle/pitch_motion.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat::detail {
 
-/// The unknowns are theta [rad], not wrapped, omega [rad/s] and, with an inductance, i [A].
+/// The unknowns are theta [rad], not wrapped, omega [rad/s] and, with an inductance, i [A]; behind them, of wings that
+/// pitch, psi [rad] and psi' [rad/s].
 class CrankModel {
  public:
   /// Everything that moves: copied to save it, assigned to go back.
@@ -22,17 +24,21 @@ class CrankModel {
     Branch<double> branch{1.0, 1.0, 1.0, 1.0};  ///< force and direction; the others follow from the unknowns
     bool force_branch_known = false;            ///< branch.force was set where the force has just changed its sign
     double switched_voltage = 0.0;              ///< of a supply that is no sine, at this moment [V]
-    bool stuck = false;                         ///< stands where friction holds it; for step_to() alone
-    bool jammed = false;                        ///< the same: has reached where its equations have no unique solution
+    bool stuck = false;                         ///< stands where friction holds it
+    bool jammed = false;                        ///< has reached where its equations have no unique solution
     long switches = 0;                          ///< of a pwm supply so far: even ones turn on, number 0 at t = 0
+    double psi = 0.0, pitch_velocity = 0.0;     ///< of wings that pitch [rad], [rad/s]
+    bool held = false;                          ///< a stop holds the wings
+    double impact_loss = 0.0;                   ///< energy that impacts on stops have taken so far [J]
+    double rotor_gain = 0.0;                    ///< kinetic energy that the rotor has gained in them [J]
   };
   /// Functions of the state whose sign changes are events.
-  enum Indicator { force, standstill, jam, stored_moment, reversal, indicator_count };
+  enum Indicator { force, standstill, jam, stored_moment, reversal, stop, turn, indicator_count };
 
   /// Throws ParameterError for numbers out of range.
   CrankModel(const Vehicle<double>& vehicle, const Supply<double>& supply);
   /// Sets the state at t = 0 and what follows from it; without inductance the current follows from the voltage instead.
-  void start(double theta, double omega, double current);
+  void start(double theta, double omega, double current, double psi = 0.0, double pitch_velocity = 0.0);
 
   // As TimeModel asks.
   bool ended() const { return now.jammed; }
@@ -43,7 +49,7 @@ class CrankModel {
   void handle(std::size_t indicator);
   bool branch_lost();
   void tolerated(double relative, const double* y, double* errors) const;
-  std::array<double, 3> typical() const { return {0.1, speed_scale, current_scale}; }
+  std::array<double, 5> typical() const;
   double longest_step() const { return 0.25 * time_scale; }
   bool stiff() const;
 
@@ -58,6 +64,8 @@ class CrankModel {
   }
   /// What acts at the unknowns y, on the branch `used`.
   Motion<double> motion(double t, const double* y, Branch<double>* used = nullptr) const;
+  /// The same with what the wings do that pitch.
+  PitchMotion<double> pitch_motion(double t, const double* y, Branch<double>* used = nullptr) const;
   /// dy/dt and, where asked for, the integrands of `quadratures` behind them. False: not finite.
   bool rates(double t, const double* y, double* dy, bool quadrature) const;
   std::array<double, indicator_count> indicators(double t, const double* y) const;
@@ -68,6 +76,22 @@ class CrankModel {
   double wing_energy() const;
   double current_slope(double t, const double* y, const double* rates) const;
   double uniqueness(double theta) const;
+  /// The same as the wings stand at the unknowns y.
+  double uniqueness_at(const double* y) const;
+  double uniqueness_now() const;
+  /// The least J + A (h + s mu r_e) of either branch as everything stands [kg m2].
+  double least_inertia_now() const;
+
+  /// Where psi stands among the unknowns; psi' is next to it.
+  std::size_t pitch_at() const { return inductive ? 3 : 2; }
+  /// True of wings that a standing crank would not be shaken by.
+  bool wings_rest() const { return !pitching || (now.psi == 0.0 && now.pitch_velocity == 0.0); }
+  /// Torques of the motor [N m] between which the crank stands while the wings pitch.
+  StandingTorques<double> standing_torques(const double* y) const;
+  /// Elastic energy of the hinges and kinetic energy of the pitching alone [J].
+  double pitch_energy() const;
+  /// Meets the stop that the wings are at and move on to.
+  void resume();
 
   /// Decides the sign of the rod force by the state, or by what it is about to become.
   void choose_force_branch();
@@ -80,9 +104,11 @@ class CrankModel {
   Supply<double> supply;
   bool inductive = true;
   bool wingless = false;
+  bool pitching = false;
   int coupled = 3;  ///< number of unknowns
   double constant_friction = 0.0;
   double speed_scale = 1.0, current_scale = 1.0, time_scale = 1.0, force_scale = 1.0;
+  double pitch_scale = 1.0, pitch_velocity_scale = 1.0;
   double electrical_time = 0.0, mechanical_time = 0.0;  ///< time constants [s]
   double drive_period = 0.0;                            ///< of a supply that varies [s]
   double fastest_decay = 0.0;                           ///< [1/s]
@@ -94,6 +120,10 @@ class CrankModel {
 
  private:
   void find_jams();
+  WingsAtPitch<double> wings_standing(const double* y) const;
+  double rotor_inertia() const;  ///< that counts where the mechanism may jam [kg m2]
+  double stop_room(double t, const double* y) const;
+  void meet_stop();
 };
 
 }  // namespace wingbeat::detail

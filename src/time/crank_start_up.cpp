@@ -12,6 +12,7 @@ namespace {
 
 enum Root { root_force, root_standstill, root_cycle, root_jam, root_plain_count };
 enum { root_stored_moment = root_plain_count, root_reversal, root_measuring_count };
+enum { root_stop = root_measuring_count, root_turn, root_pitching_count };
 
 // A branch that takes more steps is taken as stiff whatever the estimate said.
 constexpr int stiff_steps_per_branch = 2000;
@@ -28,6 +29,9 @@ CrankStartUp::CrankStartUp(const Vehicle<double>& vehicle, const TransientOption
   require(options.record_interval >= 0.0, "transient.record_interval", "must be >= 0", "s", options.record_interval);
   require(std::isfinite(options.crank_angle), "transient.crank_angle", "must be finite", "rad", options.crank_angle);
   require(std::isfinite(options.crank_speed), "transient.crank_speed", "must be finite", "rad/s", options.crank_speed);
+  require(std::isfinite(options.pitch_angle), "transient.pitch_angle", "must be finite", "rad", options.pitch_angle);
+  require(std::isfinite(options.pitch_velocity), "transient.pitch_velocity", "must be finite", "rad/s",
+          options.pitch_velocity);
   require(std::isfinite(options.current), "transient.current", "must be finite", "A", options.current);
   if (options.supply && options.supply->type == SupplyType::pwm && model_.supply.type == SupplyType::constant) {
     result_.current_ripple = 0.0;
@@ -35,7 +39,8 @@ CrankStartUp::CrankStartUp(const Vehicle<double>& vehicle, const TransientOption
 }
 
 void CrankStartUp::prepare() {
-  model_.start(options_.crank_angle, options_.crank_speed, options_.current);
+  model_.start(options_.crank_angle, options_.crank_speed, options_.current, options_.pitch_angle,
+               options_.pitch_velocity);
   const Vehicle<double>& vehicle = model_.vehicle;
   const Motor<double>& m = vehicle.motor;
   const double R = circuit_resistance(vehicle), K = m.torque_constant;
@@ -86,16 +91,19 @@ void CrankStartUp::root_values(double t, const double* y, double* values, bool m
   values[root_standstill] = indicators[CrankModel::standstill];
   values[root_cycle] = y[0] - next_cycle_;
   values[root_jam] = indicators[CrankModel::jam];
-  if (!measuring) return;
+  if (!measuring && !model_.pitching) return;
   values[root_stored_moment] = indicators[CrankModel::stored_moment];
   values[root_reversal] = indicators[CrankModel::reversal];
+  if (!model_.pitching) return;
+  values[root_stop] = indicators[CrankModel::stop];
+  values[root_turn] = indicators[CrankModel::turn];
 }
 
 std::unique_ptr<Integrator> CrankStartUp::integrator(bool measuring) {
   IntegratorProblem p = measuring ? problem_with_quadratures(model_, relative_tolerance_, quadrature_scale_)
                                   : problem_of(model_, relative_tolerance_);
   p.stiff = stiff_;
-  p.roots = measuring ? int(root_measuring_count) : int(root_plain_count);
+  p.roots = model_.pitching ? int(root_pitching_count) : measuring ? int(root_measuring_count) : int(root_plain_count);
   p.rates = [this, measuring](double t, const double* y, double* dy) {
     ++result_.rate_evaluations;
     return model_.rates(t, y, dy, measuring);
@@ -112,7 +120,7 @@ TransientResult CrankStartUp::run() {
   const double drive =
       model_.vehicle.motor.torque_constant * model_.supply.voltage / circuit_resistance(model_.vehicle);
   const bool starts = now_.omega != 0.0 || now_.theta != 0.0 || drive > model_.constant_friction;
-  if (starts && model_.uniqueness(now_.theta) <= CrankModel::smallest_margin && !model_.wingless) jam(now_.theta);
+  if (starts && model_.uniqueness_now() <= CrankModel::smallest_margin && !model_.wingless) jam(now_.theta);
   while (!done_) {
     if (now_.omega == 0.0) {
       stand();
@@ -128,6 +136,8 @@ TransientResult CrankStartUp::run() {
   if (!crossings_.empty()) {
     result_.crank_speed = crossings_.back().omega;
     result_.current = crossings_.back().current;
+    result_.pitch_angle = crossings_.back().psi;
+    result_.pitch_velocity = crossings_.back().pitch_velocity;
   }
   return std::move(result_);
 }
@@ -148,6 +158,8 @@ bool CrankStartUp::out_of_budget() {
 
 /// At a standstill: rests for good, waits for the current to break it away, or moves on in the direction of the torque.
 void CrankStartUp::stand() {
+  if (!model_.wings_rest()) return stand_while_wings_pitch();
+  now_.stuck = false;
   double load, hold;
   if (has_gear_loss(model_.vehicle.motor)) {
     const StandingTorques<double> at = model_.standing_torques(now_.theta);
@@ -168,6 +180,21 @@ void CrankStartUp::stand() {
   const double from = now_.t;
   if (!stick((load - hold) / K, (load + hold) / K)) return;
   if (now_.t > from || crossings_.empty()) event(Kind::breakaway);
+}
+
+/// Wings that still pitch shake the crank: whether friction holds it changes with them. They can only come to rest, and
+/// the current with them, so that a crank that stands long enough does so for good.
+void CrankStartUp::stand_while_wings_pitch() {
+  if (std::exchange(breaks_away_, false)) return;
+  if (!now_.stuck) {
+    model_.begin_piece();
+    if (!now_.stuck) return;
+    const PitchingWings<double>& wings = model_.vehicle.pitch;
+    const double period = two_pi * std::sqrt((wings.pitch_inertia + wings.air.pp) / wings.hinge.stiffness);
+    stuck_until_ = now_.t + 3.0 * period + 2.0 * model_.drive_period + 20.0 * model_.electrical_time;
+  } else if (now_.t >= stuck_until_) {
+    rest(now_.theta, true);
+  }
 }
 
 /// Crank held by friction while the current stays in [low, high]. True when it breaks away, now_.t, now_.i and the
@@ -314,19 +341,21 @@ void CrankStartUp::switch_supply() {
 
 /// Integrates one smooth branch to the next event that ends it.
 void CrankStartUp::slide() {
-  model_.choose_force_branch();
+  model_.resume();
+  if (now_.jammed) return jam(now_.theta);
+  if (!now_.stuck) model_.choose_force_branch();
   std::unique_ptr<Integrator>& slot = measuring_ ? with_quadratures_ : plain_;
   if (!slot) slot = integrator(measuring_);
   Integrator& steps = *slot;
   double* y = steps.state();
-  y[0] = now_.theta;
-  y[1] = now_.omega;
-  if (model_.inductive) y[2] = now_.i;
+  model_.unknowns(y);
   if (measuring_) std::copy(q_, q_ + quadrature_count, y + model_.coupled);
 
-  int directions[root_measuring_count] = {int(-now_.branch.force), int(-now_.branch.direction), 1, -1, 0, 0};
+  const int halts = now_.stuck ? -1 : int(-now_.branch.direction);
+  int directions[root_pitching_count] = {int(-now_.branch.force), halts, 1, -1, 0, 0, -1, 0};
   const double switching = model_.next_switch();
-  const double stop = std::min(end_time_, switching);
+  double stop = std::min(end_time_, switching);
+  if (now_.stuck) stop = std::min(stop, stuck_until_);
   if (stop - now_.t < 1e-13 * std::max(now_.t, stop)) {
     now_.t = stop;
     if (stop == switching) switch_supply();
@@ -350,9 +379,7 @@ void CrankStartUp::slide() {
       return;
     }
     now_.t = steps.time();
-    now_.theta = y[0];
-    now_.omega = y[1];
-    now_.i = model_.current_of(now_.t, y);
+    model_.set(now_.t, y);
     if (measuring_) std::copy(y + model_.coupled, y + model_.coupled + quadrature_count, q_);
     step_taken(steps, from);
 
@@ -363,8 +390,16 @@ void CrankStartUp::slide() {
         return;
       }
       if (steps.found(root_standstill)) {
-        now_.omega = 0.0;
-        event(Kind::standstill);
+        if (now_.stuck) {
+          const StandingTorques<double> at = model_.standing_torques(y);
+          now_.branch.direction = sign_of(2.0 * model_.vehicle.motor.torque_constant * now_.i - at.low - at.high);
+          now_.stuck = false;
+          breaks_away_ = true;
+          event(Kind::breakaway);
+        } else {
+          now_.omega = 0.0;
+          event(Kind::standstill);
+        }
         branch_ends = true;
       }
       if (steps.found(root_force)) {
@@ -374,6 +409,11 @@ void CrankStartUp::slide() {
         branch_ends = true;
       }
       if (measuring_) add_variation();
+      if (model_.pitching && steps.found(root_stop)) {
+        meet_or_leave_stop();
+        branch_ends = true;
+        if (now_.jammed) return jam(now_.theta);
+      }
       if (steps.found(root_cycle)) branch_ends = cycle_done() || branch_ends;
     } else if (outcome == Integrator::Outcome::stop) {
       if (measuring_) add_variation();
@@ -382,12 +422,17 @@ void CrankStartUp::slide() {
     } else {
       // Roots that the integrator may not see: a sign that was wrong from the start of the branch.
       if (now_.branch.direction * now_.omega < -1e-9 * model_.speed_scale) branch_ends = true;
-      if (!model_.wingless && now_.branch.force * last_force_switch_ < -1e-8) {
+      if (!model_.wingless && !now_.stuck && now_.branch.force * last_force_switch_ < -1e-8) {
         now_.branch.force = -now_.branch.force;
         now_.force_branch_known = true;
         branch_ends = true;
       }
-      if (!branch_ends && captured()) return;
+      if (model_.pitching && !now_.held && std::abs(now_.psi) > model_.vehicle.pitch.hinge.stop * (1.0 + 1e-9)) {
+        meet_or_leave_stop();
+        branch_ends = true;
+        if (now_.jammed) return jam(now_.theta);
+      }
+      if (!branch_ends && !now_.stuck && captured()) return;
     }
     if (done_ || swings_repeat() || branch_ends) return;
     if (out_of_budget()) return;
@@ -401,6 +446,15 @@ void CrankStartUp::slide() {
   }
 }
 
+/// The blow takes at once what is no power that flows back and forth.
+void CrankStartUp::meet_or_leave_stop() {
+  if (measuring_) add_variation();
+  const double lost = now_.impact_loss;
+  model_.handle(CrankModel::stop);
+  if (now_.impact_loss > lost) event(Kind::stop_impact);
+  if (measuring_) energy_mark_ = model_.wing_energy();
+}
+
 void CrankStartUp::step_taken(Integrator& steps, double from) {
   swing_low_ = std::min(swing_low_, now_.theta);
   swing_high_ = std::max(swing_high_, now_.theta);
@@ -408,6 +462,18 @@ void CrankStartUp::step_taken(Integrator& steps, double from) {
   window_high_ = std::max(window_high_, now_.theta);
   track_inrush(steps, from);
   if (measuring_) track_extremes(steps, from);
+  if (measuring_ && model_.pitching) {
+    pitching_.step_taken(model_, steps, from);
+    const int last = options_.cycle_rows - 1;
+    while (last > 0 && int(result_.cycle.size()) <= last) {
+      const double since = crossings_.back().cycle * double(result_.cycle.size()) / last;
+      if (measured_from_ + since > now_.t + 1e-6 * crossings_.back().cycle) break;
+      const double* at = steps.dense(std::min(measured_from_ + since, now_.t));
+      const Motion<double> m = model_.motion(measured_from_ + since, at);
+      result_.cycle.push_back(waveform_row(model_.vehicle, m, since, at[0] - measured_angle_, at[1],
+                                           stroke_angle(m.kinematics), at[model_.pitch_at()]));
+    }
+  }
   recorder_.step_taken({now_.t, now_.theta, now_.omega, now_.i}, [&](double t) {
     const double* y = steps.dense(t);
     return TransientSample{t, y[0], y[1], model_.current_of(t, y)};
@@ -416,7 +482,7 @@ void CrankStartUp::step_taken(Integrator& steps, double from) {
 
 void CrankStartUp::track_inrush(Integrator& steps, double from) {
   const auto slope = [&](double t) {
-    double rates[3] = {};
+    double rates[5] = {};
     if (!model_.inductive) rates[1] = steps.dense(t, 1)[1];
     return model_.current_slope(t, steps.dense(t), rates);
   };

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "time/crank_model.hpp"
+#include "time/crank_pitch_reading.hpp"
 #include "time/integrator.hpp"
 #include "time/recorder.hpp"
 #include "time/transient_tools.hpp"
@@ -33,6 +34,8 @@ class CrankStartUp {
   void prepare();
   void slide();
   void stand();
+  void stand_while_wings_pitch();
+  void meet_or_leave_stop();
   bool stick(double low, double high);
   double standing_current(double at) const;
   void relax(double until);
@@ -95,14 +98,22 @@ class CrankStartUp {
   double contraction_ = 0.0;  // of a cycle, as the blocks of cycles before a jump have shown it
   int cycles_since_jump_ = 0;
   double change_before_jump_ = std::numeric_limits<double>::infinity();
-  double variation_ = 0.0, energy_mark_ = 0.0;
+  double variation_ = 0.0, energy_mark_ = 0.0, rotor_mark_ = 0.0;
   CycleExtremes<double> extremes_{};
+  CrankPitchReading pitching_;
+  double measured_from_ = 0.0, measured_angle_ = 0.0;  // time and crank angle
+  double stuck_until_ =
+      std::numeric_limits<double>::infinity();  ///< what a crank has not left by then, it never leaves
+  bool breaks_away_ = false;
 
   struct Crossing {
     double time, omega, current;
     double cycle;    // duration of the cycle that ended here [s]
     double skipped;  // time of the cycles that a jump left out after it [s]
+    double psi = 0.0, pitch_velocity = 0.0;
   };
+  double state_change(const Crossing& before) const;
+  void move_state(const std::array<double, 4>& by);
   std::vector<Crossing> crossings_;
   int cycles_compared_ = 0;  // successive cycles since the start or the last jump
   double change_ = std::numeric_limits<double>::infinity(), rate_ = 1.0, last_rate_ = 1.0;

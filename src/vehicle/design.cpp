@@ -100,14 +100,11 @@ void validate_pitching(const Design<double>& d, const Vehicle<double>& v) {
                              " is for wings that pitch on a hinge; give pitch.stiffness, or translational-2022");
   }
   const char* key = pitch_key::stiffness.path;
-  if (drive_of(d).rotates) {
-    throw ParameterError(key,
-                         std::string("pitch as a degree of freedom is solved for a direct drive only, not for a ") +
-                             name_of(d.transmission.type));
-  }
-  if (d.friction.law == FrictionLaw::constant || d.motor.constants.friction_torque > 0.0) {
-    throw ParameterError(d.friction.law == FrictionLaw::constant ? "friction.type" : "motor.friction_torque",
-                         "constant friction is not solved for together with wings that pitch on a hinge");
+  const bool constant = d.friction.law == FrictionLaw::constant || d.motor.constants.friction_torque > 0.0;
+  if (constant && !drive_of(d).rotates) {
+    throw ParameterError(
+        d.friction.law == FrictionLaw::constant ? "friction.type" : "motor.friction_torque",
+        "constant friction of a direct drive is not solved for together with wings that pitch on a hinge");
   }
   if (d.wing.planform.shape == PlanformShape::moments) {
     throw ParameterError(key, "needs the wing's outline: give a planform with a shape");

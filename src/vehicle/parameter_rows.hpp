@@ -357,8 +357,7 @@ std::span<const Parameter<S>> parameter_table() {
                          [](auto& d) -> auto& { return d.wing.planform.s22; }),
 
       number<S>(row(pitch_key::stiffness, "none: the pitch law",
-                    "k_psi of the hinge about which one wing pitches; given, pitch is a degree of freedom (direct "
-                    "drives)"),
+                    "k_psi of the hinge about which one wing pitches; given, pitch is a degree of freedom"),
                 [](auto& d) -> auto& { return d.pitch.stiffness; }),
       number<S, Pitching>(row(pitch_key::damping, "0 N m s/rad", "c_psi of one hinge"),
                           [](auto& d) -> auto& { return d.pitch.damping; }),

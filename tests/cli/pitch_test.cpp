@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-const std::string hinged = data + "/designs/pitch-hinge.toml";
+const std::string hinged = data + "/designs/pitch-hinge.toml", hinged_crank = data + "/designs/pitch-hinge-crank.toml";
 constexpr const char* pitch_metric_keys[] = {"power_hinge_w", "pitch_amplitude_deg", "pitch_phase_deg",
                                              "angle_of_attack_max_deg"};
 
@@ -137,17 +137,86 @@ TEST_F(Pitch, AnOptimumOfTheHingeIsFound) {
   EXPECT_THAT(o.out, HasSubstr("most mean lift: 0.0152"));
 }
 
-TEST_F(Pitch, ACrankIsRefusedByName) {
-  std::string text = read(plain);
-  const auto planform = text.find("\nplanform");
-  text.erase(planform, text.find('\n', planform + 1) - planform);
-  text.insert(text.find("[wing]\n") + 7,
-              "pitch_inertia = 3e-9\nmass_product = 5e-9\n"
-              "planform = { shape = \"semi-ellipse\", length = \"63 mm\", root_chord = \"25 mm\" }\n");
-  const auto law = text.find("\npitch_coefficient");
-  text.erase(law, text.find('\n', law + 1) - law);
-  std::ofstream(path("crank.toml")) << text << "\n[pitch]\nstiffness = 3e-4\n";
-  EXPECT_THAT(complaint({}, path("crank.toml")), HasSubstr("is solved for a direct drive only"));
+TEST_F(Pitch, CranksRunByBothMethods) {
+  for (const std::string set : {"pitch.stop=60 deg", "pitch.stop=10 deg", "motor.gear_efficiency=0.8",
+                                "friction={type=\"constant\", torque=\"2e-4 N m\"}"}) {
+    std::vector<std::string> arguments{"run", hinged_crank, "--json", "--set", set};
+    const Outcome orbit = run(arguments);
+    ASSERT_EQ(orbit.status, 0) << orbit.err;
+    const Json json = orbit.json();
+    arguments.insert(arguments.end(), {"--method", "transient"});
+    const Json transient = run(arguments).json();
+    for (const char* key : {"frequency_hz", "lift_mean_n", "power_electrical_w", "power_aerodynamic_w", "power_gear_w",
+                            "current_peak_a", "power_hinge_w", "pitch_amplitude_deg", "pitch_phase_deg",
+                            "angle_of_attack_min_deg", "angle_of_attack_max_deg", "power_reactive_w",
+                            "power_friction_w", "rod_force_peak_n", "crank_speed_max_rad_per_s"}) {
+      ASSERT_TRUE(json[key].is_number()) << key;
+      const double scale = std::abs(json[key].get<double>()) + 1e-12;
+      EXPECT_NEAR(transient[key].get<double>(), json[key].get<double>(), 3e-6 * scale) << key << ", " << set;
+    }
+    const double given = json["power_electrical_w"].get<double>();
+    double taken = 0.0;
+    for (const char* key : {"power_copper_w", "power_viscous_w", "power_friction_w", "power_hinge_w", "power_gear_w",
+                            "power_aerodynamic_w", "power_residual_w"}) {
+      taken += json[key].get<double>();
+    }
+    EXPECT_NEAR(taken, given, 1e-6 * given) << set;
+  }
+}
+
+TEST_F(Pitch, CrankWaveformsAndTargets) {
+  std::vector<double> peaks;
+  for (const char* method : {"orbit", "transient"}) {
+    const std::string name = path(std::string(method) + ".csv");
+    const Outcome o = run({"run", hinged_crank, "--method", method, "--waveforms", name});
+    ASSERT_EQ(o.status, 0) << o.err;
+    std::istringstream lines(read(name));
+    std::string row;
+    std::getline(lines, row);
+    EXPECT_THAT(row, testing::EndsWith(",pitch_angle_rad"));
+    double peak = 0.0;
+    while (std::getline(lines, row)) peak = std::max(peak, std::abs(std::stod(row.substr(row.rfind(',') + 1))));
+    peaks.push_back(peak);
+  }
+  EXPECT_GT(peaks[0], 0.3);
+  EXPECT_NEAR(peaks[0], peaks[1], 1e-4);
+  const Json lifted = run({"run", hinged_crank, "--lift", "10 mN", "--json"}).json();
+  EXPECT_NEAR(lifted["lift_mean_n"].get<double>(), 0.01, 1e-7);
+  const Json held = run({"run", hinged_crank, "--frequency", "18 Hz", "--json"}).json();
+  EXPECT_NEAR(held["frequency_hz"].get<double>(), 18.0, 1e-5);
+}
+
+TEST_F(Pitch, CranksSweepTheirStiffness) {
+  std::ofstream(path("s.toml")) << "[study]\nvehicle = \"" << hinged_crank
+                                << "\"\n[[axis]]\nkey = \"pitch.stiffness\"\n"
+                                   "values = [\"3e-4 N m/rad\", \"6e-4 N m/rad\", \"1e-3 N m/rad\"]\n";
+  const Outcome o = run({"sweep", path("s.toml"), "-o", path("s.nc")});
+  ASSERT_EQ(o.status, 0) << o.err;
+  const wingbeat::NetcdfReader sweep(path("s.nc"));
+  const Json json = run({"run", hinged_crank, "--json"}).json();
+  for (const char* key : {"frequency_hz", "lift_mean_n", "pitch_amplitude_deg", "power_hinge_w"}) {
+    EXPECT_EQ(sweep.read(key).at(1), json[key].get<double>()) << key;
+  }
+}
+
+TEST_F(Pitch, AFitIsRefusedByName) {
+  std::ofstream(path("f.toml")) << "[bench]\nvehicle = \"" << hinged_crank
+                                << "\"\n[[parameter]]\nkey = \"pitch.stiffness\"\nlower = \"1e-4 N m/rad\"\n"
+                                   "upper = \"1e-3 N m/rad\"\n[deviation]\ndefault = { relative = 0.01 }\n"
+                                   "[[log]]\nfile = \""
+                                << data << "/bench/air.csv\"\ncondition = \"air\"\nsprings = false\n";
+  const Outcome o = run({"fit", path("f.toml")});
+  EXPECT_EQ(o.status, 2) << o.out;
+  EXPECT_THAT(o.err, HasSubstr("a fit needs derivatives"));
+}
+
+TEST_F(Pitch, BadCranksAreRefusedInOneSentence) {
+  EXPECT_THAT(complaint({"pitch.stop=0 deg"}, hinged_crank), HasSubstr("must be > 0 and < pi"));
+  EXPECT_THAT(complaint({"wing.planform={shape=\"moments\", s2=2.457e-6, s3=1.048e-7}"}, hinged_crank),
+              HasSubstr("needs the wing's outline"));
+  EXPECT_THAT(complaint({"aerodynamics.pitch_coefficient=5 ms"}, hinged_crank),
+              HasSubstr("has no place in this vehicle"));
+  EXPECT_THAT(complaint({"pitch.stiffness=3e-4 N m/rad"}, plain), HasSubstr("pitch"));
 }
 
 }  // namespace

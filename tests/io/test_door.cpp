@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "wingbeat/files/waveform_file.hpp"
@@ -134,6 +136,81 @@ TEST(Door, ANumberByItselfIsWhatTheVehicleFileWouldMakeOfIt) {
   }
   EXPECT_GT(compared - refused, 500);
   EXPECT_GT(refused, 500);
+}
+
+/// Classical Runge-Kutta steps from a sample of a simulation to the next.
+std::vector<double> integrated(const EquationsOfMotion& equations, double from, double to, std::vector<double> y) {
+  constexpr int steps = 20;
+  const double h = (to - from) / steps;
+  const std::size_t n = y.size();
+  std::vector<double> k[4], at;
+  for (int s = 0; s < steps; ++s) {
+    const double t = from + s * h;
+    for (int stage = 0; stage < 4; ++stage) {
+      const double part = stage == 0 ? 0.0 : stage == 3 ? 1.0 : 0.5;
+      at = y;
+      for (std::size_t c = 0; stage > 0 && c < n; ++c) at[c] += part * h * k[stage - 1][c];
+      k[stage].resize(n);
+      equations.rates(t + part * h, at.data(), k[stage].data());
+    }
+    for (std::size_t c = 0; c < n; ++c) y[c] += h / 6.0 * (k[0][c] + 2.0 * k[1][c] + 2.0 * k[2][c] + k[3][c]);
+  }
+  return y;
+}
+
+TEST(Door, EquationsOfMotionAreThoseOfTheSimulation) {
+  int compared = 0;
+  for (const auto& file : std::filesystem::directory_iterator(WINGBEAT_DATA "/designs")) {
+    if (file.path().extension() != ".toml") continue;
+    const Design<double> design = read_design(file.path());
+    if (design.pitch.stiffness) {
+      EXPECT_THROW(EquationsOfMotion{design}, ParameterError);
+      continue;
+    }
+    const EquationsOfMotion equations(design);
+    TransientOptions options;
+    options.tolerance = 1e-9;
+    options.max_time = 0.2;
+    options.record = true;
+    options.record_interval = 2e-4;
+    const TransientResult simulated = simulate(design, options);
+    const bool inductive = equations.state_count() == 3;
+    double largest = 0.0, speed = 0.0;
+    const auto state_of = [&](const TransientSample& sample) {
+      std::vector<double> state{sample.crank_angle, sample.crank_speed};
+      if (inductive) state.push_back(sample.current);
+      return state;
+    };
+    for (const TransientSample& sample : simulated.samples) speed = std::max(speed, std::abs(sample.crank_speed));
+    for (std::size_t n = 50; n + 1 < simulated.samples.size(); ++n) {
+      const TransientSample &from = simulated.samples[n], &to = simulated.samples[n + 1];
+      if (from.crank_speed * to.crank_speed <= 0.0) continue;  // friction changes its direction there
+      const std::vector<double> found = integrated(equations, from.time, to.time, state_of(from));
+      largest = std::max(largest, std::abs(found[1] - to.crank_speed) / speed);
+    }
+    EXPECT_LT(largest, 1e-6) << file.path();
+    EXPECT_GT(simulated.samples.size(), 100U) << file.path();
+    ++compared;
+  }
+  EXPECT_GE(compared, 5);
+}
+
+TEST(Door, EquationsOfMotionUnderAnyVoltage) {
+  Design<double> design = read_design(springs);
+  const double state[] = {1.0, 100.0, 0.1};
+  double given[3], stated[3];
+  EquationsOfMotion(design).rates(0.0, state, given, 4.5);
+  design.supply.voltage = 4.5;
+  EquationsOfMotion(design).rates(0.0, state, stated);
+  EXPECT_THAT(given, testing::ElementsAreArray(stated));
+  EXPECT_THAT(EquationsOfMotion(design).state_names(), testing::ElementsAre("crank_angle", "crank_speed", "current"));
+
+  design.motor.constants.armature_inductance = 0.0;
+  const EquationsOfMotion algebraic(design);
+  EXPECT_EQ(algebraic.state_count(), 2U);
+  double fast[2];
+  algebraic.rates(0.0, state, fast);
+  EXPECT_TRUE(std::isfinite(fast[1]));
 }
 
 TEST(Door, EveryNameIsTheKeyWithoutItsUnit) {

@@ -10,6 +10,7 @@
 
 #include "vehicle/known_orbits.hpp"
 #include "vehicle/random_vehicle.hpp"
+#include "vehicle/reference_vehicle.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {
@@ -341,6 +342,27 @@ TEST(Ensemble, WinglessHasItsClosedForm) {
     EXPECT_NEAR(outcomes[n].metrics[Metric::frequency] * two_pi / no_load_speed(v.motor, v.voltage), 1.0, 1e-9);
     EXPECT_EQ(outcomes[n].metrics[Metric::lift_mean], 0.0);
   }
+}
+
+// Where the wings feather far, lift rises and falls several times while the wing speeds up; its peak may lie anywhere.
+TEST(Ensemble, PeakLiftOfWingsThatFeatherFar) {
+  std::vector<EnsembleMember> members;
+  for (int n = 0; n < 400; ++n) {
+    Design<double> d = reference_design();
+    d.aerodynamics.pitch_coefficient = 20e-3 + 130e-3 * n / 399.0;
+    members.push_back(member_of(d));
+  }
+  const std::vector<EnsembleOutcome> batched = solve(members, {.tolerance = 1e-6});
+  int compared = 0;
+  for (std::size_t n = 0; n < members.size(); ++n) {
+    const SteadyFlapping one =
+        find_steady_flapping(members[n].vehicle, {.tolerance = 1e-9, .reporting = members[n].reporting});
+    ASSERT_EQ(one.status, FlappingStatus::flapping) << n;
+    compared += !batched[n].scalar;
+    const double expected = one.metrics[Metric::lift_peak];
+    EXPECT_NEAR(batched[n].metrics[Metric::lift_peak], expected, 3e-6 * std::abs(expected)) << n;
+  }
+  EXPECT_GT(compared, 200);
 }
 
 TEST(Ensemble, ReportsTheMetricsAskedForAlone) {

@@ -1,4 +1,4 @@
-// Further physics on top of a random vehicle: docs/model.md sections 9 to 11, each with numbers from weak to strong.
+// Further physics on top of a random vehicle: docs/model.md sections 9 to 12, each with numbers from weak to strong.
 #pragma once
 
 #include <array>
@@ -10,10 +10,12 @@
 
 namespace wingbeat {
 
-enum class Rung { none, added_mass, gear, heat, all };
-inline constexpr std::array<std::string_view, 5> rung_names = {"none", "added_mass", "gear", "heat", "all_rungs"};
+enum class Rung { none, added_mass, gear, heat, all, pitch };
+inline constexpr std::array<std::string_view, 6> rung_names = {"none", "added_mass", "gear",
+                                                               "heat", "all_rungs",  "pitch"};
 
-/// Turns the rung on, its numbers drawn by `n` and the seed alone. A direct drive has no gear efficiency.
+/// Turns the rung on, its numbers drawn by `n` and the seed alone. A direct drive has no gear efficiency, and none of
+/// constant friction whose wings pitch.
 inline void add_rung(Design<double>& d, Rung rung, std::uint32_t n, std::uint32_t seed) {
   std::seed_seq sequence{seed, 1000u + std::uint32_t(rung), n};
   std::mt19937_64 random(sequence);
@@ -35,6 +37,30 @@ inline void add_rung(Design<double>& d, Rung rung, std::uint32_t n, std::uint32_
     d.motor.thermal.resistance_winding = logarithmic(1.0, 40.0);
     d.motor.thermal.resistance_case = logarithmic(3.0, 80.0);
     if (uniform(0.0, 1.0) < 0.5) d.motor.thermal.magnet_temperature_coefficient = -0.001;
+  }
+  if (rung == Rung::pitch) {
+    // The semi-ellipse of the same S_2 and S_3, on hinges whose own frequency lies about that of flapping.
+    Planform<double>& p = d.wing.planform;
+    const double length = p.s3 / p.s2 * 15.0 * pi / 32.0;
+    p.root_chord = 16.0 * p.s2 / (d.wing.count * pi * length * length * length);
+    p.length = length;
+    p.shape = PlanformShape::semi_ellipse;
+    const double inertia = logarithmic(0.01, 0.15) * d.wing.inertia;
+    d.wing.pitch_inertia = inertia;
+    d.wing.mass_product = uniform(-0.3, 0.9) * std::sqrt(d.wing.inertia * inertia);
+    d.pitch.stiffness = inertia * square(two_pi * logarithmic(15.0, 300.0));
+    d.pitch.damping = std::sqrt(*d.pitch.stiffness * inertia) * logarithmic(1e-3, 1.0);
+    if (uniform(0.0, 1.0) < 0.5) d.pitch.stop = uniform(0.1, 1.2);
+    d.pitch.rotational_lift = uniform(0.0, 1.0) < 0.7;
+    d.aerodynamics.added_mass = uniform(0.0, 1.0) < 0.7;
+    d.aerodynamics.angle_of_attack_min.reset();
+    d.aerodynamics.pitch_coefficient = 0.0;
+    d.aerodynamics.coefficients_name = normal_force_set;
+    d.aerodynamics.coefficients = force_coefficients_robofly();
+    if (d.transmission.type == TransmissionType::direct) {
+      d.motor.constants.friction_torque = 0.0;
+      if (d.friction.law == FrictionLaw::constant) d.friction = {FrictionLaw::none, 0.0};
+    }
   }
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "vehicle/pitching_vehicle.hpp"
-#include "wingbeat/core/jet.hpp"
+#include "vehicle/return_map_derivative.hpp"
 #include "wingbeat/cycle/crank_system.hpp"
 #include "wingbeat/cycle/pitch_crank_system.hpp"
 #include "wingbeat/cycle/pitch_metrics.hpp"
@@ -117,27 +117,8 @@ TEST(PitchCrank, StopsHoldTheWingsAndTakeTheEnergyOfImpacts) {
 
 TEST(PitchCrank, DerivativeOfTheReturnMapCrossesImpacts) {
   const PitchCrank system = pitch_crank(2e-4, 0.35);
-  const PitchCrank::State start{130.0, 0.1, 10.0, 0.1};
-  const auto cycle_from = [&](const PitchCrank::State& y) {
-    solver::Iterate<PitchCrank> cycle;
-    solver::run_iterate<true>(system, y, {.tolerance = 1e-12, .max_steps = 5000}, cycle);
-    EXPECT_EQ(cycle.status, solver::IterateStatus::complete);
-    return cycle;
-  };
-  const auto cycle = cycle_from(start);
+  const auto cycle = expect_return_map_derivative(system, {130.0, 0.1, 10.0, 0.1}, {2e-3, 1e-5, 1e-3, 1e-5}, 1e-3);
   EXPECT_GT(impact_loss(system, cycle), 0.0);
-  const auto M = solver::monodromy(system, system.cast<Jet<4>>(), cycle);
-  const double h[] = {2e-3, 1e-5, 1e-3, 1e-5};
-  for (std::size_t column = 0; column < 4; ++column) {
-    PitchCrank::State lower = start, upper = start;
-    lower[column] -= h[column];
-    upper[column] += h[column];
-    const auto a = cycle_from(lower), b = cycle_from(upper);
-    for (std::size_t row = 0; row < 4; ++row) {
-      const double difference = (b.end[row] - a.end[row]) / (2.0 * h[column]);
-      EXPECT_NEAR(M[4 * row + column] * h[column], difference * h[column], 1e-3 * h[row]) << row << ", " << column;
-    }
-  }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <complex>
 
 #include "vehicle/pitching_vehicle.hpp"
+#include "vehicle/return_map_derivative.hpp"
 #include "wingbeat/core/jet.hpp"
 #include "wingbeat/cycle/direct_system.hpp"
 #include "wingbeat/cycle/pitch_direct_system.hpp"
@@ -187,28 +188,9 @@ TEST(PitchDirect, DerivativeOfTheReturnMapCrossesImpacts) {
   Vehicle<double> of = pitching_vehicle(2e-4);
   of.pitch.hinge.stop = 0.5;
   const PitchSystem system = pitch_system(of);
-  const PitchSystem::State start{0.3, -20.0, 0.1, 10.0, 0.05};
-  const solver::IterateOptions options{.tolerance = 1e-12, .max_steps = 5000};
-  const auto end_from = [&](const PitchSystem::State& y) {
-    solver::Iterate<PitchSystem> cycle;
-    solver::run_iterate<true>(system, y, options, cycle);
-    EXPECT_EQ(cycle.status, solver::IterateStatus::complete);
-    return cycle;
-  };
-  const auto cycle = end_from(start);
+  const auto cycle =
+      expect_return_map_derivative(system, {0.3, -20.0, 0.1, 10.0, 0.05}, {1e-4, 1e-2, 1e-4, 1e-2, 1e-4}, 3e-4);
   EXPECT_GT(impact_loss(system, cycle), 0.0);
-  const auto M = solver::monodromy(system, system.cast<Jet<5>>(), cycle);
-  const double h[] = {1e-4, 1e-2, 1e-4, 1e-2, 1e-4};
-  for (std::size_t column = 0; column < 5; ++column) {
-    PitchSystem::State lower = start, upper = start;
-    lower[column] -= h[column];
-    upper[column] += h[column];
-    const auto a = end_from(lower), b = end_from(upper);
-    for (std::size_t row = 0; row < 5; ++row) {
-      const double difference = (b.end[row] - a.end[row]) / (2.0 * h[column]);
-      EXPECT_NEAR(M[5 * row + column] * h[column], difference * h[column], 3e-4 * h[row]) << row << ", " << column;
-    }
-  }
 }
 
 }  // namespace

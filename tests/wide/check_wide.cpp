@@ -3,7 +3,7 @@
 //   check_wide [COUNT]            vehicles of each box, 500 unless given
 //     --box NAME                  that box alone
 //     --vehicle N                 that vehicle of the box alone, with its file and every decision
-//     --rung NAME                 with added_mass, gear, heat or all_rungs on top of every vehicle
+//     --rung NAME                 with added_mass, gear, heat, all_rungs or pitch on top of every vehicle
 //     --seed S  --threads T
 //   check_wide --rungs [COUNT]    slider-cranks, four-bars, tabulated laws and direct drives with each rung
 //   check_wide --packs [COUNT]    batched against scalar orbit alone, slider-cranks around the reference and wide, with

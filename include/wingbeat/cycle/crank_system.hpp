@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 #include <concepts>
-#include <span>
 
 #include "wingbeat/core/math.hpp"
+#include "wingbeat/cycle/crank_turn.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/solve/iterate.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
@@ -16,7 +16,7 @@ namespace wingbeat {
 /// States crank speed omega and, with inductance (N = 2), current i; independent variable crank angle from 0 to 2 pi.
 /// Valid while omega > 0. V: a Vehicle, or what has the same members with another transmission.
 template <Scalar S, int N, class V = Vehicle<S>>
-struct CrankSystem {
+struct CrankSystem : CrankTurn<S> {
   static_assert(Transmission<decltype(V::transmission), S>);
   using Real = S;
   using State = std::array<S, N>;
@@ -30,11 +30,6 @@ struct CrankSystem {
       std::size_t(Integral::time), std::size_t(Integral::friction_work), std::size_t(Integral::aero_work),
       std::size_t(Integral::reactive_work), std::size_t(Integral::lift)};
   using Signs = std::array<S, 5>;
-  static constexpr bool has_rod = true;
-  /// What has an extreme that is a metric.
-  static constexpr std::array extremes = {Extreme::current,         Extreme::lift,
-                                          Extreme::rod_force,       Extreme::flapping_velocity,
-                                          Extreme::crank_speed_min, Extreme::crank_speed_max};
 
   V vehicle;
   S speed_floor = S(0.0);    ///< below this crank speed [rad/s] the crank counts as stopped
@@ -42,7 +37,7 @@ struct CrankSystem {
 
   CrankSystem() = default;
   CrankSystem(const V& v, const S& floor, const S& scale) : vehicle(v), speed_floor(floor), current_scale(scale) {
-    if constexpr (std::same_as<S, double>) turn_at(reversals(v.transmission));
+    if constexpr (std::same_as<S, double>) this->turn_at(reversals(v.transmission), stroke);
   }
 
   template <Scalar T>
@@ -51,11 +46,7 @@ struct CrankSystem {
     return CrankSystem<T, N, std::remove_const_t<decltype(of_t)>>{of_t, T(speed_floor), T(current_scale)};
   }
 
-  static double period() { return two_pi; }
-
-  /// The reversals, where beta' changes sign. Of a system on plain numbers, which cycles are run on.
-  std::span<const solver::FixedNode> fixed_nodes() const { return {nodes_.data(), node_count_}; }
-  Signs start_signs() const { return {S(1.0), S(1.0), S(1.0), S(1.0), S(first_stroke_)}; }
+  Signs start_signs() const { return {S(1.0), S(1.0), S(1.0), S(1.0), S(this->first_stroke())}; }
 
   bool admissible(const State& y) const { return all<S>(y[0] > speed_floor); }
 
@@ -97,9 +88,6 @@ struct CrankSystem {
   static Branch<S> branch(const Signs& signs) {
     return {signs[stroke], signs[force], S(1.0), signs[stored] * signs[stroke], signs[pitching], signs[gear]};
   }
-  static const S& shaft_speed(const State& y) { return y[0]; }
-  /// d theta / dt [rad/s].
-  static const S& phase_rate(const State& y) { return y[0]; }
 
   [[gnu::always_inline]] Motion<S> motion(const S& theta, const State& y, const Signs& signs) const {
     using std::cos;
@@ -112,8 +100,6 @@ struct CrankSystem {
   CycleExtremes<S> candidates(const Motion<S>& m, const State& y, const Signs& signs) const {
     return extreme_candidates(m, y[0], branch(signs));
   }
-  static S stroke_angle(const Motion<S>& m, const State&) { return wingbeat::stroke_angle(m.kinematics); }
-  static S shaft_angle(const S& theta, const State&) { return theta; }
 
   template <bool quadratures>
   solver::Rates<CrankSystem> rates(const S& theta, const State& y, const Signs& signs) const {
@@ -130,17 +116,6 @@ struct CrankSystem {
     }
     return r;
   }
-
- private:
-  void turn_at(const Reversals& reversals) {
-    node_count_ = reversals.count;
-    first_stroke_ = reversals.first_sign;
-    for (std::size_t n = 0; n < node_count_; ++n) nodes_[n] = {reversals.angle[n], stroke};
-  }
-
-  std::array<solver::FixedNode, Reversals::most> nodes_{};
-  std::size_t node_count_ = 0;
-  double first_stroke_ = 1.0;
 };
 
 }  // namespace wingbeat

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "wingbeat/cycle/direct_balance.hpp"
 #include "wingbeat/cycle/extremes.hpp"
 #include "wingbeat/cycle/pitch_metrics.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
@@ -17,6 +18,19 @@ SteadyFlapping find_direct_flapping(const Vehicle<double>& vehicle, const Steady
 /// The same of wings that pitch.
 SteadyFlapping find_pitching_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                       const StartUp& start_up);
+/// The same of a crank whose wings pitch.
+SteadyFlapping find_pitching_crank_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
+                                            const StartUp& start_up);
+
+/// The start of every search under a crank: its statics. True, with the decision, of a motor that never starts.
+bool stalls(const StaticBalance& statics, SteadyFlapping& result);
+/// The same of a direct drive.
+bool stalls(const Vehicle<double>& vehicle, const DirectBalance& balance, SteadyFlapping& result);
+
+/// What shows that a crank may jam.
+StatusEvidence jam_evidence(const StaticBalance& statics);
+/// Adds where the crank locks once it has stopped.
+void add_locks(const Vehicle<double>& vehicle, const StaticBalance& statics, StatusEvidence& evidence);
 
 /// Takes the metrics of a vehicle that flaps, but on no orbit found, from its simulated cycle; undecided without one.
 void fill_simulated(const StartUpOutcome& outcome, const SteadyOptions& options, bool direct, SteadyFlapping& result);

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 #include <concepts>
-#include <span>
 
 #include "wingbeat/core/math.hpp"
+#include "wingbeat/cycle/crank_turn.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/cycle/pitch_stops.hpp"
 
@@ -15,7 +15,7 @@ namespace wingbeat {
 /// States crank speed omega, pitch angle psi, its velocity and, with inductance (N = 4), current i; independent
 /// variable crank angle from 0 to 2 pi. Valid while omega > 0.
 template <Scalar S, int N>
-struct PitchCrankSystem {
+struct PitchCrankSystem : CrankTurn<S> {
   using Real = S;
   using State = std::array<S, N>;
   static constexpr std::size_t shaft = 0, pitch = 1;
@@ -29,7 +29,6 @@ struct PitchCrankSystem {
   using Signs = std::array<S, 8>;
   static constexpr bool contracts_slowly = true;
   static constexpr bool state_jumps = true;
-  static constexpr bool has_rod = true;
   /// Integrals whose error limits the steps.
   static constexpr std::array<std::size_t, 6> controlled_integrals = {
       std::size_t(Integral::time),          std::size_t(Integral::friction_work), std::size_t(Integral::aero_work),
@@ -42,7 +41,7 @@ struct PitchCrankSystem {
   PitchCrankSystem() = default;
   PitchCrankSystem(const Vehicle<S>& v, const State& size, const S& floor)
       : vehicle(v), typical(size), speed_floor(floor) {
-    if constexpr (std::same_as<S, double>) turn_at(reversals(v.transmission));
+    if constexpr (std::same_as<S, double>) this->turn_at(reversals(v.transmission), stroke);
   }
 
   template <Scalar T>
@@ -52,9 +51,6 @@ struct PitchCrankSystem {
     return {wingbeat::cast<T>(vehicle), size, T(speed_floor)};
   }
 
-  static double period() { return two_pi; }
-  /// The reversals, where beta' changes sign. Of a system on plain numbers, which cycles are run on.
-  std::span<const solver::FixedNode> fixed_nodes() const { return {nodes_.data(), node_count_}; }
   bool admissible(const State& y) const { return all<S>(y[0] > speed_floor); }
   State error_scale(const State& y) const {
     using std::abs;
@@ -77,6 +73,7 @@ struct PitchCrankSystem {
     return crank_kinematics(vehicle.transmission, S(sin(theta)), S(cos(theta)));
   }
 
+  using CrankTurn<S>::stroke_angle;
   S stroke_angle(const S& theta, const State&) const { return wingbeat::stroke_angle(kinematics(theta)); }
   static S stroke_sign(const Signs& signs) { return signs[stroke]; }
 
@@ -84,7 +81,7 @@ struct PitchCrankSystem {
   Signs start_signs(const State& y) const {
     Signs signs;
     signs.fill(S(1.0));
-    signs[stroke] = S(first_stroke_);
+    signs[stroke] = S(this->first_stroke());
     if (pitch_stops::rests_at_stop(*this, y)) pitch_stops::hold_or_leave(*this, S(0.0), y, signs);
     return signs;
   }
@@ -109,6 +106,14 @@ struct PitchCrankSystem {
                            branch(signs), PitchBranch<S>{signs[turn], signs[held]});
   }
 
+  Motion<S> motion(const S& theta, const State& y, const Signs& signs) const {
+    return pitch_motion(theta, y, signs).stroke;
+  }
+
+  CycleExtremes<S> candidates(const Motion<S>& m, const State& y, const Signs& signs) const {
+    return extreme_candidates(m, y[0], branch(signs));
+  }
+
   template <bool quadratures>
   solver::Rates<PitchCrankSystem> rates(const S& theta, const State& y, const Signs& signs) const {
     const PitchMotion<S> m = pitch_motion(theta, y, signs);
@@ -131,17 +136,6 @@ struct PitchCrankSystem {
     }
     return r;
   }
-
- private:
-  void turn_at(const Reversals& reversals) {
-    node_count_ = reversals.count;
-    first_stroke_ = reversals.first_sign;
-    for (std::size_t n = 0; n < node_count_; ++n) nodes_[n] = {reversals.angle[n], stroke};
-  }
-
-  std::array<solver::FixedNode, Reversals::most> nodes_{};
-  std::size_t node_count_ = 0;
-  double first_stroke_ = 1.0;
 };
 
 }  // namespace wingbeat

@@ -6,6 +6,7 @@
 
 #include "wingbeat/cycle/crank_system.hpp"
 #include "wingbeat/cycle/direct_system.hpp"
+#include "wingbeat/cycle/pitch_crank_system.hpp"
 #include "wingbeat/cycle/pitch_direct_system.hpp"
 
 namespace wingbeat {
@@ -56,14 +57,15 @@ struct RecordedCycle {
   solver::Iterate<System> cycle;
 };
 
-/// A cycle of the crank or of a direct drive, the latter also of wings that pitch, each with or without inductance.
+/// A cycle of the crank or of a direct drive, of wings under the pitch law or that pitch, with or without inductance.
 class CycleRecord {
  public:
   template <int N>
   using Recorded = RecordedCycle<CrankSystem<double, N>>;
   using Cycles = std::variant<Recorded<1>, Recorded<2>, RecordedCycle<DirectSystem<double, 2>>,
                               RecordedCycle<DirectSystem<double, 3>>, RecordedCycle<PitchDirectSystem<double, 4>>,
-                              RecordedCycle<PitchDirectSystem<double, 5>>>;
+                              RecordedCycle<PitchDirectSystem<double, 5>>, RecordedCycle<PitchCrankSystem<double, 3>>,
+                              RecordedCycle<PitchCrankSystem<double, 4>>>;
 
   CycleRecord() = default;
   explicit CycleRecord(Cycles cycles) : cycles_(std::move(cycles)) {}

@@ -22,11 +22,12 @@ struct StatusEvidence {
     none,  ///< nothing was computed
 
     // Flapping, by the orbit search
-    orbit,            ///< frequency; can_lock with locks, assessed
+    orbit,            ///< frequency; can_lock with locks, assessed; over_rotation, other_frequency
     response,         ///< of a direct drive to its supply: frequency, stroke_amplitude; over_rotation, other_amplitude
     simulated_cycle,  ///< in place of an orbit: frequency, change (the metrics' error), repeats_after, search, direct
     // Flapping, in time
-    settled_cycles,   ///< frequency, time (steady from then on), cycles, change, repeats_after, extrapolated
+    settled_cycles,   ///< frequency, time (steady from then on), cycles, change, repeats_after, extrapolated,
+                      ///< over_rotation
     averaged_cycles,  ///< frequency, cycles, change (largest deviation of a duration from their mean), incommensurate
     settled_periods,  ///< of a direct drive: frequency, time, cycles, change, over_rotation; accuracy and steps where
                       ///< those ran out
@@ -88,6 +89,7 @@ struct StatusEvidence {
   double winding_temperature = absent;  ///< [degC]; where it stands in the way, of the motor that flaps while colder
   double over_rotation = absent;        ///< of wings that pitch: share of the period with alpha beyond 90 degrees [1]
   double other_amplitude = absent;      ///< stroke amplitude of a second stable response to the same supply [rad]
+  double other_frequency = absent;      ///< of a second stable orbit of a crank whose wings pitch [Hz]
   double faster_orbit = absent;  ///< in time, not flapping: frequency of an orbit that only a faster start reaches [Hz]
   long steps = 0;                ///< of the integrator
   int cycles = 0;                ///< periods of a direct drive's supply

@@ -49,20 +49,23 @@ PitchMotion<S> pitch_motion_on(const V<S>& v, const PitchingWings<S>& p, const C
 template <Scalar S>
 struct StopImpact {
   S shaft_speed;  ///< gained by the crank, or the shaft of a direct drive [rad/s]
-  S energy;       ///< lost, in the stop and in the friction that the blow on the rod causes [J]
+  S energy;       ///< lost, in the stop, in the friction that the blow on the rod causes and in the gearbox [J]
 };
 
-/// The impact at pitch angle psi [rad] and velocity psi' [rad/s] of a vehicle at shaft speed omega > 0 [rad/s], of a
-/// direct drive of either sign. The impulse on the rod, F^ = -J d omega / (h + s mu r_e), has the sign of -M_bp psi'.
+/// The impact at pitch angle psi [rad] and velocity psi' [rad/s] of a vehicle at shaft speed omega [rad/s]. The impulse
+/// on the rod, F^ = -e J d omega / (h + s mu r_e), has the sign of -M_bp psi'; e as in Instant.
 template <template <Scalar> class V, Scalar S>
 StopImpact<S> stop_impact(const V<S>& v, const PitchingWings<S>& p, const CrankKinematics<S>& k, const S& omega,
                           const S& psi, const S& velocity) {
-  const S& J = v.motor.inertia;
   const PitchState<S> before = pitch_state<S>(psi, velocity, k.stroke_slope * omega);
   const PitchInertia<S> m = pitch_inertia<S>(p, v.wing_count * v.wing_inertia, before);
   const S blow = m.bp * velocity;
-  const S lever = k.crank_lever - sign_of(blow) * v.friction.radius;
-  const S gained = blow * lever / (J * k.wing_lever + m.bb * k.stroke_slope * lever);
+  const S direction = sign_of(omega);
+  const S lever = k.crank_lever - sign_of(blow) * direction * v.friction.radius;
+  const S& J = v.motor.inertia;
+  S eJ = J;
+  if (has_gear_loss(v.motor)) eJ = gear_torque_ratio(v.motor, S(-sign_of(S(blow * lever)) * direction)) * J;
+  const S gained = blow * lever / (eJ * k.wing_lever + m.bb * k.stroke_slope * lever);
   const PitchState<S> after = pitch_state<S>(psi, S(0.0), k.stroke_slope * (omega + gained));
   const S energy = kinetic_energy(m, before) - kinetic_energy(m, after) - J * gained * (omega + S(0.5) * gained);
   return {gained, energy};

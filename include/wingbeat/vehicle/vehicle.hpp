@@ -46,7 +46,7 @@ struct Vehicle {
 };
 
 /// True where pitch is a degree of freedom (model.md section 12) instead of following the stroke by the pitch law. The
-/// systems and models in time of such vehicles are others: PitchDirectSystem, PitchDirectModel.
+/// periodic systems of such vehicles are others: PitchCrankSystem, PitchDirectSystem.
 template <Scalar S>
 bool pitches(const Vehicle<S>& v) {
   return value_of(v.pitch.pitch_inertia) > 0.0;

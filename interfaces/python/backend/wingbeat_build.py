@@ -40,7 +40,9 @@ def _build(settings: dict | None) -> pathlib.Path:
     """The build folder, with the module built."""
     settings = settings or {}
     folder = pathlib.Path(settings.get("build-dir", ROOT / "build" / "python")).resolve()
-    options = ["-DWINGBEAT_PYTHON=ON", f"-DPython_EXECUTABLE={sys.executable}"]
+    # A build folder outlives the virtual environment.
+    python = getattr(sys, "_base_executable", sys.executable)
+    options = ["-DWINGBEAT_PYTHON=ON", f"-DPython_EXECUTABLE={python}"]
     if not (folder / "CMakeCache.txt").exists():
         options += ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_UNITY_BUILD=ON", "-DWINGBEAT_PROGRAM=OFF"]
         options += ["-DWINGBEAT_TESTS=OFF"]

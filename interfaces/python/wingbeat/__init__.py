@@ -7,6 +7,8 @@
     vehicle.simulate().time_to_steady
     vehicle.sweep({"supply.voltage": [2, 3, 4]})        # xarray
     wb.solve({"supply.voltage": [2, 3, 4]}, vehicle=vehicle).lift_mean
+    vehicle.equations_of_motion().rates(time, state)    # for SciPy
+    wb.optimise("optimise-hover.toml").vehicle          # likewise fit, tolerance, endurance, identify_motor
 
 Everything is SI and radians unless a unit says otherwise; wherever a quantity is expected, a number is SI and a text has
 its unit. A vehicle that does not flap is a result, never an exception; input that cannot be used raises InputError.
@@ -14,10 +16,12 @@ its unit. A vehicle that does not flap is a result, never an exception; input th
 
 from ._core import version as __version__
 from ._ensemble import Ensemble, solve_columns
+from ._equations import EquationsOfMotion
 from ._errors import InputError
 from ._quantity import Quantity
 from ._result import EnergyBalance, RunResult, StartUp, simulate, solve
 from ._sections import Section
+from ._studies import Flight, Found, Identification, StudyResult, endurance, fit, identify_motor, optimise, tolerance
 from ._sweep import open_dataset, sweep
 from ._tables import Metric, Parameter, metrics, parameters
 from ._vehicle import Vehicle, read
@@ -25,6 +29,10 @@ from ._vehicle import Vehicle, read
 __all__ = [
     "EnergyBalance",
     "Ensemble",
+    "EquationsOfMotion",
+    "Flight",
+    "Found",
+    "Identification",
     "InputError",
     "Metric",
     "Parameter",
@@ -32,14 +40,20 @@ __all__ = [
     "RunResult",
     "Section",
     "StartUp",
+    "StudyResult",
     "Vehicle",
     "__version__",
+    "endurance",
+    "fit",
+    "identify_motor",
     "metrics",
     "open_dataset",
+    "optimise",
     "parameters",
     "read",
     "simulate",
     "solve",
     "solve_columns",
     "sweep",
+    "tolerance",
 ]

@@ -63,6 +63,7 @@ def _make(path: str, made: dict[str, type[Section]]) -> None:
 sections: dict[str, type[Section]] = {}
 for _path in members(""):
     _make(_path, sections)
+globals().update({made.__name__: made for made in sections.values()})
 
 
 class Sections:

@@ -488,7 +488,7 @@ class WingSection(Section):
         """
     @property
     def areal_density(self) -> Quantity | None:
-        """sigma of the membrane, ribs and glue spread over it: the inertia follows from the planform's outline, J_w = integral (sigma c + lambda) r^2 dr.
+        """sigma of the membrane, glue spread over it: the inertia follows from the planform's outline, J_w = integral (sigma c + lambda) r^2 dr and that of the ribs.
         [kg/m2] Range: > 0. Default: required or inertia.
         Instead of wing.inertia or wing.resonance.
         """
@@ -496,6 +496,18 @@ class WingSection(Section):
     def spar_density(self) -> Quantity | None:
         """lambda, mass of the leading-edge spar over its length, from root to tip.
         [kg/m] Range: >= 0. Default: 0 kg/m.
+        Only with wing.areal_density.
+        """
+    @property
+    def rib_density(self) -> Quantity | None:
+        """lambda_r, mass of a rib over its length, along the chord from edge to edge.
+        [kg/m] Range: >= 0. Default: 0 kg/m.
+        Only with wing.areal_density.
+        """
+    @property
+    def rib_count(self) -> Quantity | None:
+        """n_r, ribs of one wing, which part its length into n_r + 1 equal bays.
+        Number. Range: whole number, 0 to 1000. Default: 0.
         Only with wing.areal_density.
         """
     @property

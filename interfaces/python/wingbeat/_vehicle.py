@@ -17,7 +17,9 @@ if TYPE_CHECKING:
     import xarray
 
     from ._ensemble import Ensemble
+    from ._equations import EquationsOfMotion
     from ._result import RunResult, StartUp
+    from ._studies import Flight
 
 
 def _toml(value: Any) -> str:
@@ -32,6 +34,8 @@ def _toml(value: Any) -> str:
         return _toml(value.tolist())
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(map(_toml, value)) + "]"
+    if isinstance(value, int) and abs(value) < 2**53:
+        return str(value)
     if isinstance(value, (int, float)):
         return float.__repr__(float(value))
     raise TypeError(f"expected a number, a text with a unit, a table or rows, got {type(value).__name__}")
@@ -195,6 +199,18 @@ class Vehicle(Sections):
         from ._sweep import sweep
 
         return sweep(self, axes, **options)
+
+    def endurance(self, **options: Any) -> Flight:
+        """How long its battery flies it: see wingbeat.endurance."""
+        from ._studies import endurance
+
+        return endurance(self, **options)
+
+    def equations_of_motion(self, **options: Any) -> EquationsOfMotion:
+        """For integrators of one's own: see wingbeat.EquationsOfMotion."""
+        from ._equations import EquationsOfMotion
+
+        return EquationsOfMotion(self, **options)
 
 
 def _restored(toml: str) -> Vehicle:

@@ -1,0 +1,46 @@
+"""The equations of motion, for integrators of the user's own."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from . import _core
+from ._result import quantity
+from ._vehicle import Vehicle
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+
+class EquationsOfMotion:
+    """The equations of motion of a vehicle in time: `scipy.integrate.solve_ivp(equations.rates, ...)`.
+
+    The state is crank angle, not wrapped [rad], crank speed [rad/s] and, with an armature inductance, current [A]; of a
+    direct drive stroke angle [rad], flapping velocity [rad/s] and current: `states` has the names. The motor is as warm
+    as its surroundings.
+
+    Rates are continuous but for standstill, where friction changes its direction, and for what the supply does; they
+    have kinks where the rod force, the stroke velocity or the torque of a lossy gearbox changes sign. Standstill is no
+    part of them: where friction holds a crank, they are those of a crank about to turn forwards. `wingbeat.simulate`
+    knows standstill.
+
+    Raises InputError for a condition that there is not, and for wings that pitch on a hinge.
+    """
+
+    #: Names of the states.
+    states: tuple[str, ...]
+
+    def __init__(self, vehicle: Vehicle, *, condition: str = "air") -> None:
+        self._equations = _core.EquationsOfMotion(vehicle._design, condition)
+        self.states = tuple(self._equations.state_names())
+
+    def rates(self, time: float, state: Any, voltage: float | str | None = None) -> npt.NDArray[np.float64]:
+        """Derivatives of the state [SI per s] at a time [s].
+
+        Parameters
+        ----------
+        state : a number for each of `states`, or an array with a column for each of many states
+        voltage : what drives the motor in place of the supply [V], through the same resistance
+        """
+        return self._equations.rates(time, state, quantity("voltage", voltage, "V"))

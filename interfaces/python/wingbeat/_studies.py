@@ -1,0 +1,228 @@
+"""Studies of the program: from its files, or from dicts, with what `--json` prints as the result."""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _core
+from ._progress import shown
+from ._result import quantity
+from ._tables import metric_rows
+from ._vehicle import Vehicle, _assignments, _toml
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    import xarray
+
+
+class StudyResult(Mapping[str, Any]):
+    """What a study found: a mapping with the keys of `--json` of the program's command of that name, in SI units.
+
+    `print(result)` is the program's readable report.
+    """
+
+    def __init__(self, found: dict[str, Any]) -> None:
+        self._values: dict[str, Any] = json.loads(found["json"])
+        self._text: str = found["text"]
+
+    def __getitem__(self, key: str) -> Any:
+        return self._values[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __str__(self) -> str:
+        return self._text
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {', '.join(self._values)}>"
+
+
+class Flight(StudyResult):
+    """A flight to the end of the battery."""
+
+    def __init__(self, found: dict[str, Any]) -> None:
+        super().__init__(found)
+        self._rows = found
+
+    @property
+    def trajectory(self) -> xarray.Dataset:
+        """State of charge and the metrics of steady flapping over time [s], with units and long names."""
+        import xarray
+
+        def column(values: npt.NDArray[np.float64], unit: str, long_name: str) -> Any:
+            return ("time", values, {"units": unit, "long_name": long_name})
+
+        made = {
+            row.name: column(values, row.unit, row.long_name)
+            for row, values in zip(metric_rows, self._rows["metrics"])
+            if not np.all(np.isnan(values))
+        }
+        made["charge"] = column(self._rows["charge"], "1", "state of charge")
+        made["time"] = column(self._rows["time"], "s", "time since the start")
+        return xarray.Dataset(made).set_coords("time")
+
+
+class Identification(StudyResult):
+    """A motor identified from its data sheet."""
+
+    #: The section [motor] of a vehicle file, with what it rests on as comments; None where the sheet does not determine
+    #: the motor.
+    motor: str | None
+
+    def __init__(self, found: dict[str, Any]) -> None:
+        super().__init__(found)
+        self.motor = found["motor"]
+
+
+class Found(StudyResult):
+    """A fit or an optimum."""
+
+    #: The vehicle that was found; None where none was.
+    vehicle: Vehicle | None
+
+    def __init__(self, found: dict[str, Any]) -> None:
+        super().__init__(found)
+        self.vehicle = None if found["design"] is None else Vehicle._of(found["design"])
+
+
+Study = str | os.PathLike[str] | Mapping[str, Any]
+
+
+@contextmanager
+def _file_of(study: Study, vehicle: Vehicle | None) -> Iterator[str]:
+    """The study as a file; of a dict, beside its vehicle in a temporary folder."""
+    if not isinstance(study, Mapping):
+        if vehicle is not None:
+            raise TypeError("a study file names its vehicle; a vehicle can be given with a dict")
+        yield os.fspath(study)
+        return
+    tables: dict[str, Any] = {**study, "study": dict(study.get("study", {}))}
+    with tempfile.TemporaryDirectory(prefix="wingbeat-") as folder:
+        if vehicle is not None:
+            file = pathlib.Path(folder) / "vehicle.toml"
+            file.write_text(vehicle.to_toml(), encoding="utf-8")
+            tables["study"]["vehicle"] = str(file)
+        name = pathlib.Path(folder) / "study.toml"
+        name.write_text("".join(f"{key} = {_toml(value)}\n" for key, value in tables.items()), encoding="utf-8")
+        yield str(name)
+
+
+def endurance(vehicle: Vehicle, *, allow_extrapolation: bool = False) -> Flight:
+    """How long its battery flies a vehicle: `wingbeat endurance`.
+
+    Parameters
+    ----------
+    allow_extrapolation : flight outside the model's domain may hover
+
+    Raises InputError for a vehicle without a battery.
+    """
+    return Flight(_core.endurance(vehicle._design, allow_extrapolation))
+
+
+def identify_motor(
+    sheet: str | os.PathLike[str],
+    *,
+    frequency: float | str | None = None,
+    assume_steel_cylinder: bool = False,
+    assume_typical_damping: bool = False,
+    shaft: str = "output",
+) -> Identification:
+    """A motor's constants from its data sheet (TOML): `wingbeat identify-motor`.
+
+    Parameters
+    ----------
+    frequency : [Hz], that the user has in mind, for the remark about the inductance
+    assume_steel_cylinder : where the sheet says nothing of the inertia, that of a steel cylinder of the rotor's size
+    assume_typical_damping : where it says nothing of the viscous loss, that of a small coreless motor
+    shaft : "output" or "motor": where the constants of `motor` stand
+
+    A sheet that does not determine the motor is a result. Raises InputError.
+    """
+    held = quantity("frequency", frequency, "Hz")
+    return Identification(
+        _core.identify_motor(os.fspath(sheet), held, assume_steel_cylinder, assume_typical_damping, shaft)
+    )
+
+
+def fit(
+    bench: str | os.PathLike[str],
+    *,
+    values: Mapping[str, Any] | None = None,
+    profiles: bool = True,
+    compare_friction: bool = False,
+) -> Found:
+    """A vehicle's parameters from bench measurements, and how sure they are: `wingbeat fit`.
+
+    Parameters
+    ----------
+    bench : bench file (TOML), which names the vehicle file and the logs
+    values : keys of the vehicle with other values than in its file
+    profiles : False: intervals from the curvature alone, which is faster
+    compare_friction : fits one law of friction after the other as well
+
+    Raises InputError.
+    """
+    return Found(_core.fit(os.fspath(bench), _assignments(values or {}), profiles, compare_friction))
+
+
+def tolerance(
+    study: Study,
+    *,
+    vehicle: Vehicle | None = None,
+    values: Mapping[str, Any] | None = None,
+    allow_extrapolation: bool = False,
+    threads: int = 0,
+    progress: bool | Callable[[int, int], object] | None = None,
+) -> StudyResult:
+    """What uncertain parameters do to a vehicle's metrics: `wingbeat tolerance`.
+
+    Parameters
+    ----------
+    study : study file (TOML), or a dict of its tables; a file names its vehicle
+    vehicle : of a study that is a dict
+    values : keys of the vehicle with other values
+    allow_extrapolation : samples outside the model's domain count and may hover
+    threads : at most so many; 0: one for each core
+    progress : True shows a bar (tqdm where it is installed), a function is called with designs done and designs
+
+    Raises InputError.
+    """
+    with _file_of(study, vehicle) as file, shown(progress, 0) as tell:
+        return StudyResult(_core.tolerance(file, _assignments(values or {}), allow_extrapolation, threads, tell))
+
+
+def optimise(
+    study: Study,
+    *,
+    vehicle: Vehicle | None = None,
+    values: Mapping[str, Any] | None = None,
+    allow_extrapolation: bool = False,
+    threads: int = 0,
+) -> Found:
+    """The best design within bounds and constraints: `wingbeat optimise`, of one objective.
+
+    Parameters
+    ----------
+    study : study file (TOML), or a dict of its tables; a file names its vehicle
+    vehicle : of a study that is a dict
+    values : keys of the vehicle with other values
+    allow_extrapolation : designs outside the model's domain count
+    threads : at most so many; 0: one for each core
+
+    Objectives that are no metric, and constraints of one's own, are for SciPy, with `solve` and `gradient`
+    (docs/python.md). Raises InputError.
+    """
+    with _file_of(study, vehicle) as file:
+        return Found(_core.optimise(file, _assignments(values or {}), allow_extrapolation, threads))

@@ -1,0 +1,85 @@
+// What the metrics of a crank's cycle need beside its quadratures and extremes where the wings pitch on hinges.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <vector>
+
+#include "time/crank_model.hpp"
+#include "time/integrator.hpp"
+#include "wingbeat/cycle/pitch_metrics.hpp"
+
+namespace wingbeat::detail {
+
+/// Of one cycle or several, whose duration is known at their end alone.
+class CrankPitchReading {
+ public:
+  void begin(const CrankModel& model) {
+    metrics_ = {0.0, 0.0, infinity, -infinity, 0.0, 0.0};
+    lowest_psi_ = infinity;
+    highest_psi_ = -infinity;
+    loss_ = -model.now.impact_loss;
+    points_.clear();
+  }
+
+  /// The step from the time `from` [s] to where the model stands: pitch and angle of attack have their extremes at ends
+  /// of steps.
+  void step_taken(const CrankModel& model, Integrator& steps, double from) {
+    constexpr double nodes[] = {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640};
+    constexpr double weights[] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
+                                  0.2369268850561891};
+    const std::size_t at = model.pitch_at();
+    const double half = 0.5 * (model.now.t - from), middle = from + half;
+    double sign = 1.0;
+    for (int k = 0; k < 5; ++k) {
+      const double t = middle + half * nodes[k];
+      const double* y = steps.dense(t);
+      const CrankKinematics<double> kinematics = model.kinematics(y[0]);
+      const double psi = y[at], velocity = model.now.held ? 0.0 : y[at + 1];
+      points_.push_back({t, half * weights[k], stroke_angle(kinematics), psi});
+      loss_ += half * weights[k] * hinge_loads(model.vehicle.pitch.hinge, psi, velocity).loss;
+      const double stroke = sign_of(kinematics.stroke_slope * y[1]);
+      if (stroke * psi > 0.0) metrics_.over_rotation += half * weights[k];
+      if (k == 2) sign = stroke;
+    }
+    for (const double t : {from, model.now.t}) {
+      const double psi = steps.dense(t)[at], alpha = 0.5 * pi + sign * psi;
+      lowest_psi_ = std::min(lowest_psi_, psi);
+      highest_psi_ = std::max(highest_psi_, psi);
+      metrics_.angle_of_attack_min = std::min(metrics_.angle_of_attack_min, alpha);
+      metrics_.angle_of_attack_max = std::max(metrics_.angle_of_attack_max, alpha);
+    }
+  }
+
+  /// After `cycles` cycles between two times [s].
+  void finish(const CrankModel& model, double start, double end, int cycles, Metrics<double>& metrics) {
+    const double period = (end - start) / cycles;
+    std::complex<double> stroke = 0.0, psi = 0.0;
+    for (const Point& p : points_) {
+      const auto weighted = std::polar(p.weight, -two_pi * (p.time - start) / period);
+      stroke += weighted * p.stroke_angle;
+      psi += weighted * p.psi;
+    }
+    metrics_.amplitude = 0.5 * (highest_psi_ - lowest_psi_);
+    metrics_.phase = std::arg(psi / (std::complex<double>(0.0, -1.0) * stroke));
+    metrics_.hinge_power = (loss_ + model.now.impact_loss) / (end - start);
+    metrics_.over_rotation /= end - start;
+    set_pitch_metrics(metrics_, metrics);
+  }
+
+  void add_to(StatusEvidence& evidence, const CrankModel& model) const {
+    if (model.vehicle.wings.air_density > 0.0) evidence.over_rotation = metrics_.over_rotation;
+  }
+
+ private:
+  struct Point {
+    double time, weight, stroke_angle, psi;
+  };
+  std::vector<Point> points_;  ///< of Gauss's rule on each step
+  PitchMetrics metrics_{};
+  double lowest_psi_ = 0.0, highest_psi_ = 0.0;
+  double loss_ = 0.0;  ///< in the hinges since begin(), less the impacts before [J]
+};
+
+}  // namespace wingbeat::detail

@@ -1,0 +1,102 @@
+"""Studies are those of the program."""
+
+import json
+import os
+import signal
+import subprocess
+import threading
+import time
+import unittest
+
+import wingbeat as wb
+from shared import DATA, PROGRAM, reference
+
+
+def told(*arguments):
+    found = subprocess.run([PROGRAM, *arguments, "--json"], capture_output=True, text=True)
+    return json.loads(found.stdout)
+
+
+class Studies(unittest.TestCase):
+    @unittest.skipUnless(PROGRAM, "needs the program")
+    def test_an_endurance_is_the_programs(self):
+        file = DATA / "designs" / "friction2022-battery.toml"
+        flight = wb.read(file).endurance()
+        self.assertEqual(dict(flight), told("endurance", file))
+        trajectory = flight.trajectory
+        self.assertEqual(float(trajectory.time[-1]), flight["endurance_s"])
+        self.assertEqual(float(trajectory.charge[-1]), flight["charge_final"])
+        self.assertEqual(trajectory.lift_mean.attrs["units"], "N")
+        self.assertIn("battery", str(flight))
+        with self.assertRaisesRegex(wb.InputError, "^supply.type: only a battery runs down"):
+            reference().endurance()
+
+    @unittest.skipUnless(PROGRAM, "needs the program")
+    def test_a_motor_is_the_programs(self):
+        for file in sorted((DATA / "motors").glob("*.toml")):
+            sized = "rotor_diameter" in file.read_text()
+            found = wb.identify_motor(file, frequency="22 Hz", assume_steel_cylinder=sized, assume_typical_damping=True)
+            fallbacks = ["--fallback", "inertia=solid-steel-cylinder"] * sized + ["--fallback", "viscous_damping=typical"]
+            self.assertEqual(dict(found), told("identify-motor", file, "--frequency", "22 Hz", *fallbacks), file)
+            if found.motor is not None:
+                text = reference().to_toml()
+                start, end = text.index("[motor]"), text.index("[", text.index("[motor]") + 1)
+                self.assertGreater(wb.Vehicle.from_toml(text[:start] + found.motor + text[end:]).motor.inertia, 0)
+
+    @unittest.skipUnless(PROGRAM, "needs the program")
+    def test_a_fit_is_the_programs(self):
+        file = DATA / "bench" / "flapper.toml"
+        found = wb.fit(file, profiles=False)
+        self.assertEqual(dict(found), told("fit", file, "--no-profiles"))
+        self.assertEqual(found.vehicle is None, "misfit" in found.get("status", ""))
+
+    @unittest.skipUnless(PROGRAM, "needs the program")
+    def test_a_tolerance_study_is_the_programs(self):
+        file = DATA / "studies" / "tolerance-hover.toml"
+        calls = []
+        found = wb.tolerance(file, progress=lambda done, of: calls.append((done, of)))
+        self.assertEqual(dict(found), told("tolerance", file))
+
+    def test_a_study_from_a_dict(self):
+        study = {
+            "study": {"title": "Two uncertain parameters"},
+            "samples": {"method": "sobol", "count": 64, "seed": 1},
+            "parameter": [
+                {"key": "friction.radius", "distribution": "normal", "relative_deviation": 0.05},
+                {"key": "supply.voltage", "distribution": "uniform", "lower": "2.9 V", "upper": 3.1},
+            ],
+        }
+        found = wb.tolerance(study, vehicle=reference())
+        again = wb.tolerance(study, vehicle=reference(), values={"friction.radius": "2.5 mm"})
+        self.assertEqual(dict(found), dict(again))
+        with self.assertRaisesRegex(wb.InputError, "did you mean"):
+            wb.tolerance({**study, "sample": {}}, vehicle=reference())
+        with self.assertRaisesRegex(TypeError, "names its vehicle"):
+            wb.tolerance("study.toml", vehicle=reference())
+
+    def test_an_optimum_that_there_is_not(self):
+        study = {
+            "objective": {"minimise": "power_electrical_w", "starts": 1, "screen": 64},
+            "parameter": [{"key": "supply.voltage", "lower": 2, "upper": 3}],
+            "constraint": [{"metric": "lift_mean_n", "at_least": "1 N"}],
+        }
+        found = wb.optimise(study, vehicle=reference())
+        self.assertIsNone(found.vehicle)
+        self.assertIn("lift_mean", str(found))
+
+    def test_ctrl_c_ends_a_search(self):
+        self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
+        keys = {"supply.voltage": (2, 8), "transmission.crank_radius": (4e-3, 7e-3), "motor.inertia": (1e-7, 2e-7)}
+        study = {
+            "objective": {"minimise": "power_electrical_w", "starts": 2000, "screen": 100_000},
+            "parameter": [{"key": key, "lower": low, "upper": high} for key, (low, high) in keys.items()],
+        }
+        threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+        begin = time.process_time()
+        with self.assertRaises(KeyboardInterrupt):
+            wb.optimise(study, vehicle=reference())
+        self.assertLess(time.process_time() - begin, 10.0)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,160 @@
+// Steady flapping of cranks whose wings pitch on a hinge, as it is asked for: from a design, by the orbit search and by
+// a simulation from rest.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "vehicle/hinged_design.hpp"
+#include "wingbeat/core/jet.hpp"
+#include "wingbeat/cycle/energy_audit.hpp"
+#include "wingbeat/cycle/orbit_gradient.hpp"
+#include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/study/run.hpp"
+
+namespace wingbeat {
+namespace {
+
+/// Largest deviation of a metric, over its error_scale().
+double worst_of(const Metrics<double>& a, const Metrics<double>& b, std::string& where) {
+  double worst = 0.0;
+  for (int m = 0; m < metric_count; ++m) {
+    const Metric which = Metric(m);
+    if (which == Metric::floquet_multiplier_max || which == Metric::lift_to_weight) continue;
+    EXPECT_EQ(std::isnan(a[which]), std::isnan(b[which])) << metric_info(which).key;
+    const double off = std::abs(a[which] - b[which]) / error_scale(b, which);
+    if (off > worst) worst = off, where = metric_info(which).key;
+  }
+  return worst;
+}
+
+TEST(PitchCrankFlapping, OrbitAgreesWithTheSimulationOfRandomVehicles) {
+  int flapping = 0, stopped = 0, kinds[4] = {};
+  for (std::uint32_t n = 0; n < 100; ++n) {
+    const Design<double> design = random_hinged_crank(n, 14);
+    validate(design);
+    const Vehicle<double> vehicle = resolve(design);
+    const SteadyFlapping orbit = find_steady_flapping(vehicle, {.tolerance = 1e-8}, start_up_in_time());
+    TransientOptions options;
+    options.tolerance = 1e-7;
+    const TransientResult transient = simulate_start_up(vehicle, options);
+    ASSERT_EQ(orbit.status, transient.status)
+        << "vehicle " << n << ": " << describe(orbit.evidence) << " / " << describe(transient.evidence);
+    if (orbit.status != FlappingStatus::flapping) continue;
+    ++flapping;
+    ++kinds[int(design.transmission.type)];
+    const double period = 1.0 / orbit.metrics[Metric::frequency];
+    for (const TransientEvent& e : transient.events) {
+      if (e.kind == TransientEvent::Kind::stop_impact && e.time > transient.end_time - period) {
+        ++stopped;
+        break;
+      }
+    }
+    ASSERT_TRUE(transient.metrics) << "vehicle " << n;
+    std::string where;
+    EXPECT_LT(worst_of(orbit.metrics, *transient.metrics, where), 1e-6) << "vehicle " << n << ", " << where;
+    EXPECT_LT(std::abs(energy_audit(orbit.metrics).imbalance), 1e-7 * orbit.metrics[Metric::power_electrical]) << n;
+  }
+  EXPECT_GT(flapping, 70);
+  EXPECT_GT(stopped, 15);
+  EXPECT_GT(kinds[int(TransmissionType::slider_crank)], 10);
+  EXPECT_GT(kinds[int(TransmissionType::four_bar)], 10);
+  EXPECT_GT(kinds[int(TransmissionType::tabulated)], 10);
+}
+
+Design<double> hinged_crank(double stiffness) {
+  Design<double> d = on_hinges(reference_design(), stiffness);
+  d.transmission.formulation = Formulation::virtual_work;
+  return d;
+}
+
+/// The same with wings that stay normal to the stroke plane.
+Design<double> upright_crank() {
+  Design<double> d = hinged_crank(1.0);
+  d.pitch = {};
+  d.aerodynamics.coefficients_name = "own";
+  d.aerodynamics.coefficients.drag = {3.45, 0.0, 1.0, 0.0};  // C_N of the normal-force set at 90 degrees
+  return d;
+}
+
+// A hinge that hardly gives way, and stops that hardly leave room, are wings at 90 degrees of attack.
+TEST(PitchCrankFlapping, FrozenWingsAreTheLawWithoutPitching) {
+  const SteadyFlapping law = find_steady_flapping(resolve(upright_crank()), {.tolerance = 1e-8});
+  ASSERT_EQ(law.status, FlappingStatus::flapping);
+  Design<double> stiff = hinged_crank(0.5), stopped = hinged_crank(3e-4);
+  stiff.pitch.damping = 1e-5;
+  stopped.pitch.stop = 1e-4;
+  for (const Design<double>& d : {stiff, stopped}) {
+    const SteadyFlapping found = find_steady_flapping(resolve(d), {.tolerance = 1e-8}, start_up_in_time());
+    ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
+    for (const Metric m : {Metric::frequency, Metric::power_electrical, Metric::power_aerodynamic,
+                           Metric::rod_force_mean, Metric::flapping_velocity_peak}) {
+      EXPECT_NEAR(found.metrics[m] / law.metrics[m], 1.0, 2e-3) << metric_info(m).key;
+    }
+    EXPECT_LT(found.metrics[Metric::pitch_amplitude], 0.1);
+  }
+}
+
+TEST(PitchCrankFlapping, OverRotationIsNamed) {
+  const SteadyFlapping soft = find_steady_flapping(resolve(hinged_crank(3e-5)), {}, start_up_in_time());
+  ASSERT_EQ(soft.status, FlappingStatus::flapping) << describe(soft.evidence);
+  EXPECT_THAT(describe(soft.evidence), testing::HasSubstr("the wings over-rotate"));
+  EXPECT_GT(soft.metrics[Metric::angle_of_attack_max], 90.0);
+}
+
+// Without constant friction or springs only the rotor's lightness can stop a crank: where the wings' inertia and
+// friction leave no unique acceleration.
+TEST(PitchCrankFlapping, JamsAreFoundByEitherMethod) {
+  Design<double> d = hinged_crank(3e-4);
+  d.motor.constants.inertia = 1e-9;
+  d.friction.coefficient = 6e-3;
+  const SteadyFlapping found = find_steady_flapping(resolve(d), {}, start_up_in_time());
+  EXPECT_EQ(found.status, FlappingStatus::jammed) << describe(found.evidence);
+  EXPECT_EQ(simulate_start_up(resolve(d)).status, FlappingStatus::jammed);
+  EXPECT_EQ(find_steady_flapping(resolve(d)).status, FlappingStatus::jammed);
+}
+
+TEST(PitchCrankFlapping, SpringsCanLockIt) {
+  Design<double> d = hinged_crank(3e-4);
+  d.spring.stiffness = 5e-2;
+  const SteadyFlapping found = find_steady_flapping(resolve(d), {}, start_up_in_time());
+  EXPECT_EQ(found.status, FlappingStatus::locked) << describe(found.evidence);
+}
+
+// A bridge that switches fast is its mean voltage.
+TEST(PitchCrankFlapping, SwitchedSupplyIsItsMean) {
+  Design<double> d = hinged_crank(3e-4);
+  const SteadyFlapping constant = find_steady_flapping(resolve(d));
+  TransientOptions options;
+  options.supply = Supply<double>{SupplyType::pwm, 6.0, 20e3, 0.5};
+  options.tolerance = 1e-5;
+  const TransientResult switched = simulate_start_up(resolve(d), options);
+  ASSERT_EQ(switched.status, FlappingStatus::flapping) << describe(switched.evidence);
+  for (const Metric m : {Metric::frequency, Metric::lift_mean, Metric::pitch_amplitude}) {
+    EXPECT_NEAR(switched.metrics->values[std::size_t(m)] / constant.metrics[m], 1.0, 2e-3) << metric_info(m).key;
+  }
+}
+
+TEST(PitchCrankFlapping, EnsemblesLeaveItToTheScalarSolver) {
+  const Vehicle<double> v = resolve(hinged_crank(3e-4));
+  const EnsembleMember member{v, {}};
+  EnsembleOutcome outcome;
+  solve_ensemble(std::span(&member, 1), {}, {}, std::span(&outcome, 1));
+  const SteadyFlapping alone = find_steady_flapping(v, {.tolerance = EnsembleOptions{}.tolerance});
+  EXPECT_EQ(outcome.status, FlappingStatus::flapping);
+  EXPECT_TRUE(outcome.scalar);
+  for (const Metric m : {Metric::lift_mean, Metric::pitch_amplitude, Metric::power_hinge, Metric::rod_force_peak}) {
+    EXPECT_EQ(outcome.metrics[m], alone.metrics[m]) << metric_info(m).key;
+  }
+}
+
+TEST(PitchCrankFlapping, HasNoDerivatives) {
+  const Design<double> d = hinged_crank(3e-4);
+  const SteadyFlapping found = find_steady_flapping(resolve(d));
+  const OrbitGradient g = orbit_gradient(found, gradient_vehicle(cast<GradientJet>(d), Condition::air));
+  EXPECT_FALSE(g.regular);
+  EXPECT_EQ(g.metrics[Metric::lift_mean].a, found.metrics[Metric::lift_mean]);
+}
+
+}  // namespace
+}  // namespace wingbeat
