@@ -60,10 +60,6 @@ void check_fit(const BenchFit& fit) {
   if (fit.design.supply.type != SupplyType::constant && !drive_of(fit.design).alternating) {
     throw ParameterError("supply.type", "bench data are fitted with a constant supply");
   }
-  if (fit.design.pitch.stiffness && drive_of(fit.design).rotates) {
-    throw ParameterError(pitch_key::stiffness.path,
-                         "a fit needs derivatives, which cranks whose wings pitch on a hinge do not have yet");
-  }
   for (const BenchLog& log : fit.logs) {
     for (const MeasuredQuantity& q : log.columns) {
       if (q.waveform) continue;

@@ -1,5 +1,5 @@
-// Derivatives through the orbit of a direct drive whose wings pitch, against central differences; over impacts on stops
-// too.
+// Derivatives through the orbits of direct drives and cranks whose wings pitch, against central differences; over
+// impacts on stops too.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ SteadyFlapping hinged_orbit(const Design<double>& design) {
                               {.tolerance = 1e-12, .stability = false, .reporting = reporting_of(design)});
 }
 
-/// By the hinge, the wings, the air, the motor and the supply.
+/// By the hinge, the wings, the air, the motor, the supply and the mechanism.
 constexpr const char* keys[] = {"pitch.stiffness",
                                 "pitch.damping",
                                 "pitch.stop",
@@ -26,7 +26,6 @@ constexpr const char* keys[] = {"pitch.stiffness",
                                 "motor.inertia",
                                 "motor.armature_inductance",
                                 "aerodynamics.air_density",
-                                "supply.amplitude",
                                 "supply.frequency"};
 
 /// `tolerance` is of what a change by all of the parameter would do to a metric, over its error_scale().
@@ -77,6 +76,18 @@ TEST(PitchGradient, CrossesImpactsOnStops) {
     d.motor.constants.armature_inductance = n == 0 ? 0.0 : 29e-3;
     EXPECT_NEAR(hinged_orbit(d).metrics[Metric::pitch_amplitude], degrees_per_radian * *d.pitch.stop, 1e-9);
     expect_gradients(d, 1e-5);
+  }
+}
+
+TEST(PitchGradient, OfCranks) {
+  std::uint32_t n = 0;
+  for (int crank = 0; crank < 2; ++n) {
+    Design<double> d = random_hinged_crank(n, 43);
+    d.motor.constants.armature_inductance = crank % 2 == 0 ? 0.0 : 4e-4;
+    if (hinged_orbit(d).status != FlappingStatus::flapping) continue;
+    SCOPED_TRACE(n);
+    expect_gradients(d, d.pitch.stop ? 1e-5 : 1e-6);
+    ++crank;
   }
 }
 

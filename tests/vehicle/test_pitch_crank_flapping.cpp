@@ -8,7 +8,6 @@
 #include "vehicle/hinged_design.hpp"
 #include "wingbeat/core/jet.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
-#include "wingbeat/cycle/orbit_gradient.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/study/run.hpp"
 
@@ -146,14 +145,6 @@ TEST(PitchCrankFlapping, EnsemblesLeaveItToTheScalarSolver) {
   for (const Metric m : {Metric::lift_mean, Metric::pitch_amplitude, Metric::power_hinge, Metric::rod_force_peak}) {
     EXPECT_EQ(outcome.metrics[m], alone.metrics[m]) << metric_info(m).key;
   }
-}
-
-TEST(PitchCrankFlapping, HasNoDerivatives) {
-  const Design<double> d = hinged_crank(3e-4);
-  const SteadyFlapping found = find_steady_flapping(resolve(d));
-  const OrbitGradient g = orbit_gradient(found, gradient_vehicle(cast<GradientJet>(d), Condition::air));
-  EXPECT_FALSE(g.regular);
-  EXPECT_EQ(g.metrics[Metric::lift_mean].a, found.metrics[Metric::lift_mean]);
 }
 
 }  // namespace

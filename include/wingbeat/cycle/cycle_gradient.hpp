@@ -73,6 +73,7 @@ class CycleGradient {
   bool run() {
     JetState y;
     for (int n = 0; n < N; ++n) y[n] = W(cycle_.steps.front().y[n], n);
+    constexpr auto time = std::size_t(Integral::time);
     totals_.fill(W(0.0));
     starts_.reserve(cycle_.steps.size());
     if constexpr (pitching) ends_.reserve(cycle_.steps.size());
@@ -88,7 +89,10 @@ class CycleGradient {
       const auto result = solver::take_step<true>(cycle_.method, jets_, W(step.x), y, W(step.h), signs, first);
       for (std::size_t q = 0; q < totals_.size(); ++q) totals_[q] += result.dq[q];
       y = result.y;
-      if constexpr (pitching) ends_.push_back(y);
+      if constexpr (pitching) {
+        ends_.push_back(y);
+        begins_.push_back(totals_[time] - result.dq[time]);
+      }
     }
     // (I - M) dy/dp = dP/dp, one right-hand side per slot behind the states.
     for (int k = N; k < slots; ++k) {
@@ -282,7 +286,7 @@ class CycleGradient {
 
   /// Of the first harmonics in time, as in pitch_metrics().
   W phase_of_pitch(const W& period) const {
-    W stroke_cosine(0.0), stroke_sine(0.0), pitch_cosine(0.0), pitch_sine(0.0), time(0.0);
+    W stroke_cosine(0.0), stroke_sine(0.0), pitch_cosine(0.0), pitch_sine(0.0), ended(0.0);
     for (std::size_t n = 0; n < cycle_.steps.size(); ++n) {
       const auto& step = cycle_.steps[n];
       const auto signs = solver::signs_of<Jets>(step);
@@ -290,20 +294,26 @@ class CycleGradient {
       const auto along = [&](double h) {
         return solver::take_step<true>(cycle_.method, jets_, W(step.x), starts_[n], W(h), signs, first);
       };
+      const W time = begins_[n];
+      const auto add = [&](const W& weight, const W& t, const W& x, const JetState& y) {
+        const W angle = two_pi * t / period, cosine = weight * cos(angle), sine = weight * sin(angle);
+        const W stroke = jets_.stroke_angle(x, y);
+        stroke_cosine += cosine * stroke;
+        stroke_sine += sine * stroke;
+        pitch_cosine += cosine * y[System::pitch];
+        pitch_sine += sine * y[System::pitch];
+      };
+      // An impact changes the speed of a crank, so that the duration changes with the crank angle of the impact.
+      if (n > 0) add(W(time - ended), time, W(step.x), starts_[n]);
       for (std::size_t k = 0; k < detail::gauss_nodes.size(); ++k) {
         const double h = 0.5 * (1.0 + detail::gauss_nodes[k]) * step.h;
         const auto inside = along(h);
-        const W x(step.x + h), t = time + inside.dq[std::size_t(Integral::time)];
+        const W x(step.x + h);
         const W dt = jets_.template rates<true>(x, inside.y, signs).dq[std::size_t(Integral::time)];
-        const W weight = 0.5 * step.h * detail::gauss_weights[k] * dt, angle = two_pi * t / period;
-        const W cosine = weight * cos(angle), sine = weight * sin(angle);
-        const W stroke = jets_.stroke_angle(x, inside.y);
-        stroke_cosine += cosine * stroke;
-        stroke_sine += sine * stroke;
-        pitch_cosine += cosine * inside.y[System::pitch];
-        pitch_sine += sine * inside.y[System::pitch];
+        add(W(0.5 * step.h * detail::gauss_weights[k] * dt), W(time + inside.dq[std::size_t(Integral::time)]), x,
+            inside.y);
       }
-      time += along(step.h).dq[std::size_t(Integral::time)];
+      ended = time + along(step.h).dq[std::size_t(Integral::time)];
     }
     // The pitch that opposes the stroke velocity is along -j stroke.
     return atan2(pitch_cosine * stroke_cosine + pitch_sine * stroke_sine,
@@ -440,6 +450,7 @@ class CycleGradient {
   typename Jets::Quadrature totals_;
   std::vector<JetState> starts_;
   std::vector<JetState> ends_;  ///< of the steps, of wings that pitch
+  std::vector<W> begins_;       ///< time from the cycle's start at which each step begins, of wings that pitch [s]
   W impact_loss_ = W(0.0);
   double start_change_[N][slots] = {};
   bool absent_slots_[gradient_slots];

@@ -529,7 +529,7 @@ class WingSection(Section):
 class PitchSection(Section):
     @property
     def stiffness(self) -> Quantity | None:
-        """k_psi of the hinge about which one wing pitches; given, pitch is a degree of freedom (direct drives).
+        """k_psi of the hinge about which one wing pitches; given, pitch is a degree of freedom.
         [N m/rad] Range: >= 0. Default: none: the pitch law.
         """
     @property
