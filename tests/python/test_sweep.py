@@ -122,6 +122,10 @@ class Sweeps(unittest.TestCase):
         data = reference().sweep(self.AXES, metrics=["lift_mean", "lift_to_weight"], title="A title")
         self.assertEqual(data.wingbeat.lift_mean.dims, ("supply_voltage", "transmission_crank_radius"))
         self.assertTrue((data.wingbeat.status == "flapping").all())
+        self.assertTrue((data.status == "flapping").all())
+        np.testing.assert_array_equal(data.lift_mean, data["lift_mean_n"])
+        self.assertTrue((data.sel(supply_voltage=3).status == "flapping").all())
+        self.assertEqual(float(data.lift_to_weight.where(data.status == "flapping").max()), data["lift_to_weight"].max())
         self.assertEqual(data.wingbeat.vehicle, reference())
         self.assertEqual(data.attrs["title"], "A title")
         with self.assertRaises(AttributeError):

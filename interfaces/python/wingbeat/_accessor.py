@@ -1,6 +1,8 @@
-"""`dataset.wingbeat`: a data set of the program with the names of this package."""
+"""Data sets of the program with the names of this package: `dataset.wingbeat`, and those that this package returns."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 import xarray
@@ -35,3 +37,29 @@ class DataSet:
     def __dir__(self) -> list[str]:
         own = (name for name, metric in metrics.items() if metric.key in self._dataset)
         return sorted({*object.__dir__(self), *own})
+
+
+class SweepData(xarray.Dataset):  # type: ignore[no-untyped-call]
+    """The data set of a sweep, with metrics by name, and the status by name, as attributes.
+
+    `data["status"]` is the variable of the file, a number; `data.status == "flapping"` compares names.
+    """
+
+    __slots__ = ()
+
+    @property
+    def status(self) -> xarray.DataArray:
+        """"flapping", "stalled", ... of each design."""
+        return DataSet(self).status
+
+    def __getattr__(self, name: str) -> Any:
+        if name in metrics and metrics[name].key in self.variables:
+            return self[metrics[name].key]
+        return super().__getattr__(name)
+
+    @classmethod
+    def of(cls, dataset: xarray.Dataset) -> SweepData:
+        """The same variables, coordinates and attributes."""
+        data = cls(dataset.data_vars, dataset.coords, dataset.attrs)
+        data.encoding = dataset.encoding
+        return data

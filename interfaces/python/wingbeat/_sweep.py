@@ -17,7 +17,7 @@ from ._study import study_of, without_place
 from ._vehicle import Vehicle
 
 if TYPE_CHECKING:
-    import xarray
+    from ._accessor import SweepData
 
 
 #: netCDF serves one thread at a time.
@@ -36,7 +36,7 @@ def sweep(
     threads: int = 0,
     force: bool = False,
     progress: bool | Callable[[int, int], object] | None = None,
-) -> xarray.Dataset:
+) -> SweepData:
     """The steady flapping of all combinations of values of keys, a dimension for each key.
 
     Parameters
@@ -53,8 +53,8 @@ def sweep(
     progress : True shows a bar (tqdm where it is installed), a function is called with designs done and designs
 
     Returns the data set of docs/sweep.md: what the program writes, loaded. Its variables have the names of data sets,
-    `lift_mean_n`, and the status is a number; `dataset.wingbeat` has them as here: `dataset.wingbeat.lift_mean`,
-    `dataset.wingbeat.status == "flapping"`. Other Python threads run meanwhile; Ctrl-C ends it within a chunk. Raises
+    `data["lift_mean_n"]`, and `data["status"]` is a number; as attributes they are as here: `data.lift_mean`,
+    `data.status == "flapping"`. Other Python threads run meanwhile; Ctrl-C ends it within a chunk. Raises
     InputError.
     """
     study = study_of(
@@ -71,11 +71,11 @@ def sweep(
             return open_dataset(file)
 
 
-def open_dataset(file: str | os.PathLike[str]) -> xarray.Dataset:
-    """A data set that the program or `sweep` has written, loaded, with `dataset.wingbeat`."""
+def open_dataset(file: str | os.PathLike[str]) -> SweepData:
+    """A data set that the program or `sweep` has written, loaded; attributes as those of what `sweep` returns."""
     import xarray
 
-    from . import _accessor  # noqa: F401
+    from ._accessor import SweepData
 
     with xarray.open_dataset(file, decode_timedelta=False) as data:
-        return data.load()
+        return SweepData.of(data.load())

@@ -14,8 +14,7 @@ from ._sections import Sections, sections
 from ._tables import parameters
 
 if TYPE_CHECKING:
-    import xarray
-
+    from ._accessor import SweepData
     from ._ensemble import Ensemble
     from ._equations import EquationsOfMotion
     from ._result import RunResult, StartUp
@@ -194,7 +193,7 @@ class Vehicle(Sections):
 
         return solve_columns(columns, vehicle=self, **options)
 
-    def sweep(self, axes: Mapping[str, Any], **options: Any) -> xarray.Dataset:
+    def sweep(self, axes: Mapping[str, Any], **options: Any) -> SweepData:
         """All combinations of the values of these keys: see wingbeat.sweep."""
         from ._sweep import sweep
 
