@@ -209,8 +209,8 @@ void draw_stroke_law(Figure& figure, const StrokeTable<double>& table) {
     figure.add("{} {}\n", degrees_per_radian * wrap_angle(theta), degrees_per_radian * table.scale * beta);
   }
   figure.add(
-      "END\nset xrange [0:360]\nset xtics 60\nset format x '%g'\nplot $law using 1:2 with lines {}, $rows using 1:2 with "
-      "points pt 7 ps 0.3 lc rgb '#000000'\nset xtics nomirror autofreq\n",
+      "END\nset xrange [0:360]\nset xtics 60\nset format x '%g'\nplot $law using 1:2 with lines {}, "
+      "$rows using 1:2 with points pt 7 ps 0.3 lc rgb '#000000'\nset xtics nomirror autofreq\n",
       blue_solid);
 }
 

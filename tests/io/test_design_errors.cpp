@@ -174,9 +174,9 @@ TEST(DesignErrors, KeyOfAnotherChoice) {
   EXPECT_EQ(refusal(with("radius = \"2.5 mm\"", "radius = \"2.5 mm\"\ndamping = 1e-6")),
             "v.toml:21:1: friction.damping: belongs to friction.type = viscous, but friction.type is "
             "\"load-proportional\"");
-  EXPECT_EQ(
-      refusal(with("\"3 V\"", "\"3 V\"\nfrequency = 20")),
-      "v.toml:6:1: supply.frequency: belongs to supply.type = sine or pwm or battery-sine, but supply.type is \"constant\"");
+  EXPECT_EQ(refusal(with("\"3 V\"", "\"3 V\"\nfrequency = 20")),
+            "v.toml:6:1: supply.frequency: belongs to supply.type = sine or pwm or battery-sine, but supply.type is "
+            "\"constant\"");
   EXPECT_EQ(refusal(with("[motor]", "[motor]\ngear_inertia = 1e-9")),
             "v.toml:7:1: motor.gear_inertia: needs motor.gear_ratio, which is not given");
   EXPECT_EQ(refusal(with("\"moments\"", "\"moments\", length = 1")),

@@ -63,7 +63,8 @@ inline Design<double> random_hinged_crank(std::uint32_t n, std::uint32_t seed) {
   std::mt19937_64 random(sequence);
   const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
   const auto logarithmic = [&](double a, double b) { return a * std::pow(b / a, uniform(0.0, 1.0)); };
-  Design<double> d = on_hinges(random_design(random, 1.6), logarithmic(1.5e-4, 3e-3));
+  const double stiffness = logarithmic(1.5e-4, 3e-3);
+  Design<double> d = on_hinges(random_design(random, 1.6), stiffness);
   const double kind = uniform(0.0, 1.0);
   if (kind > 0.5) {
     Design<double> other;

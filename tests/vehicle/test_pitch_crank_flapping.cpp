@@ -25,7 +25,7 @@ TEST(PitchCrankFlapping, OrbitAgreesWithTheSimulationOfRandomVehicles) {
     kinds[int(design.transmission.type)] += seen.flaps;
   }
   EXPECT_GT(flapping, 70);
-  EXPECT_GT(stopped, 10);
+  EXPECT_GT(stopped, 15);
   EXPECT_GT(kinds[int(TransmissionType::slider_crank)], 10);
   EXPECT_GT(kinds[int(TransmissionType::four_bar)], 10);
   EXPECT_GT(kinds[int(TransmissionType::tabulated)], 10);

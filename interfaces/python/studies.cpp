@@ -1,0 +1,216 @@
+// Arrays of designs, sweeps and the studies that files describe, for Python. Nothing is computed here.
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "binding.hpp"
+#include "wingbeat/files/bench_file.hpp"
+#include "wingbeat/files/datasheet_file.hpp"
+#include "wingbeat/files/design_parameter.hpp"
+#include "wingbeat/files/netcdf.hpp"
+#include "wingbeat/files/optimise_file.hpp"
+#include "wingbeat/files/tolerance_file.hpp"
+#include "wingbeat/report/endurance_report.hpp"
+#include "wingbeat/report/fit_report.hpp"
+#include "wingbeat/report/identification_report.hpp"
+#include "wingbeat/report/optimise_report.hpp"
+#include "wingbeat/report/tolerance_report.hpp"
+#include "wingbeat/run/parallel.hpp"
+
+namespace wingbeat::python {
+namespace {
+
+// ---- very many
+
+StudyInput study_input(const std::string& name, const std::string& study, const Design<double>& vehicle) {
+  StudyInput input;
+  input.study_name = name;
+  input.study = study;
+  input.vehicle = write_design(vehicle);
+  return input;
+}
+
+/// Solves a design for each row of the columns, which are in the order of the keys of the study's one axis. That study,
+/// of a single design, is where the program's checks are made.
+py::dict solve_columns(const std::string& study, const Design<double>& base,
+                       const std::vector<py::array_t<double>>& columns, std::size_t count, const std::string& condition,
+                       int threads, const py::object& progress) {
+  Sweep sweep = parse_study(study_input("columns", study, base)).sweep;
+  sweep.variants.at(0).condition = choice<Condition>("condition", condition);
+  SweepAxis& axis = sweep.axes.at(0);
+  if (sweep.axes.size() != 1 || axis.quantities.size() != columns.size()) throw py::value_error("one axis of columns");
+  axis.count = count;
+  axis.samples = true;
+  for (std::size_t q = 0; q < columns.size(); ++q) {
+    if (std::size_t(columns[q].size()) != count) throw py::value_error("columns of different lengths");
+    axis.quantities[q].values.assign(columns[q].data(), columns[q].data() + count);
+  }
+
+  SweepColumns found = watched(progress, [&](Watch& watch) {
+    return solve_sweep(sweep, threads, [&watch](const SweepProgress& now) { watch.report(now); });
+  });
+  py::list numbers;
+  for (std::vector<double>& metric : found.metrics) numbers.append(array_of(std::move(metric)));
+  py::list kept;
+  for (std::size_t m = 0; m < std::size_t(metric_count); ++m) {
+    if (sweep.options.metrics[m]) kept.append(m);
+  }
+  py::dict result;
+  result["status"] = array_of(std::move(found.status));
+  result["recomputed"] = array_of(std::move(found.recomputed));
+  result["domain"] = array_of(std::move(found.domain));
+  result["error_estimate"] = array_of(std::move(found.error_estimate));
+  result["metrics"] = numbers;
+  result["kept"] = kept;
+  return result;
+}
+
+/// Computes the data set of a study on that vehicle.
+void write_sweep(const std::string& study, const Design<double>& vehicle, const std::string& output, int threads,
+                 bool force, const py::object& progress) {
+  forget_files();
+  const Study parsed = parse_study(study_input("sweep", study, vehicle));
+  silence_hdf5();  // here xarray will open the file
+  watched(progress, [&](Watch& watch) {
+    silence_hdf5();
+    SweepRunOptions options;
+    options.output = output;
+    options.version = WINGBEAT_VERSION;
+    options.threads = threads;
+    options.force = force;
+    options.progress = [&watch](const SweepProgress& now) { watch.note(now); };
+    options.stop = [&watch] { return watch.stopped(); };
+    return run_sweep(parsed, options);
+  });
+}
+
+// ---- studies
+
+/// What a study found, as `--json` and as the program's readable report.
+py::dict told(const std::string& json, const std::string& text) {
+  py::dict result;
+  result["json"] = json;
+  result["text"] = text;
+  return result;
+}
+
+py::dict endurance(const Design<double>& design, bool allow_extrapolation) {
+  if (!has_battery(design.supply.type)) {
+    throw ParameterError("supply.type", "only a battery runs down; expected battery or battery-sine");
+  }
+  EnduranceOptions options;
+  options.allow_extrapolation = allow_extrapolation;
+  EnduranceResult found;
+  {
+    const py::gil_scoped_release others;
+    found = simulate_discharge(design, options);
+  }
+  py::dict result = told(json_endurance(found), text_endurance(design, found));
+  const auto column = [&](const auto& value) {
+    std::vector<double> numbers;
+    numbers.reserve(found.rows.size());
+    for (const EnduranceRow& row : found.rows) numbers.push_back(value(row));
+    return array_of(std::move(numbers));
+  };
+  result["time"] = column([](const EnduranceRow& row) { return row.time; });
+  result["charge"] = column([](const EnduranceRow& row) { return row.charge; });
+  py::list metrics;
+  for (int m = 0; m < metric_count; ++m) {
+    metrics.append(column([m](const EnduranceRow& row) { return row.metrics[Metric(m)]; }));
+  }
+  result["metrics"] = metrics;
+  return result;
+}
+
+py::dict identify(const std::string& file, std::optional<double> frequency, bool assume_steel_cylinder,
+                  bool assume_typical_damping, const std::string& shaft) {
+  forget_files();
+  const Shaft stated = choice<Shaft>("shaft", shaft);
+  MotorDatasheet sheet = read_datasheet(file);
+  sheet.assume_steel_cylinder |= assume_steel_cylinder;
+  sheet.assume_typical_damping |= assume_typical_damping;
+  const MotorIdentification found = identify_motor(sheet, frequency);
+  py::dict result = told(json_identification(found, sheet), text_identification(found, sheet));
+  result["motor"] =
+      found.complete()
+          ? py::object(py::str(motor_section(found, sheet, "Identified by wingbeat " WINGBEAT_VERSION, stated)))
+          : py::none();
+  return result;
+}
+
+py::dict fit(const std::string& file, const std::vector<std::string>& overrides, bool profiles,
+             bool compare_friction_laws) {
+  forget_files();
+  BenchFit bench = read_bench(file, overrides);
+  bench.profiles = profiles;
+  FitResult found;
+  std::vector<FrictionCandidate> candidates;
+  watched(py::none(), [&](const Watch&) {
+    found = fit_bench(bench, {});
+    if (compare_friction_laws) candidates = compare_friction(bench, design_parameter, {});
+    return true;
+  });
+  py::dict result = told(json_fit(bench, found, candidates),
+                         text_fit(bench, found) + (candidates.empty() ? "" : text_friction(candidates)));
+  result["design"] = found.misfit ? py::none() : py::cast(found.design);
+  return result;
+}
+
+py::dict tolerance(const std::string& file, const std::vector<std::string>& overrides, bool allow_extrapolation,
+                   int threads, const py::object& progress) {
+  forget_files();
+  ToleranceStudy study = read_tolerance_study(file, overrides);
+  study.allow_extrapolation |= allow_extrapolation;
+  const ToleranceResult found = watched(progress, [&](Watch& watch) {
+    const SweepColumns columns =
+        solve_sweep(tolerance_sweep(study), threads, [&watch](const SweepProgress& now) { watch.report(now); });
+    return assess_tolerance(study, columns, start_up_in_time());
+  });
+  return told(json_tolerance(study, found), text_tolerance(study, found));
+}
+
+/// Of one objective.
+py::dict find_optimum(const std::string& file, const std::vector<std::string>& overrides, bool allow_extrapolation,
+                      int threads) {
+  forget_files();
+  OptimiseFile study = read_optimise_study(file, overrides);
+  if (!study.objectives.empty()) {
+    throw InputError(file, 0, 0, "objective", "several objectives give a front: wingbeat optimise computes it");
+  }
+  study.study.allow_extrapolation |= allow_extrapolation;
+  std::vector<MotorTrial> trials = trials_of(study);
+  watched(py::none(), [&](const Watch& watch) {
+    const ForEach for_each = [&](std::size_t count, const std::function<void(std::size_t)>& act) {
+      const auto unless_stopped = [&](std::size_t n) {
+        if (watch.stopped()) throw Interrupted();
+        act(n);
+      };
+      for_each_in_parallel(count, unless_stopped, threads);
+    };
+    for (MotorTrial& trial : trials) {
+      if (!trial.refused()) trial.result = optimise(trial_study(study, trial), start_up_in_time(), for_each);
+    }
+    return true;
+  });
+  const MotorTrial* best = best_trial(study, trials);
+  const bool single = trials.size() == 1 && !trials[0].motor;
+  py::dict result = single ? told(json_optimum(study, trials[0].result), text_optimum(study, trials[0].result))
+                           : told(json_motors(study, trials), text_motors(study, trials));
+  result["design"] = best ? py::cast(best->result.design) : py::none();
+  return result;
+}
+
+}  // namespace
+
+void add_studies(py::module_& m) {
+  m.def("solve_columns", &solve_columns);
+  m.def("sweep", &write_sweep);
+  m.def("endurance", &endurance);
+  m.def("identify_motor", &identify);
+  m.def("fit", &fit);
+  m.def("tolerance", &tolerance);
+  m.def("optimise", &find_optimum);
+}
+
+}  // namespace wingbeat::python

@@ -1,0 +1,118 @@
+// What a crank in time does where its wings pitch on hinges; model.md section 12.
+#include <cmath>
+#include <limits>
+
+#include "time/crank_model.hpp"
+
+namespace wingbeat::detail {
+
+PitchMotion<double> CrankModel::pitch_motion(double t, const double* y, Branch<double>* used) const {
+  const CrankKinematics<double> k = kinematics(y[0]);
+  Branch<double> branch = now.branch;
+  branch.stroke = sign_of(k.stroke_slope * y[1]);
+  const double i = current_of(t, y), v_t = terminal_voltage(vehicle, voltage(t), i);
+  const double N_k_beta = spring_moment(vehicle, k);
+  const double psi = y[pitch_at()], velocity = now.held ? 0.0 : y[pitch_at() + 1];
+  const auto on_branch = [&] {
+    return pitch_motion_on<Vehicle, double>(vehicle, vehicle.pitch, k, N_k_beta, y[1], i, v_t, psi, velocity, branch,
+                                            {sign_of(velocity), now.held ? -1.0 : 1.0});
+  };
+  branch.gear = 1.0;
+  PitchMotion<double> m = on_branch();
+  if (m.stroke.gear_torque < 0.0) {
+    branch.gear = -1.0;
+    m = on_branch();
+  }
+  if (used) *used = branch;
+  return m;
+}
+
+/// The wings at the pitch of the unknowns y while the crank stands.
+WingsAtPitch<double> CrankModel::wings_standing(const double* y) const {
+  const double velocity = now.held ? 0.0 : y[pitch_at() + 1];
+  return wings_at_pitch(vehicle.wings, vehicle.pitch, vehicle.wing_count * vehicle.wing_inertia,
+                        pitch_state(y[pitch_at()], velocity, 0.0), 1.0, sign_of(velocity), now.held ? -1.0 : 1.0);
+}
+
+double CrankModel::uniqueness_at(const double* y) const {
+  if (!pitching) return uniqueness(y[0]);
+  const CrankKinematics<double> k = kinematics(y[0]);
+  const double lever = k.wing_lever / typical_lever(vehicle.transmission);
+  if (!(lever > 0.0)) return lever;
+  const double A = wings_standing(y).inertia * k.stroke_slope / k.wing_lever, radius = vehicle.friction.radius;
+  const double least = rotor_inertia() + std::min(A * (k.crank_lever + radius), A * (k.crank_lever - radius));
+  return std::min(lever, least / vehicle.motor.inertia);
+}
+
+double CrankModel::uniqueness_now() const {
+  double y[5];
+  unknowns(y);
+  return uniqueness_at(y);
+}
+
+double CrankModel::least_inertia_now() const {
+  if (!pitching) return min_inertia(vehicle, kinematics(now.theta));
+  return uniqueness_now() * vehicle.motor.inertia;
+}
+
+StandingTorques<double> CrankModel::standing_torques(const double* y) const {
+  const CrankKinematics<double> k = kinematics(y[0]);
+  return wingbeat::standing_torques(vehicle, k, (spring_moment(vehicle, k) + wings_standing(y).moment) / k.wing_lever);
+}
+
+double CrankModel::pitch_energy() const {
+  if (!pitching) return 0.0;
+  return hinge_loads(vehicle.pitch.hinge, now.psi, now.pitch_velocity).energy +
+         0.5 * (vehicle.pitch.pitch_inertia + vehicle.pitch.air.pp) * square(now.pitch_velocity);
+}
+
+void CrankModel::resume() {
+  const double stop_angle = vehicle.pitch.hinge.stop, side = sign_of(now.psi);
+  if (pitching && !now.held && side * now.psi >= stop_angle && side * now.pitch_velocity > 0.0) meet_stop();
+}
+
+/// The wings meet a stop. A crank that friction holds gives way to the blow where the lever of the rod exceeds that of
+/// friction.
+void CrankModel::meet_stop() {
+  const double side = sign_of(now.psi), J = vehicle.motor.inertia;
+  now.psi = side * vehicle.pitch.hinge.stop;
+  now.held = true;
+  if (uniqueness_now() <= smallest_margin) {
+    now.jammed = true;
+    return;
+  }
+  const CrankKinematics<double> k = kinematics(now.theta);
+  double omega = now.omega;
+  if (omega == 0.0) {
+    // Of no size, in the direction in which the blow would turn the crank.
+    const double coupling = (vehicle.pitch.mass_product + vehicle.pitch.air.rp) * std::cos(now.psi);
+    omega = sign_of(coupling * now.pitch_velocity * k.crank_lever) * std::numeric_limits<double>::min();
+  }
+  StopImpact<double> impact = stop_impact(vehicle, vehicle.pitch, k, omega, now.psi, now.pitch_velocity);
+  if (now.omega == 0.0 && !(impact.shaft_speed * omega > 0.0)) {
+    impact = {0.0, pitch_energy() - hinge_loads(vehicle.pitch.hinge, now.psi, 0.0).energy};
+  }
+  now.rotor_gain += J * impact.shaft_speed * (now.omega + 0.5 * impact.shaft_speed);
+  now.omega += impact.shaft_speed;
+  now.pitch_velocity = 0.0;
+  now.impact_loss += impact.energy;
+  if (impact.shaft_speed != 0.0) now.stuck = false;
+  if (!inductive) now.i = algebraic_current(vehicle, voltage(now.t), now.omega);
+  now.branch.direction = now.omega != 0.0 ? sign_of(now.omega) : now.branch.direction;
+  double y[5];
+  unknowns(y);
+  const bool stands = now.stuck || now.omega == 0.0;
+  const double presses = stands ? wings_standing(y).pitching_moment : pitch_motion(now.t, y).stop_moment;
+  if (side * presses < 0.0) now.held = false;
+}
+
+/// Room to the stop or, of wings that it holds, how they press on it [1].
+double CrankModel::stop_room(double t, const double* y) const {
+  const double stop_angle = vehicle.pitch.hinge.stop;
+  if (!has_stop(vehicle.pitch.hinge)) return 1.0;
+  if (!now.held) return (stop_angle - std::abs(y[pitch_at()])) / stop_angle;
+  const double moment = now.stuck ? wings_standing(y).pitching_moment : pitch_motion(t, y).stop_moment;
+  return sign_of(y[pitch_at()]) * moment / (vehicle.pitch.pitch_inertia * speed_scale * pitch_velocity_scale);
+}
+
+}  // namespace wingbeat::detail
