@@ -58,9 +58,14 @@ std::vector<DirectPackSettings> direct_plan_for(const EnsembleOptions& options) 
   s.velocity_peak = wanted(Metric::flapping_velocity_peak) || wanted(Metric::angle_of_attack_min);
   s.closed = std::clamp(0.1 * std::sqrt(options.tolerance), 1e-7, 1e-3);
   // What is read between the stages converges with the eighth power of the segments.
-  s.segments = std::max(3, int(std::ceil(4.0 * std::pow(1e-6 / options.tolerance, 0.125))));
+  const double segments = 4.0 * std::pow(1e-6 / options.tolerance, 0.125);
   std::vector<DirectPackSettings> plan;
-  for (; 2 * s.segments <= max_direct_segments; s.segments *= 2) plan.push_back(s);
+  for (int n = std::max(4, int(std::ceil(segments))); n < max_direct_segments / 2; n *= 2) {
+    s.segments = n;
+    plan.push_back(s);
+  }
+  s.segments = max_direct_segments / 2;
+  plan.push_back(s);
   return plan;
 }
 

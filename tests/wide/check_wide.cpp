@@ -93,7 +93,8 @@ double scale_of(Metric metric, const Metrics<double>& m) {
     case Metric::power_gear:
     case Metric::power_residual:
     case Metric::power_loss: return std::max(std::abs(m[metric]), std::abs(m[Metric::power_motor]));
-    case Metric::current_mean: return std::max(std::abs(m[metric]), 0.01 * std::abs(m[Metric::current_peak]));
+    case Metric::current_mean:  // that of a direct drive alternates
+      return std::max(error_scale(m, metric), 0.01 * std::abs(m[Metric::current_peak]));
     case Metric::angle_of_attack_min: return std::max(90.0, std::abs(m[metric]));
     case Metric::crank_speed_min: return std::abs(m[Metric::crank_speed_max]);
     case Metric::lift_mean: return std::abs(m[Metric::lift_peak]);

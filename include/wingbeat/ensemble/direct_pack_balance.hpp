@@ -85,7 +85,7 @@ void DirectPackOrbit<L, N>::balance() {
   per_current_ = K * inverse_of(max(drive, L(1e-300)));
 }
 
-/// Sines of the phases after the reversal.
+/// The harmonic response from its reversal on, at the nodes.
 template <class L, int N>
 void DirectPackOrbit<L, N>::harmonic_trajectory() {
   const L angle = speed_ * per_drive_;

@@ -6,7 +6,7 @@
 
 namespace wingbeat {
 
-inline constexpr int max_direct_segments = 64;  ///< of half a period, on the second mesh
+inline constexpr int max_direct_segments = 96;  ///< of half a period, on the second mesh
 
 struct DirectPackSettings {
   int segments = 4;            ///< of half a period on the first mesh; the second has twice as many

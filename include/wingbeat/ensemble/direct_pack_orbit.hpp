@@ -43,7 +43,7 @@ class DirectPackOrbit {
   using Row = std::array<L, columns>;
   using Polynomial = std::array<L, points>;
   /// What twice as many segments leave of an error at most: of a mean, and of what is read between the stages.
-  static constexpr double mean_gain = 1.0 / 16.0, extreme_gain = 0.5;
+  static constexpr double mean_gain = 1.0 / 16.0, extreme_gain = 1.0;
 
  public:
   DirectPackOrbit(const Vehicle<L>& vehicle, const DirectPackSettings& settings)
@@ -53,6 +53,7 @@ class DirectPackOrbit {
     per_drive_ = L(1.0) / omega_drive_;
     per_resistance_ = L(1.0) / circuit_resistance(vehicle);
     if constexpr (N == 3) per_inductance_ = L(1.0) / vehicle.motor.armature_inductance;
+    for (Row& row : half_map_) row.fill(L(0.0));
   }
 
   /// Metrics of the orbit. `mass` [kg] and `bench_torque_constant` [N m/A] may be absent.
@@ -160,6 +161,7 @@ Metrics<L> DirectPackOrbit<L, N>::solve(const L& mass, const L& bench_torque_con
   set_mesh(settings_.segments);
   harmonic_trajectory();
   newton();
+  decided_ = decided_ && newton_change_ <= L(settings_.closed);
   const Cycle coarse = read();
   halve();
   newton();
