@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "vehicle/direct_design.hpp"
-#include "vehicle/metrics_apart.hpp"
 #include "vehicle/random_vehicle.hpp"
+#include "vehicle/wide_design.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/study/run.hpp"
 
@@ -117,10 +117,12 @@ void measure_direct_drives(const StartUp& start_up, double seconds) {
         const EnsembleOutcome& got = outcomes[n * sample_every];
         other += got.status != expected[n].status;
         if (got.status != FlappingStatus::flapping || expected[n].status != FlappingStatus::flapping) continue;
-        const Metrics<double>& exact = expected[n].metrics;
+        Metrics<double> exact = expected[n].metrics;
         lift.push_back(std::abs(got.metrics[Metric::lift_mean] / exact[Metric::lift_mean] - 1.0));
-        std::string where;
-        worst.push_back(metrics_apart(got.metrics, exact, where));
+        for (std::size_t m = 0; m < std::size_t(metric_count); ++m) {
+          if (!wanted.metrics[m]) exact.values[m] = absent;
+        }
+        worst.push_back(metrics_apart(got.metrics, exact));
       }
       const auto recomputed =
           std::count_if(outcomes.begin(), outcomes.end(), [](const EnsembleOutcome& out) { return out.scalar; });
