@@ -10,7 +10,7 @@ inline constexpr int max_direct_segments = 96;  ///< of half a period, on the se
 
 struct DirectPackSettings {
   int segments = 4;            ///< of half a period on the first mesh; the second has twice as many
-  int newton_iterations = 12;  ///< at most, on either mesh
+  int newton_iterations = 16;  ///< at most, on either mesh
   double closed = 1e-4;        ///< a correction after which the next would not matter, relative
   // What is wanted; the peak velocity is found in any case, and counts among the errors where it is wanted.
   bool current_peak = false, exchanged_energy = false, lift_peak = false, velocity_peak = false;

@@ -289,7 +289,8 @@ void DirectPackOrbit<L, N>::close(const std::array<Row, std::size_t(N)>& end, st
   move[of_phase] = m[unknowns - 1][unknowns];
 }
 
-/// Moves the trajectory; returns by how much, relative to the harmonic response. Large moves are shortened.
+/// Moves the trajectory; returns by how much, relative to the harmonic response. Long moves are shortened: where drag
+/// falls with speed the response lies far from the harmonic one, and whole moves would miss it.
 template <class L, int N>
 L DirectPackOrbit<L, N>::correct(const std::array<L, columns>& move, const Mask& where) {
   const L per_angle = omega_drive_ * per_speed_;
@@ -325,7 +326,7 @@ L DirectPackOrbit<L, N>::correct(const std::array<L, columns>& move, const Mask&
     by[1] = omega[stages - 1];
     if constexpr (N == 3) by[2] = of.current[stages - 1];
   }
-  const L part = select<L>(where, min(L(1.0), inverse_of(max(largest, L(0.5)))), L(0.0));
+  const L part = select<L>(where, min(L(1.0), L(longest_move) * inverse_of(max(largest, L(1e-9)))), L(0.0));
   phase_ = phase_ + part * move[of_phase];
   start_[0] = start_[0] + part * move[1];
   if constexpr (N == 3) start_[2] = start_[2] + part * move[3];

@@ -44,6 +44,7 @@ class DirectPackOrbit {
   using Polynomial = std::array<L, points>;
   /// What twice as many segments leave of an error at most: of a mean, and of what is read between the stages.
   static constexpr double mean_gain = 1.0 / 16.0, extreme_gain = 1.0;
+  static constexpr double longest_move = 0.15;  ///< of Newton's method, relative to the harmonic response
 
  public:
   DirectPackOrbit(const Vehicle<L>& vehicle, const DirectPackSettings& settings)
