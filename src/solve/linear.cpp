@@ -27,12 +27,28 @@ bool solve_linear(int n, double* matrix, int count, double* right_hand_sides) {
   return B.allFinite();
 }
 
+namespace {
+
+/// Matrices of the sizes that occur often have them at compile time.
+template <int size>
+bool invert_fixed(int n, double* matrix) {
+  using Matrix = Eigen::Matrix<double, size, size, size == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
+  Eigen::Map<Matrix> A(matrix, n, n);
+  const double before = A.norm();
+  A = Eigen::PartialPivLU<Matrix>(A).inverse().eval();
+  return before * A.norm() < 1e15;
+}
+
+}  // namespace
+
 bool invert(int n, double* matrix) {
-  Eigen::Map<RowMajor> A(matrix, n, n);
-  const Eigen::PartialPivLU<RowMajor> lu(A);
-  if (!(lu.rcond() > 1e-15)) return false;
-  A = lu.inverse().eval();
-  return A.allFinite();
+  switch (n) {
+    case 1: return invert_fixed<1>(n, matrix);
+    case 2: return invert_fixed<2>(n, matrix);
+    case 5: return invert_fixed<5>(n, matrix);
+    case 10: return invert_fixed<10>(n, matrix);
+    default: return invert_fixed<Eigen::Dynamic>(n, matrix);
+  }
 }
 
 double determinant(int n, const double* matrix) {

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "wingbeat/core/jet.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/solve/explicit_step.hpp"
 #include "wingbeat/solve/linear.hpp"
@@ -26,121 +27,285 @@ struct RadauTableau {
 
 const RadauTableau& radau_tableau();
 
-/// One step of the implicit method; arguments and result as explicit_step. Not admissible where the stage equations do
-/// not converge: the caller takes a shorter step.
-template <bool quadratures, class System>
-StepResult<System> implicit_step(const System& system, const typename System::Real& x, const typename System::State& y,
-                                 const typename System::Real& h, const typename System::Signs& branch,
-                                 const Rates<System>& first) {
-  using Real = typename System::Real;
-  using State = typename System::State;
-  constexpr std::size_t states = std::tuple_size_v<State>;
-  constexpr std::size_t stages = RadauTableau::stages;
-  constexpr std::size_t unknowns = states * stages;
-  const RadauTableau& tableau = radau_tableau();
-  const double step = value_of(h);
+namespace detail {
 
-  StepResult<System> result;
-  result.admissible = false;
+template <class System>
+inline constexpr std::size_t state_count = std::tuple_size_v<typename System::State>;
+/// Derivatives of the rates by the states, row-major.
+template <class System>
+using StateJacobian = std::array<double, state_count<System> * state_count<System>>;
+/// What belongs to each of the stages of a step.
+template <class T>
+using AtStages = std::array<T, RadauTableau::stages>;
 
-  // Jacobian of the rates at the step's start, by differences: Newton's limit does not depend on it.
-  double jacobian[states][states];
+/// By differences from the rates dy at (x, y): what Newton's method converges to does not depend on their error.
+template <class System>
+StateJacobian<System> jacobian_by_differences(const System& system, double x, const typename System::State& y,
+                                              const typename System::State& scale, const typename System::Signs& branch,
+                                              const typename System::State& dy) {
+  constexpr std::size_t states = state_count<System>;
+  StateJacobian<System> jacobian;
   for (std::size_t n = 0; n < states; ++n) {
-    State moved = y;
-    const double delta = 1e-7 * value_of(system.error_scale(y)[n]);
-    moved[n] = moved[n] + Real(delta);
+    typename System::State moved = y;
+    const double delta = 1e-7 * scale[n];
+    moved[n] += delta;
     const Rates<System> rates = system.template rates<false>(x, moved, branch);
     for (std::size_t row = 0; row < states; ++row) {
-      jacobian[row][n] = (value_of(rates.dy[row]) - value_of(first.dy[row])) / delta;
+      jacobian[row * states + n] = (rates.dy[row] - dy[row]) / delta;
     }
   }
+  return jacobian;
+}
 
-  std::array<State, stages> stage, slope;
-  std::array<Rates<System>, stages> rates;
-  for (std::size_t i = 0; i < stages; ++i) stage[i] = y;
-  double inverse[unknowns * unknowns];
-  for (std::size_t row = 0; row < unknowns; ++row) {
-    for (std::size_t column = 0; column < unknowns; ++column) {
-      inverse[row * unknowns + column] = (row == column ? 1.0 : 0.0) - step * tableau.a[row / states][column / states] *
-                                                                           jacobian[row % states][column % states];
+/// I - h A x J of the stage equations, J that of each stage, and its inverse; stage by stage, state by state.
+template <std::size_t states>
+class StageMatrix {
+ public:
+  static constexpr std::size_t stages = RadauTableau::stages, unknowns = stages * states;
+
+  /// False where it is singular.
+  bool set(double h, const AtStages<std::array<double, states * states>>& jacobians) {
+    const RadauTableau& tableau = radau_tableau();
+    for (std::size_t row = 0; row < unknowns; ++row) {
+      for (std::size_t column = 0; column < unknowns; ++column) {
+        const double slope = jacobians[column / states][row % states * states + column % states];
+        inverse_[row * unknowns + column] =
+            (row == column ? 1.0 : 0.0) - h * tableau.a[row / states][column / states] * slope;
+      }
     }
+    return invert(int(unknowns), inverse_);
   }
-  if (!invert(int(unknowns), inverse)) return result;
+  double inverse(std::size_t row, std::size_t column) const { return inverse_[row * unknowns + column]; }
 
-  int converged_at = -1;
-  double before = 0.0;
+ private:
+  double inverse_[unknowns * unknowns];
+};
+
+/// The states at the stages of a step from (x, y), where the rates are `dy`, by Newton's method. `jacobian` becomes
+/// that at the start. False where it does not converge or leaves the admissible region.
+template <class System>
+bool solve_stages(const System& system, double x, const typename System::State& y, double h,
+                  const typename System::Signs& branch, const typename System::State& dy,
+                  StateJacobian<System>& jacobian, AtStages<typename System::State>& stage) {
+  using State = typename System::State;
+  constexpr std::size_t states = state_count<System>, stages = RadauTableau::stages, unknowns = states * stages;
+  const RadauTableau& tableau = radau_tableau();
+  const State scale = system.error_scale(y);
+
+  jacobian = jacobian_by_differences(system, x, y, scale, branch, dy);
+  AtStages<StateJacobian<System>> jacobians;
+  jacobians.fill(jacobian);
+  StageMatrix<states> matrix;
+  if (!matrix.set(h, jacobians)) return false;
+  stage.fill(y);
+
+  double before = 0.0, rate = 1.0;
+  int renewed = 0;
   for (int iteration = 0; iteration < 40; ++iteration) {
+    AtStages<State> slope;
     for (std::size_t i = 0; i < stages; ++i) {
-      if (!system.admissible(stage[i])) return result;
-      rates[i] = system.template rates<quadratures>(x + Real(tableau.c[i]) * h, stage[i], branch);
-      slope[i] = rates[i].dy;
+      if (!system.admissible(stage[i])) return false;
+      slope[i] = system.template rates<false>(x + tableau.c[i] * h, stage[i], branch).dy;
     }
-    std::array<Real, unknowns> residual;
+    // The Jacobian changes along the step: taken at the stages, where they are known roughly, it saves iterations.
+    if ((iteration == 1 && before > 1e-7) || (iteration > 1 && rate > 0.1 && before > 1e-10 && renewed < 4)) {
+      ++renewed;
+      for (std::size_t i = 0; i < stages; ++i) {
+        jacobians[i] = jacobian_by_differences(system, x + tableau.c[i] * h, stage[i], scale, branch, slope[i]);
+      }
+      if (!matrix.set(h, jacobians)) return false;
+    }
+    std::array<double, unknowns> residual;
     for (std::size_t i = 0; i < stages; ++i) {
       for (std::size_t n = 0; n < states; ++n) {
-        Real sum = Real(tableau.a[i][0]) * slope[0][n];
-        for (std::size_t j = 1; j < stages; ++j) sum = sum + Real(tableau.a[i][j]) * slope[j][n];
+        double sum = tableau.a[i][0] * slope[0][n];
+        for (std::size_t j = 1; j < stages; ++j) sum += tableau.a[i][j] * slope[j][n];
         residual[i * states + n] = stage[i][n] - y[n] - h * sum;
       }
     }
     double change = 0.0;
     for (std::size_t row = 0; row < unknowns; ++row) {
-      Real update = Real(inverse[row * unknowns]) * residual[0];
-      for (std::size_t column = 1; column < unknowns; ++column) {
-        update = update + Real(inverse[row * unknowns + column]) * residual[column];
-      }
-      Real& at = stage[row / states][row % states];
-      at = at - update;
+      double update = 0.0;
+      for (std::size_t column = 0; column < unknowns; ++column)
+        update += matrix.inverse(row, column) * residual[column];
+      stage[row / states][row % states] -= update;
       // Written so that a NaN stays.
-      const double moved = std::abs(value_of(update)) / value_of(system.error_scale(y)[row % states]);
+      const double moved = std::abs(update) / scale[row % states];
       if (!(moved <= change)) change = moved;
     }
-    if (!std::isfinite(change)) return result;
-    // Derivatives inside a dual number converge as fast as the values, a few iterations behind.
-    const bool settled = change < 1e-15 || (iteration > 2 && change < 1e-12 && change > 0.3 * before);
-    if (converged_at < 0 && settled) converged_at = iteration;
-    if (converged_at >= 0 && (std::is_same_v<Real, double> || iteration >= 2 * converged_at + 2)) break;
-    if (iteration > 2 && change > 0.8 * before && change > 1e-12) return result;
+    if (!std::isfinite(change)) return false;
+    rate = iteration > 0 ? change / before : 1.0;
+    // What is left is the next change.
+    const bool next_is_rounding = rate < 0.1 && rate * change < 1e-15;
+    if (change < 1e-15 || next_is_rounding || (iteration > 2 && change < 1e-12 && rate > 0.3)) {
+      for (const State& at : stage) {
+        if (!system.admissible(at)) return false;
+      }
+      return true;
+    }
+    if (iteration > 2 && rate > 0.8 && change > 1e-12) return false;
     before = change;
   }
-  if (converged_at < 0) return result;
+  return false;
+}
 
-  for (std::size_t w = 0; w < result.lowest.size(); ++w) {
-    result.lowest[w] = rates[0].switches[w] * branch[w];
-    for (std::size_t j = 1; j < stages; ++j) {
-      const Real signed_switch = rates[j].switches[w] * branch[w];
-      result.lowest[w] = select(signed_switch < result.lowest[w], signed_switch, result.lowest[w]);
+/// Least switch times its sign over the stages.
+template <class System>
+typename System::Switches lowest_switches(const AtStages<Rates<System>>& rates, const typename System::Signs& branch) {
+  typename System::Switches lowest;
+  for (std::size_t w = 0; w < lowest.size(); ++w) {
+    lowest[w] = rates[0].switches[w] * branch[w];
+    for (std::size_t j = 1; j < rates.size(); ++j) {
+      const typename System::Real signed_switch = rates[j].switches[w] * branch[w];
+      lowest[w] = select(signed_switch < lowest[w], signed_switch, lowest[w]);
     }
   }
+  return lowest;
+}
+
+}  // namespace detail
+
+/// One step of the implicit method; arguments and result as explicit_step. Not admissible where the stage equations do
+/// not converge: the caller takes a shorter step.
+template <bool quadratures, class System>
+StepResult<System> implicit_step(const System& system, double x, const typename System::State& y, double h,
+                                 const typename System::Signs& branch, const Rates<System>& first) {
+  constexpr std::size_t states = detail::state_count<System>, stages = RadauTableau::stages;
+  const RadauTableau& tableau = radau_tableau();
+
+  StepResult<System> result;
+  result.admissible = false;
+  detail::StateJacobian<System> jacobian;
+  detail::AtStages<typename System::State> stage;
+  if (!detail::solve_stages(system, x, y, h, branch, first.dy, jacobian, stage)) return result;
+
+  detail::AtStages<Rates<System>> rates;
+  for (std::size_t i = 0; i < stages; ++i) {
+    rates[i] = system.template rates<quadratures>(x + tableau.c[i] * h, stage[i], branch);
+  }
+  result.lowest = detail::lowest_switches<System>(rates, branch);
   result.y = stage[stages - 1];
   if constexpr (quadratures) {
     for (std::size_t q = 0; q < result.dq.size(); ++q) {
-      Real sum = Real(0.0), error = Real(tableau.start_weight) * first.dq[q];
+      double sum = 0.0, error = tableau.start_weight * first.dq[q];
       for (std::size_t j = 0; j < stages; ++j) {
-        sum = sum + Real(tableau.a[stages - 1][j]) * rates[j].dq[q];
-        error = error + Real(tableau.error[j]) * rates[j].dq[q];
+        sum += tableau.a[stages - 1][j] * rates[j].dq[q];
+        error += tableau.error[j] * rates[j].dq[q];
       }
       result.dq[q] = h * sum;
-      result.integral_error3[q] = Real(0.0);
+      result.integral_error3[q] = 0.0;
       result.integral_error5[q] = h * error;
     }
   }
   // Error of the embedded formula, stiff components damped by (I - h start_weight Jacobian)^-1.
   double matrix[states * states], error[states];
   for (std::size_t row = 0; row < states; ++row) {
-    error[row] = tableau.start_weight * value_of(first.dy[row]);
-    for (std::size_t j = 0; j < stages; ++j) error[row] += tableau.error[j] * value_of(slope[j][row]);
-    error[row] *= step;
+    error[row] = tableau.start_weight * first.dy[row];
+    for (std::size_t j = 0; j < stages; ++j) error[row] += tableau.error[j] * rates[j].dy[row];
+    error[row] *= h;
     for (std::size_t column = 0; column < states; ++column) {
-      matrix[row * states + column] = (row == column ? 1.0 : 0.0) - step * tableau.start_weight * jacobian[row][column];
+      const std::size_t at = row * states + column;
+      matrix[at] = (row == column ? 1.0 : 0.0) - h * tableau.start_weight * jacobian[at];
     }
   }
   if (!solve_linear(int(states), matrix, error)) return result;
   for (std::size_t n = 0; n < states; ++n) {
-    result.error3[n] = Real(0.0);
-    result.error5[n] = Real(error[n]);
+    result.error3[n] = 0.0;
+    result.error5[n] = error[n];
   }
-  result.admissible = system.admissible(result.y);
+  result.admissible = true;
+  return result;
+}
+
+/// The same with derivatives: `jets` is `system` on dual numbers, whose derivatives come along as those of x, y and h
+/// do. The stages are found on plain numbers; their derivatives follow from the stage equations, which are linear in
+/// them (implicit function theorem). Gives no error estimates.
+template <bool quadratures, class Jets, class System>
+StepResult<Jets> implicit_step(const Jets& jets, const System& system, const typename Jets::Real& x,
+                               const typename Jets::State& y, const typename Jets::Real& h,
+                               const typename Jets::Signs& branch) {
+  using Real = typename Jets::Real;
+  constexpr std::size_t states = detail::state_count<System>, stages = RadauTableau::stages;
+  constexpr std::size_t unknowns = states * stages;
+  constexpr int slots = Real::DIMENSION;
+  const RadauTableau& tableau = radau_tableau();
+
+  StepResult<Jets> result;
+  result.admissible = false;
+  typename System::State start;
+  for (std::size_t n = 0; n < states; ++n) start[n] = y[n].a;
+  typename System::Signs signs;
+  for (std::size_t k = 0; k < signs.size(); ++k) signs[k] = branch[k].a;
+  const Rates<System> first = system.template rates<false>(x.a, start, signs);
+  detail::StateJacobian<System> of_start;
+  detail::AtStages<typename System::State> stage;
+  if (!detail::solve_stages(system, x.a, start, h.a, signs, first.dy, of_start, stage)) return result;
+
+  // The rates with their derivatives at given states, and by the states.
+  const auto by_state = system.template cast<Jet<int(states)>>();
+  using ByState = std::remove_const_t<decltype(by_state)>;
+  detail::AtStages<Rates<Jets>> rates;
+  detail::AtStages<Rates<ByState>> partial;
+  detail::AtStages<detail::StateJacobian<System>> jacobians;
+  typename ByState::Signs signs_by_state;
+  for (std::size_t k = 0; k < signs.size(); ++k) signs_by_state[k] = typename ByState::Real(signs[k]);
+  for (std::size_t i = 0; i < stages; ++i) {
+    const Real at = x + tableau.c[i] * h;
+    typename Jets::State given;
+    typename ByState::State moving;
+    for (std::size_t n = 0; n < states; ++n) {
+      given[n] = Real(stage[i][n]);
+      moving[n] = typename ByState::Real(stage[i][n], int(n));
+    }
+    rates[i] = jets.template rates<quadratures>(at, given, branch);
+    partial[i] = by_state.template rates<quadratures>(typename ByState::Real(at.a), moving, signs_by_state);
+    for (std::size_t k = 0; k < states * states; ++k) {
+      jacobians[i][k] = partial[i].dy[k / states].v[Eigen::Index(k % states)];
+    }
+  }
+  detail::StageMatrix<states> matrix;
+  if (!matrix.set(h.a, jacobians)) return result;
+  // Right-hand side: how the stages would move if the rates did not follow them.
+  std::array<Eigen::Matrix<double, slots, 1>, unknowns> given, moved;
+  for (std::size_t i = 0; i < stages; ++i) {
+    for (std::size_t n = 0; n < states; ++n) {
+      Real sum = tableau.a[i][0] * rates[0].dy[n];
+      for (std::size_t j = 1; j < stages; ++j) sum += tableau.a[i][j] * rates[j].dy[n];
+      given[i * states + n] = (y[n] + h * sum).v;
+    }
+  }
+  for (std::size_t row = 0; row < unknowns; ++row) {
+    moved[row].setZero();
+    for (std::size_t column = 0; column < unknowns; ++column) {
+      moved[row] += matrix.inverse(row, column) * given[column];
+    }
+  }
+  const auto follow = [&](std::size_t i, Real& of, const typename ByState::Real& slope) {
+    for (std::size_t n = 0; n < states; ++n) of.v += slope.v[Eigen::Index(n)] * moved[i * states + n];
+  };
+  for (std::size_t i = 0; i < stages; ++i) {
+    for (std::size_t w = 0; w < rates[i].switches.size(); ++w) {
+      follow(i, rates[i].switches[w], partial[i].switches[w]);
+    }
+    if constexpr (quadratures) {
+      for (std::size_t q = 0; q < result.dq.size(); ++q) follow(i, rates[i].dq[q], partial[i].dq[q]);
+    }
+  }
+  result.lowest = detail::lowest_switches<Jets>(rates, branch);
+  for (std::size_t n = 0; n < states; ++n) {
+    result.y[n] = Real(stage[stages - 1][n]);
+    result.y[n].v = moved[(stages - 1) * states + n];
+    result.error3[n] = result.error5[n] = Real(0.0);
+  }
+  if constexpr (quadratures) {
+    for (std::size_t q = 0; q < result.dq.size(); ++q) {
+      Real sum = tableau.a[stages - 1][0] * rates[0].dq[q];
+      for (std::size_t j = 1; j < stages; ++j) sum += tableau.a[stages - 1][j] * rates[j].dq[q];
+      result.dq[q] = h * sum;
+      result.integral_error3[q] = result.integral_error5[q] = Real(0.0);
+    }
+  }
+  result.admissible = true;
   return result;
 }
 

@@ -74,6 +74,16 @@ StepResult<System> take_step(Method method, const System& system, const typename
                                          : implicit_step<quadratures>(system, x, y, h, branch, first);
 }
 
+/// The same with derivatives: `jets` is `system` on dual numbers.
+template <bool quadratures, class Jets, class System>
+StepResult<Jets> take_step(Method method, const Jets& jets, const System& system, const typename Jets::Real& x,
+                           const typename Jets::State& y, const typename Jets::Real& h,
+                           const typename Jets::Signs& branch) {
+  if (method == Method::radau) return implicit_step<quadratures>(jets, system, x, y, h, branch);
+  const Rates<Jets> first = jets.template rates<quadratures>(x, y, branch);
+  return explicit_step<quadratures>(jets, x, y, h, branch, first);
+}
+
 /// True of systems whose event_transition() moves the state, as an impact does: a recorded step then begins elsewhere
 /// than the one before it ended.
 template <class System>
