@@ -57,11 +57,16 @@ RadauTableau make_tableau() {
   for (int k = 0; k < s; ++k) conditions[k] = 1.0L / (k + 1) - (k == 0 ? start_weight : 0.0L);
   const Vector embedded = powers.fullPivLu().solve(conditions);
 
+  Vector error;
+  for (int i = 0; i < s; ++i) error[i] = embedded[i] - a(s - 1, i);
+  const Vector by_state = a.transpose().fullPivLu().solve(error);
+
   RadauTableau t;
   t.start_weight = double(start_weight);
   for (int i = 0; i < s; ++i) {
     t.c[i] = double(c[i]);
-    t.error[i] = double(embedded[i] - a(s - 1, i));
+    t.error[i] = double(error[i]);
+    t.error_by_state[i] = double(by_state[i]);
     for (int j = 0; j < s; ++j) t.a[i][j] = double(a(i, j));
   }
   return t;

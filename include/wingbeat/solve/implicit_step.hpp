@@ -20,9 +20,11 @@ struct RadauTableau {
   static constexpr int stages = 5;
   static constexpr int order = 9;
   double c[stages];
-  double a[stages][stages];  ///< the last row holds the weights
-  double start_weight;       ///< of the derivative at the step's start in the embedded formula
-  double error[stages];      ///< embedded (order 5) minus Radau weights
+  double a[stages][stages];       ///< the last row holds the weights
+  double start_weight;            ///< of the derivative at the step's start in the embedded formula
+  double error[stages];           ///< embedded (order 5) minus Radau weights
+  double error_by_state[stages];  ///< the same for what the stages are off the step's start by, instead of h times the
+                                  ///< rates
 };
 
 const RadauTableau& radau_tableau();
@@ -82,11 +84,13 @@ class StageMatrix {
 };
 
 /// The states at the stages of a step from (x, y), where the rates are `dy`, by Newton's method. `jacobian` becomes
-/// that at the start. False where it does not converge or leaves the admissible region.
+/// that at the start, `rates` those of the last iteration, without integrands. False where it does not converge or
+/// leaves the admissible region.
 template <class System>
 bool solve_stages(const System& system, double x, const typename System::State& y, double h,
                   const typename System::Signs& branch, const typename System::State& dy,
-                  StateJacobian<System>& jacobian, AtStages<typename System::State>& stage) {
+                  StateJacobian<System>& jacobian, AtStages<typename System::State>& stage,
+                  AtStages<Rates<System>>& rates) {
   using State = typename System::State;
   constexpr std::size_t states = state_count<System>, stages = RadauTableau::stages, unknowns = states * stages;
   const RadauTableau& tableau = radau_tableau();
@@ -102,24 +106,23 @@ bool solve_stages(const System& system, double x, const typename System::State& 
   double before = 0.0, rate = 1.0;
   int renewed = 0;
   for (int iteration = 0; iteration < 40; ++iteration) {
-    AtStages<State> slope;
     for (std::size_t i = 0; i < stages; ++i) {
       if (!system.admissible(stage[i])) return false;
-      slope[i] = system.template rates<false>(x + tableau.c[i] * h, stage[i], branch).dy;
+      rates[i] = system.template rates<false>(x + tableau.c[i] * h, stage[i], branch);
     }
     // The Jacobian changes along the step: taken at the stages, where they are known roughly, it saves iterations.
     if ((iteration == 1 && before > 1e-7) || (iteration > 1 && rate > 0.1 && before > 1e-10 && renewed < 4)) {
       ++renewed;
       for (std::size_t i = 0; i < stages; ++i) {
-        jacobians[i] = jacobian_by_differences(system, x + tableau.c[i] * h, stage[i], scale, branch, slope[i]);
+        jacobians[i] = jacobian_by_differences(system, x + tableau.c[i] * h, stage[i], scale, branch, rates[i].dy);
       }
       if (!matrix.set(h, jacobians)) return false;
     }
     std::array<double, unknowns> residual;
     for (std::size_t i = 0; i < stages; ++i) {
       for (std::size_t n = 0; n < states; ++n) {
-        double sum = tableau.a[i][0] * slope[0][n];
-        for (std::size_t j = 1; j < stages; ++j) sum += tableau.a[i][j] * slope[j][n];
+        double sum = tableau.a[i][0] * rates[0].dy[n];
+        for (std::size_t j = 1; j < stages; ++j) sum += tableau.a[i][j] * rates[j].dy[n];
         residual[i * states + n] = stage[i][n] - y[n] - h * sum;
       }
     }
@@ -177,41 +180,43 @@ StepResult<System> implicit_step(const System& system, double x, const typename 
   result.admissible = false;
   detail::StateJacobian<System> jacobian;
   detail::AtStages<typename System::State> stage;
-  if (!detail::solve_stages(system, x, y, h, branch, first.dy, jacobian, stage)) return result;
-
   detail::AtStages<Rates<System>> rates;
-  for (std::size_t i = 0; i < stages; ++i) {
-    rates[i] = system.template rates<quadratures>(x + tableau.c[i] * h, stage[i], branch);
-  }
+  if (!detail::solve_stages(system, x, y, h, branch, first.dy, jacobian, stage, rates)) return result;
+
   result.lowest = detail::lowest_switches<System>(rates, branch);
   result.y = stage[stages - 1];
   if constexpr (quadratures) {
     for (std::size_t q = 0; q < result.dq.size(); ++q) {
-      double sum = 0.0, error = tableau.start_weight * first.dq[q];
-      for (std::size_t j = 0; j < stages; ++j) {
-        sum += tableau.a[stages - 1][j] * rates[j].dq[q];
-        error += tableau.error[j] * rates[j].dq[q];
+      result.dq[q] = 0.0;
+      result.integral_error5[q] = tableau.start_weight * first.dq[q];
+    }
+    for (std::size_t j = 0; j < stages; ++j) {
+      rates[j] = system.template rates<true>(x + tableau.c[j] * h, stage[j], branch);
+      for (std::size_t q = 0; q < result.dq.size(); ++q) {
+        result.dq[q] += tableau.a[stages - 1][j] * rates[j].dq[q];
+        result.integral_error5[q] += tableau.error[j] * rates[j].dq[q];
       }
-      result.dq[q] = h * sum;
+    }
+    for (std::size_t q = 0; q < result.dq.size(); ++q) {
+      result.dq[q] *= h;
       result.integral_error3[q] = 0.0;
-      result.integral_error5[q] = h * error;
+      result.integral_error5[q] *= h;
     }
   }
   // Error of the embedded formula, stiff components damped by (I - h start_weight Jacobian)^-1.
   double matrix[states * states], error[states];
   for (std::size_t row = 0; row < states; ++row) {
-    error[row] = tableau.start_weight * first.dy[row];
-    for (std::size_t j = 0; j < stages; ++j) error[row] += tableau.error[j] * rates[j].dy[row];
-    error[row] *= h;
+    error[row] = h * tableau.start_weight * first.dy[row];
+    for (std::size_t j = 0; j < stages; ++j) error[row] += tableau.error_by_state[j] * (stage[j][row] - y[row]);
     for (std::size_t column = 0; column < states; ++column) {
       const std::size_t at = row * states + column;
       matrix[at] = (row == column ? 1.0 : 0.0) - h * tableau.start_weight * jacobian[at];
     }
   }
-  if (!solve_linear(int(states), matrix, error)) return result;
-  for (std::size_t n = 0; n < states; ++n) {
-    result.error3[n] = 0.0;
-    result.error5[n] = error[n];
+  if (!invert(int(states), matrix)) return result;
+  for (std::size_t row = 0; row < states; ++row) {
+    result.error3[row] = result.error5[row] = 0.0;
+    for (std::size_t n = 0; n < states; ++n) result.error5[row] += matrix[row * states + n] * error[n];
   }
   result.admissible = true;
   return result;
@@ -239,7 +244,8 @@ StepResult<Jets> implicit_step(const Jets& jets, const System& system, const typ
   const Rates<System> first = system.template rates<false>(x.a, start, signs);
   detail::StateJacobian<System> of_start;
   detail::AtStages<typename System::State> stage;
-  if (!detail::solve_stages(system, x.a, start, h.a, signs, first.dy, of_start, stage)) return result;
+  detail::AtStages<Rates<System>> last;
+  if (!detail::solve_stages(system, x.a, start, h.a, signs, first.dy, of_start, stage, last)) return result;
 
   // The rates with their derivatives at given states, and by the states.
   const auto by_state = system.template cast<Jet<int(states)>>();
