@@ -31,8 +31,8 @@ bool solve_linear(int n, double* matrix, int count, double* right_hand_sides) {
 
 namespace {
 
-/// The inverse of a matrix whose size is known at compile time by Gauss and Jordan's elimination: a quarter of the time
-/// of an LU decomposition's. Rows are scaled first, so that stiff ones among others do no harm.
+/// The inverse of a small matrix, its size known at compile time, by Gauss and Jordan's elimination. Rows are scaled
+/// first, so that stiff ones among others do no harm.
 template <int n>
 bool invert_fixed(double* a) {
   double scale[n];
@@ -56,12 +56,13 @@ bool invert_fixed(double* a) {
     const double inverse = 1.0 / a[k * n + k];
     if (!std::isfinite(inverse)) return false;
     a[k * n + k] = 1.0;
-    for (int j = 0; j < n; ++j) a[k * n + j] *= inverse;
+    double pivot_row[n];
+    for (int j = 0; j < n; ++j) pivot_row[j] = a[k * n + j] *= inverse;
     for (int row = 0; row < n; ++row) {
       if (row == k) continue;
       const double factor = a[row * n + k];
       a[row * n + k] = 0.0;
-      for (int j = 0; j < n; ++j) a[row * n + j] -= factor * a[k * n + j];
+      for (int j = 0; j < n; ++j) a[row * n + j] -= factor * pivot_row[j];
     }
   }
   for (int k = n - 1; k >= 0; --k) {

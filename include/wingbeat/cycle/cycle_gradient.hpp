@@ -85,7 +85,8 @@ class CycleGradient {
       solver::reset_map<true>(jets_, cycle_.steps, at, y, &totals_);
       starts_.push_back(y);
       const auto signs = solver::signs_of<Jets>(step);
-      const auto result = solver::take_step<true>(cycle_.method, jets_, system_, W(step.x), y, W(step.h), signs);
+      const auto result =
+          solver::take_step<true>(cycle_.method, jets_, system_, W(step.x), y, W(step.h), signs, stages_of(at));
       for (std::size_t q = 0; q < totals_.size(); ++q) totals_[q] += result.dq[q];
       y = result.y;
       if constexpr (pitching) {
@@ -204,6 +205,9 @@ class CycleGradient {
     for (int k = N - shift; k < gradient_slots; ++k) of.v[k + shift] = x.v[k];
     return of;
   }
+
+  /// Where known, the states at the stages of a step.
+  const auto* stages_of(std::size_t step) const { return cycle_.stages.empty() ? nullptr : &cycle_.stages[step]; }
 
   JetState state_at(std::size_t step, double x) const {
     const auto& s = cycle_.steps[step];

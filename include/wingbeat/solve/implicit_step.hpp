@@ -19,12 +19,16 @@ namespace wingbeat::solver {
 struct RadauTableau {
   static constexpr int stages = 5;
   static constexpr int order = 9;
+  /// Of the error estimate that the driver makes of both embedded formulas.
+  static constexpr int error_order = 8;
   double c[stages];
-  double a[stages][stages];       ///< the last row holds the weights
-  double start_weight;            ///< of the derivative at the step's start in the embedded formula
-  double error[stages];           ///< embedded (order 5) minus Radau weights
-  double error_by_state[stages];  ///< the same for what the stages are off the step's start by, instead of h times the
-                                  ///< rates
+  double a[stages][stages];  ///< the last row holds the weights
+  double start_weight;       ///< of the derivative at the step's start in the embedded formula of order 5
+  double error3[stages];     ///< embedded formula of order 3, of every other stage, minus Radau weights
+  double error5[stages];     ///< embedded formula of order 5 minus Radau weights
+  // The same for what the stages' states are off the step's start by, in the place of h times their rates.
+  double state_error3[stages];
+  double state_error5[stages];
 };
 
 const RadauTableau& radau_tableau();
@@ -40,9 +44,23 @@ using StateJacobian = std::array<double, state_count<System> * state_count<Syste
 template <class T>
 using AtStages = std::array<T, RadauTableau::stages>;
 
-/// By differences from the rates dy at (x, y): what Newton's method converges to does not depend on their error.
+/// Where the stages of a step from x are, as the system's rates() take it: all that depends on x alone is the same in
+/// every iteration.
 template <class System>
-StateJacobian<System> jacobian_by_differences(const System& system, double x, const typename System::State& y,
+auto places_of_stages(const System& system, double x, double h) {
+  const RadauTableau& tableau = radau_tableau();
+  if constexpr (requires { system.places(x, h, tableau.c); }) {
+    return system.places(x, h, tableau.c);
+  } else {
+    AtStages<double> places;
+    for (std::size_t i = 0; i < places.size(); ++i) places[i] = x + tableau.c[i] * h;
+    return places;
+  }
+}
+
+/// By differences from the rates dy at y: what Newton's method converges to does not depend on their error.
+template <class System, class Place>
+StateJacobian<System> jacobian_by_differences(const System& system, const Place& x, const typename System::State& y,
                                               const typename System::State& scale, const typename System::Signs& branch,
                                               const typename System::State& dy) {
   constexpr std::size_t states = state_count<System>;
@@ -68,74 +86,97 @@ class StageMatrix {
   /// False where it is singular.
   bool set(double h, const AtStages<std::array<double, states * states>>& jacobians) {
     const RadauTableau& tableau = radau_tableau();
-    for (std::size_t row = 0; row < unknowns; ++row) {
-      for (std::size_t column = 0; column < unknowns; ++column) {
-        const double slope = jacobians[column / states][row % states * states + column % states];
-        inverse_[row * unknowns + column] =
-            (row == column ? 1.0 : 0.0) - h * tableau.a[row / states][column / states] * slope;
+    for (std::size_t j = 0; j < stages; ++j) {
+      for (std::size_t i = 0; i < stages; ++i) {
+        const double by = -h * tableau.a[i][j];
+        for (std::size_t k = 0; k < states * states; ++k) {
+          const std::size_t row = i * states + k / states, column = j * states + k % states;
+          inverse_[column * unknowns + row] = by * jacobians[j][k] + (row == column ? 1.0 : 0.0);
+        }
       }
     }
     return invert(int(unknowns), inverse_);
   }
-  double inverse(std::size_t row, std::size_t column) const { return inverse_[row * unknowns + column]; }
+  double inverse(std::size_t row, std::size_t column) const { return inverse_[column * unknowns + row]; }
+
+  std::array<double, unknowns> solve(const std::array<double, unknowns>& right) const {
+    std::array<double, unknowns> solution{};
+    for (std::size_t column = 0; column < unknowns; ++column) {
+      for (std::size_t row = 0; row < unknowns; ++row) solution[row] += inverse(row, column) * right[column];
+    }
+    return solution;
+  }
 
  private:
-  double inverse_[unknowns * unknowns];
+  double inverse_[unknowns * unknowns];  ///< column by column
 };
 
-/// The states at the stages of a step from (x, y), where the rates are `dy`, by Newton's method. `jacobian` becomes
-/// that at the start, `rates` those of the last iteration, without integrands. False where it does not converge or
-/// leaves the admissible region.
-template <class System>
-bool solve_stages(const System& system, double x, const typename System::State& y, double h,
+/// What the states at the stages miss the stage equations by, for the rates dy there.
+template <class State>
+auto stage_residuals(const State& y, double h, const AtStages<State>& stage, const AtStages<State>& dy) {
+  constexpr std::size_t states = std::tuple_size_v<State>, stages = RadauTableau::stages;
+  const RadauTableau& tableau = radau_tableau();
+  std::array<double, states * stages> residual;
+  for (std::size_t i = 0; i < stages; ++i) {
+    for (std::size_t n = 0; n < states; ++n) {
+      double sum = tableau.a[i][0] * dy[0][n];
+      for (std::size_t j = 1; j < stages; ++j) sum += tableau.a[i][j] * dy[j][n];
+      residual[i * states + n] = stage[i][n] - y[n] - h * sum;
+    }
+  }
+  return residual;
+}
+
+/// Subtracts Newton's update; its largest part, over the scale of the states. A NaN stays.
+template <class State, std::size_t unknowns>
+double move_stages(const std::array<double, unknowns>& update, const State& scale, AtStages<State>& stage) {
+  constexpr std::size_t states = std::tuple_size_v<State>;
+  double change = 0.0;
+  for (std::size_t row = 0; row < unknowns; ++row) {
+    stage[row / states][row % states] -= update[row];
+    const double moved = std::abs(update[row]) / scale[row % states];
+    if (!(moved <= change)) change = moved;
+  }
+  return change;
+}
+
+/// The states at the stages of a step from (x, y), where the rates are `dy`, by Newton's method; `places` is where the
+/// stages are. `jacobian` becomes that at the start, `rates` those of the last iteration, without integrands. False
+/// where it does not converge or leaves the admissible region.
+template <class System, class Places>
+bool solve_stages(const System& system, double x, const Places& places, const typename System::State& y, double h,
                   const typename System::Signs& branch, const typename System::State& dy,
                   StateJacobian<System>& jacobian, AtStages<typename System::State>& stage,
                   AtStages<Rates<System>>& rates) {
   using State = typename System::State;
-  constexpr std::size_t states = state_count<System>, stages = RadauTableau::stages, unknowns = states * stages;
-  const RadauTableau& tableau = radau_tableau();
+  constexpr std::size_t stages = RadauTableau::stages;
   const State scale = system.error_scale(y);
 
   jacobian = jacobian_by_differences(system, x, y, scale, branch, dy);
   AtStages<StateJacobian<System>> jacobians;
   jacobians.fill(jacobian);
-  StageMatrix<states> matrix;
+  StageMatrix<state_count<System>> matrix;
   if (!matrix.set(h, jacobians)) return false;
   stage.fill(y);
 
   double before = 0.0, rate = 1.0;
   int renewed = 0;
   for (int iteration = 0; iteration < 40; ++iteration) {
+    AtStages<State> slope;
     for (std::size_t i = 0; i < stages; ++i) {
       if (!system.admissible(stage[i])) return false;
-      rates[i] = system.template rates<false>(x + tableau.c[i] * h, stage[i], branch);
+      rates[i] = system.template rates<false>(places[i], stage[i], branch);
+      slope[i] = rates[i].dy;
     }
     // The Jacobian changes along the step: taken at the stages, where they are known roughly, it saves iterations.
     if ((iteration == 1 && before > 1e-7) || (iteration > 1 && rate > 0.1 && before > 1e-10 && renewed < 4)) {
       ++renewed;
       for (std::size_t i = 0; i < stages; ++i) {
-        jacobians[i] = jacobian_by_differences(system, x + tableau.c[i] * h, stage[i], scale, branch, rates[i].dy);
+        jacobians[i] = jacobian_by_differences(system, places[i], stage[i], scale, branch, slope[i]);
       }
       if (!matrix.set(h, jacobians)) return false;
     }
-    std::array<double, unknowns> residual;
-    for (std::size_t i = 0; i < stages; ++i) {
-      for (std::size_t n = 0; n < states; ++n) {
-        double sum = tableau.a[i][0] * rates[0].dy[n];
-        for (std::size_t j = 1; j < stages; ++j) sum += tableau.a[i][j] * rates[j].dy[n];
-        residual[i * states + n] = stage[i][n] - y[n] - h * sum;
-      }
-    }
-    double change = 0.0;
-    for (std::size_t row = 0; row < unknowns; ++row) {
-      double update = 0.0;
-      for (std::size_t column = 0; column < unknowns; ++column)
-        update += matrix.inverse(row, column) * residual[column];
-      stage[row / states][row % states] -= update;
-      // Written so that a NaN stays.
-      const double moved = std::abs(update) / scale[row % states];
-      if (!(moved <= change)) change = moved;
-    }
+    const double change = move_stages(matrix.solve(stage_residuals(y, h, stage, slope)), scale, stage);
     if (!std::isfinite(change)) return false;
     rate = iteration > 0 ? change / before : 1.0;
     // What is left is the next change.
@@ -181,33 +222,41 @@ StepResult<System> implicit_step(const System& system, double x, const typename 
   detail::StateJacobian<System> jacobian;
   detail::AtStages<typename System::State> stage;
   detail::AtStages<Rates<System>> rates;
-  if (!detail::solve_stages(system, x, y, h, branch, first.dy, jacobian, stage, rates)) return result;
+  const auto places = detail::places_of_stages(system, x, h);
+  if (!detail::solve_stages(system, x, places, y, h, branch, first.dy, jacobian, stage, rates)) return result;
 
+  result.stages = stage;
   result.lowest = detail::lowest_switches<System>(rates, branch);
   result.y = stage[stages - 1];
   if constexpr (quadratures) {
     for (std::size_t q = 0; q < result.dq.size(); ++q) {
       result.dq[q] = 0.0;
+      result.integral_error3[q] = 0.0;
       result.integral_error5[q] = tableau.start_weight * first.dq[q];
     }
     for (std::size_t j = 0; j < stages; ++j) {
-      rates[j] = system.template rates<true>(x + tableau.c[j] * h, stage[j], branch);
+      rates[j] = system.template rates<true>(places[j], stage[j], branch);
       for (std::size_t q = 0; q < result.dq.size(); ++q) {
         result.dq[q] += tableau.a[stages - 1][j] * rates[j].dq[q];
-        result.integral_error5[q] += tableau.error[j] * rates[j].dq[q];
+        result.integral_error3[q] += tableau.error3[j] * rates[j].dq[q];
+        result.integral_error5[q] += tableau.error5[j] * rates[j].dq[q];
       }
     }
     for (std::size_t q = 0; q < result.dq.size(); ++q) {
       result.dq[q] *= h;
-      result.integral_error3[q] = 0.0;
+      result.integral_error3[q] *= h;
       result.integral_error5[q] *= h;
     }
   }
-  // Error of the embedded formula, stiff components damped by (I - h start_weight Jacobian)^-1.
-  double matrix[states * states], error[states];
+  // Errors of the embedded formulas, stiff components damped by (I - h start_weight Jacobian)^-1.
+  double matrix[states * states], error3[states], error5[states];
   for (std::size_t row = 0; row < states; ++row) {
-    error[row] = h * tableau.start_weight * first.dy[row];
-    for (std::size_t j = 0; j < stages; ++j) error[row] += tableau.error_by_state[j] * (stage[j][row] - y[row]);
+    error3[row] = 0.0;
+    error5[row] = h * tableau.start_weight * first.dy[row];
+    for (std::size_t j = 0; j < stages; ++j) {
+      error3[row] += tableau.state_error3[j] * (stage[j][row] - y[row]);
+      error5[row] += tableau.state_error5[j] * (stage[j][row] - y[row]);
+    }
     for (std::size_t column = 0; column < states; ++column) {
       const std::size_t at = row * states + column;
       matrix[at] = (row == column ? 1.0 : 0.0) - h * tableau.start_weight * jacobian[at];
@@ -216,7 +265,10 @@ StepResult<System> implicit_step(const System& system, double x, const typename 
   if (!invert(int(states), matrix)) return result;
   for (std::size_t row = 0; row < states; ++row) {
     result.error3[row] = result.error5[row] = 0.0;
-    for (std::size_t n = 0; n < states; ++n) result.error5[row] += matrix[row * states + n] * error[n];
+    for (std::size_t n = 0; n < states; ++n) {
+      result.error3[row] += matrix[row * states + n] * error3[n];
+      result.error5[row] += matrix[row * states + n] * error5[n];
+    }
   }
   result.admissible = true;
   return result;
@@ -224,12 +276,15 @@ StepResult<System> implicit_step(const System& system, double x, const typename 
 
 /// The same with derivatives: `jets` is `system` on dual numbers, whose derivatives come along as those of x, y and h
 /// do. The stages are found on plain numbers; their derivatives follow from the stage equations, which are linear in
-/// them (implicit function theorem). Gives no error estimates.
+/// them (implicit function theorem). `near`: states at the stages of (nearly) this step, where they are known. Gives no
+/// error estimates.
 template <bool quadratures, class Jets, class System>
 StepResult<Jets> implicit_step(const Jets& jets, const System& system, const typename Jets::Real& x,
                                const typename Jets::State& y, const typename Jets::Real& h,
-                               const typename Jets::Signs& branch) {
+                               const typename Jets::Signs& branch,
+                               const detail::AtStages<typename System::State>* near = nullptr) {
   using Real = typename Jets::Real;
+  using State = typename System::State;
   constexpr std::size_t states = detail::state_count<System>, stages = RadauTableau::stages;
   constexpr std::size_t unknowns = states * stages;
   constexpr int slots = Real::DIMENSION;
@@ -237,40 +292,56 @@ StepResult<Jets> implicit_step(const Jets& jets, const System& system, const typ
 
   StepResult<Jets> result;
   result.admissible = false;
-  typename System::State start;
+  State start;
   for (std::size_t n = 0; n < states; ++n) start[n] = y[n].a;
   typename System::Signs signs;
   for (std::size_t k = 0; k < signs.size(); ++k) signs[k] = branch[k].a;
-  const Rates<System> first = system.template rates<false>(x.a, start, signs);
-  detail::StateJacobian<System> of_start;
-  detail::AtStages<typename System::State> stage;
-  detail::AtStages<Rates<System>> last;
-  if (!detail::solve_stages(system, x.a, start, h.a, signs, first.dy, of_start, stage, last)) return result;
+  detail::AtStages<State> stage;
+  if (near) {
+    stage = *near;
+  } else {
+    const Rates<System> first = system.template rates<false>(x.a, start, signs);
+    detail::StateJacobian<System> of_start;
+    detail::AtStages<Rates<System>> last;
+    const auto places = detail::places_of_stages(system, x.a, h.a);
+    if (!detail::solve_stages(system, x.a, places, start, h.a, signs, first.dy, of_start, stage, last)) return result;
+  }
 
-  // The rates with their derivatives at given states, and by the states.
+  // The rates by the states, with which Newton's method goes on where the stages are not yet exact.
   const auto by_state = system.template cast<Jet<int(states)>>();
   using ByState = std::remove_const_t<decltype(by_state)>;
-  detail::AtStages<Rates<Jets>> rates;
+  using Partial = typename ByState::Real;
+  const State scale = system.error_scale(start);
   detail::AtStages<Rates<ByState>> partial;
-  detail::AtStages<detail::StateJacobian<System>> jacobians;
-  typename ByState::Signs signs_by_state;
-  for (std::size_t k = 0; k < signs.size(); ++k) signs_by_state[k] = typename ByState::Real(signs[k]);
-  for (std::size_t i = 0; i < stages; ++i) {
-    const Real at = x + tableau.c[i] * h;
-    typename Jets::State given;
-    typename ByState::State moving;
-    for (std::size_t n = 0; n < states; ++n) {
-      given[n] = Real(stage[i][n]);
-      moving[n] = typename ByState::Real(stage[i][n], int(n));
-    }
-    rates[i] = jets.template rates<quadratures>(at, given, branch);
-    partial[i] = by_state.template rates<quadratures>(typename ByState::Real(at.a), moving, signs_by_state);
-    for (std::size_t k = 0; k < states * states; ++k) {
-      jacobians[i][k] = partial[i].dy[k / states].v[Eigen::Index(k % states)];
-    }
-  }
   detail::StageMatrix<states> matrix;
-  if (!matrix.set(h.a, jacobians)) return result;
+  typename ByState::Signs signs_by_state;
+  for (std::size_t k = 0; k < signs.size(); ++k) signs_by_state[k] = Partial(signs[k]);
+  double change = HUGE_VAL;
+  for (int iteration = 0; iteration < 20 && change > 1e-13; ++iteration) {
+    detail::AtStages<detail::StateJacobian<System>> jacobians;
+    detail::AtStages<State> slope;
+    for (std::size_t i = 0; i < stages; ++i) {
+      if (!system.admissible(stage[i])) return result;
+      typename ByState::State moving;
+      for (std::size_t n = 0; n < states; ++n) moving[n] = Partial(stage[i][n], int(n));
+      partial[i] = by_state.template rates<quadratures>(Partial(x.a + tableau.c[i] * h.a), moving, signs_by_state);
+      for (std::size_t n = 0; n < states; ++n) {
+        slope[i][n] = partial[i].dy[n].a;
+        for (std::size_t k = 0; k < states; ++k) jacobians[i][n * states + k] = partial[i].dy[n].v[Eigen::Index(k)];
+      }
+    }
+    if (!matrix.set(h.a, jacobians)) return result;
+    change = detail::move_stages(matrix.solve(detail::stage_residuals(start, h.a, stage, slope)), scale, stage);
+  }
+  if (!(change <= 1e-13)) return result;
+
+  // The rates at given states.
+  detail::AtStages<Rates<Jets>> rates;
+  for (std::size_t i = 0; i < stages; ++i) {
+    typename Jets::State given;
+    for (std::size_t n = 0; n < states; ++n) given[n] = Real(stage[i][n]);
+    rates[i] = jets.template rates<quadratures>(x + tableau.c[i] * h, given, branch);
+  }
   // Right-hand side: how the stages would move if the rates did not follow them.
   std::array<Eigen::Matrix<double, slots, 1>, unknowns> given, moved;
   for (std::size_t i = 0; i < stages; ++i) {

@@ -93,6 +93,7 @@ double close_on_mesh(const System& system, Iterate<System>& iterate, double tole
         take_step<true>(iterate.method, system, step.x, y, step.h, step.signs, step.first);
     if (!result.admissible) return std::numeric_limits<double>::infinity();
     step.dq = result.dq;
+    if (iterate.method == Method::radau) iterate.stages[n] = result.stages;
     y = result.y;
     for (std::size_t k = 0; k < result.lowest.size(); ++k) {
       grazes = grazes || result.lowest[k] < -position_error * iterate.switch_scale[k];
