@@ -1,6 +1,5 @@
 // wingbeat sweep STUDY: the steady flapping of many vehicles, into one data set.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +13,7 @@
 
 #include "command.hpp"
 #include "options.hpp"
+#include "progress.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/output_file.hpp"
 #include "wingbeat/files/units.hpp"
@@ -74,19 +74,11 @@ std::string rate(double designs, double seconds) {
   return grouped(std::uint64_t(std::llround(r / unit) * std::llround(unit)));
 }
 
-void show_sweep_progress(const SweepProgress& p) {
-  constexpr int width = 24;
-  const double share = double(p.done) / double(p.designs);
-  const int filled = int(share * width);
-  std::string bar(std::size_t(filled), '#');
-  bar.resize(width, '.');
+std::string progress_text(const SweepProgress& p) {
   const double left = double(p.designs - p.done) * p.seconds / double(std::max<std::uint64_t>(p.computed, 1));
-  const std::string line = fmt::format("\r[{}] {:5.1f} %  {} designs/s  {} left ", bar, 100.0 * share,
-                                       rate(double(p.computed), p.seconds), duration(left));
-  fmt::print(stderr, "{:<78}", line);
+  return fmt::format("{}  {} designs/s  {} left ", progress_bar(double(p.done) / double(p.designs)),
+                     rate(double(p.computed), p.seconds), duration(left));
 }
-
-void clear_progress() { fmt::print(stderr, "\r{:<78}\r", ""); }
 
 /// The swept values of one design: "transmission_crank_radius 5.000 mm, springs on".
 std::string description(const Sweep& sweep, std::uint64_t index) {
@@ -259,8 +251,8 @@ int sweep_on_rank_0(const SweepArguments& arguments, Ranks* ranks) {
   options.ranks = ranks;
   options.force = arguments.force;
   options.stop = [] { return interrupted != 0; };
-  const bool on_terminal = ::isatty(STDERR_FILENO) == 1;
-  if (on_terminal) options.progress = show_sweep_progress;
+  ProgressLine line("");
+  if (line.on_terminal()) options.progress = [&](const SweepProgress& p) { line.show(progress_text(p)); };
 
   const Study study = study_of(arguments);
   if (options.output.extension() != ".nc") {
@@ -276,7 +268,7 @@ int sweep_on_rank_0(const SweepArguments& arguments, Ranks* ranks) {
     plot.emplace("--plot", arguments.plot, OutputRules{plot_extensions, arguments.force});
   }
   const SweepResult result = run_sweep(study, options);
-  if (on_terminal) clear_progress();
+  line.clear();
   if (result.outcome == SweepResult::Outcome::stopped) {
     complain(fmt::format("stopped after {} of {} designs; they are kept in {}, and the same command resumes",
                          grouped(result.progress.done), grouped(result.progress.designs),

@@ -61,6 +61,14 @@ struct CrankSystem : CrankTurn<S> {
     return scale;
   }
 
+  /// True where the current follows the speed so quickly, within a small part of a radian, that explicit steps would
+  /// have to be shorter for it than their accuracy asks for.
+  bool stiff(const State& y) const
+    requires std::same_as<S, double> && (N == 2)
+  {
+    return circuit_resistance(vehicle) > 24.0 * vehicle.motor.armature_inductance * y[0];
+  }
+
   /// How many times smaller than what limits their errors (`scale`) the integrals of a cycle are: metrics are to be
   /// accurate relative to themselves. A mean lift below a thousandth of its peak need not be.
   double cancellation(const Quadrature& totals, const Quadrature& scale) const

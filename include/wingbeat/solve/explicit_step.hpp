@@ -92,7 +92,8 @@ struct StepResult {
   typename System::Switches lowest;   ///< least switch times its sign over the later stages: < 0 hints at a crossing
   typename System::State last_stage;  ///< with quadratures: where the explicit pair's last stage is, at x + h as y is,
   typename System::State last_slope;  ///< and the rates there
-  bool admissible = true;             ///< false: a stage left the region where the equations hold
+  std::array<typename System::State, 5> stages;  ///< of the implicit method: the states at its stages
+  bool admissible = true;                        ///< false: a stage left the region where the equations hold
 };
 
 namespace detail {

@@ -44,7 +44,7 @@ double scaled_error(const System& system, const StepResult<System>& step, double
     sum3 += step.error3[n] * step.error3[n] * per * per;
     sum5 += step.error5[n] * step.error5[n] * per * per;
   }
-  // Hairer's combination of both embedded formulas, of order 8 in the step (radau has one, error5, alone).
+  // Hairer's combination of both embedded formulas, of order 8 in the step.
   const double denominator = sum5 + 0.01 * sum3;
   double error = denominator > 0.0 ? sum5 / std::sqrt(denominator * double(scale.size())) : 0.0;
   if constexpr (quadratures) {
@@ -93,7 +93,7 @@ class IterateDriver {
         located_(std::min(switch_count, std::size_t(options.switches))),
         position_tolerance_(switch_tolerance(options.tolerance)),
         error_exponent_(options.method == Method::explicit_pair ? -1.0 / dop853::order
-                                                                : -1.0 / (RadauTableau::stages + 1)) {}
+                                                                : -1.0 / RadauTableau::error_order) {}
 
   void run(const State& start) {
     begin(start);
@@ -199,6 +199,7 @@ class IterateDriver {
     }
     iterate_.switches.clear();
     iterate_.steps.clear();
+    iterate_.stages.clear();
     iterate_.steps.reserve(64);
     iterate_.error_sum = 0.0;
     x_ = 0.0;
@@ -437,6 +438,7 @@ class IterateDriver {
 
   void accept(double x1, double step, const StepResult<System>& result, const Rates<System>& last) {
     iterate_.steps.push_back({x_, step, y_, signs_, first_, result.dq});
+    if (options_.method == Method::radau) iterate_.stages.push_back(result.stages);
     iterate_.largest_step = std::max(iterate_.largest_step, step);
     x_ = x1;
     y_ = result.y;

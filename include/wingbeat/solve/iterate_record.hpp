@@ -46,6 +46,7 @@ enum class IterateStatus {
 template <class System>
 struct Iterate {
   std::vector<Step<System>> steps;
+  std::vector<detail::AtStages<typename System::State>> stages;  ///< of the steps, if implicit
   std::vector<SwitchNode> switches;  ///< located; on entry of run_iterate, the expected ones
   typename System::State end;
   IterateStatus status = IterateStatus::complete;
@@ -71,10 +72,19 @@ template <bool quadratures, class System>
 StepResult<System> take_step(Method method, const System& system, const typename System::Real& x,
                              const typename System::State& y, const typename System::Real& h,
                              const typename System::Signs& branch, const Rates<System>& first) {
-  if (method == Method::explicit_pair) return explicit_step<quadratures>(system, x, y, h, branch, first);
-  StepResult<System> result = implicit_step<quadratures>(system, x, y, h, branch, first);
-  result.end = place_at(system, typename System::Real(x + h));
-  return result;
+  return method == Method::explicit_pair ? explicit_step<quadratures>(system, x, y, h, branch, first)
+                                         : implicit_step<quadratures>(system, x, y, h, branch, first);
+}
+
+/// The same with derivatives: `jets` is `system` on dual numbers. `near` as in implicit_step.
+template <bool quadratures, class Jets, class System>
+StepResult<Jets> take_step(Method method, const Jets& jets, const System& system, const typename Jets::Real& x,
+                           const typename Jets::State& y, const typename Jets::Real& h,
+                           const typename Jets::Signs& branch,
+                           const detail::AtStages<typename System::State>* near = nullptr) {
+  if (method == Method::radau) return implicit_step<quadratures>(jets, system, x, y, h, branch, near);
+  const Rates<Jets> first = jets.template rates<quadratures>(x, y, branch);
+  return explicit_step<quadratures>(jets, x, y, h, branch, first);
 }
 
 /// True of systems whose event_transition() moves the state, as an impact does: a recorded step then begins elsewhere

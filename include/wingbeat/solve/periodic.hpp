@@ -96,6 +96,7 @@ double close_on_mesh(const System& system, Iterate<System>& iterate, double tole
         take_step<true>(iterate.method, system, step.x, y, step.h, step.signs, step.first);
     if (!result.admissible) return std::numeric_limits<double>::infinity();
     step.dq = result.dq;
+    if (iterate.method == Method::radau) iterate.stages[n] = result.stages;
     y = result.y;
     place = result.end;
     for (std::size_t k = 0; k < result.lowest.size(); ++k) {
