@@ -109,6 +109,12 @@ auto watched(const py::object& progress, const Work& work) {
   return found.get();
 }
 
+/// The columns of these rows, in the order of waveform_columns().
+py::list columns_of(const std::vector<WaveformRow>& rows);
+
+/// Adds equations of motion and simulations to the module.
+void add_motion(py::module_& m);
+
 /// Adds arrays of designs, sweeps and the studies that files describe to the module.
 void add_studies(py::module_& m);
 

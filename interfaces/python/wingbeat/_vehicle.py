@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from ._ensemble import Ensemble
     from ._equations import EquationsOfMotion
     from ._result import RunResult, StartUp
+    from ._simulation import Simulation
     from ._studies import Flight
 
 
@@ -186,6 +187,12 @@ class Vehicle(Sections):
         from ._result import simulate
 
         return simulate(self, **options)
+
+    def simulation(self, **options: Any) -> Simulation:
+        """It in time, to be stepped under commanded voltages: see wingbeat.Simulation."""
+        from ._simulation import Simulation
+
+        return Simulation(self, **options)
 
     def solve_columns(self, columns: Mapping[str, Any], **options: Any) -> Ensemble:
         """Very many vehicles like it: see wingbeat.solve."""
