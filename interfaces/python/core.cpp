@@ -269,7 +269,9 @@ PYBIND11_MODULE(_core, m) {
   m.def("energy_balance", &balance);
   m.def("simulate", &start_up);
   add_motion(m);
+  add_parts(m);
   add_studies(m);
+  add_optima(m);
 }
 
 }  // namespace wingbeat::python

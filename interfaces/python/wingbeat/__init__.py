@@ -19,11 +19,13 @@ from ._core import version as __version__
 from ._ensemble import Ensemble, solve_columns
 from ._equations import EquationsOfMotion
 from ._errors import InputError
+from ._optimise import Front, OwnOptimum, optimise
+from ._parts import coefficient_curves, kinematics, motor_curves
 from ._quantity import Quantity
 from ._result import EnergyBalance, Event, RunResult, StartUp, simulate, solve
 from ._sections import Section
 from ._simulation import Simulation, SimulationState
-from ._studies import Flight, Found, Identification, StudyResult, endurance, fit, identify_motor, optimise, tolerance
+from ._studies import Flight, Found, Identification, StudyResult, endurance, fit, identify_motor, tolerance
 from ._sweep import open_dataset, sweep
 from ._tables import Metric, Parameter, metrics, parameters
 from ._vehicle import Vehicle, read
@@ -35,9 +37,11 @@ __all__ = [
     "Event",
     "Flight",
     "Found",
+    "Front",
     "Identification",
     "InputError",
     "Metric",
+    "OwnOptimum",
     "Parameter",
     "Quantity",
     "RunResult",
@@ -48,10 +52,13 @@ __all__ = [
     "StudyResult",
     "Vehicle",
     "__version__",
+    "coefficient_curves",
     "endurance",
     "fit",
     "identify_motor",
+    "kinematics",
     "metrics",
+    "motor_curves",
     "open_dataset",
     "optimise",
     "parameters",

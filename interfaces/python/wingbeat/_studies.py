@@ -202,27 +202,3 @@ def tolerance(
     with _file_of(study, vehicle) as file, shown(progress, 0) as tell:
         return StudyResult(_core.tolerance(file, _assignments(values or {}), allow_extrapolation, threads, tell))
 
-
-def optimise(
-    study: Study,
-    *,
-    vehicle: Vehicle | None = None,
-    values: Mapping[str, Any] | None = None,
-    allow_extrapolation: bool = False,
-    threads: int = 0,
-) -> Found:
-    """The best design within bounds and constraints: `wingbeat optimise`, of one objective.
-
-    Parameters
-    ----------
-    study : study file (TOML), or a dict of its tables; a file names its vehicle
-    vehicle : of a study that is a dict
-    values : keys of the vehicle with other values
-    allow_extrapolation : designs outside the model's domain count
-    threads : at most so many; 0: one for each core
-
-    Objectives that are no metric, and constraints of one's own, are for SciPy, with `solve` and `gradient`
-    (docs/python.md). Raises InputError.
-    """
-    with _file_of(study, vehicle) as file:
-        return Found(_core.optimise(file, _assignments(values or {}), allow_extrapolation, threads))

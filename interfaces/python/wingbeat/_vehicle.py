@@ -14,6 +14,8 @@ from ._sections import Sections, sections
 from ._tables import parameters
 
 if TYPE_CHECKING:
+    from xarray import Dataset
+
     from ._accessor import SweepData
     from ._ensemble import Ensemble
     from ._equations import EquationsOfMotion
@@ -211,6 +213,24 @@ class Vehicle(Sections):
         from ._studies import endurance
 
         return endurance(self, **options)
+
+    def motor_curves(self, **options: Any) -> Dataset:
+        """Torque, current, powers and efficiency of its motors over speed: see wingbeat.motor_curves."""
+        from ._parts import motor_curves
+
+        return motor_curves(self, **options)
+
+    def coefficient_curves(self, **options: Any) -> Dataset:
+        """Force coefficients of its wings over the angle of attack: see wingbeat.coefficient_curves."""
+        from ._parts import coefficient_curves
+
+        return coefficient_curves(self, **options)
+
+    def kinematics(self, **options: Any) -> Dataset:
+        """Stroke angle and its derivatives over the crank angle: see wingbeat.kinematics."""
+        from ._parts import kinematics
+
+        return kinematics(self, **options)
 
     def equations_of_motion(self, **options: Any) -> EquationsOfMotion:
         """For integrators of one's own: see wingbeat.EquationsOfMotion."""
