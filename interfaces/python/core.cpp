@@ -7,7 +7,9 @@
 #include "binding.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/files/design_parameter.hpp"
+#include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/waveform_file.hpp"
+#include "wingbeat/report/plot.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat::python {
@@ -117,6 +119,16 @@ void require_tolerance(double tolerance) {
 }
 
 // ---- one vehicle
+
+/// The mechanism as SVG, drawn into that file and read back; empty where it cannot be drawn.
+std::string mechanism_svg(const Design<double>& design, double stroke_amplitude, const std::string& file) {
+  try {
+    plot_mechanism(design, stroke_amplitude, PlotFormat::svg, file);
+  } catch (const std::runtime_error&) {
+    return {};
+  }
+  return read_text_file(file);
+}
 
 /// A search that ended short of its aim is no flapping of the kind asked for.
 bool unreached(const RunResult& result) {
@@ -266,6 +278,8 @@ PYBIND11_MODULE(_core, m) {
   m.def("run", &run, "design"_a, "condition"_a, "method"_a, "tolerance"_a, "frequency"_a, "lift"_a,
         "allow_extrapolation"_a, "points"_a, "endurance"_a);
   m.def("gradient", &differentiate, "design"_a, "keys"_a, "condition"_a, "tolerance"_a, "frequency"_a, "endurance"_a);
+  m.def("mechanism_svg", &mechanism_svg, "design"_a, "stroke_amplitude"_a, "file"_a,
+        py::call_guard<py::gil_scoped_release>());
   m.def("energy_balance", &balance);
   m.def("simulate", &start_up);
   add_motion(m);

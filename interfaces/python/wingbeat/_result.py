@@ -142,7 +142,9 @@ class RunResult(WithMetrics):
             for name, value in self.metrics.items()
             if value is not None
         )
-        return f"<p><b>{escape(self.status)}</b>: {escape(self.evidence)}</p><table>{rows}</table>"
+        drawing = self.vehicle.drawing(self.stroke_amplitude or np.radians(60))
+        shown = f"<div style='max-width: 28em'>{drawing}</div>" if drawing else ""
+        return f"<p><b>{escape(self.status)}</b>: {escape(self.evidence)}</p>{shown}<table>{rows}</table>"
 
 
 def _waveform(columns: Sequence[Any]) -> xarray.Dataset:

@@ -15,6 +15,7 @@ import numpy as np
 from . import _core
 from ._progress import shown
 from ._result import quantity
+from ._study import without_place
 from ._tables import metric_rows
 from ._vehicle import Vehicle, _assignments, _toml
 
@@ -116,7 +117,8 @@ def _file_of(study: Study, vehicle: Vehicle | None) -> Iterator[str]:
             tables["study"]["vehicle"] = str(file)
         name = pathlib.Path(folder) / "study.toml"
         name.write_text("".join(f"{key} = {_toml(value)}\n" for key, value in tables.items()), encoding="utf-8")
-        yield str(name)
+        with without_place(str(name)):
+            yield str(name)
 
 
 def endurance(vehicle: Vehicle, *, allow_extrapolation: bool = False) -> Flight:

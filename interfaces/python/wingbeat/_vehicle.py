@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import tempfile
 import tomllib
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
@@ -175,6 +176,35 @@ class Vehicle(Sections):
 
     def __repr__(self) -> str:
         return f"<wingbeat.Vehicle {self.name!r}>"
+
+    def drawing(self, stroke_amplitude: float = 1.0) -> str:
+        """Its mechanism as SVG, to be shown in a page; "" where gnuplot, which draws it, is not installed.
+
+        `stroke_amplitude` [rad] is that of a direct drive; a crank has its own.
+        """
+        with tempfile.TemporaryDirectory(prefix="wingbeat-") as folder:
+            svg = _core.mechanism_svg(self._design, stroke_amplitude, os.path.join(folder, "mechanism.svg"))
+        return svg[max(0, svg.find("<svg")) :]
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        def shown_value(key: str) -> str:
+            value = self[key]
+            if isinstance(value, Quantity):
+                return f"{value:.6g} {'' if value.unit == '1' else value.unit}"
+            text = str(value)
+            return text if len(text) < 80 else f"{text[:76]} ..."
+
+        rows = "".join(
+            f"<tr><td style='text-align:left'><code>{escape(key)}</code></td>"
+            f"<td style='text-align:left'>{escape(shown_value(key))}</td></tr>"
+            for key in self.keys()
+            if key != "vehicle.name"
+        )
+        drawing = self.drawing()
+        shown = f"<div style='max-width: 28em'>{drawing}</div>" if drawing else ""
+        return f"<p><b>{escape(self.name or 'vehicle')}</b></p>{shown}<table>{rows}</table>"
 
     # ---- what it does
 
