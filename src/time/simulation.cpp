@@ -70,6 +70,18 @@ struct EventWatch {
   }
 };
 
+/// Leaves the model where it was where an exception ends what is done to it.
+template <class Model>
+struct BackUnlessDone {
+  explicit BackUnlessDone(Model& of) : model(of), before(of.now) {}
+  ~BackUnlessDone() {
+    if (!done) model.now = before;
+  }
+  Model& model;
+  typename Model::State before;
+  bool done = false;
+};
+
 }  // namespace
 
 std::vector<std::string> time_state_names(const Vehicle<double>& vehicle) {
@@ -216,27 +228,22 @@ std::vector<TransientEvent> Simulation::step_to(double until, const StepOptions&
   EventWatch watch{{}, options};
   std::visit(
       [&](auto& model) {
-        const auto before = model.now;
+        BackUnlessDone back{model};
         detail::StepOutcome outcome = detail::StepOutcome::reached;
-        try {
-          while (model.now.t < until && outcome == detail::StepOutcome::reached) {
-            double end = until;
-            if (!model_->times.empty()) end = std::min(until, model_->command_line(model.now.t, model.command));
-            double highest = supply_voltage(model);
-            if (model.command) {
-              highest = std::max({highest, std::abs(model.command(model.now.t)), std::abs(model.command(end))});
-            }
-            if (highest != model_->scaled_to) model.scale_to(model_->scaled_to = highest);
-            outcome = detail::step_to(model, end, model_->options.tolerance, TimeIntegrator::own_steps, watch);
+        while (model.now.t < until && outcome == detail::StepOutcome::reached) {
+          double end = until;
+          if (!model_->times.empty()) end = std::min(until, model_->command_line(model.now.t, model.command));
+          double highest = supply_voltage(model);
+          if (model.command) {
+            highest = std::max({highest, std::abs(model.command(model.now.t)), std::abs(model.command(end))});
           }
-        } catch (...) {
-          model.now = before;
-          throw;
+          if (highest != model_->scaled_to) model.scale_to(model_->scaled_to = highest);
+          outcome = detail::step_to(model, end, model_->options.tolerance, TimeIntegrator::own_steps, watch);
         }
-        if (outcome != detail::StepOutcome::failed) return;
-        const double failed_at = model.now.t;
-        model.now = before;
-        throw std::runtime_error("the simulation could not go on behind " + std::to_string(failed_at) + " s");
+        if (outcome == detail::StepOutcome::failed) {
+          throw std::runtime_error("the simulation could not go on behind " + std::to_string(model.now.t) + " s");
+        }
+        back.done = true;
       },
       model_->any);
   return std::move(watch.events);
