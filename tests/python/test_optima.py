@@ -130,7 +130,9 @@ class Fronts(unittest.TestCase):
         self.assertTrue(np.all(np.diff(designs.lift_mean) < 0))
         self.assertTrue(np.all(np.diff(designs.power_electrical) < 0))
         self.assertEqual(designs["supply.voltage"].attrs["units"], "V")
+        self.assertIsInstance(front, wb.Front)
         knee = front.vehicles["knee"]
+        self.assertEqual(front.vehicle, knee)
         place = front.all_vehicles.index(knee)
         self.assertAlmostEqual(knee.solve(tolerance=1e-8).lift_mean / float(designs.lift_mean[place]), 1.0, 6)
         self.assertIn("hypervolume", str(front))

@@ -15,7 +15,7 @@ from . import _core
 from ._errors import InputError
 from ._progress import shown
 from ._result import RunResult
-from ._studies import Found, Study, StudyResult, _file_of
+from ._studies import Found, Study, _file_of
 from ._tables import metric_called, metric_index, metric_rows, parameters
 from ._vehicle import Vehicle, _assignments
 
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     import xarray
 
 
-class Front(StudyResult):
-    """The designs that no other beats in every objective."""
+class Front(Found):
+    """The designs that no other beats in every objective; `vehicle` is that at the knee, None where none was found."""
 
     #: The vehicles of the front, by the first objective, best first; as `designs`.
     all_vehicles: tuple[Vehicle, ...]
@@ -32,9 +32,10 @@ class Front(StudyResult):
     vehicles: dict[str, Vehicle]
 
     def __init__(self, found: dict[str, Any]) -> None:
-        super().__init__(found)
+        super().__init__({**found, "design": None})
         self.all_vehicles = tuple(Vehicle._of(design) for design in found["vehicles"])
         self.vehicles = {name: self.all_vehicles[place] for name, place in found["picks"]}
+        self.vehicle = self.vehicles.get("knee")
         self._found = found
 
     @property
@@ -67,7 +68,7 @@ def optimise(
     allow_extrapolation: bool = False,
     threads: int = 0,
     progress: bool | Callable[[int, int], object] | None = None,
-) -> Found | Front:
+) -> Found:
     """The best design within bounds and constraints, or the front of several objectives: `wingbeat optimise`.
 
     Parameters
@@ -91,7 +92,7 @@ def optimise(
     (COBYLA) and takes more designs. Such a search starts from the vehicle and from the best of `screen` designs (default
     32 a parameter), `starts` times (default 4), on one thread. None or NaN: the design does not count.
 
-    Returns a Found, a Front or, by functions, an OwnOptimum. Ctrl-C ends it within a design. Raises InputError, and what
+    Returns a Found; of several objectives a Front, by functions an OwnOptimum. Ctrl-C ends it within a design. Raises InputError, and what
     a function raises.
     """
     if isinstance(study, Mapping):
