@@ -49,42 +49,43 @@ endmacro()
 
 wingbeat_package(program wingbeat science
 "electromechanical model of flapping-wing micro air vehicles
- From a vehicle file wingbeat computes how a motor-driven flapping-wing micro
- air vehicle flaps and what that costs: flapping frequency, lift, forces, where
- the electrical power goes, waveforms, and, for a design that does not flap,
- the reason. A DC motor turns a crank, a rod and slider, a four-bar or any
- stroke law from a table, or swings the wings directly; friction in the
- transmission grows with the rod force.
- .
- It sweeps parameters into NetCDF data sets, finds optimal designs, fits
- parameters to bench measurements, identifies motors from data sheets, and
- says how uncertain parameters spread and how long a battery lasts. This
- package holds the program with its manual pages and example files.")
+From a vehicle file wingbeat computes how a motor-driven flapping-wing micro
+air vehicle flaps and what that costs: flapping frequency, lift, forces, where
+the electrical power goes, waveforms, and, for a design that does not flap,
+the reason. A DC motor turns a crank, a rod and slider, a four-bar or any
+stroke law from a table, or swings the wings directly; friction in the
+transmission grows with the rod force.
+
+It sweeps parameters into NetCDF data sets, finds optimal designs, fits
+parameters to bench measurements, identifies motors from data sheets, and
+says how uncertain parameters spread and how long a battery lasts. This
+package holds the program with its manual pages and example files.")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS gnuplot-nox)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "wingbeat-doc, python3-wingbeat, openmpi-bin")
 
 wingbeat_package(development libwingbeat-dev libdevel
 "model of flapping-wing micro air vehicles, development files
- The library behind the program wingbeat: steady flapping of a motor-driven
- flapping-wing vehicle as a periodic orbit with exact derivatives, simulation
- in time, thousands of vehicles at once, studies, vehicle files and data sets.
- .
- This package holds the static libraries, the headers and the files by which
- CMake finds them: find_package(wingbeat).")
+The library behind the program wingbeat: steady flapping of a motor-driven
+flapping-wing vehicle as a periodic orbit with exact derivatives, simulation
+in time, thousands of vehicles at once, studies, vehicle files and data sets.
+
+This package holds the static libraries, the headers and the files by which
+CMake finds them: find_package(wingbeat).")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
   "libeigen3-dev, libceres-dev, libxsimd-dev, libsundials-dev, libboost-dev, libnlopt-dev, libnlopt-cxx-dev, libfmt-dev,\
  libtomlplusplus-dev, nlohmann-json3-dev, libtbb-dev, libnetcdf-dev, libhdf5-dev, libudunits2-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS wingbeat-doc)
 
 if(TARGET wingbeat_python)
+  find_package(Python 3.11 REQUIRED COMPONENTS Interpreter)
   wingbeat_package(python3 python3-wingbeat python
 "model of flapping-wing micro air vehicles for Python
- Vehicles, their steady flapping with exact derivatives, start-up in time,
- arrays of designs on all cores, sweeps as xarray data sets, fits, optima and
- the equations of motion, with the numbers of the program wingbeat.
- .
- This package holds the module wingbeat for Debian's Python 3.")
+Vehicles, their steady flapping with exact derivatives, start-up in time,
+arrays of designs on all cores, sweeps as xarray data sets, fits, optima and
+the equations of motion, with the numbers of the program wingbeat.
+
+This package holds the module wingbeat for Debian's Python 3.")
   set(CPACK_DEBIAN_PYTHON3_PACKAGE_SHLIBDEPS ON)
   math(EXPR next "${Python_VERSION_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON3_PACKAGE_DEPENDS
@@ -100,9 +101,9 @@ endif()
 # scripts/build-packages writes the site first.
 wingbeat_package(documentation wingbeat-doc doc
 "model of flapping-wing micro air vehicles, documentation
- The manual of wingbeat: tutorials, commands, vehicle files, the model with its
- equations and its validation, numerics, the library's interface, and the
- figures of the 2022 friction paper reproduced.")
+The manual of wingbeat: tutorials, commands, vehicle files, the model with its
+equations and its validation, numerics, the library's interface, and the
+figures of the 2022 friction paper reproduced.")
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_ARCHITECTURE all)
 install(DIRECTORY ${PROJECT_BINARY_DIR}/site/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/wingbeat-doc/html
   COMPONENT documentation PATTERN made-by-build-site EXCLUDE)
