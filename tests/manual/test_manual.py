@@ -154,7 +154,8 @@ class Completions:
         self.assertEqual(self.complete("wingbeat run friction2022 --condition "), ["air", "vacuum", "wingless"])
         self.assertEqual(self.complete("wingbeat run --method t"), ["transient"])
         self.assertEqual(self.complete("wingbeat sweep --isa "), ["avx2", "avx512", "sse2"])
-        self.assertEqual(self.complete("wingbeat new --transmission "), ["direct", "four-bar", "slider-crank", "tabulated"])
+        self.assertEqual(self.complete("wingbeat new --transmission "),
+                         ["direct", "four-bar", "slider-crank", "tabulated"])
         self.assertEqual(self.complete("wingbeat reproduce "), ["friction2022"])
         self.assertEqual(self.complete("wingbeat run --voltage "), [])
 
@@ -199,7 +200,8 @@ class Bash(Completions, unittest.TestCase):
         self.assertEqual(self.complete("wingbeat identify-motor x --fallback inertia="), ["solid-steel-cylinder"])
 
     def test_lists_with_commas(self):
-        self.assertEqual(self.complete("wingbeat sweep x --plot-metric lift_mean_n,frequency"), ["lift_mean_n,frequency_hz"])
+        self.assertEqual(self.complete("wingbeat sweep x --plot-metric lift_mean_n,frequency"),
+                         ["lift_mean_n,frequency_hz"])
 
     def test_at_a_terminal(self):
         terminal = Terminal(["bash", "--norc", "--noprofile", "-i"], self.folder)
@@ -210,7 +212,8 @@ class Bash(Completions, unittest.TestCase):
         for typed, given in [
             ("wingbeat ru\tfl\t--cond\tvac\t\n", "<run><flapper.toml><--condition><vacuum>"),
             ("wingbeat sweep two\\ w\t-o res\tx.nc\n", "<sweep><two words.toml><-o><results/x.nc>"),
-            ("wingbeat run x --set motor.armature_i\t1e-4 --plot=cy\t\n", "<run><x><--set><motor.armature_inductance=1e-4><--plot=cycle.svg>"),
+            ("wingbeat run x --set motor.armature_i\t1e-4 --plot=cy\t\n",
+             "<run><x><--set><motor.armature_inductance=1e-4><--plot=cycle.svg>"),
         ]:
             terminal.type(typed)
             self.assertIn(given, terminal.read_until(":end\r\n"))
