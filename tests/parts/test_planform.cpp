@@ -3,21 +3,13 @@
 #include <cmath>
 
 #include "parts/expect_error.hpp"
+#include "parts/outline.hpp"
 #include "wingbeat/parts/planform.hpp"
 
 namespace wingbeat {
 namespace {
 
 constexpr double R = 63e-3, c_0 = 25e-3;
-
-Planform<double> shaped(PlanformShape shape, double offset = 0.0) {
-  Planform<double> p;
-  p.shape = shape;
-  p.length = R;
-  p.root_chord = c_0;
-  p.hub_offset = offset;
-  return p;
-}
 
 /// integral over the wing of chord(x) (x + offset)^power dx by Simpson's rule in the angle of x = R sin(angle), in
 /// which the elliptic tip is smooth.
@@ -35,14 +27,14 @@ double moment(const Chord& chord, double offset, int power) {
 }
 
 TEST(Planform, SemiEllipseWithoutOffsetHasItsClosedForm) {
-  const auto m = one_wing_moments(shaped(PlanformShape::semi_ellipse));
+  const auto m = one_wing_moments(outline_of(PlanformShape::semi_ellipse, 0.0, R, c_0));
   EXPECT_DOUBLE_EQ(m.s2, pi * c_0 * R * R * R / 16.0);
   EXPECT_DOUBLE_EQ(m.s3, 2.0 * c_0 * R * R * R * R / 15.0);
 }
 
 TEST(Planform, SemiEllipseWithOffsetAgreesWithQuadrature) {
   for (const double offset : {0.0, 2e-3, 8e-3, 30e-3}) {
-    const auto m = one_wing_moments(shaped(PlanformShape::semi_ellipse, offset));
+    const auto m = one_wing_moments(outline_of(PlanformShape::semi_ellipse, offset, R, c_0));
     const auto chord = [](double, double angle) { return c_0 * std::cos(angle); };
     EXPECT_NEAR(m.s2, moment(chord, offset, 2), 1e-11 * m.s2);
     EXPECT_NEAR(m.s3, moment(chord, offset, 3), 1e-11 * m.s3);
@@ -51,7 +43,7 @@ TEST(Planform, SemiEllipseWithOffsetAgreesWithQuadrature) {
 
 TEST(Planform, RectangleHasItsClosedForm) {
   for (const double d : {0.0, 8e-3}) {
-    const auto m = one_wing_moments(shaped(PlanformShape::rectangle, d));
+    const auto m = one_wing_moments(outline_of(PlanformShape::rectangle, d, R, c_0));
     EXPECT_NEAR(m.s2, c_0 * (std::pow(R + d, 3) - std::pow(d, 3)) / 3.0, 1e-14 * m.s2);
     EXPECT_NEAR(m.s3, c_0 * (std::pow(R + d, 4) - std::pow(d, 4)) / 4.0, 1e-14 * m.s3);
   }
@@ -59,16 +51,16 @@ TEST(Planform, RectangleHasItsClosedForm) {
 
 TEST(Planform, TabulatedRectangleIsTheRectangle) {
   for (const double d : {0.0, 8e-3}) {
-    Planform<double> p = shaped(PlanformShape::tabulated, d);
+    Planform<double> p = outline_of(PlanformShape::tabulated, d, R, c_0);
     p.chord_table = {{0.0, c_0}, {0.2 * R, c_0}, {R, c_0}};
-    const auto m = one_wing_moments(p), exact = one_wing_moments(shaped(PlanformShape::rectangle, d));
+    const auto m = one_wing_moments(p), exact = one_wing_moments(outline_of(PlanformShape::rectangle, d, R, c_0));
     EXPECT_NEAR(m.s2, exact.s2, 1e-14 * exact.s2);
     EXPECT_NEAR(m.s3, exact.s3, 1e-14 * exact.s3);
   }
 }
 
 TEST(Planform, TabulatedTriangleIsExact) {
-  Planform<double> p = shaped(PlanformShape::tabulated);
+  Planform<double> p = outline_of(PlanformShape::tabulated, 0.0, R, c_0);
   p.chord_table = {{0.0, c_0}, {R, 0.0}};
   const auto m = one_wing_moments(p);
   EXPECT_NEAR(m.s2, c_0 * std::pow(R, 3) / 12.0, 1e-14 * m.s2);
@@ -76,7 +68,8 @@ TEST(Planform, TabulatedTriangleIsExact) {
 }
 
 TEST(Planform, TableThatStartsOutboardLeavesTheRootEmpty) {
-  Planform<double> whole = shaped(PlanformShape::rectangle), inner = whole, outer = shaped(PlanformShape::tabulated);
+  Planform<double> whole = outline_of(PlanformShape::rectangle, 0.0, R, c_0), inner = whole,
+                   outer = outline_of(PlanformShape::tabulated, 0.0, R, c_0);
   inner.length = 0.25 * R;
   outer.chord_table = {{0.25 * R, c_0}, {R, c_0}};
   const auto a = one_wing_moments(whole), b = one_wing_moments(inner), c = one_wing_moments(outer);
@@ -85,10 +78,10 @@ TEST(Planform, TableThatStartsOutboardLeavesTheRootEmpty) {
 }
 
 TEST(Planform, TabulatedChordConvergesToTheSemiEllipse) {
-  const auto exact = one_wing_moments(shaped(PlanformShape::semi_ellipse, 5e-3));
+  const auto exact = one_wing_moments(outline_of(PlanformShape::semi_ellipse, 5e-3, R, c_0));
   double before = 1.0;
   for (const int rows : {100, 200, 400, 800}) {
-    Planform<double> p = shaped(PlanformShape::tabulated, 5e-3);
+    Planform<double> p = outline_of(PlanformShape::tabulated, 5e-3, R, c_0);
     for (int n = 0; n <= rows; ++n) {
       const double x = double(n) / rows;
       p.chord_table.push_back({R * x, c_0 * std::sqrt(1.0 - x * x)});
@@ -103,7 +96,7 @@ TEST(Planform, TabulatedChordConvergesToTheSemiEllipse) {
 }
 
 TEST(Planform, MomentsOfAllWingsCountThem) {
-  const auto p = shaped(PlanformShape::semi_ellipse, 3e-3);
+  const auto p = outline_of(PlanformShape::semi_ellipse, 3e-3, R, c_0);
   const auto one = one_wing_moments(p), four = chord_moments(p, 4.0);
   EXPECT_DOUBLE_EQ(four.s2, 4.0 * one.s2);
   EXPECT_DOUBLE_EQ(four.s3, 4.0 * one.s3);
@@ -119,14 +112,14 @@ TEST(Planform, MomentsGivenOutrightAreThoseOfAllWings) {
 }
 
 TEST(Planform, PaperVehiclesMomentsAreThoseOfItsEquivalentSemiEllipse) {
-  const auto m = chord_moments(shaped(PlanformShape::semi_ellipse), 2.0);
+  const auto m = chord_moments(outline_of(PlanformShape::semi_ellipse, 0.0, R, c_0), 2.0);
   EXPECT_NEAR(m.s2, 2.457e-6, 0.01 * m.s2);
   EXPECT_NEAR(m.s3, 1.048e-7, 0.01 * m.s3);
 }
 
 TEST(Planform, RefusesShapesOutOfRange) {
   using P = Planform<double>;
-  const P ellipse = shaped(PlanformShape::semi_ellipse);
+  const P ellipse = outline_of(PlanformShape::semi_ellipse, 0.0, R, c_0);
   EXPECT_NO_THROW(validate(ellipse));
   EXPECT_EQ(refusal(ellipse, [](P& p) { p.length = 0.0; }), "wing.planform.length: must be > 0 [m], got 0");
   EXPECT_EQ(refusal(ellipse, [](P& p) { p.root_chord = -0.025; }),
@@ -137,7 +130,7 @@ TEST(Planform, RefusesShapesOutOfRange) {
   EXPECT_EQ(refusal(P{}, [](P& p) { p.s3 = std::nan(""); }), "wing.planform.s3: must be >= 0 [m5], got nan");
 
   const auto table_refusal = [](std::vector<std::pair<double, double>> rows) {
-    return refusal(shaped(PlanformShape::tabulated), [&](P& p) { p.chord_table = rows; });
+    return refusal(outline_of(PlanformShape::tabulated, 0.0, R, c_0), [&](P& p) { p.chord_table = rows; });
   };
   EXPECT_EQ(table_refusal({{0.0, 1.0}, {1.0, 0.0}}), "no error");
   EXPECT_EQ(table_refusal({{0.0, 1.0}}), "wing.planform.file: the chord table needs at least two rows");

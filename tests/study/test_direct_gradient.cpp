@@ -3,18 +3,12 @@
 
 #include <cmath>
 
+#include "study/metric_differences.hpp"
 #include "vehicle/random_vehicle.hpp"
-#include "wingbeat/cycle/orbit_gradient.hpp"
-#include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 namespace {
-
-SteadyFlapping orbit_of(const Design<double>& design) {
-  return find_steady_flapping(resolve(design),
-                              {.tolerance = 1e-12, .stability = false, .reporting = reporting_of(design)});
-}
 
 void expect_gradients(const Design<double>& design, double tolerance) {
   std::vector<DesignParameter> parameters;
@@ -24,31 +18,11 @@ void expect_gradients(const Design<double>& design, double tolerance) {
     if (value && *value != 0.0) parameters.push_back(design_parameter(key.path));
   }
   ASSERT_GT(parameters.size(), 12u);
-  const SteadyFlapping orbit = orbit_of(design);
-  ASSERT_EQ(orbit.status, FlappingStatus::flapping) << describe(orbit.evidence);
-  const MetricGradients gradients = metric_gradients(design, Condition::air, orbit, parameters);
-  ASSERT_TRUE(gradients.regular);
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    const double value = *parameters[p].value(design), h = 1e-4 * value;
-    const auto at = [&](double by) {
-      Design<double> moved = design;
-      parameters[p].set(moved, value + by);
-      return orbit_of(moved).metrics;
-    };
-    const Metrics<double> a = at(-2.0 * h), b = at(-h), c = at(h), d = at(2.0 * h);
-    for (int m = 0; m < metric_count; ++m) {
-      const Metric which = Metric(m);
-      if (which == Metric::floquet_multiplier_max || which == Metric::current_mean || which == Metric::power_residual) {
-        continue;
-      }
-      if (std::isnan(orbit.metrics[which])) continue;
-      const double difference = (8.0 * (c[which] - b[which]) - (d[which] - a[which])) / 12.0;
-      const double exact = gradients.by_parameter[p][std::size_t(m)] * h;
-      // Per one: what a change by all of the parameter would do to the metric, beside the metric.
-      EXPECT_NEAR(exact, difference, 1e-4 * tolerance * std::abs(orbit.metrics[which]))
-          << parameters[p].key << ", " << metric_table()[std::size_t(m)].key;
-    }
-  }
+  compare_with_differences(
+      design, parameters, [&](const auto& key, Metric m, const Metrics<double>& of, double exact, double difference) {
+        if (m == Metric::current_mean || m == Metric::power_residual) return;
+        EXPECT_NEAR(exact, difference, tolerance * std::abs(of[m])) << key << ", " << metric_info(m).key;
+      });
 }
 
 // A vehicle takes a minute under sanitizers, which look for other mistakes than differences do.

@@ -1,4 +1,7 @@
+// How far metrics of two solutions are apart.
 #pragma once
+
+#include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
@@ -7,20 +10,37 @@
 
 namespace wingbeat {
 
-/// Largest deviation of metrics beside their error_scale().
-inline double metrics_apart(const Metrics<double>& a, const Metrics<double>& b, std::string& where) {
+/// Largest deviation of a metric beside `size(metric)`; without the Floquet multiplier.
+template <class Size>
+double metrics_apart(const Metrics<double>& a, const Metrics<double>& b, std::string& where, const Size& size) {
   double worst = 0.0;
   for (int n = 0; n < metric_count; ++n) {
     const Metric m = Metric(n);
     if (m == Metric::floquet_multiplier_max) continue;
-    // A crank may all but stop on its way, a gearbox all but idle.
-    double size = error_scale(b, m);
-    if (m == Metric::crank_speed_min) size = b[Metric::crank_speed_max];
-    if (m == Metric::power_gear) size = b[Metric::power_electrical];
     const double off = std::abs(a[m] - b[m]);
-    if (off > worst * size) worst = off / size, where = metric_info(m).key;
+    if (off > worst * size(m)) worst = off / size(m), where = metric_info(m).key;
   }
   return worst;
+}
+
+/// Beside error_scale(); a crank may all but stop on its way, a gearbox all but idle.
+inline double metrics_apart(const Metrics<double>& a, const Metrics<double>& b, std::string& where) {
+  return metrics_apart(a, b, where, [&](Metric m) {
+    if (m == Metric::crank_speed_min) return b[Metric::crank_speed_max];
+    if (m == Metric::power_gear) return b[Metric::power_electrical];
+    return error_scale(b, m);
+  });
+}
+
+/// Beside error_scale(), and both have the same metrics.
+inline double worst_metric(const Metrics<double>& a, const Metrics<double>& b, std::string& where) {
+  for (int n = 0; n < metric_count; ++n) {
+    const Metric m = Metric(n);
+    if (m == Metric::floquet_multiplier_max || m == Metric::lift_to_weight) continue;
+    EXPECT_EQ(std::isnan(a[m]), std::isnan(b[m])) << metric_info(m).key;
+  }
+  return metrics_apart(a, b, where,
+                       [&](Metric m) { return m == Metric::lift_to_weight ? HUGE_VAL : error_scale(b, m); });
 }
 
 }  // namespace wingbeat

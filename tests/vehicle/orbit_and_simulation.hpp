@@ -6,22 +6,23 @@
 #include <cmath>
 #include <string>
 
+#include "vehicle/metrics_apart.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
+#include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {
 
-/// Largest deviation of a metric, over its error_scale().
-inline double worst_metric(const Metrics<double>& a, const Metrics<double>& b, std::string& where) {
-  double worst = 0.0;
-  for (int m = 0; m < metric_count; ++m) {
-    const Metric which = Metric(m);
-    if (which == Metric::floquet_multiplier_max || which == Metric::lift_to_weight) continue;
-    EXPECT_EQ(std::isnan(a[which]), std::isnan(b[which])) << metric_info(which).key;
-    const double off = std::abs(a[which] - b[which]) / error_scale(b, which);
-    if (off > worst) worst = off, where = metric_info(which).key;
-  }
-  return worst;
+/// The orbit to 1e-8 and the start-up to 1e-7.
+struct OrbitAndSimulation {
+  SteadyFlapping orbit;
+  TransientResult time;
+};
+
+inline OrbitAndSimulation orbit_and_simulation(const Vehicle<double>& vehicle) {
+  TransientOptions options;
+  options.tolerance = 1e-7;
+  return {find_steady_flapping(vehicle, {.tolerance = 1e-8}, start_up_in_time()), simulate_start_up(vehicle, options)};
 }
 
 /// What a comparison saw.
@@ -33,11 +34,7 @@ struct Compared {
 /// The same status; where the vehicle flaps, all metrics to 1e-6 and an energy balance to 1e-7.
 inline Compared expect_orbit_as_simulated(const Design<double>& design, int n) {
   validate(design);
-  const Vehicle<double> vehicle = resolve(design);
-  const SteadyFlapping orbit = find_steady_flapping(vehicle, {.tolerance = 1e-8}, start_up_in_time());
-  TransientOptions options;
-  options.tolerance = 1e-7;
-  const TransientResult transient = simulate_start_up(vehicle, options);
+  const auto [orbit, transient] = orbit_and_simulation(resolve(design));
   EXPECT_EQ(orbit.status, transient.status)
       << "vehicle " << n << ": " << describe(orbit.evidence) << " / " << describe(transient.evidence);
   Compared seen;
@@ -54,6 +51,18 @@ inline Compared expect_orbit_as_simulated(const Design<double>& design, int n) {
   EXPECT_LT(worst_metric(orbit.metrics, *transient.metrics, where), 1e-6) << "vehicle " << n << ", " << where;
   EXPECT_LT(std::abs(energy_audit(orbit.metrics).imbalance), 1e-7 * orbit.metrics[Metric::power_electrical]) << n;
   return seen;
+}
+
+/// Packs leave wings on hinges to the scalar solver, whose metrics are the outcome's to the bit.
+inline void expect_left_to_scalar_solver(const Design<double>& design, std::initializer_list<Metric> metrics) {
+  const Vehicle<double> v = resolve(design);
+  const EnsembleMember member{v, {}};
+  EnsembleOutcome outcome;
+  solve_ensemble(std::span(&member, 1), {}, {}, std::span(&outcome, 1));
+  const SteadyFlapping alone = find_steady_flapping(v, {.tolerance = EnsembleOptions{}.tolerance});
+  EXPECT_EQ(outcome.status, FlappingStatus::flapping);
+  EXPECT_TRUE(outcome.scalar);
+  for (const Metric m : metrics) EXPECT_EQ(outcome.metrics[m], alone.metrics[m]) << metric_info(m).key;
 }
 
 }  // namespace wingbeat

@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "vehicle/metrics_apart.hpp"
+#include "vehicle/orbit_and_simulation.hpp"
 #include "vehicle/orbit_derivatives.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "wingbeat/core/jet.hpp"
@@ -205,10 +205,7 @@ TEST(AddedMass, OrbitsOfRandomVehiclesAgreeWithTheSimulationAndWithPacks) {
     d.wing.planform.s22 = 4.17e-8 * d.wing.inertia / 7.205e-8 * uniform(0.3, 3.0);
     validate(d);
     const Vehicle<double> v = resolve(d);
-    const SteadyFlapping orbit = find_steady_flapping(v, {.tolerance = 1e-8}, start_up_in_time());
-    TransientOptions options;
-    options.tolerance = 1e-7;
-    const TransientResult time = simulate_start_up(v, options);
+    const auto [orbit, time] = orbit_and_simulation(v);
     ASSERT_EQ(orbit.status, time.status) << n << ": " << describe(orbit.evidence) << " / " << describe(time.evidence);
     const std::array<EnsembleMember, 1> member = {{{v, {}}}};
     std::array<EnsembleOutcome, 1> pack;

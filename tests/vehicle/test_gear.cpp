@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "vehicle/metrics_apart.hpp"
+#include "vehicle/orbit_and_simulation.hpp"
 #include "vehicle/orbit_derivatives.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
@@ -107,10 +107,7 @@ TEST(GearEfficiency, OrbitsOfRandomVehiclesAgreeWithTheSimulationAndCloseTheEner
   for (int n = 0; n < 120; ++n) {
     Vehicle<double> v = resolve(random_design(random, 1.5));
     v.motor.gear_efficiency = std::uniform_real_distribution<double>(0.5, 1.0)(random);
-    const SteadyFlapping orbit = orbit_of(v, 1e-8);
-    TransientOptions options;
-    options.tolerance = 1e-7;
-    const TransientResult time = simulate_start_up(v, options);
+    const auto [orbit, time] = orbit_and_simulation(v);
     ASSERT_EQ(orbit.status, time.status) << n << ": " << describe(orbit.evidence) << " / " << describe(time.evidence);
     if (orbit.status != FlappingStatus::flapping) {
       ++others;

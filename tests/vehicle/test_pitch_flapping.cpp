@@ -66,16 +66,7 @@ TEST(PitchFlapping, SeveralMotorsAreAsManyTimesOne) {
 }
 
 TEST(PitchFlapping, EnsemblesLeaveItToTheScalarSolver) {
-  const Vehicle<double> v = resolve(hinged_design(3e-4));
-  const EnsembleMember member{v, {}};
-  EnsembleOutcome outcome;
-  solve_ensemble(std::span(&member, 1), {}, {}, std::span(&outcome, 1));
-  const SteadyFlapping alone = find_steady_flapping(v, {.tolerance = EnsembleOptions{}.tolerance});
-  EXPECT_EQ(outcome.status, FlappingStatus::flapping);
-  EXPECT_TRUE(outcome.scalar);
-  for (const Metric m : {Metric::lift_mean, Metric::pitch_amplitude, Metric::power_hinge}) {
-    EXPECT_EQ(outcome.metrics[m], alone.metrics[m]) << metric_info(m).key;
-  }
+  expect_left_to_scalar_solver(hinged_design(3e-4), {Metric::lift_mean, Metric::pitch_amplitude, Metric::power_hinge});
 }
 
 // A soft hinge turns the wing late, beyond 90 degrees of attack after each reversal: that is said.
