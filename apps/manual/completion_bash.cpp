@@ -142,7 +142,7 @@ std::string bash_completion(const std::vector<CommandFacts>& all) {
   }
   script += "    *) return 1 ;;\n  esac\n}\n\n";
   script +=
-      "# The options of command $1; without a command the commands, or the program's options where $2 begins as they do.\n";
+      "# The options of command $1; without one the commands, or the program's options where $2 begins like one.\n";
   script += "_wingbeat_words() {\n  if [[ -z $1 && $2 != -* ]]; then\n";
   script += fmt::format("    echo {}\n    return\n  fi\n  case $1 in\n{}  esac\n}}\n", shell_quoted(commands), options);
   return script + bash_tail;
