@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <map>
-
 #include "command_facts.hpp"
 
 namespace wingbeat::app {
