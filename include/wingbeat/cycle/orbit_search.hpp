@@ -43,9 +43,10 @@ class OrbitSearch {
 
   OrbitSearch(const System& system, const SteadyOptions& options) : options_(options), system_(system) {}
 
-  /// One search from a state at the start of an iterate.
-  bool search(const State& guess) {
-    solver::PeriodicOptions periodic{.tolerance = options_.tolerance, .stability = options_.stability};
+  /// One search from a state at the start of an iterate; of the multiplier see PeriodicOptions.
+  bool search(const State& guess, double expected_multiplier = 1.0) {
+    solver::PeriodicOptions periodic{
+        .tolerance = options_.tolerance, .stability = options_.stability, .expected_multiplier = expected_multiplier};
     if constexpr (requires { System::pitch; }) periodic.max_steps = pitching_steps;
     const int iterates_before = summary_.iterates;
     summary_ = solver::solve_periodic(system_, guess, periodic, iterate_);

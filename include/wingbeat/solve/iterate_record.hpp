@@ -52,6 +52,7 @@ struct Iterate {
   Method method = Method::explicit_pair;
   double stop = 0.0;                             ///< where the iterate ended [same unit as the period]
   double largest_step = 0.0;                     ///< first guess for the next iterate's steps
+  double tolerance = 0.0;                        ///< that it was taken at
   double error_sum = 0.0;                        ///< of the steps' estimated errors, relative
   typename System::Switches switch_scale{};      ///< largest magnitudes of the switches
   typename System::Quadrature integral_scale{};  ///< what the integrals' errors were limited by a share of
@@ -70,8 +71,10 @@ template <bool quadratures, class System>
 StepResult<System> take_step(Method method, const System& system, const typename System::Real& x,
                              const typename System::State& y, const typename System::Real& h,
                              const typename System::Signs& branch, const Rates<System>& first) {
-  return method == Method::explicit_pair ? explicit_step<quadratures>(system, x, y, h, branch, first)
-                                         : implicit_step<quadratures>(system, x, y, h, branch, first);
+  if (method == Method::explicit_pair) return explicit_step<quadratures>(system, x, y, h, branch, first);
+  StepResult<System> result = implicit_step<quadratures>(system, x, y, h, branch, first);
+  result.end = place_at(system, typename System::Real(x + h));
+  return result;
 }
 
 /// True of systems whose event_transition() moves the state, as an impact does: a recorded step then begins elsewhere
