@@ -100,17 +100,16 @@ int run(const FitArguments& arguments) {
 void add_fit(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("fit", "Fit a vehicle's parameters to bench measurements");
   const auto a = std::make_shared<FitArguments>();
-  add_input(command, a->file, "bench", "Bench file (TOML): vehicle, logs, free parameters", "BENCH");
+  add_input(command, a->file, InputKind::bench, "bench", "Bench file (TOML): vehicle, logs, free parameters", "BENCH");
   add_set(command, a->overrides);
-  command->add_option("-o,--output", a->output, "Write the fitted vehicle file, and FILE's .covariance.toml beside it")
-      ->type_name("FILE.toml");
+  add_file(command, "-o,--output", a->output, ".toml",
+           "Write the fitted vehicle file, and FILE's .covariance.toml beside it", "FILE.toml");
   command->add_flag("--compare-friction", a->compare_friction, "Fit every friction law to the same data and rank them");
   command->add_flag("--no-profiles", a->no_profiles,
                     "Skip the likelihood profiles: intervals from standard errors only");
   add_json(command, a->json);
   add_threads(command, a->threads);
-  command->add_option("--plot", a->plot, "Plot the residuals by condition to FILE.svg, .pdf or .png")
-      ->type_name("FILE");
+  add_file(command, "--plot", a->plot, plot_extensions, "Plot the residuals by condition to FILE.svg, .pdf or .png");
   add_force(*command, a->force);
   command->footer(
       "Example:\n  wingbeat fit flapper -o fitted.toml\n\n"

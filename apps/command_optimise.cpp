@@ -196,18 +196,15 @@ int run(const OptimiseArguments& arguments) {
 void add_optimise(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("optimise", "Find the best design within bounds and constraints");
   const auto a = std::make_shared<OptimiseArguments>();
-  add_input(command, a->study, "study", "Study file (TOML): objective, parameters, constraints, motors", "STUDY");
+  add_input(command, a->study, InputKind::study, "study",
+            "Study file (TOML): objective, parameters, constraints, motors", "STUDY");
   add_set(command, a->overrides);
-  command
-      ->add_option(
-          "-o,--output", a->output,
-          "Write the optimum as a vehicle file, or what was found on the way, and any front, as FILE.nc (NetCDF-4)")
-      ->type_name("FILE");
-  command
-      ->add_option("--plot", a->plot, "Draw the optimum and its neighbourhood, or the front, to FILE.svg, .pdf or .png")
-      ->type_name("FILE");
-  command->add_option("--designs", a->designs, "Write designs of the front as vehicle files: ends, knee, even steps")
-      ->type_name("FOLDER");
+  add_file(command, "-o,--output", a->output, ".toml .nc",
+           "Write the optimum as a vehicle file, or what was found on the way, and any front, as FILE.nc (NetCDF-4)");
+  add_file(command, "--plot", a->plot, plot_extensions,
+           "Draw the optimum and its neighbourhood, or the front, to FILE.svg, .pdf or .png");
+  add_folder(command, "--designs", a->designs, "Write designs of the front as vehicle files: ends, knee, even steps",
+             "FOLDER");
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
                     "Search outside the model's domain too (docs/domain.md)");
   add_force(*command, a->force);

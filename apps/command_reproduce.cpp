@@ -56,10 +56,13 @@ int run(const ReproduceArguments& arguments) {
 void add_reproduce(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("reproduce", "Reproduce a paper's figures and assess its statements");
   const auto a = std::make_shared<ReproduceArguments>();
-  command->add_option("paper", a->paper, "Which paper: friction2022")->required()->type_name("PAPER");
-  command->add_option("-o,--output", a->output, "Folder to be written: new, empty, or of an earlier reproduction")
-      ->required()
-      ->type_name("DIR");
+  Values papers;
+  for (const KnownPaper& paper : known_papers()) papers.choices.push_back({std::string(paper.name)});
+  takes(command->add_option("paper", a->paper, "Which paper: friction2022")->required()->type_name("PAPER"),
+        std::move(papers));
+  add_folder(command, "-o,--output", a->output, "Folder to be written: new, empty, or of an earlier reproduction",
+             "DIR")
+      ->required();
   command->add_flag("--coarse", a->coarse, "Few points on each curve: a check in seconds; the assessment is the same");
   command->add_flag("--json", a->json, "Print the assessment as one JSON object instead of a table");
   add_threads(command, a->threads);

@@ -308,26 +308,33 @@ int sweep(const SweepArguments& arguments) {
 void add_sweep(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("sweep", "Compute very many vehicles into one data set");
   const auto a = std::make_shared<SweepArguments>();
-  add_input(command, a->study, "study", "Study file (TOML), or a data set of an earlier sweep (.nc)", "STUDY");
+  CLI::Option* study = add_input(command, a->study, InputKind::study, "study",
+                                 "Study file (TOML), or a data set of an earlier sweep (.nc)", "STUDY");
+  Values readable = taken_by(study);
+  readable.extensions.push_back(".nc");
+  takes(study, std::move(readable));
   add_set(command, a->overrides);
-  command->add_option("-o,--output", a->output, "Data set to be written (NetCDF-4)")->required()->type_name("FILE.nc");
+  add_file(command, "-o,--output", a->output, ".nc", "Data set to be written (NetCDF-4)", "FILE.nc")->required();
   command->add_option("--tolerance", a->tolerance, "Relative accuracy of every metric, instead of the study's")
       ->type_name("NUMBER");
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
                     "Designs outside the model's domain may be best (docs/domain.md)");
   add_json(command, a->json);
   add_threads(command, a->threads);
-  command->add_option("--isa", a->isa, "Instructions: sse2, avx2 or avx512 (default: the widest there is)")
-      ->type_name("NAME");
-  CLI::Option* plot =
-      command->add_option("--plot", a->plot, "Draw lines over one axis, contours over two, to FILE.svg, .pdf or .png")
-          ->type_name("FILE");
-  command
-      ->add_option("--plot-metric", a->plot_metrics,
-                   "What to draw, as lift_mean_n,frequency_hz (default: mean lift and system efficiency)")
-      ->delimiter(',')
-      ->needs(plot)
-      ->type_name("METRIC,...");
+  Values sets;
+  for (const auto& [name, set] : instruction_sets) sets.choices.push_back({std::string(name)});
+  takes(command->add_option("--isa", a->isa, "Instructions: sse2, avx2 or avx512 (default: the widest there is)")
+            ->type_name("NAME"),
+        std::move(sets));
+  CLI::Option* plot = add_file(command, "--plot", a->plot, plot_extensions,
+                               "Draw lines over one axis, contours over two, to FILE.svg, .pdf or .png");
+  takes(command
+            ->add_option("--plot-metric", a->plot_metrics,
+                         "What to draw, as lift_mean_n,frequency_hz (default: mean lift and system efficiency)")
+            ->delimiter(',')
+            ->needs(plot)
+            ->type_name("METRIC,..."),
+        metric_choices());
   command->add_option("--plot-metrics", a->plot_metrics)->delimiter(',')->needs(plot)->group("");  // the old spelling
   add_force(*command, a->force);
   command->footer(

@@ -81,19 +81,19 @@ int run(const ToleranceArguments& arguments) {
 void add_tolerance(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("tolerance", "What uncertain parameters do to a vehicle's metrics");
   const auto a = std::make_shared<ToleranceArguments>();
-  add_input(command, a->study, "study", "Study file (TOML): vehicle, distributions", "STUDY");
+  add_input(command, a->study, InputKind::study, "study", "Study file (TOML): vehicle, distributions", "STUDY");
   add_set(command, a->overrides);
-  command->add_option("-o,--output", a->output, "Write samples, metrics and indices (NetCDF-4)")->type_name("FILE.nc");
+  add_file(command, "-o,--output", a->output, ".nc", "Write samples, metrics and indices (NetCDF-4)", "FILE.nc");
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
                     "Samples outside the model's domain count and may hover (docs/domain.md)");
   add_json(command, a->json);
   add_threads(command, a->threads);
-  CLI::Option* plot =
-      command->add_option("--plot", a->plot, "Draw a metric's distribution and sources to FILE.svg, .pdf or .png")
-          ->type_name("FILE");
-  command->add_option("--plot-metric", a->plot_metric, "Which one (default: lift to weight, else mean lift)")
-      ->needs(plot)
-      ->type_name("METRIC");
+  CLI::Option* plot = add_file(command, "--plot", a->plot, plot_extensions,
+                               "Draw a metric's distribution and sources to FILE.svg, .pdf or .png");
+  takes(command->add_option("--plot-metric", a->plot_metric, "Which one (default: lift to weight, else mean lift)")
+            ->needs(plot)
+            ->type_name("METRIC"),
+        metric_choices());
   add_force(*command, a->force);
   command->footer(
       "Example:\n  wingbeat tolerance tolerance-hover --plot tolerance.svg\n\n"
