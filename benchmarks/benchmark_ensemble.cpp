@@ -1,7 +1,8 @@
-// The batched solver on the reference box: designs a second on one core, the accuracy reached, and the distance to what
-// the core's multipliers would allow.
+// The batched solver on the reference box and on direct drives: designs a second on one core, the accuracy reached, and
+// the distance to what the core's multipliers would allow.
 //
-//   benchmark_ensemble            every instruction set, four sets of metrics; then what the recomputed designs cost
+//   benchmark_ensemble            every instruction set, four sets of metrics; then what the recomputed designs cost,
+//                                 and other kinds of vehicle
 //   benchmark_ensemble SECONDS    measure each for that long (default 2)
 #include <algorithm>
 #include <chrono>
@@ -10,6 +11,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "vehicle/direct_design.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/study/run.hpp"
@@ -72,6 +74,66 @@ double best_time(const F& f, double seconds) {
     best = std::min(best, std::chrono::duration<double>(clock::now() - start).count());
   } while (clock::now() < end);
   return best;
+}
+
+/// Direct drives without constant friction and pitch stop, whose equations are smooth between two reversals.
+void measure_direct_drives(const StartUp& start_up, double seconds) {
+  constexpr std::size_t sample_every = 32;
+  constexpr double exact_tolerance = 1e-8;
+  std::mt19937_64 random(20224);
+  std::vector<EnsembleMember> members, sample;
+  for (std::size_t n = 0; n < design_count; ++n) {
+    const Design<double> design = smooth_direct_design(random);
+    members.push_back({resolve(design), reporting_of(design)});
+    if (n % sample_every == 0) sample.push_back(members.back());
+  }
+  EnsembleOptions options;
+  options.scalar_only = true;
+  options.tolerance = exact_tolerance;
+  std::vector<EnsembleOutcome> expected(sample.size()), outcomes(members.size());
+  solve_ensemble(sample, options, start_up, expected);
+  options.tolerance = tolerance;
+  options.metrics = wanted_sets()[2].metrics;
+  const double scalar_time =
+      best_time([&] { solve_ensemble(sample, options, start_up, std::span(outcomes).first(sample.size())); }, seconds) /
+      double(sample.size());
+  std::printf(
+      "\ndirect drives, %zu designs, tolerance %g, one core; scalar solver %.0f designs/s; errors against it at "
+      "%g, of %zu\n\n",
+      design_count, tolerance, 1.0 / scalar_time, exact_tolerance, sample.size());
+  std::printf("%-8s %-20s %10s %8s %10s %9s   %s\n", "isa", "metrics", "designs/s", "ratio", "recomputed", "statuses",
+              "lift error 50 %, 99 %, 99.9 %; worst metric 99.9 %");
+  options.scalar_only = false;
+  for (const auto& [name, isa] : instruction_sets) {
+    if (!is_available(isa)) continue;
+    for (const Wanted& wanted : {wanted_sets()[1], wanted_sets()[3]}) {
+      options.isa = isa;
+      options.metrics = wanted.metrics;
+      const double time = best_time([&] { solve_ensemble(members, options, start_up, outcomes); }, seconds);
+      std::vector<double> lift, worst;
+      int other = 0;
+      for (std::size_t n = 0; n < sample.size(); ++n) {
+        const EnsembleOutcome& got = outcomes[n * sample_every];
+        other += got.status != expected[n].status;
+        if (got.status != FlappingStatus::flapping || expected[n].status != FlappingStatus::flapping) continue;
+        const Metrics<double>& exact = expected[n].metrics;
+        lift.push_back(std::abs(got.metrics[Metric::lift_mean] / exact[Metric::lift_mean] - 1.0));
+        double largest = 0.0;
+        for (int m = 0; m < metric_count; ++m) {
+          const Metric which = Metric(m);
+          if (!wanted.metrics[std::size_t(m)] || which == Metric::floquet_multiplier_max) continue;
+          const double off = std::abs(got.metrics[which] - exact[which]);
+          if (off > largest * error_scale(exact, which)) largest = off / error_scale(exact, which);
+        }
+        worst.push_back(largest);
+      }
+      const auto recomputed =
+          std::count_if(outcomes.begin(), outcomes.end(), [](const EnsembleOutcome& out) { return out.scalar; });
+      std::printf("%-8s %-20s %10.0f %8.1f %10td %9d   %.1e %.1e %.1e; %.1e\n", std::string(name).c_str(), wanted.name,
+                  double(design_count) / time, scalar_time * double(design_count) / time, recomputed, other,
+                  quantile(lift, 0.5), quantile(lift, 0.99), quantile(lift, 0.999), quantile(worst, 0.999));
+    }
+  }
 }
 
 }  // namespace
@@ -170,5 +232,6 @@ int main(int argc, char** argv) {
   std::printf("coreless motors, 1 us to 1 ms: %.0f designs/s, scalar %.0f; %td of %zu recomputed\n",
               double(coreless.size()) / batched_time, double(some.size()) / one_by_one_time, recomputed,
               coreless.size());
+  measure_direct_drives(start_up, seconds);
   return 0;
 }

@@ -7,6 +7,7 @@
 
 #include "wingbeat/cycle/static_balance.hpp"
 #include "wingbeat/cycle/thermal_equilibrium.hpp"
+#include "wingbeat/ensemble/direct_pack_blocks.hpp"
 #include "wingbeat/ensemble/pack_blocks.hpp"
 #include "wingbeat/solve/collocation.hpp"
 
@@ -15,16 +16,17 @@ namespace {
 
 struct PackSolver {
   decltype(&solve_block_base) solve;
+  decltype(&solve_direct_block_base) solve_direct;
   int lanes;
 };
 
 PackSolver solver_for(InstructionSet isa) {
   switch (isa) {
 #ifdef WINGBEAT_X86
-    case InstructionSet::avx2: return {solve_block_avx2, lanes_avx2};
-    case InstructionSet::avx512: return {solve_block_avx512, lanes_avx512};
+    case InstructionSet::avx2: return {solve_block_avx2, solve_direct_block_avx2, lanes_avx2};
+    case InstructionSet::avx512: return {solve_block_avx512, solve_direct_block_avx512, lanes_avx512};
 #endif
-    default: return {solve_block_base, lanes_base};
+    default: return {solve_block_base, solve_direct_block_base, lanes_base};
   }
 }
 
@@ -36,7 +38,36 @@ double max_lag(double tolerance) { return 0.007 * std::min(std::sqrt(tolerance /
 struct Plan {
   PackSettings first, from_rest, from_rest_finely;
   std::array<PackSettings, 3> again;
+  std::vector<DirectPackSettings> direct;  ///< one after the other, until a design is exact enough
 };
+
+/// Whether the batched solver knows all of a vehicle.
+bool suits_packs(const Vehicle<double>& v) {
+  if (v.wings.coefficients.table || has_pitch_stop(v.wings) || has_gear_loss(v.motor) || pitches(v)) return false;
+  // Where constant friction holds a shaft that swings, the equations jump.
+  return v.transmission.type == TransmissionType::slider_crank ||
+         (v.transmission.type == TransmissionType::direct && breakaway_torque(v) == 0.0);
+}
+
+std::vector<DirectPackSettings> direct_plan_for(const EnsembleOptions& options) {
+  const auto wanted = [&](Metric m) { return options.metrics[std::size_t(m)]; };
+  DirectPackSettings s;
+  s.current_peak = wanted(Metric::current_peak);
+  s.exchanged_energy = wanted(Metric::power_reactive);
+  s.lift_peak = wanted(Metric::lift_peak);
+  s.velocity_peak = wanted(Metric::flapping_velocity_peak) || wanted(Metric::angle_of_attack_min);
+  s.closed = std::clamp(0.1 * std::sqrt(options.tolerance), 1e-7, 1e-3);
+  // What is read between the stages converges with the eighth power of the segments.
+  const double segments = 4.0 * std::pow(1e-6 / options.tolerance, 0.125);
+  std::vector<DirectPackSettings> plan;
+  for (int n = std::max(4, int(std::ceil(segments))); n < max_direct_segments / 2; n *= 2) {
+    s.segments = n;
+    plan.push_back(s);
+  }
+  s.segments = max_direct_segments / 2;
+  plan.push_back(s);
+  return plan;
+}
 
 Plan plan_for(const EnsembleOptions& options) {
   const auto wanted = [&](Metric m) { return options.metrics[std::size_t(m)]; };
@@ -84,6 +115,7 @@ Plan plan_for(const EnsembleOptions& options) {
   plan.from_rest.implicit = true;
   plan.from_rest_finely = plan.from_rest;
   plan.from_rest_finely.start_up_steps = 16 * plan.from_rest.start_up_steps;
+  plan.direct = direct_plan_for(options);
   return plan;
 }
 
@@ -105,25 +137,29 @@ class EnsembleRun {
         plan_(plan_for(options)),
         solver_(solver_for(options.isa)),
         results_(members.size()),
+        direct_results_(members.size()),
         rotates_(members.size()) {}
 
   /// Solves the members that `takes(vehicle)` says are to be, their motors as they are.
   template <class Takes>
   void solve(const Takes& takes) {
     std::array<std::vector<std::size_t>, kinds> by_kind;
+    std::array<std::vector<std::size_t>, direct_kinds> direct_by_kind;
     for (std::size_t n = 0; n < members_.size(); ++n) {
       const Vehicle<double>& v = members_[n].vehicle;
       if (!takes(v)) continue;
-      if (options_.scalar_only || !has_packs || v.wings.coefficients.table || has_pitch_stop(v.wings) ||
-          has_gear_loss(v.motor) || pitches(v) || v.transmission.type != TransmissionType::slider_crank) {
+      if (options_.scalar_only || !has_packs || !suits_packs(v)) {
         solve_by_scalar(n);
       } else if (stall_torque(v) <= breakaway_torque(v)) {
         settle(n, FlappingStatus::stalled);
+      } else if (!drive_of(v).rotates) {
+        direct_by_kind[direct_kind_of(v)].push_back(n);
       } else {
         by_kind[kind_of(v)].push_back(n);
       }
     }
     for (const std::vector<std::size_t>& alike : by_kind) solve_alike(alike);
+    for (const std::vector<std::size_t>& alike : direct_by_kind) solve_direct(alike);
   }
 
  private:
@@ -132,6 +168,11 @@ class EnsembleRun {
     return (v.wings.added_inertia > 0.0 ? 12 : 0) +
            (v.transmission.slider_crank.formulation == Formulation::virtual_work ? 6 : 0) +
            (v.spring.stiffness > 0.0 ? 3 : 0) + std::size_t(current_of(v));
+  }
+
+  static constexpr std::size_t direct_kinds = 4;
+  static std::size_t direct_kind_of(const Vehicle<double>& v) {
+    return (v.wings.added_inertia > 0.0 ? 2 : 0) + (v.motor.armature_inductance > 0.0 ? 1 : 0);
   }
 
   PackCurrent current_of(const Vehicle<double>& v) const {
@@ -155,21 +196,48 @@ class EnsembleRun {
     for (const std::size_t n : left) solve_by_scalar(n);
   }
 
+  /// Direct drives of a kind. Where a finer mesh cannot help, the scalar solver does.
+  void solve_direct(std::vector<std::size_t> open) {
+    for (const DirectPackSettings& settings : plan_.direct) {
+      run_blocks(open, settings, solver_.solve_direct, direct_results_);
+      std::vector<std::size_t> inexact;
+      for (const std::size_t n : open) {
+        const DirectPackResult& r = direct_results_[n];
+        if (r.error_estimate <= options_.tolerance) {
+          accept(n, r.metrics, r.error_estimate);
+        } else if (std::isfinite(r.error_estimate)) {
+          inexact.push_back(n);
+        } else {
+          solve_by_scalar(n);
+        }
+      }
+      open.swap(inexact);
+    }
+    for (const std::size_t n : open) solve_by_scalar(n);
+  }
+
+  /// Those members, as many at a time as there are lanes, through the solver into the results of the same index.
+  template <class Settings, class Solve, class Result>
+  void run_blocks(const std::vector<std::size_t>& which, const Settings& settings, Solve solve,
+                  std::vector<Result>& results) const {
+    std::array<const EnsembleMember*, lanes_avx512> members;
+    std::array<Result*, lanes_avx512> of_members;
+    for (std::size_t start = 0; start < which.size(); start += std::size_t(solver_.lanes)) {
+      const std::size_t count = std::min(which.size() - start, std::size_t(solver_.lanes));
+      for (std::size_t lane = 0; lane < count; ++lane) {
+        members[lane] = &members_[which[start + lane]];
+        of_members[lane] = &results[which[start + lane]];
+      }
+      solve(members.data(), int(count), settings, of_members.data());
+    }
+  }
+
   /// Solves those members; settles the outcomes of the exact ones, and lists the others.
   void run(const std::vector<std::size_t>& which, PackSettings settings, std::vector<std::size_t>& unresolved,
            std::vector<std::size_t>& inexact) {
     if (which.empty()) return;
     settings.current = current_of(members_[which.front()].vehicle);
-    std::array<const EnsembleMember*, lanes_avx512> members;
-    std::array<PackResult*, lanes_avx512> results;
-    for (std::size_t start = 0; start < which.size(); start += std::size_t(solver_.lanes)) {
-      const std::size_t count = std::min(which.size() - start, std::size_t(solver_.lanes));
-      for (std::size_t lane = 0; lane < count; ++lane) {
-        members[lane] = &members_[which[start + lane]];
-        results[lane] = &results_[which[start + lane]];
-      }
-      solver_.solve(members.data(), int(count), settings, results.data());
-    }
+    run_blocks(which, settings, solver_.solve, results_);
     for (const std::size_t n : which) {
       const PackResult& r = results_[n];
       if (settings.approach == PackApproach::from_rest) rotates_[n] = r.assessment == PackAssessment::rotates;
@@ -180,10 +248,14 @@ class EnsembleRun {
       } else if (!(r.error_estimate <= options_.tolerance)) {
         inexact.push_back(n);
       } else {
-        outcomes_[n] = {FlappingStatus::flapping, false, r.error_estimate, r.metrics, domain(n, r.metrics)};
-        keep_wanted(options_.metrics, outcomes_[n].metrics);
+        accept(n, r.metrics, r.error_estimate);
       }
     }
+  }
+
+  void accept(std::size_t n, const Metrics<double>& metrics, double error_estimate) {
+    outcomes_[n] = {FlappingStatus::flapping, false, error_estimate, metrics, domain(n, metrics)};
+    keep_wanted(options_.metrics, outcomes_[n].metrics);
   }
 
   DomainStatus domain(std::size_t n, const Metrics<double>& metrics) const {
@@ -226,6 +298,7 @@ class EnsembleRun {
   Plan plan_;
   PackSolver solver_;
   std::vector<PackResult> results_;
+  std::vector<DirectPackResult> direct_results_;
   std::vector<char> rotates_;  ///< from rest, as lanes have shown in time
 };
 

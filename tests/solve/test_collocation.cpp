@@ -4,6 +4,8 @@
 
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/solve/collocation.hpp"
+#include "wingbeat/solve/implicit_step.hpp"
+#include "wingbeat/solve/radau_collocation.hpp"
 
 namespace wingbeat::solver {
 namespace {
@@ -75,6 +77,31 @@ TEST(CollocationOrder, EndsOfSubintervalsAreOfTwiceTheOrder) {
 
 INSTANTIATE_TEST_SUITE_P(Each, Collocation, testing::Values(2, 4, 6, 8, 10, 12, 14, 16),
                          [](const auto& intervals) { return std::to_string(intervals.param); });
+
+TEST(RadauCollocation, IntegratesPolynomialsUpToTwiceTheStagesLessTwo) {
+  constexpr int n = 7;
+  const RadauCollocation<n> rule = radau_collocation<n>();
+  EXPECT_EQ(rule.c[n - 1], 1.0);
+  const auto error = [&](int stage, int power) {
+    double sum = 0.0;
+    for (int j = 0; j < n; ++j) sum += rule.a[stage][j] * std::pow(rule.c[j], power);
+    return std::abs(sum - std::pow(rule.c[stage], power + 1) / (power + 1));
+  };
+  for (int power = 0; power < 2 * n - 1; ++power) EXPECT_LT(error(n - 1, power), 1e-15) << power;
+  EXPECT_GT(error(n - 1, 2 * n - 1), 1e-9);
+  for (int stage = 0; stage < n; ++stage) {
+    for (int power = 0; power < n; ++power) EXPECT_LT(error(stage, power), 1e-15) << stage << ' ' << power;
+  }
+}
+
+TEST(RadauCollocation, WithFiveStagesIsTheImplicitStep) {
+  const RadauCollocation<5> rule = radau_collocation<5>();
+  const RadauTableau& tableau = radau_tableau();
+  for (int j = 0; j < 5; ++j) {
+    EXPECT_EQ(rule.c[j], tableau.c[j]);
+    for (int l = 0; l < 5; ++l) EXPECT_EQ(rule.a[j][l], tableau.a[j][l]);
+  }
+}
 
 }  // namespace
 }  // namespace wingbeat::solver

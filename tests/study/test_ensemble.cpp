@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <random>
 
+#include "study/ensemble_comparison.hpp"
 #include "vehicle/known_orbits.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "vehicle/reference_vehicle.hpp"
@@ -22,10 +22,6 @@ constexpr int many = 8000;
 constexpr int many = 20000;
 #endif
 
-EnsembleMember member_of(const Design<double>& design, Condition condition = Condition::air) {
-  return {resolve(design, condition), reporting_of(design)};
-}
-
 /// Start-up in time, asked once per vehicle: both solvers of a comparison share its answers.
 StartUp remembered_start_up() {
   auto known = std::make_shared<std::map<std::array<double, 6>, StartUpOutcome>>();
@@ -37,21 +33,6 @@ StartUp remembered_start_up() {
     if (is_new) at->second = assess(v);
     return at->second;
   };
-}
-
-std::vector<EnsembleOutcome> solve(const std::vector<EnsembleMember>& members, const EnsembleOptions& options,
-                                   const StartUp& start_up = start_up_in_time()) {
-  std::vector<EnsembleOutcome> outcomes(members.size());
-  solve_ensemble(members, options, start_up, outcomes);
-  return outcomes;
-}
-
-std::vector<InstructionSet> available() {
-  std::vector<InstructionSet> sets;
-  for (const auto& [name, isa] : instruction_sets) {
-    if (is_available(isa)) sets.push_back(isa);
-  }
-  return sets;
 }
 
 /// What an error of a metric is measured by: the metric, but for those that may vanish.
@@ -74,12 +55,6 @@ double largest_error(const Metrics<double>& got, const Metrics<double>& expected
     if (where) *where = metric_table()[std::size_t(k)].key;
   }
   return largest;
-}
-
-bool same_bits(const EnsembleOutcome& a, const EnsembleOutcome& b) {
-  return a.status == b.status && a.scalar == b.scalar &&
-         std::memcmp(&a.error_estimate, &b.error_estimate, sizeof(double)) == 0 &&
-         std::memcmp(&a.metrics, &b.metrics, sizeof a.metrics) == 0;
 }
 
 /// Members of every kind: conditions, springs, formulations, friction laws, no or little inductance, and some that do
@@ -254,20 +229,7 @@ TEST(Ensemble, OutcomeDependsNeitherOnPlaceNorOnCompany) {
   for (const InstructionSet isa : available()) {
     EnsembleOptions options;
     options.isa = isa;
-    const auto together = solve(members, options);
-    std::vector<std::size_t> order(members.size());
-    for (std::size_t n = 0; n < order.size(); ++n) order[n] = n;
-    std::mt19937_64 random(5);
-    std::shuffle(order.begin(), order.end(), random);
-    // Shuffled, in runs of odd lengths.
-    for (std::size_t start = 0, length = 1; start < order.size(); start += length, length = (3 * length + 2) % 61 + 1) {
-      std::vector<EnsembleMember> some;
-      for (std::size_t n = start; n < std::min(start + length, order.size()); ++n) some.push_back(members[order[n]]);
-      const auto alone = solve(some, options);
-      for (std::size_t n = 0; n < some.size(); ++n) {
-        EXPECT_TRUE(same_bits(alone[n], together[order[start + n]])) << "member " << order[start + n];
-      }
-    }
+    expect_no_company(members, options);
   }
 }
 

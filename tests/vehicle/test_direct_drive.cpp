@@ -104,17 +104,13 @@ TEST(DirectDrive, WithoutAirTheResponseIsTheComplexImpedances) {
     const Vehicle<double> v = resolve(d, Condition::vacuum);
     const SteadyFlapping found = find_steady_flapping(v, {.tolerance = 1e-11});
     ASSERT_EQ(found.status, FlappingStatus::flapping) << n << ": " << describe(found.evidence);
-    using Complex = std::complex<double>;
-    const double w = two_pi * d.supply.frequency, K = v.motor.torque_constant, V = d.supply.voltage;
-    const Complex j(0.0, 1.0), electrical = v.motor.armature_resistance + j * w * v.motor.armature_inductance;
-    const Complex mechanical = v.motor.viscous_damping + 2e-6 + j * w * (v.motor.inertia + 2.0 * v.wing_inertia) +
-                               2.0 * v.spring.stiffness / (j * w);
-    const Complex speed = K * V / (electrical * mechanical + K * K), current = (V - K * speed) / electrical;
+    const double w = two_pi * d.supply.frequency;
+    const auto [speed, current] = linear_response(v);
     const Metrics<double>& m = found.metrics;
     EXPECT_NEAR(m[Metric::stroke_amplitude] * w / std::abs(speed), 1.0, 1e-10) << n;
     EXPECT_NEAR(m[Metric::flapping_velocity_peak] / std::abs(speed), 1.0, 1e-10) << n;
     EXPECT_NEAR(m[Metric::current_peak] / std::abs(current), 1.0, 1e-10) << n;
-    EXPECT_NEAR(m[Metric::power_electrical] / (0.5 * V * current.real()), 1.0, 1e-9) << n;
+    EXPECT_NEAR(m[Metric::power_electrical] / (0.5 * v.voltage * current.real()), 1.0, 1e-9) << n;
     EXPECT_NEAR(m[Metric::frequency] / d.supply.frequency, 1.0, 1e-14) << n;
   }
 }

@@ -1,15 +1,16 @@
 // Batched solver, orbit search and simulation in time against each other on the wide boxes of
 // vehicle/wide_boxes.hpp.
 //   check_wide [COUNT]            vehicles of each box, 500 unless given
-//     --box NAME                  that box alone
+//     --box NAME                  that box alone (after --packs: reference, friction_laws or smooth_direct)
 //     --vehicle N                 that vehicle of the box alone, with its file and every decision
 //     --rung NAME                 with added_mass, gear, heat, all_rungs or pitch on top of every vehicle
 //     --seed S  --threads T
 //   check_wide --rungs [COUNT]    slider-cranks, four-bars, tabulated laws and direct drives with each rung
-//   check_wide --packs [COUNT]    batched against scalar orbit alone, slider-cranks around the reference and wide, with
-//                                 and without rungs; 10,000 unless given
+//   check_wide --packs [COUNT]    batched against scalar orbit alone, slider-cranks around the reference and wide and
+//                                 smooth direct drives, with and without rungs; 10,000 unless given
 // Exit status 1 if any two statuses, or the orbits reached, differ.
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -20,6 +21,7 @@
 #include <thread>
 #include <vector>
 
+#include "vehicle/direct_design.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "vehicle/rungs.hpp"
 #include "vehicle/wide_boxes.hpp"
@@ -91,7 +93,8 @@ double scale_of(Metric metric, const Metrics<double>& m) {
     case Metric::power_gear:
     case Metric::power_residual:
     case Metric::power_loss: return std::max(std::abs(m[metric]), std::abs(m[Metric::power_motor]));
-    case Metric::current_mean: return std::max(std::abs(m[metric]), 0.01 * std::abs(m[Metric::current_peak]));
+    case Metric::current_mean:  // that of a direct drive alternates
+      return std::max(error_scale(m, metric), 0.01 * std::abs(m[Metric::current_peak]));
     case Metric::angle_of_attack_min: return std::max(90.0, std::abs(m[metric]));
     case Metric::crank_speed_min: return std::abs(m[Metric::crank_speed_max]);
     case Metric::lift_mean: return std::abs(m[Metric::lift_peak]);
@@ -232,11 +235,17 @@ void add(Counts& to, const Counts& c) {
   to.transient_seconds = std::max(to.transient_seconds, c.transient_seconds);
 }
 
+enum class PacksBox { reference, wide, direct };
+constexpr std::array packs_boxes = {std::pair{std::string_view("reference"), PacksBox::reference},
+                                    std::pair{std::string_view("friction_laws"), PacksBox::wide},
+                                    std::pair{std::string_view("smooth_direct"), PacksBox::direct}};
+
 struct Arguments {
   int count = 500, only_box = -1, only_vehicle = -1, threads = int(std::thread::hardware_concurrency());
   std::uint32_t seed = 12;
   Rung rung = Rung::none;
   bool rungs = false, packs = false;
+  std::string_view packs_of = "";  ///< the box alone
 };
 
 Arguments read_arguments(int argc, char** argv) {
@@ -247,7 +256,13 @@ Arguments read_arguments(int argc, char** argv) {
     const auto number = [&] {
       return value ? std::atoi(argv[++k]) : (std::fprintf(stderr, "%s needs a number\n", argv[k]), std::exit(2), 0);
     };
-    if (word == "--box") {
+    if (word == "--box" && a.packs) {
+      a.packs_of = value ? value : "";
+      if (!std::any_of(packs_boxes.begin(), packs_boxes.end(), [&](auto& box) { return box.first == a.packs_of; })) {
+        std::fprintf(stderr, "--box: none of that name\n"), std::exit(2);
+      }
+      ++k;
+    } else if (word == "--box") {
       for (std::size_t b = 0; value && b < far_box_names.size(); ++b) {
         if (far_box_names[b] == value) a.only_box = int(b);
       }
@@ -382,16 +397,18 @@ int check_packs(const Arguments& arguments) {
   std::printf("%-28s %6s %9s | %8s %14s | %s\n", "", "count", "by packs", "statuses", "metrics apart", "largest");
   std::printf("%-28s %6s %9s | %8s %14s | %s\n", "box", "", "", "differ", "> 2e-6", "relative");
   int other = 0;
-  for (const bool wide : {false, true}) {
+  for (const auto& [name, kind] : packs_boxes) {
     for (const Rung rung : {Rung::none, Rung::added_mass, Rung::gear, Rung::heat, Rung::all}) {
-      const std::string box = name_with_rung(wide ? "friction_laws" : "reference", rung);
+      if (!arguments.packs_of.empty() && arguments.packs_of != name) continue;
+      if (kind == PacksBox::direct && rung == Rung::gear) continue;  // no gear efficiency of a direct drive
+      const std::string box = name_with_rung(name, rung);
       std::vector<EnsembleMember> members;
       std::vector<WideVehicle> vehicles;
       std::mt19937_64 random(arguments.seed);
       for (int n = 0; n < arguments.count; ++n) {
         WideVehicle v;
-        if (wide) v = wide_vehicle(FarBox::friction_laws, std::uint32_t(n), arguments.seed);
-        else v.design = box_design(random);
+        if (kind == PacksBox::wide) v = wide_vehicle(FarBox::friction_laws, std::uint32_t(n), arguments.seed);
+        else v.design = kind == PacksBox::direct ? smooth_direct_design(random) : box_design(random);
         add_rung(v.design, rung, std::uint32_t(n), arguments.seed);
         validate(v.design);
         members.push_back({resolve(v.design, v.condition), reporting_of(v.design)});

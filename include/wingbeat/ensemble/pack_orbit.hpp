@@ -21,6 +21,7 @@
 #include "wingbeat/cycle/static_balance.hpp"
 #include "wingbeat/ensemble/half_cycle.hpp"
 #include "wingbeat/ensemble/pack_blocks.hpp"
+#include "wingbeat/ensemble/pack_lift.hpp"
 #include "wingbeat/solve/collocation.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
@@ -174,7 +175,6 @@ class PackOrbit {
   [[gnu::noinline, gnu::flatten]] L refine(Quantity quantity, const L& sign, PeakBracket<L> b);
   [[gnu::noinline, gnu::flatten]] L peak(Quantity quantity);
   [[gnu::noinline, gnu::flatten]] L exchanged_energy();
-  [[gnu::noinline, gnu::flatten]] L lift_peak(const L& highest_velocity) const;
   [[gnu::noinline, gnu::flatten]] L floquet_multiplier();
   [[gnu::noinline]] void lag_with(System system, std::size_t node, const L& by, const L& force,
                                   solver::Rates<System>& below, solver::Rates<System>& above) const;
@@ -417,7 +417,8 @@ Metrics<L> PackOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   if (settings_.velocity_aside) {
     peak_error_ = L(0.0);
   } else if (is_wanted(Quantity::velocity)) {
-    extremes[std::size_t(Extreme::lift)] = lift_peak(extremes[std::size_t(Extreme::flapping_velocity)]);
+    extremes[std::size_t(Extreme::lift)] =
+        lift_peak_up_to(vehicle_.wings, extremes[std::size_t(Extreme::flapping_velocity)]);
   }
   if (is_wanted(Quantity::energy)) total(Integral::reactive_work) = exchanged_energy();
   seek(Quantity::current, Extreme::current);
