@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -19,9 +20,6 @@ void print(std::string_view text);
 /// One line on standard error, after "wingbeat: ".
 void complain(std::string_view sentence);
 
-/// The option of every command that writes files.
-void add_force(CLI::App& command, bool& force);
-
 /// Each adds one command; its action, which gives the exit status, is stored in `action` when the command is parsed.
 using Action = std::function<int()>;
 void add_run(CLI::App& program, Action& action);
@@ -36,5 +34,9 @@ void add_reproduce(CLI::App& program, Action& action);
 void add_new(CLI::App& program, Action& action);
 void add_keys(CLI::App& program, Action& action);
 void add_metrics(CLI::App& program, Action& action);
+
+/// The whole tree of commands. Parsing a command line by it stores what is to be done in `action`, which must outlive
+/// it.
+std::unique_ptr<CLI::App> command_tree(Action& action);
 
 }  // namespace wingbeat::app

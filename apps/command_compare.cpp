@@ -69,11 +69,11 @@ int run(const CompareArguments& arguments) {
 void add_compare(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("compare", "Compute published values and show ours beside them");
   const auto a = std::make_shared<CompareArguments>();
-  add_input(command, a->file, "file", "File of published values (TOML)", "FILE");
+  add_input(command, a->file, InputKind::published, "file", "File of published values (TOML)", "FILE");
   add_set(command, a->overrides);
   add_json(command, a->json);
-  command->add_option("--plot-power", a->plot_power, "Plot the power breakdowns to FILE.svg, .pdf or .png")
-      ->type_name("FILE");
+  add_file(command, "--plot-power", a->plot_power, plot_extensions,
+           "Plot the power breakdowns to FILE.svg, .pdf or .png");
   add_force(*command, a->force);
   command->footer(
       "Example:\n"

@@ -74,11 +74,11 @@ void add_endurance(CLI::App& program, Action& action) {
   const auto a = std::make_shared<EnduranceArguments>();
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
                     "Flight outside the model's domain may hover (docs/domain.md)");
-  add_input(command, a->vehicle, "vehicle", "Vehicle file (TOML) with a battery", "VEHICLE");
+  add_input(command, a->vehicle, InputKind::vehicle, "vehicle", "Vehicle file (TOML) with a battery", "VEHICLE");
   add_set(command, a->overrides);
   add_json(command, a->json);
-  command->add_option("-o,--output", a->output, "Write the trajectory of the flight (NetCDF-4)")->type_name("FILE.nc");
-  command->add_option("--plot", a->plot, "Plot the flight to FILE.svg, .pdf or .png")->type_name("FILE");
+  add_file(command, "-o,--output", a->output, ".nc", "Write the trajectory of the flight (NetCDF-4)", "FILE.nc");
+  add_file(command, "--plot", a->plot, plot_extensions, "Plot the flight to FILE.svg, .pdf or .png");
   add_force(*command, a->force);
   command->footer(
       "Example:\n  wingbeat endurance friction2022-battery --plot flight.svg\n\n"

@@ -1,6 +1,5 @@
 // wingbeat fit BENCH: a vehicle's parameters from bench measurements, and how sure they are.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <memory>
@@ -10,12 +9,14 @@
 
 #include "command.hpp"
 #include "options.hpp"
+#include "progress.hpp"
 #include "wingbeat/files/bench_file.hpp"
 #include "wingbeat/files/design_edit.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/files/output_file.hpp"
 #include "wingbeat/report/fit_report.hpp"
+#include "wingbeat/run/parallel.hpp"
 
 namespace wingbeat::app {
 namespace {
@@ -23,11 +24,9 @@ namespace {
 struct FitArguments {
   std::vector<std::string> overrides;
   std::string file, output, plot;
+  int threads = 0;
   bool json = false, compare_friction = false, no_profiles = false, force = false;
 };
-
-void show(const std::string& what) { fmt::print(stderr, "\r{:<78}", "fit: " + what); }
-void clear() { fmt::print(stderr, "\r{:<78}\r", ""); }
 
 int run(const FitArguments& arguments) {
   std::optional<PlotFormat> format;
@@ -46,19 +45,21 @@ int run(const FitArguments& arguments) {
   }
   if (format) plot.emplace("--plot", arguments.plot, OutputRules{plot_extensions, arguments.force});
 
-  const bool terminal = ::isatty(STDERR_FILENO) != 0;
-  std::function<void(const std::string&)> progress;
-  if (terminal) progress = show;
+  const ForEach for_each = [&](std::size_t count, const std::function<void(std::size_t)>& act) {
+    for_each_in_parallel(count, act, arguments.threads);
+  };
+  ProgressLine line("fit: ");
   FitResult result;
   std::vector<FrictionCandidate> candidates;
   try {
-    result = fit_bench(fit, progress);
-    if (arguments.compare_friction) candidates = compare_friction(fit, design_parameter, progress);
+    result = fit_bench(fit, line.shower(), for_each);
+    if (arguments.compare_friction) {
+      candidates = compare_friction(fit, design_parameter, line.shower(), for_each);
+    }
   } catch (const ParameterError& error) {
-    if (terminal) clear();
     throw InputError(arguments.file, 0, 0, error.key(), error.reason());
   }
-  if (terminal) clear();
+  line.clear();
 
   const std::string made_by =
       fmt::format("Fitted by wingbeat {} to {}", version, std::filesystem::path(arguments.file).filename().string());
@@ -99,16 +100,16 @@ int run(const FitArguments& arguments) {
 void add_fit(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("fit", "Fit a vehicle's parameters to bench measurements");
   const auto a = std::make_shared<FitArguments>();
-  add_input(command, a->file, "bench", "Bench file (TOML): vehicle, logs, free parameters", "BENCH");
+  add_input(command, a->file, InputKind::bench, "bench", "Bench file (TOML): vehicle, logs, free parameters", "BENCH");
   add_set(command, a->overrides);
-  command->add_option("-o,--output", a->output, "Write the fitted vehicle file, and FILE's .covariance.toml beside it")
-      ->type_name("FILE.toml");
+  add_file(command, "-o,--output", a->output, ".toml",
+           "Write the fitted vehicle file, and FILE's .covariance.toml beside it", "FILE.toml");
   command->add_flag("--compare-friction", a->compare_friction, "Fit every friction law to the same data and rank them");
   command->add_flag("--no-profiles", a->no_profiles,
                     "Skip the likelihood profiles: intervals from standard errors only");
   add_json(command, a->json);
-  command->add_option("--plot", a->plot, "Plot the residuals by condition to FILE.svg, .pdf or .png")
-      ->type_name("FILE");
+  add_threads(command, a->threads);
+  add_file(command, "--plot", a->plot, plot_extensions, "Plot the residuals by condition to FILE.svg, .pdf or .png");
   add_force(*command, a->force);
   command->footer(
       "Example:\n  wingbeat fit flapper -o fitted.toml\n\n"

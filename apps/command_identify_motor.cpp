@@ -16,6 +16,9 @@
 namespace wingbeat::app {
 namespace {
 
+constexpr const char* steel_cylinder = "inertia=solid-steel-cylinder";
+constexpr const char* typical_damping = "viscous_damping=typical";
+
 struct IdentifyMotorArguments {
   std::string file, output, frequency;
   std::vector<std::string> fallbacks;
@@ -34,13 +37,13 @@ int run(const IdentifyMotorArguments& arguments) {
   }
   MotorDatasheet sheet = read_datasheet(arguments.file);
   for (const std::string& fallback : arguments.fallbacks) {
-    if (fallback == "inertia=solid-steel-cylinder") {
+    if (fallback == steel_cylinder) {
       sheet.assume_steel_cylinder = true;
-    } else if (fallback == "viscous_damping=typical") {
+    } else if (fallback == typical_damping) {
       sheet.assume_typical_damping = true;
     } else {
       throw InputError("--fallback " + one_line(fallback), 0, 0, "",
-                       "must be inertia=solid-steel-cylinder or viscous_damping=typical");
+                       fmt::format("must be {} or {}", steel_cylinder, typical_damping));
     }
   }
   if (arguments.motor_shaft && arguments.output.empty()) {
@@ -70,17 +73,21 @@ int run(const IdentifyMotorArguments& arguments) {
 void add_identify_motor(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("identify-motor", "Find a motor's constants from its data sheet");
   const auto a = std::make_shared<IdentifyMotorArguments>();
-  add_input(command, a->file, "datasheet", "Data sheet (TOML)", "DATASHEET");
-  command->add_option("-o,--output", a->output, "Write the [motor] section of a vehicle file")->type_name("FILE.toml");
+  add_input(command, a->file, InputKind::datasheet, "datasheet", "Data sheet (TOML)", "DATASHEET");
+  add_file(command, "-o,--output", a->output, ".toml", "Write the [motor] section of a vehicle file", "FILE.toml");
   command->add_flag("--motor-shaft", a->motor_shaft,
                     "Write gear_ratio and the constants at the motor shaft, so that the ratio stays free");
   command->add_option("--frequency", a->frequency, "Flapping frequency in mind, for the inductance's effect")
       ->type_name("QUANTITY");
-  command
-      ->add_option("--fallback", a->fallbacks,
-                   "Assume what the sheet lacks: inertia=solid-steel-cylinder or viscous_damping=typical; repeatable")
-      ->type_name("NAME=VALUE")
-      ->allow_extra_args(false);
+  Values fallbacks;
+  for (const char* fallback : {steel_cylinder, typical_damping}) fallbacks.choices.push_back({fallback});
+  takes(command
+            ->add_option(
+                "--fallback", a->fallbacks,
+                fmt::format("Assume what the sheet lacks: {} or {}; repeatable", steel_cylinder, typical_damping))
+            ->type_name("NAME=VALUE")
+            ->allow_extra_args(false),
+        std::move(fallbacks));
   add_force(*command, a->force);
   add_json(command, a->json);
   command->footer(

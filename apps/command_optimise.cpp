@@ -2,17 +2,18 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "command.hpp"
 #include "options.hpp"
+#include "progress.hpp"
 #include "wingbeat/files/design_edit.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/optimise_data.hpp"
@@ -99,18 +100,17 @@ int run_front(const OptimiseArguments& arguments, const OptimiseFile& file, cons
     format = plot_format(arguments.plot);
     plot.emplace("--plot", arguments.plot, OutputRules{plot_extensions, arguments.force});
   }
-  const bool terminal = ::isatty(STDERR_FILENO) != 0;
+  ProgressLine line("optimise: ");
   std::function<void(std::uint64_t, std::uint64_t)> progress;
-  if (terminal) {
-    progress = [](std::uint64_t done, std::uint64_t all) {
-      const double percent = 100.0 * double(done) / double(all);
-      fmt::print(stderr, "\r{:<78}", fmt::format("optimise: {:.0f} % of {} designs", percent, all));
+  if (line.on_terminal()) {
+    progress = [&](std::uint64_t done, std::uint64_t all) {
+      line.show(fmt::format("{:.0f} % of {} designs", 100.0 * double(done) / double(all), all));
     };
   }
   if (!arguments.designs.empty()) check_designs(arguments, file);
   const ParetoStudy study = pareto_study(file);
   const ParetoResult result = pareto_front(study, load_evolution(), start_up_in_time(), for_each, progress);
-  if (terminal) fmt::print(stderr, "\r{:<78}\r", "");
+  line.clear();
   const bool found = result.outcome == ParetoResult::Outcome::found;
   if (found && output) {
     write_front(study, result, file.title, read_text_file(arguments.study), version, output->temporary());
@@ -145,28 +145,30 @@ int run(const OptimiseArguments& arguments) {
   if (!arguments.plot.empty()) {
     plot.emplace("--plot", arguments.plot, OutputRules{plot_extensions, arguments.force});
   }
-  const bool terminal = ::isatty(STDERR_FILENO) != 0;
-  const auto show = [&](const std::string& what) {
-    if (terminal) fmt::print(stderr, "\r{:<78}", what.empty() ? "" : "optimise: " + what);
-  };
+  ProgressLine line("optimise: ");
   const StartUp start_up = start_up_in_time();
 
   std::vector<MotorTrial> trials = trials_of(file);
   const bool single = trials.size() == 1 && !trials[0].motor;
   if (single) {
-    show("searching");
-    trials[0].result = optimise(trial_study(file, trials[0]), start_up, for_each);
+    // Screening, searches and the neighbourhood of the best are one call each.
+    const ForEach shown = [&](std::size_t count, const std::function<void(std::size_t)>& act) {
+      std::atomic<std::size_t> finished = 0;
+      line.show(fmt::format("0 of {} designs or searches", count));
+      for_each(count, [&](std::size_t n) {
+        act(n);
+        line.show(fmt::format("{} of {} designs or searches", ++finished, count));
+      });
+    };
+    trials[0].result = optimise(trial_study(file, trials[0]), start_up, shown);
   } else {
-    std::mutex mutex;
-    std::size_t finished = 0;
+    std::atomic<std::size_t> finished = 0;
     for_each(trials.size(), [&](std::size_t n) {
-      if (!trials[n].refused()) trials[n].result = optimise(trial_study(file, trials[n]), start_up);
-      const std::lock_guard<std::mutex> lock(mutex);
-      show(fmt::format("{} of {} {}", ++finished, trials.size(), file.motors.empty() ? "choices" : "motors"));
+      if (!trials[n].refused()) trials[n].result = optimise(trial_study(file, trials[n]), start_up, for_each);
+      line.show(fmt::format("{} of {} {}", ++finished, trials.size(), file.motors.empty() ? "choices" : "motors"));
     });
   }
-  show("");
-  if (terminal) fmt::print(stderr, "\r");
+  line.clear();
 
   const MotorTrial* best = best_trial(file, trials);
   if (output && is_data_set(arguments.output)) {
@@ -194,18 +196,15 @@ int run(const OptimiseArguments& arguments) {
 void add_optimise(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("optimise", "Find the best design within bounds and constraints");
   const auto a = std::make_shared<OptimiseArguments>();
-  add_input(command, a->study, "study", "Study file (TOML): objective, parameters, constraints, motors", "STUDY");
+  add_input(command, a->study, InputKind::study, "study",
+            "Study file (TOML): objective, parameters, constraints, motors", "STUDY");
   add_set(command, a->overrides);
-  command
-      ->add_option(
-          "-o,--output", a->output,
-          "Write the optimum as a vehicle file, or what was found on the way, and any front, as FILE.nc (NetCDF-4)")
-      ->type_name("FILE");
-  command
-      ->add_option("--plot", a->plot, "Draw the optimum and its neighbourhood, or the front, to FILE.svg, .pdf or .png")
-      ->type_name("FILE");
-  command->add_option("--designs", a->designs, "Write designs of the front as vehicle files: ends, knee, even steps")
-      ->type_name("FOLDER");
+  add_file(command, "-o,--output", a->output, ".toml .nc",
+           "Write the optimum as a vehicle file, or what was found on the way, and any front, as FILE.nc (NetCDF-4)");
+  add_file(command, "--plot", a->plot, plot_extensions,
+           "Draw the optimum and its neighbourhood, or the front, to FILE.svg, .pdf or .png");
+  add_folder(command, "--designs", a->designs, "Write designs of the front as vehicle files: ends, knee, even steps",
+             "FOLDER");
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
                     "Search outside the model's domain too (docs/domain.md)");
   add_force(*command, a->force);

@@ -71,7 +71,9 @@ int write_new(const NewArguments& a) {
 void add_keys(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("keys", "List the keys of vehicle files: unit, range, default, meaning");
   const auto a = std::make_shared<ReferenceArguments>();
-  command->add_option("filter", a->filter, "Only keys with this in their name, unit or meaning")->type_name("WORD");
+  takes(
+      command->add_option("filter", a->filter, "Only keys with this in their name, unit or meaning")->type_name("WORD"),
+      key_choices(""));
   add_json(command, a->json);
   command->footer("Example:\n  wingbeat keys torque");
   command->callback([a, &action] {
@@ -86,7 +88,9 @@ void add_keys(CLI::App& program, Action& action) {
 void add_metrics(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("metrics", "List the metrics of a run: name, unit, meaning");
   const auto a = std::make_shared<ReferenceArguments>();
-  command->add_option("filter", a->filter, "Only metrics with this in their name, unit or meaning")->type_name("WORD");
+  takes(command->add_option("filter", a->filter, "Only metrics with this in their name, unit or meaning")
+            ->type_name("WORD"),
+        metric_choices());
   add_json(command, a->json);
   command->footer("Example:\n  wingbeat metrics power");
   command->callback([a, &action] {
@@ -101,13 +105,11 @@ void add_metrics(CLI::App& program, Action& action) {
 void add_new(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("new", "Write a vehicle file to start from, every key explained");
   const auto a = std::make_shared<NewArguments>();
-  command
-      ->add_option("file", a->file,
-                   "NAME or NAME.toml (default vehicle.toml), never overwritten; - for standard output")
-      ->type_name("FILE");
+  add_file(command, "file", a->file, ".toml",
+           "NAME or NAME.toml (default vehicle.toml), never overwritten; - for standard output");
   std::string types(listed_names<TransmissionType>());
   types.insert(types.find(a->transmission) + a->transmission.size(), " (default)");
-  command->add_option("--transmission", a->transmission, types)->type_name("TYPE");
+  add_choice<TransmissionType>(command, "--transmission", a->transmission, types, "TYPE");
   command->footer("Example:\n  wingbeat new flapper.toml");
   command->callback([a, &action] { action = [a] { return write_new(*a); }; });
 }

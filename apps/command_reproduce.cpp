@@ -1,11 +1,11 @@
 // wingbeat reproduce PAPER: a paper's figures and statements, reproduced and assessed.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <memory>
 
 #include "command.hpp"
 #include "options.hpp"
+#include "progress.hpp"
 #include "wingbeat/files/optimise_file.hpp"
 #include "wingbeat/files/written_files.hpp"
 #include "wingbeat/reproduction/claims.hpp"
@@ -21,13 +21,6 @@ struct ReproduceArguments {
   int threads = 0;
 };
 
-void show_reproduction(double share, const std::string& what) {
-  constexpr int width = 24;
-  std::string bar(std::size_t(share * width), '#');
-  bar.resize(width, '.');
-  fmt::print(stderr, "\r{:<78}", fmt::format("[{}] {:5.1f} %  {} ", bar, 100.0 * share, what));
-}
-
 int run(const ReproduceArguments& arguments) {
   const KnownPaper& paper = known_paper(arguments.paper);
   ReproduceOptions options;
@@ -38,10 +31,14 @@ int run(const ReproduceArguments& arguments) {
   options.for_each = [&](std::size_t count, const std::function<void(std::size_t)>& act) {
     for_each_in_parallel(count, act, arguments.threads);
   };
-  const bool terminal = ::isatty(STDERR_FILENO) == 1;
-  if (terminal) options.progress = show_reproduction;
+  ProgressLine line("");
+  if (line.on_terminal()) {
+    options.progress = [&](double share, const std::string& what) {
+      line.show(fmt::format("{}  {} ", progress_bar(share), what));
+    };
+  }
   const ReproduceResult result = reproduce_paper(paper, options);
-  if (terminal) fmt::print(stderr, "\r{:<78}\r", "");
+  line.clear();
   take_written();  // the folder stands for its files, and the text names it
   if (arguments.json) {
     note_written(arguments.output);
@@ -59,10 +56,13 @@ int run(const ReproduceArguments& arguments) {
 void add_reproduce(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("reproduce", "Reproduce a paper's figures and assess its statements");
   const auto a = std::make_shared<ReproduceArguments>();
-  command->add_option("paper", a->paper, "Which paper: friction2022")->required()->type_name("PAPER");
-  command->add_option("-o,--output", a->output, "Folder to be written: new, empty, or of an earlier reproduction")
-      ->required()
-      ->type_name("DIR");
+  Values papers;
+  for (const KnownPaper& paper : known_papers()) papers.choices.push_back({std::string(paper.name)});
+  takes(command->add_option("paper", a->paper, "Which paper: friction2022")->required()->type_name("PAPER"),
+        std::move(papers));
+  add_folder(command, "-o,--output", a->output, "Folder to be written: new, empty, or of an earlier reproduction",
+             "DIR")
+      ->required();
   command->add_flag("--coarse", a->coarse, "Few points on each curve: a check in seconds; the assessment is the same");
   command->add_flag("--json", a->json, "Print the assessment as one JSON object instead of a table");
   add_threads(command, a->threads);

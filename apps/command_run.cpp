@@ -198,7 +198,7 @@ int run(const RunArguments& arguments) {
 void add_run(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("run", "Find the steady flapping of one vehicle and report its metrics");
   const auto a = std::make_shared<RunArguments>();
-  add_input(command, a->vehicle, "vehicle", "Vehicle file (TOML)", "VEHICLE");
+  add_input(command, a->vehicle, InputKind::vehicle, "vehicle", "Vehicle file (TOML)", "VEHICLE");
   add_set(command, a->overrides);
   CLI::Option* voltage =
       command->add_option("--voltage", a->voltage, "Supply voltage (pwm: while switched on), as \"3 V\"")
@@ -214,17 +214,17 @@ void add_run(CLI::App& program, Action& action) {
       ->excludes(voltage)
       ->excludes(frequency)
       ->excludes(lift);
-  command->add_option("--condition", a->condition, "air (default), vacuum or wingless")->type_name("CONDITION");
-  command->add_option("--method", a->method, "orbit (default), or transient: simulated from rest")->type_name("METHOD");
+  add_choice<Condition>(command, "--condition", a->condition, "air (default), vacuum or wingless", "CONDITION");
+  add_choice<Method>(command, "--method", a->method, "orbit (default), or transient: simulated from rest", "METHOD");
   command->add_option("--tolerance", a->tolerance, "Relative accuracy of every metric, 1e-12 to 1e-2 (default 1e-6)")
       ->type_name("NUMBER");
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
                     "Search for a frequency or a lift outside the model's domain too (docs/targets.md)");
   add_json(command, a->json);
-  command->add_option("--waveforms", a->waveforms, "Write one cycle to FILE.csv or FILE.nc")->type_name("FILE");
-  command->add_option("--plot", a->plot, "Plot one cycle to FILE.svg, .pdf or .png")->type_name("FILE");
-  command->add_option("--plot-power", a->plot_power, "Plot the power breakdown to FILE.svg, .pdf or .png")
-      ->type_name("FILE");
+  add_file(command, "--waveforms", a->waveforms, ".csv .nc", "Write one cycle to FILE.csv or FILE.nc");
+  add_file(command, "--plot", a->plot, plot_extensions, "Plot one cycle to FILE.svg, .pdf or .png");
+  add_file(command, "--plot-power", a->plot_power, plot_extensions,
+           "Plot the power breakdown to FILE.svg, .pdf or .png");
   add_force(*command, a->force);
   command->footer(
       "Example:\n"

@@ -1,6 +1,5 @@
 // wingbeat sweep STUDY: the steady flapping of many vehicles, into one data set.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +13,7 @@
 
 #include "command.hpp"
 #include "options.hpp"
+#include "progress.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/output_file.hpp"
 #include "wingbeat/files/units.hpp"
@@ -74,19 +74,11 @@ std::string rate(double designs, double seconds) {
   return grouped(std::uint64_t(std::llround(r / unit) * std::llround(unit)));
 }
 
-void show_sweep_progress(const SweepProgress& p) {
-  constexpr int width = 24;
-  const double share = double(p.done) / double(p.designs);
-  const int filled = int(share * width);
-  std::string bar(std::size_t(filled), '#');
-  bar.resize(width, '.');
+std::string progress_text(const SweepProgress& p) {
   const double left = double(p.designs - p.done) * p.seconds / double(std::max<std::uint64_t>(p.computed, 1));
-  const std::string line = fmt::format("\r[{}] {:5.1f} %  {} designs/s  {} left ", bar, 100.0 * share,
-                                       rate(double(p.computed), p.seconds), duration(left));
-  fmt::print(stderr, "{:<78}", line);
+  return fmt::format("{}  {} designs/s  {} left ", progress_bar(double(p.done) / double(p.designs)),
+                     rate(double(p.computed), p.seconds), duration(left));
 }
-
-void clear_progress() { fmt::print(stderr, "\r{:<78}\r", ""); }
 
 /// The swept values of one design: "transmission_crank_radius 5.000 mm, springs on".
 std::string description(const Sweep& sweep, std::uint64_t index) {
@@ -259,8 +251,8 @@ int sweep_on_rank_0(const SweepArguments& arguments, Ranks* ranks) {
   options.ranks = ranks;
   options.force = arguments.force;
   options.stop = [] { return interrupted != 0; };
-  const bool on_terminal = ::isatty(STDERR_FILENO) == 1;
-  if (on_terminal) options.progress = show_sweep_progress;
+  ProgressLine line("");
+  if (line.on_terminal()) options.progress = [&](const SweepProgress& p) { line.show(progress_text(p)); };
 
   const Study study = study_of(arguments);
   if (options.output.extension() != ".nc") {
@@ -276,7 +268,7 @@ int sweep_on_rank_0(const SweepArguments& arguments, Ranks* ranks) {
     plot.emplace("--plot", arguments.plot, OutputRules{plot_extensions, arguments.force});
   }
   const SweepResult result = run_sweep(study, options);
-  if (on_terminal) clear_progress();
+  line.clear();
   if (result.outcome == SweepResult::Outcome::stopped) {
     complain(fmt::format("stopped after {} of {} designs; they are kept in {}, and the same command resumes",
                          grouped(result.progress.done), grouped(result.progress.designs),
@@ -316,26 +308,33 @@ int sweep(const SweepArguments& arguments) {
 void add_sweep(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("sweep", "Compute very many vehicles into one data set");
   const auto a = std::make_shared<SweepArguments>();
-  add_input(command, a->study, "study", "Study file (TOML), or a data set of an earlier sweep (.nc)", "STUDY");
+  CLI::Option* study = add_input(command, a->study, InputKind::study, "study",
+                                 "Study file (TOML), or a data set of an earlier sweep (.nc)", "STUDY");
+  Values readable = taken_by(study);
+  readable.extensions.push_back(".nc");
+  takes(study, std::move(readable));
   add_set(command, a->overrides);
-  command->add_option("-o,--output", a->output, "Data set to be written (NetCDF-4)")->required()->type_name("FILE.nc");
+  add_file(command, "-o,--output", a->output, ".nc", "Data set to be written (NetCDF-4)", "FILE.nc")->required();
   command->add_option("--tolerance", a->tolerance, "Relative accuracy of every metric, instead of the study's")
       ->type_name("NUMBER");
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
                     "Designs outside the model's domain may be best (docs/domain.md)");
   add_json(command, a->json);
   add_threads(command, a->threads);
-  command->add_option("--isa", a->isa, "Instructions: sse2, avx2 or avx512 (default: the widest there is)")
-      ->type_name("NAME");
-  CLI::Option* plot =
-      command->add_option("--plot", a->plot, "Draw lines over one axis, contours over two, to FILE.svg, .pdf or .png")
-          ->type_name("FILE");
-  command
-      ->add_option("--plot-metric", a->plot_metrics,
-                   "What to draw, as lift_mean_n,frequency_hz (default: mean lift and system efficiency)")
-      ->delimiter(',')
-      ->needs(plot)
-      ->type_name("METRIC,...");
+  Values sets;
+  for (const auto& [name, set] : instruction_sets) sets.choices.push_back({std::string(name)});
+  takes(command->add_option("--isa", a->isa, "Instructions: sse2, avx2 or avx512 (default: the widest there is)")
+            ->type_name("NAME"),
+        std::move(sets));
+  CLI::Option* plot = add_file(command, "--plot", a->plot, plot_extensions,
+                               "Draw lines over one axis, contours over two, to FILE.svg, .pdf or .png");
+  takes(command
+            ->add_option("--plot-metric", a->plot_metrics,
+                         "What to draw, as lift_mean_n,frequency_hz (default: mean lift and system efficiency)")
+            ->delimiter(',')
+            ->needs(plot)
+            ->type_name("METRIC,..."),
+        metric_choices());
   command->add_option("--plot-metrics", a->plot_metrics)->delimiter(',')->needs(plot)->group("");  // the old spelling
   add_force(*command, a->force);
   command->footer(

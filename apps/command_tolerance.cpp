@@ -1,6 +1,5 @@
 // wingbeat tolerance STUDY: what uncertain parameters do to a vehicle's metrics.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <memory>
@@ -10,6 +9,7 @@
 
 #include "command.hpp"
 #include "options.hpp"
+#include "progress.hpp"
 #include "wingbeat/files/output_file.hpp"
 #include "wingbeat/files/tolerance_data.hpp"
 #include "wingbeat/files/tolerance_file.hpp"
@@ -27,11 +27,6 @@ struct ToleranceArguments {
   bool json = false, force = false;
   bool allow_extrapolation = false;
 };
-
-void show_tolerance_progress(const SweepProgress& p) {
-  const double percent = 100.0 * double(p.done) / double(p.designs);
-  fmt::print(stderr, "\r{:<78}", fmt::format("tolerance: {:.0f} % of {} vehicles", percent, p.designs));
-}
 
 int run(const ToleranceArguments& arguments) {
   std::optional<PlotFormat> format;
@@ -55,11 +50,12 @@ int run(const ToleranceArguments& arguments) {
   if (!arguments.output.empty()) output.emplace("-o", arguments.output, OutputRules{".nc", arguments.force});
   if (format) plot.emplace("--plot", arguments.plot, OutputRules{plot_extensions, arguments.force});
 
-  const bool terminal = ::isatty(STDERR_FILENO) != 0;
-  std::function<void(const SweepProgress&)> progress;
-  if (terminal) progress = show_tolerance_progress;
+  ProgressLine line("tolerance: ");
+  const auto progress = [&](const SweepProgress& p) {
+    line.show(fmt::format("{:.0f} % of {} vehicles", 100.0 * double(p.done) / double(p.designs), p.designs));
+  };
   const SweepColumns columns = solve_sweep(tolerance_sweep(study), arguments.threads, progress);
-  if (terminal) fmt::print(stderr, "\r{:<78}\r", "");
+  line.clear();
   const ToleranceResult result = assess_tolerance(study, columns, start_up_in_time());
 
   if (output) {
@@ -85,19 +81,19 @@ int run(const ToleranceArguments& arguments) {
 void add_tolerance(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("tolerance", "What uncertain parameters do to a vehicle's metrics");
   const auto a = std::make_shared<ToleranceArguments>();
-  add_input(command, a->study, "study", "Study file (TOML): vehicle, distributions", "STUDY");
+  add_input(command, a->study, InputKind::study, "study", "Study file (TOML): vehicle, distributions", "STUDY");
   add_set(command, a->overrides);
-  command->add_option("-o,--output", a->output, "Write samples, metrics and indices (NetCDF-4)")->type_name("FILE.nc");
+  add_file(command, "-o,--output", a->output, ".nc", "Write samples, metrics and indices (NetCDF-4)", "FILE.nc");
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
                     "Samples outside the model's domain count and may hover (docs/domain.md)");
   add_json(command, a->json);
   add_threads(command, a->threads);
-  CLI::Option* plot =
-      command->add_option("--plot", a->plot, "Draw a metric's distribution and sources to FILE.svg, .pdf or .png")
-          ->type_name("FILE");
-  command->add_option("--plot-metric", a->plot_metric, "Which one (default: lift to weight, else mean lift)")
-      ->needs(plot)
-      ->type_name("METRIC");
+  CLI::Option* plot = add_file(command, "--plot", a->plot, plot_extensions,
+                               "Draw a metric's distribution and sources to FILE.svg, .pdf or .png");
+  takes(command->add_option("--plot-metric", a->plot_metric, "Which one (default: lift to weight, else mean lift)")
+            ->needs(plot)
+            ->type_name("METRIC"),
+        metric_choices());
   add_force(*command, a->force);
   command->footer(
       "Example:\n  wingbeat tolerance tolerance-hover --plot tolerance.svg\n\n"

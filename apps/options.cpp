@@ -4,13 +4,23 @@
 
 #include <algorithm>
 #include <charconv>
+#include <map>
+#include <sstream>
 #include <system_error>
+#include <utility>
 
+#include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat::app {
 namespace {
+
+/// CLI11 has no room for it in an option, and the program has one tree of commands.
+std::map<const CLI::Option*, Values>& noted_values() {
+  static std::map<const CLI::Option*, Values> values;
+  return values;
+}
 
 std::vector<const CLI::App*> commands_of(const CLI::App& program) {
   return program.get_subcommands([](const CLI::App*) { return true; });
@@ -55,18 +65,67 @@ std::string unknown_option(const CLI::App& program, const CLI::App& command, con
 
 }  // namespace
 
-void add_input(CLI::App* command, std::string& file, const char* name, const char* description, const char* type) {
-  command
-      ->add_option(name, file,
-                   fmt::format("{}; - for standard input, or the name of one that comes with the program", description))
-      ->required()
-      ->type_name(type);
+void takes(CLI::Option* option, Values values) { noted_values()[option] = std::move(values); }
+
+Values key_choices(const char* end) {
+  Values values;
+  for (const auto& key : parameter_table<double>()) {
+    values.choices.push_back({std::string(key.path) + end, std::string(key.meaning)});
+  }
+  return values;
+}
+
+Values metric_choices() {
+  Values values;
+  for (const MetricInfo& metric : metric_table()) values.choices.push_back({metric.key, metric.long_name});
+  return values;
+}
+
+const Values& taken_by(const CLI::Option* option) {
+  static const Values any;
+  const auto found = noted_values().find(option);
+  return found == noted_values().end() ? any : found->second;
+}
+
+CLI::Option* add_input(CLI::App* command, std::string& file, InputKind kind, const char* name, const char* description,
+                       const char* type) {
+  CLI::Option* option = command->add_option(
+      name, file, fmt::format("{}; - for standard input, or the name of one that comes with the program", description));
+  option->required()->type_name(type);
+  Values values;
+  values.extensions = {".toml"};
+  values.shipped = kind;
+  takes(option, std::move(values));
+  return option;
+}
+
+CLI::Option* add_file(CLI::App* command, const char* names, std::string& file, std::string_view extensions,
+                      const char* description, const char* type) {
+  CLI::Option* option = command->add_option(names, file, description)->type_name(type);
+  Values values;
+  std::istringstream words{std::string(extensions)};
+  for (std::string extension; words >> extension;) values.extensions.push_back(extension);
+  takes(option, std::move(values));
+  return option;
+}
+
+CLI::Option* add_folder(CLI::App* command, const char* names, std::string& folder, const char* description,
+                        const char* type) {
+  CLI::Option* option = command->add_option(names, folder, description)->type_name(type);
+  Values values;
+  values.folder = true;
+  takes(option, std::move(values));
+  return option;
 }
 
 void add_set(CLI::App* command, std::vector<std::string>& overrides) {
-  command->add_option("--set", overrides, "Replace a key of the vehicle file; repeatable")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  CLI::Option* option = command->add_option("--set", overrides, "Replace a key of the vehicle file; repeatable");
+  option->type_name("KEY=VALUE")->allow_extra_args(false);
+  takes(option, key_choices("="));
+}
+
+void add_force(CLI::App& command, bool& force) {
+  command.add_flag("--force", force, "Replace existing files that wingbeat did not write; never a file that is read");
 }
 
 void add_json(CLI::App* command, bool& json) {

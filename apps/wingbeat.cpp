@@ -4,11 +4,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <exception>
+#include <memory>
 #include <new>
 #include <string>
 
@@ -23,26 +22,6 @@
 
 namespace wingbeat::app {
 
-const char* const version = WINGBEAT_VERSION;
-
-void print(std::string_view text) {
-  errno = 0;
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
-    throw std::runtime_error(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
-  }
-}
-
-void complain(std::string_view sentence) {
-  std::string line = "wingbeat: ";
-  for (const char c : sentence) line += c == '\n' ? ' ' : c;
-  line += '\n';
-  std::fputs(line.c_str(), stderr);
-}
-
-void add_force(CLI::App& command, bool& force) {
-  command.add_flag("--force", force, "Replace existing files that wingbeat did not write; never a file that is read");
-}
-
 namespace {
 
 /// A file opened later must not land on the number of a stream that the caller has closed.
@@ -53,27 +32,9 @@ bool fill_standard_streams() {
 }
 
 int run(int argc, char** argv) {
-  CLI::App program("Electromechanical model of flapping-wing micro air vehicles.", "wingbeat");
-  program.set_version_flag(
-      "--version", fmt::format("wingbeat {} ({}, {} build)", WINGBEAT_VERSION, WINGBEAT_COMPILER, WINGBEAT_BUILD_TYPE));
-  program.require_subcommand(1);
-  program.footer(
-      "Example:\n  wingbeat run friction2022\n\n"
-      "Exit status: 0 done, 1 something failed, 2 bad input or usage, 3 the vehicle does not flap.");
-  program.get_formatter()->column_width(34);
   Action action;
-  add_run(program, action);
-  add_compare(program, action);
-  add_sweep(program, action);
-  add_identify_motor(program, action);
-  add_fit(program, action);
-  add_tolerance(program, action);
-  add_optimise(program, action);
-  add_endurance(program, action);
-  add_reproduce(program, action);
-  add_new(program, action);
-  add_keys(program, action);
-  add_metrics(program, action);
+  const std::unique_ptr<CLI::App> tree = command_tree(action);
+  CLI::App& program = *tree;
   const auto named = [&](const CLI::App* command) { return command->get_name() == argv[1]; };
   if (argc > 1 && argv[1][0] != '-' && program.get_subcommands([&](CLI::App* c) { return named(c); }).empty()) {
     complain(unknown_command(program, argv[1]));

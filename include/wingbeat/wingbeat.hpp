@@ -4,6 +4,7 @@
 //   Design<double> design = read_design("friction2022.toml");       // or find_input's shipped ones; fields are numbers
 //   RunResult found = solve(design);                                // found.status, found.metrics[Metric::lift_mean]
 //   TransientResult start = simulate(design);                       // from rest, in time
+//   Simulation flight = simulation(design);                         // in time, step by step, under commanded voltages
 //   EquationsOfMotion(design).rates(t, state, derivatives);         // for an integrator of one's own
 //   DesignPoint slopes = gradient(design, {"transmission.crank_radius"});
 //   std::vector<EnsembleOutcome> all = solve_ensemble(designs);
@@ -24,6 +25,8 @@
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/study/design_point.hpp"
 #include "wingbeat/study/run.hpp"
+#include "wingbeat/time/simulation.hpp"
+#include "wingbeat/vehicle/pitch_motion.hpp"
 
 namespace wingbeat {
 
@@ -46,31 +49,40 @@ RunResult solve(const Design<double>& design, const RunOptions& options = {});
 TransientResult simulate(const Design<double>& design, TransientOptions options = {},
                          Condition condition = Condition::air);
 
-/// The equations of motion (1, 5-11, 21), for integrators of the user's own. The state is crank angle, not wrapped
-/// [rad], crank speed [rad/s] and, with an armature inductance, current [A]; of a direct drive stroke angle [rad],
-/// flapping velocity [rad/s] and current. The motor is as warm as its surroundings, as in simulate.
+/// The vehicle in time, to be stepped, with its supply and a motor as warm as its surroundings. Throws ParameterError.
+Simulation simulation(const Design<double>& design, const SimulationOptions& options = {},
+                      Condition condition = Condition::air);
+
+/// The equations of motion (1, 5-11, 21; of wings that pitch on hinges those of model.md section 12 as well), for
+/// integrators of the user's own. The state is crank angle, not wrapped [rad], crank speed [rad/s] and, with an
+/// armature inductance, current [A]; of a direct drive stroke angle [rad], flapping velocity [rad/s] and current;
+/// behind them, of wings that pitch on hinges, pitch angle [rad] and pitch velocity [rad/s]. The motor is as warm as
+/// its surroundings, as in simulate.
 ///
 /// The rates are continuous but for standstill, where friction changes its direction, and for what the supply does;
-/// they have kinks where the rod force, the stroke velocity or the torque of a lossy gearbox changes sign. Standstill
-/// itself is no part of them: where friction holds a crank, rates() is that of a crank about to turn forwards.
+/// they have kinks where the rod force, the stroke velocity, the pitch velocity or the torque of a lossy gearbox
+/// changes sign. Standstill itself is no part of them: where friction holds a crank, rates() is that of a crank about
+/// to turn forwards. Nor are the stops of hinges: rates() is that of wings that go on beyond them. Simulation knows
+/// both.
 class EquationsOfMotion {
  public:
-  /// Throws ParameterError for parameters out of range, and for wings that pitch on a hinge.
+  /// Throws ParameterError for parameters out of range.
   explicit EquationsOfMotion(const Design<double>& design, Condition condition = Condition::air);
 
   /// Of waveform_columns(), without units: "crank_angle", "crank_speed", "current".
-  std::vector<std::string> state_names() const;
-  std::size_t state_count() const { return inductive_ ? 3 : 2; }
+  std::vector<std::string> state_names() const { return time_state_names(vehicle_); }
+  std::size_t state_count() const { return 2u + std::size_t(inductive_) + 2u * std::size_t(pitching_); }
   /// Derivatives of the state at a time [s], under the supply or, given one, under a voltage that is driven in its
   /// place through the same resistance [V]. Both hold state_count() numbers.
   void rates(double time, const double* state, double* derivatives, std::optional<double> voltage = {}) const;
 
  private:
-  Motion<double> motion(const double* state, double current, double voltage) const;
+  /// Of wings that do not pitch the acceleration of the pitch is 0.
+  PitchMotion<double> motion(const double* state, double current, double voltage) const;
 
   Vehicle<double> vehicle_;
   Supply<double> supply_;
-  bool direct_, inductive_;
+  bool direct_, inductive_, pitching_;
 };
 
 /// The metrics and their exact derivatives by the numeric keys of the vehicle file: gradients[k][Metric] is SI per SI

@@ -109,7 +109,27 @@ auto watched(const py::object& progress, const Work& work) {
   return found.get();
 }
 
+/// What a study found, as `--json` and as the program's readable report.
+inline py::dict told(const std::string& json, const std::string& text) {
+  py::dict result;
+  result["json"] = json;
+  result["text"] = text;
+  return result;
+}
+
+/// The columns of these rows, in the order of waveform_columns().
+py::list columns_of(const std::vector<WaveformRow>& rows);
+
+/// Adds equations of motion and simulations to the module.
+void add_motion(py::module_& m);
+
+/// Adds motor curves, force coefficients and kinematics.
+void add_parts(py::module_& m);
+
 /// Adds arrays of designs, sweeps and the studies that files describe to the module.
 void add_studies(py::module_& m);
+
+/// Adds optima, fronts, and optima by functions of the user's own.
+void add_optima(py::module_& m);
 
 }  // namespace wingbeat::python

@@ -1,6 +1,5 @@
 // The compiled half of the Python package: the door of the library for Python. Nothing is computed here.
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,7 +7,9 @@
 #include "binding.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/files/design_parameter.hpp"
+#include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/waveform_file.hpp"
+#include "wingbeat/report/plot.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat::python {
@@ -119,16 +120,14 @@ void require_tolerance(double tolerance) {
 
 // ---- one vehicle
 
-/// The columns of a cycle, in the order of waveform_columns().
-py::list columns_of(const std::vector<WaveformRow>& rows) {
-  py::list columns;
-  for (const WaveformColumn& column : waveform_columns(rows)) {
-    std::vector<double> numbers;
-    numbers.reserve(rows.size());
-    for (const WaveformRow& row : rows) numbers.push_back(row.*column.value);
-    columns.append(array_of(std::move(numbers)));
+/// The mechanism as SVG, drawn into that file and read back; empty where it cannot be drawn.
+std::string mechanism_svg(const Design<double>& design, double stroke_amplitude, const std::string& file) {
+  try {
+    plot_mechanism(design, stroke_amplitude, PlotFormat::svg, file);
+  } catch (const std::runtime_error&) {
+    return {};
   }
-  return columns;
+  return read_text_file(file);
 }
 
 /// A search that ended short of its aim is no flapping of the kind asked for.
@@ -244,33 +243,18 @@ py::dict start_up(const Design<double>& design, const std::string& condition, do
   return result;
 }
 
-// ---- equations of motion
-
-/// Derivatives of states in rows, one column or many.
-py::array_t<double> rates(const EquationsOfMotion& equations, double time,
-                          const py::array_t<double, py::array::c_style | py::array::forcecast>& state,
-                          std::optional<double> voltage) {
-  const std::size_t rows = equations.state_count();
-  if (state.ndim() < 1 || state.ndim() > 2 || std::size_t(state.shape(0)) != rows) {
-    throw py::value_error("expected a state of " + std::to_string(rows) + " numbers, or an array with as many rows");
-  }
-  py::array_t<double> derivatives(std::vector<py::ssize_t>(state.shape(), state.shape() + state.ndim()));
-  if (state.ndim() == 1) {
-    equations.rates(time, state.data(), derivatives.mutable_data(), voltage);
-    return derivatives;
-  }
-  const auto from = state.unchecked<2>();
-  auto to = derivatives.mutable_unchecked<2>();
-  std::array<double, 3> column, slopes;
-  for (py::ssize_t n = 0; n < state.shape(1); ++n) {
-    for (std::size_t r = 0; r < rows; ++r) column[r] = from(py::ssize_t(r), n);
-    equations.rates(time, column.data(), slopes.data(), voltage);
-    for (std::size_t r = 0; r < rows; ++r) to(py::ssize_t(r), n) = slopes[r];
-  }
-  return derivatives;
-}
-
 }  // namespace
+
+py::list columns_of(const std::vector<WaveformRow>& rows) {
+  py::list columns;
+  for (const WaveformColumn& column : waveform_columns(rows)) {
+    std::vector<double> numbers;
+    numbers.reserve(rows.size());
+    for (const WaveformRow& row : rows) numbers.push_back(row.*column.value);
+    columns.append(array_of(std::move(numbers)));
+  }
+  return columns;
+}
 
 PYBIND11_MODULE(_core, m) {
   using namespace py::literals;
@@ -294,15 +278,14 @@ PYBIND11_MODULE(_core, m) {
   m.def("run", &run, "design"_a, "condition"_a, "method"_a, "tolerance"_a, "frequency"_a, "lift"_a,
         "allow_extrapolation"_a, "points"_a, "endurance"_a);
   m.def("gradient", &differentiate, "design"_a, "keys"_a, "condition"_a, "tolerance"_a, "frequency"_a, "endurance"_a);
+  m.def("mechanism_svg", &mechanism_svg, "design"_a, "stroke_amplitude"_a, "file"_a,
+        py::call_guard<py::gil_scoped_release>());
   m.def("energy_balance", &balance);
   m.def("simulate", &start_up);
-  py::class_<EquationsOfMotion>(m, "EquationsOfMotion")
-      .def(py::init([](const Design<double>& design, const std::string& condition) {
-        return EquationsOfMotion(design, choice<Condition>("condition", condition));
-      }))
-      .def("state_names", &EquationsOfMotion::state_names)
-      .def("rates", &rates);
+  add_motion(m);
+  add_parts(m);
   add_studies(m);
+  add_optima(m);
 }
 
 }  // namespace wingbeat::python

@@ -9,14 +9,11 @@
 #include "wingbeat/files/datasheet_file.hpp"
 #include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/files/netcdf.hpp"
-#include "wingbeat/files/optimise_file.hpp"
 #include "wingbeat/files/tolerance_file.hpp"
 #include "wingbeat/report/endurance_report.hpp"
 #include "wingbeat/report/fit_report.hpp"
 #include "wingbeat/report/identification_report.hpp"
-#include "wingbeat/report/optimise_report.hpp"
 #include "wingbeat/report/tolerance_report.hpp"
-#include "wingbeat/run/parallel.hpp"
 
 namespace wingbeat::python {
 namespace {
@@ -86,14 +83,6 @@ void write_sweep(const std::string& study, const Design<double>& vehicle, const 
 }
 
 // ---- studies
-
-/// What a study found, as `--json` and as the program's readable report.
-py::dict told(const std::string& json, const std::string& text) {
-  py::dict result;
-  result["json"] = json;
-  result["text"] = text;
-  return result;
-}
 
 py::dict endurance(const Design<double>& design, bool allow_extrapolation) {
   if (!has_battery(design.supply.type)) {
@@ -170,37 +159,6 @@ py::dict tolerance(const std::string& file, const std::vector<std::string>& over
   return told(json_tolerance(study, found), text_tolerance(study, found));
 }
 
-/// Of one objective.
-py::dict find_optimum(const std::string& file, const std::vector<std::string>& overrides, bool allow_extrapolation,
-                      int threads) {
-  forget_files();
-  OptimiseFile study = read_optimise_study(file, overrides);
-  if (!study.objectives.empty()) {
-    throw InputError(file, 0, 0, "objective", "several objectives give a front: wingbeat optimise computes it");
-  }
-  study.study.allow_extrapolation |= allow_extrapolation;
-  std::vector<MotorTrial> trials = trials_of(study);
-  watched(py::none(), [&](const Watch& watch) {
-    const ForEach for_each = [&](std::size_t count, const std::function<void(std::size_t)>& act) {
-      const auto unless_stopped = [&](std::size_t n) {
-        if (watch.stopped()) throw Interrupted();
-        act(n);
-      };
-      for_each_in_parallel(count, unless_stopped, threads);
-    };
-    for (MotorTrial& trial : trials) {
-      if (!trial.refused()) trial.result = optimise(trial_study(study, trial), start_up_in_time(), for_each);
-    }
-    return true;
-  });
-  const MotorTrial* best = best_trial(study, trials);
-  const bool single = trials.size() == 1 && !trials[0].motor;
-  py::dict result = single ? told(json_optimum(study, trials[0].result), text_optimum(study, trials[0].result))
-                           : told(json_motors(study, trials), text_motors(study, trials));
-  result["design"] = best ? py::cast(best->result.design) : py::none();
-  return result;
-}
-
 }  // namespace
 
 void add_studies(py::module_& m) {
@@ -210,7 +168,6 @@ void add_studies(py::module_& m) {
   m.def("identify_motor", &identify);
   m.def("fit", &fit);
   m.def("tolerance", &tolerance);
-  m.def("optimise", &find_optimum);
 }
 
 }  // namespace wingbeat::python

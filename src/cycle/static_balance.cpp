@@ -129,17 +129,55 @@ std::vector<LockInterval> lock_intervals(const Vehicle<double>& v) {
   return found;
 }
 
-BalancedSpeed<double> balanced_speed(const Vehicle<double>& v) {
+namespace {
+
+/// Evenly spaced crank angles, the first of them zero; none without wings.
+std::vector<LoadPlace<double>> load_places(const Vehicle<double>& v) {
+  std::vector<LoadPlace<double>> places;
+  if (!(v.wing_inertia > 0.0)) return places;
   const UnitCircle& circle = unit_circle();
-  constexpr std::size_t stride = 4, count = angle_count / stride;
-  std::array<LoadPlace<double>, count> places;
-  if (!(v.wing_inertia > 0.0)) return balanced_speed(v, {});
-  for (std::size_t n = 0; n < count; ++n) {
-    const CrankKinematics<double> k =
-        crank_kinematics(v.transmission, circle.sine[stride * n], circle.cosine[stride * n]);
-    places[n] = load_place(v, k, spring_moment(v, k));
+  constexpr std::size_t stride = 4;
+  places.reserve(angle_count / stride);
+  for (std::size_t n = 0; n < angle_count; n += stride) {
+    const Configuration<double> at = configuration_at(v, circle.sine[n], circle.cosine[n]);
+    places.push_back(load_place(v, at.kinematics, at.spring_moment));
   }
+  return places;
+}
+
+}  // namespace
+
+BalancedSpeed<double> balanced_speed(const Vehicle<double>& v) {
+  const std::vector<LoadPlace<double>> places = load_places(v);
   return balanced_speed(v, places);
+}
+
+OrbitGuess guess_orbit(const Vehicle<double>& v) {
+  const std::vector<LoadPlace<double>> places = load_places(v);
+  OrbitGuess guess{balanced_speed(v, places), 0.0, 0.0, 1.0};
+  const double balanced = guess.balanced.slowest;
+  guess.crank_speed = guess.earlier_speed = balanced;
+  if (places.empty() || !(guess.balanced.count > 0.0)) return guess;
+  const double all_springs = v.wing_count * v.spring.stiffness;
+  const auto inertia_of = [&](double slope) { return v.motor.inertia + v.wing_count * v.wing_inertia * square(slope); };
+  const auto elastic_of = [&](double moment) { return all_springs > 0.0 ? 0.5 * square(moment) / all_springs : 0.0; };
+  double mean_inertia = 0.0, mean_elastic = 0.0;
+  for (const LoadPlace<double>& p : places) {
+    mean_inertia += inertia_of(p.slope) / double(places.size());
+    mean_elastic += elastic_of(p.spring) / double(places.size());
+  }
+  const auto speed_at = [&](double angle) {
+    const Configuration<double> at = configuration_at(v, std::sin(angle), std::cos(angle));
+    const double kinetic = 0.5 * mean_inertia * square(balanced) + mean_elastic - elastic_of(at.spring_moment);
+    // Strong springs may hold more energy than the cycle has.
+    return std::sqrt(std::max(2.0 * kinetic / inertia_of(at.kinematics.stroke_slope), square(balanced / 3.0)));
+  };
+  const double lag = v.motor.armature_inductance / circuit_resistance(v);
+  guess.crank_speed = speed_at(0.0);
+  guess.earlier_speed = speed_at(-std::min(lag * balanced, 1.0));
+  constexpr double dwell = 1.2;  // a crank spends more time where it is slow
+  guess.multiplier = std::exp(std::min(dwell * two_pi * guess.balanced.slope / (mean_inertia * balanced), 0.0));
+  return guess;
 }
 
 }  // namespace wingbeat

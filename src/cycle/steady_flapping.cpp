@@ -19,15 +19,15 @@ class CrankSearch : public OrbitSearch<CrankSystem<double, N>> {
       : OrbitSearch<CrankSystem<double, N>>(
             {vehicle, 1e-4 * no_load_speed(vehicle), vehicle.voltage / circuit_resistance(vehicle)}, options) {}
 
-  /// One search from crank speed omega at crank angle zero; without a current, the quasi-steady one is assumed.
-  bool from(double omega, double current = absent) {
+  /// One search from crank speed omega at crank angle zero, with the quasi-steady current of `earlier_speed`.
+  bool from(double omega, double earlier_speed, double expected_multiplier = 1.0) {
     const auto& system = this->system();
     if (!(omega > system.speed_floor)) return false;
     if constexpr (N == 2) {
-      return this->search(
-          {omega, std::isfinite(current) ? current : algebraic_current(system.vehicle, system.vehicle.voltage, omega)});
+      return this->search({omega, algebraic_current(system.vehicle, system.vehicle.voltage, earlier_speed)},
+                          expected_multiplier);
     } else {
-      return this->search({omega});
+      return this->search({omega}, expected_multiplier);
     }
   }
   /// The same from where a simulation in time has settled.
@@ -51,11 +51,12 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
   CrankSearch<N> orbit(vehicle, options);
   bool found = false, ambiguous = false;
   if (!statics.can_jam()) {
-    const BalancedSpeed<double> balanced = balanced_speed(vehicle);
-    found = balanced.count > 0.0 && orbit.from(balanced.slowest);
+    const OrbitGuess guess = guess_orbit(vehicle);
+    found = guess.balanced.count > 0.0 && orbit.from(guess.crank_speed, guess.earlier_speed, guess.multiplier);
     // The fastest start: if cycles from there fail, no slower one can be expected to last.
-    if (!found) found = orbit.from(no_load_speed(vehicle));
-    ambiguous = balanced.count > 1.0 || (found && hardly_returns(vehicle, orbit.multiplier(), 1.0 / orbit.frequency()));
+    if (!found) found = orbit.from(no_load_speed(vehicle), no_load_speed(vehicle));
+    ambiguous =
+        guess.balanced.count > 1.0 || (found && hardly_returns(vehicle, orbit.multiplier(), 1.0 / orbit.frequency()));
   }
 
   std::optional<StartUpOutcome> outcome;

@@ -96,6 +96,11 @@ TransientResult simulate(const Design<double>& design, TransientOptions options,
   return simulate_start_up(switched_on(resolve(design, condition)), options);
 }
 
+Simulation simulation(const Design<double>& design, const SimulationOptions& options, Condition condition) {
+  validate(design);
+  return Simulation(switched_on(resolve(design, condition)), design.supply, options);
+}
+
 DesignPoint gradient(const Design<double>& design, std::span<const std::string> keys,
                      const DesignPointOptions& options) {
   validate(design);

@@ -9,22 +9,11 @@ EquationsOfMotion::EquationsOfMotion(const Design<double>& design, Condition con
     : supply_(design.supply), direct_(drive_of(design).alternating) {
   validate(design);
   vehicle_ = switched_on(resolve(design, condition));
-  if (pitches(vehicle_)) {
-    throw ParameterError("pitch.stiffness",
-                         "equations of motion for integrators of one's own are those of wings under "
-                         "the pitch law");
-  }
   inductive_ = vehicle_.motor.armature_inductance > 0.0;
+  pitching_ = pitches(vehicle_);
 }
 
-std::vector<std::string> EquationsOfMotion::state_names() const {
-  std::vector<std::string> names{"crank_angle", "crank_speed"};
-  if (direct_) names = {"stroke_angle", "flapping_velocity"};
-  if (inductive_) names.emplace_back("current");
-  return names;
-}
-
-Motion<double> EquationsOfMotion::motion(const double* state, double current, double voltage) const {
+PitchMotion<double> EquationsOfMotion::motion(const double* state, double current, double voltage) const {
   const double theta = state[0], omega = state[1];
   const CrankKinematics<double> k =
       direct_ ? direct_kinematics<double>() : crank_kinematics(vehicle_.transmission, std::sin(theta), std::cos(theta));
@@ -33,14 +22,24 @@ Motion<double> EquationsOfMotion::motion(const double* state, double current, do
   Branch<double> branch{1.0, 1.0, sign_of(omega), 1.0};
   branch.stroke = sign_of(k.stroke_slope * omega);
   branch.pitching = sign_of(pitch_margin(vehicle_.wings, std::abs(k.stroke_slope * omega)));
-  const auto on_branch = [&] {
-    const Instant<double> at = instant_at(vehicle_, k, N_k_beta, omega, current, voltage, branch.stroke,
-                                          branch.direction, branch.pitching, branch.gear);
-    branch.force = sign_of(at.force_switch);
-    return motion_on(vehicle_, at, current, voltage, branch);
+  const auto on_branch = [&]() -> PitchMotion<double> {
+    if (!pitching_) {
+      const Instant<double> at = instant_at(vehicle_, k, N_k_beta, omega, current, voltage, branch.stroke,
+                                            branch.direction, branch.pitching, branch.gear);
+      branch.force = sign_of(at.force_switch);
+      return {motion_on(vehicle_, at, current, voltage, branch), 0.0, 0.0, 0.0};
+    }
+    const double psi = state[state_count() - 2], velocity = state[state_count() - 1];
+    const auto on_force_branch = [&] {
+      return pitch_motion_on<Vehicle, double>(vehicle_, vehicle_.pitch, k, N_k_beta, omega, current, voltage, psi,
+                                              velocity, branch, {sign_of(velocity), 1.0});
+    };
+    // The sign of the force is the same on either branch.
+    branch.force = sign_of(on_force_branch().stroke.force_switch);
+    return on_force_branch();
   };
-  Motion<double> m = on_branch();
-  if (m.gear_torque < 0.0 && !direct_) {
+  PitchMotion<double> m = on_branch();
+  if (m.stroke.gear_torque < 0.0 && !direct_) {
     branch.gear = -1.0;
     m = on_branch();
   }
@@ -54,10 +53,13 @@ void EquationsOfMotion::rates(double time, const double* state, double* derivati
         direct_ ? vehicle_.voltage * std::sin(two_pi * vehicle_.drive_frequency * time) : voltage_at(supply_, time);
   }
   const double current = inductive_ ? state[2] : algebraic_current(vehicle_, *voltage, state[1]);
-  const Motion<double> m = motion(state, current, terminal_voltage(vehicle_, *voltage, current));
+  const PitchMotion<double> m = motion(state, current, terminal_voltage(vehicle_, *voltage, current));
   derivatives[0] = state[1];
-  derivatives[1] = m.crank_acceleration;
-  if (inductive_) derivatives[2] = m.inductive_voltage / vehicle_.motor.armature_inductance;
+  derivatives[1] = m.stroke.crank_acceleration;
+  if (inductive_) derivatives[2] = m.stroke.inductive_voltage / vehicle_.motor.armature_inductance;
+  if (!pitching_) return;
+  derivatives[state_count() - 2] = state[state_count() - 1];
+  derivatives[state_count() - 1] = m.acceleration;
 }
 
 }  // namespace wingbeat

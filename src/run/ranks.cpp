@@ -3,9 +3,10 @@
 #include <dlfcn.h>
 
 #include <cstdlib>
-#include <filesystem>
 #include <stdexcept>
 #include <string>
+
+#include "module_symbol.hpp"
 
 namespace wingbeat {
 namespace {
@@ -26,17 +27,10 @@ void check(int error) {
 
 std::unique_ptr<Ranks> Ranks::join() {
   if (!started_as_one_of_several()) return nullptr;
-  std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  const std::string library = (program.parent_path() / "wingbeat-mpi.so").string();
   // Open MPI's own modules look for its symbols among the global ones.
-  void* const handle = ::dlopen(library.c_str(), RTLD_NOW | RTLD_GLOBAL);
-  const void* const symbol = handle ? ::dlsym(handle, "wingbeat_rank_module") : nullptr;
-  if (!symbol) {
-    const char* reason = ::dlerror();
-    throw std::runtime_error(std::string("started as one of several processes, but without MPI: ") +
-                             (reason ? reason : library));
-  }
+  std::string reason;
+  const void* const symbol = module_symbol("wingbeat-mpi", "wingbeat_rank_module", RTLD_GLOBAL, reason);
+  if (!symbol) throw std::runtime_error("started as one of several processes, but without MPI: " + reason);
   return std::unique_ptr<Ranks>(new Ranks(*static_cast<const RankModule*>(symbol)));
 }
 

@@ -5,7 +5,9 @@
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace wingbeat::solver {
 
@@ -27,7 +29,63 @@ bool solve_linear(int n, double* matrix, int count, double* right_hand_sides) {
   return B.allFinite();
 }
 
+namespace {
+
+/// The inverse of a small matrix, its size known at compile time, by Gauss and Jordan's elimination. Rows are scaled
+/// first, so that stiff ones among others do no harm.
+template <int n>
+bool invert_fixed(double* a) {
+  double scale[n];
+  for (int row = 0; row < n; ++row) {
+    double largest = 0.0;
+    for (int k = 0; k < n; ++k) largest = std::max(largest, std::abs(a[row * n + k]));
+    if (!(largest > 0.0 && largest < HUGE_VAL)) return false;
+    scale[row] = 1.0 / largest;
+    for (int k = 0; k < n; ++k) a[row * n + k] *= scale[row];
+  }
+  const Eigen::Map<const Eigen::Matrix<double, n * n, 1>> all(a);
+  const double before = all.norm();
+  int from[n];
+  for (int k = 0; k < n; ++k) {
+    int pivot = k;
+    for (int row = k + 1; row < n; ++row) {
+      if (std::abs(a[row * n + k]) > std::abs(a[pivot * n + k])) pivot = row;
+    }
+    from[k] = pivot;
+    if (pivot != k) std::swap_ranges(a + k * n, a + (k + 1) * n, a + pivot * n);
+    const double inverse = 1.0 / a[k * n + k];
+    if (!std::isfinite(inverse)) return false;
+    a[k * n + k] = 1.0;
+    double pivot_row[n];
+    for (int j = 0; j < n; ++j) pivot_row[j] = a[k * n + j] *= inverse;
+    for (int row = 0; row < n; ++row) {
+      if (row == k) continue;
+      const double factor = a[row * n + k];
+      a[row * n + k] = 0.0;
+      for (int j = 0; j < n; ++j) a[row * n + j] -= factor * pivot_row[j];
+    }
+  }
+  for (int k = n - 1; k >= 0; --k) {
+    if (from[k] == k) continue;
+    for (int row = 0; row < n; ++row) std::swap(a[row * n + k], a[row * n + from[k]]);
+  }
+  if (!(before * all.norm() < 1e15)) return false;
+  for (int row = 0; row < n; ++row) {
+    for (int k = 0; k < n; ++k) a[row * n + k] *= scale[k];
+  }
+  return true;
+}
+
+}  // namespace
+
 bool invert(int n, double* matrix) {
+  switch (n) {
+    case 1: return invert_fixed<1>(matrix);
+    case 2: return invert_fixed<2>(matrix);
+    case 5: return invert_fixed<5>(matrix);
+    case 10: return invert_fixed<10>(matrix);
+    default: break;
+  }
   Eigen::Map<RowMajor> A(matrix, n, n);
   const Eigen::PartialPivLU<RowMajor> lu(A);
   if (!(lu.rcond() > 1e-15)) return false;

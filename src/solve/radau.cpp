@@ -66,11 +66,32 @@ RadauTableau make_tableau() {
   for (int k = 0; k < s; ++k) conditions[k] = 1.0L / (k + 1) - (k == 0 ? start_weight : 0.0L);
   const ExactCollocation<s>::Vector embedded = exact.powers.fullPivLu().solve(conditions);
 
+  // One of order 3 with the first, third and last stage.
+  Eigen::Matrix<long double, 3, 3> few;
+  Eigen::Matrix<long double, 3, 1> few_conditions;
+  for (int k = 0; k < 3; ++k) {
+    for (int j = 0; j < 3; ++j) few(k, j) = exact.powers(k, 2 * j);
+    few_conditions[k] = 1.0L / (k + 1);
+  }
+  const Eigen::Matrix<long double, 3, 1> third = few.fullPivLu().solve(few_conditions);
+
+  ExactCollocation<s>::Vector error3, error5;
+  for (int i = 0; i < s; ++i) {
+    error3[i] = (i % 2 == 0 ? third[i / 2] : 0.0L) - exact.a(s - 1, i);
+    error5[i] = embedded[i] - exact.a(s - 1, i);
+  }
+  // The stages' rates are h^-1 A^-1 times what their states are off the step's start by.
+  const ExactCollocation<s>::Vector state_error3 = exact.a.transpose().fullPivLu().solve(error3);
+  const ExactCollocation<s>::Vector state_error5 = exact.a.transpose().fullPivLu().solve(error5);
+
   RadauTableau t;
   t.start_weight = double(start_weight);
   for (int i = 0; i < s; ++i) {
     t.c[i] = double(exact.c[i]);
-    t.error[i] = double(embedded[i] - exact.a(s - 1, i));
+    t.error3[i] = double(error3[i]);
+    t.error5[i] = double(error5[i]);
+    t.state_error3[i] = double(state_error3[i]);
+    t.state_error5[i] = double(state_error5[i]);
     for (int j = 0; j < s; ++j) t.a[i][j] = double(exact.a(i, j));
   }
   return t;

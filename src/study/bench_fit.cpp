@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <set>
 
 #include "study/bench_fitter.hpp"
@@ -17,8 +18,25 @@ namespace {
 
 using detail::format;
 
-void tell(const std::function<void(const std::string&)>& progress, const std::string& text) {
-  if (progress) progress(text);
+/// Calls `act` for 0 to count - 1, each with a copy of the fitter. Returns how many orbits the copies computed.
+int on_copies(const BenchFitter& fitter, std::size_t count, const char* what, const FitProgress& progress,
+              const ForEach& for_each, const std::function<void(BenchFitter&, std::size_t)>& act) {
+  std::mutex mutex;
+  std::size_t finished = 0;
+  int evaluations = 0;
+  const auto tell = [&] {
+    if (progress) progress(format("%s %zu of %zu", what, std::min(finished + 1, count), count));
+  };
+  tell();
+  for_all(for_each, count, [&](std::size_t n) {
+    BenchFitter own = fitter;
+    act(own, n);
+    const std::lock_guard<std::mutex> lock(mutex);
+    evaluations += own.bench().evaluations() - fitter.bench().evaluations();
+    ++finished;
+    tell();
+  });
+  return evaluations;
 }
 
 }  // namespace
@@ -79,10 +97,10 @@ void check_fit(const BenchFit& fit) {
   }
 }
 
-FitResult run_fit(const BenchFit& fit, bool reweight, const std::function<void(const std::string&)>& progress) {
+FitResult run_fit(const BenchFit& fit, bool reweight, const FitProgress& progress, const ForEach& for_each) {
   check_fit(fit);
   FitResult result;
-  BenchFitter fitter(fit);
+  BenchFitter fitter(fit, for_each);
   BenchModel& bench = fitter.bench();
   std::vector<double> start;
   for (const FreeParameter& p : fit.parameters) start.push_back(p.start);
@@ -94,19 +112,21 @@ FitResult run_fit(const BenchFit& fit, bool reweight, const std::function<void(c
     if (bench.jacobian().col(Eigen::Index(k)).cwiseAbs().maxCoeff() > 0.0) free.push_back(k);
   }
   const LatinHypercube samples{std::uint64_t(std::max(fit.starts - 1, 1)), fit.seed};
-  BenchFitter::Outcome best;
-  std::vector<double> costs;
-  for (int n = 0; n < fit.starts; ++n) {
-    tell(progress, format("start %d of %d", n + 1, fit.starts));
+  std::vector<BenchFitter::Outcome> outcomes(std::size_t(fit.starts));
+  result.evaluations += on_copies(fitter, outcomes.size(), "start", progress, for_each, [&](auto& own, std::size_t n) {
     std::vector<double> x = start;
     for (const std::size_t k : free) {
       if (n == 0) break;
       x[k] = fit.parameters[k].lower +
              samples(std::uint64_t(n - 1), k) * (fit.parameters[k].upper - fit.parameters[k].lower);
     }
-    const BenchFitter::Outcome outcome = fitter.solve(x, free);
+    outcomes[n] = own.solve(x, free);
+  });
+  BenchFitter::Outcome best = outcomes.front();
+  std::vector<double> costs;
+  for (const BenchFitter::Outcome& outcome : outcomes) {
     costs.push_back(outcome.cost);
-    if (n == 0 || outcome.cost < best.cost) best = outcome;
+    if (outcome.cost < best.cost) best = outcome;
   }
   for (const double cost : costs) {
     const bool same = cost - best.cost < 1e-3 * (1.0 + best.cost);
@@ -160,12 +180,17 @@ FitResult run_fit(const BenchFit& fit, bool reweight, const std::function<void(c
     for (const std::size_t f : free) {
       if (result.parameters[f].value) determined.push_back(f);
     }
-    for (const std::size_t f : determined) {
-      tell(progress, "profile of " + result.parameters[f].key);
-      profile_likelihood(fit, fitter, best.x, best.cost, determined, f, quantile, result.parameters[f]);
+    std::vector<ProfileSide> sides(2 * determined.size());
+    result.evaluations += on_copies(fitter, sides.size(), "side of the profiles", progress, for_each,
+                                    [&](BenchFitter& own, std::size_t n) {
+                                      sides[n] = profile_likelihood(fit, own, best.x, best.cost, determined, result,
+                                                                    determined[n / 2], n % 2 == 0 ? -1 : 1, quantile);
+                                    });
+    for (std::size_t n = 0; n < determined.size(); ++n) {
+      add_profile(sides[2 * n], sides[2 * n + 1], best.x[determined[n]], result.parameters[determined[n]]);
     }
   }
-  result.evaluations = bench.evaluations();
+  result.evaluations += bench.evaluations();
   return result;
 }
 
@@ -188,8 +213,9 @@ std::string condition_name(Condition condition, bool springs) {
   return springs ? std::string(name) + " with springs" : name;
 }
 
-FitResult fit_bench(const BenchFit& fit, const std::function<void(const std::string&)>& progress) {
-  return run_fit(fit, true, progress);
+FitResult fit_bench(const BenchFit& fit, const std::function<void(const std::string&)>& progress,
+                    const ForEach& for_each) {
+  return run_fit(fit, true, progress, for_each);
 }
 
 }  // namespace wingbeat

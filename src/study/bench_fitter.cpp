@@ -59,7 +59,8 @@ class BenchFitter::Residual : public ceres::CostFunction {
   std::size_t o_;
 };
 
-BenchFitter::BenchFitter(const BenchFit& fit) : fit_(fit), bench_(fit), deviations_(bench_.observations().size()) {
+BenchFitter::BenchFitter(const BenchFit& fit, const ForEach& for_each)
+    : fit_(fit), bench_(fit, for_each), deviations_(bench_.observations().size()) {
   for (std::size_t o = 0; o < deviations_.size(); ++o) estimated_[bench_.observations()[o].quantity] = 0.0;
   first_deviations();
 }

@@ -16,8 +16,8 @@ namespace wingbeat {
 
 class BenchFitter {
  public:
-  /// Keeps a reference to the fit.
-  explicit BenchFitter(const BenchFit& fit);
+  /// Keeps a reference to the fit. Rows are solved by `for_each`. A copy goes on by itself from where this one stands.
+  explicit BenchFitter(const BenchFit& fit, const ForEach& for_each = {});
 
   BenchModel& bench() { return bench_; }
   const BenchModel& bench() const { return bench_; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace wingbeat {
 namespace {
@@ -32,7 +33,7 @@ double standing_still(const Observation& o, const Vehicle<double>& vehicle, cons
 
 }  // namespace
 
-BenchModel::BenchModel(const BenchFit& fit) : fit_(fit) {
+BenchModel::BenchModel(const BenchFit& fit, const ForEach& for_each) : fit_(fit), for_each_(for_each) {
   for (std::size_t l = 0; l < fit.logs.size(); ++l) {
     const BenchLog& log = fit.logs[l];
     for (std::size_t r = 0; r < log.rows.size(); ++r) {
@@ -55,9 +56,12 @@ BenchModel::BenchModel(const BenchFit& fit) : fit_(fit) {
   voltage_slopes_.assign(points_.size(), {});
   predictions_.resize(points_.size());
   orbits_.resize(points_.size());
+  evaluations_.assign(points_.size(), 0);
   fitted_.assign(observations_.size(), absent);
   jacobian_ = Eigen::MatrixXd::Zero(Eigen::Index(observations_.size()), Eigen::Index(fit.parameters.size()));
 }
+
+int BenchModel::evaluations() const { return std::accumulate(evaluations_.begin(), evaluations_.end(), 0); }
 
 Design<double> BenchModel::design_at(const std::vector<double>& x) const {
   Design<double> design = fit_.design;
@@ -70,7 +74,7 @@ void BenchModel::evaluate(const std::vector<double>& x, bool derivatives) {
     x_ = x;
     derivatives_known_ = false;
     const Design<double> design = design_at(x);
-    for (std::size_t n = 0; n < points_.size(); ++n) evaluate_point(n, design);
+    for_all(for_each_, points_.size(), [&](std::size_t n) { evaluate_point(n, design); });
   }
   if (derivatives && !derivatives_known_) {
     jacobian_.setZero();
@@ -82,18 +86,17 @@ void BenchModel::evaluate(const std::vector<double>& x, bool derivatives) {
       }
       Design<GradientJet> springless = seeded;
       springless.spring = {};
-      for (std::size_t n = 0; n < points_.size(); ++n) {
-        if (predictions_[n].reached) {
-          differentiate_point(n, points_[n].springs ? seeded : springless, first, count);
-        }
-      }
+      for_all(for_each_, points_.size(), [&](std::size_t n) {
+        if (!predictions_[n].reached) return;
+        differentiate_point(n, points_[n].springs ? seeded : springless, first, count);
+      });
     }
     derivatives_known_ = true;
   }
 }
 
-SteadyFlapping BenchModel::orbit(Vehicle<double>& vehicle, double voltage, const Reporting& reporting) {
-  ++evaluations_;
+SteadyFlapping BenchModel::orbit(std::size_t n, Vehicle<double>& vehicle, double voltage, const Reporting& reporting) {
+  ++evaluations_[n];
   vehicle.voltage = voltage;
   return find_steady_flapping(vehicle, {.tolerance = fit_.tolerance, .stability = false, .reporting = reporting});
 }
@@ -107,7 +110,7 @@ void BenchModel::evaluate_point(std::size_t n, Design<double> design) {
   Prediction& prediction = predictions_[n];
   prediction.refused.reset();
   if (point.given == Given::voltage) {
-    found = orbit(vehicle, point.value, reporting);
+    found = orbit(n, vehicle, point.value, reporting);
   } else {
     found = orbit_at_frequency(n, vehicle, reporting, prediction.refused);
   }
@@ -132,7 +135,7 @@ SteadyFlapping BenchModel::orbit_at_frequency(std::size_t n, Vehicle<double>& ve
   const double wanted = points_[n].value;
   if (!drive_of(vehicle).voltage_sets_frequency) {
     vehicle.drive_frequency = wanted;
-    return orbit(vehicle, vehicle.voltage, reporting);
+    return orbit(n, vehicle, vehicle.voltage, reporting);
   }
   const double close = std::max(3.0 * fit_.tolerance, 1e-6);
   double& start = voltages_[n];
@@ -151,7 +154,7 @@ SteadyFlapping BenchModel::orbit_at_frequency(std::size_t n, Vehicle<double>& ve
   }
   double v_before = absent, f_before = absent;
   for (int iteration = 0; iteration < 10; ++iteration) {
-    SteadyFlapping found = orbit(vehicle, v, reporting);
+    SteadyFlapping found = orbit(n, vehicle, v, reporting);
     if (found.status != FlappingStatus::flapping) break;
     const double f = found.metrics[Metric::frequency];
     if (std::isfinite(v_before) && f != f_before) slope = (f - f_before) / (v - v_before);
@@ -167,7 +170,7 @@ SteadyFlapping BenchModel::orbit_at_frequency(std::size_t n, Vehicle<double>& ve
   }
   const FrequencySearch search = find_voltage_for_frequency(
       vehicle, wanted, {.tolerance = fit_.tolerance, .stability = false, .reporting = reporting});
-  evaluations_ += search.evaluations;
+  evaluations_[n] += search.evaluations;
   if (search.outcome != FrequencyOutcome::reached) {
     start = absent;
     SteadyFlapping none;
@@ -177,7 +180,7 @@ SteadyFlapping BenchModel::orbit_at_frequency(std::size_t n, Vehicle<double>& ve
     return none;
   }
   start = search.voltage;
-  return orbit(vehicle, search.voltage, reporting);
+  return orbit(n, vehicle, search.voltage, reporting);
 }
 
 void BenchModel::differentiate_point(std::size_t n, const Design<GradientJet>& seeded, std::size_t first,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "wingbeat/study/bench_fit.hpp"
+#include "wingbeat/study/for_each.hpp"
 #include "wingbeat/study/frequency_search.hpp"
 
 namespace wingbeat {
@@ -37,11 +38,12 @@ struct Prediction {
   std::optional<SearchFinding> refused;
 };
 
-/// The model at all points of the bench, with derivatives; remembers the last parameters it was asked for.
+/// The model at all points of the bench, with derivatives; remembers the last parameters it was asked for. What it
+/// finds depends on what it (or the model it is a copy of) was asked for before, not on threads.
 class BenchModel {
  public:
-  /// Keeps a reference to the fit.
-  explicit BenchModel(const BenchFit& fit);
+  /// Keeps a reference to the fit. The points are solved by `for_each`.
+  explicit BenchModel(const BenchFit& fit, const ForEach& for_each = {});
 
   const std::vector<OperatingPoint>& points() const { return points_; }
   const std::vector<Observation>& observations() const { return observations_; }
@@ -51,14 +53,14 @@ class BenchModel {
   /// d fitted / d parameter, SI; rows of points not reached are zero.
   const Eigen::MatrixXd& jacobian() const { return jacobian_; }
   /// Orbits computed so far.
-  int evaluations() const { return evaluations_; }
+  int evaluations() const;
 
   /// The fit's design with the free parameters at x [SI].
   Design<double> design_at(const std::vector<double>& x) const;
   void evaluate(const std::vector<double>& x, bool derivatives);
 
  private:
-  SteadyFlapping orbit(Vehicle<double>& vehicle, double voltage, const Reporting& reporting);
+  SteadyFlapping orbit(std::size_t n, Vehicle<double>& vehicle, double voltage, const Reporting& reporting);
   /// `refused`: the search, where the frequency cannot be reached.
   SteadyFlapping orbit_at_frequency(std::size_t n, Vehicle<double>& vehicle, const Reporting& reporting,
                                     std::optional<SearchFinding>& refused);
@@ -66,6 +68,7 @@ class BenchModel {
   void differentiate_point(std::size_t n, const Design<GradientJet>& seeded, std::size_t first, std::size_t count);
 
   const BenchFit& fit_;
+  ForEach for_each_;
   std::vector<OperatingPoint> points_;
   std::vector<Observation> observations_;
   std::vector<Prediction> predictions_;
@@ -81,7 +84,7 @@ class BenchModel {
   std::vector<double> fitted_, x_;
   Eigen::MatrixXd jacobian_;
   bool derivatives_known_ = false;
-  int evaluations_ = 0;
+  std::vector<int> evaluations_;  ///< by point
 };
 
 }  // namespace wingbeat

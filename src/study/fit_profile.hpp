@@ -1,4 +1,4 @@
-// Intervals of a fitted parameter from the likelihood itself.
+// Intervals from the likelihood: one parameter is moved, the others are fitted again.
 #pragma once
 
 #include <vector>
@@ -7,9 +7,19 @@
 
 namespace wingbeat {
 
-/// Profile of parameter k: -2 ln L with k fixed, the others of `free` fitted again, until it has risen from `least` by
-/// the square of the quantile on either side of the best parameters [SI]. Sets out's profile and its interval.
-void profile_likelihood(const BenchFit& fit, BenchFitter& fitter, const std::vector<double>& best, double least,
-                        const std::vector<std::size_t>& free, std::size_t k, double quantile, FittedParameter& out);
+/// One side of a parameter's profile.
+struct ProfileSide {
+  std::vector<FittedParameter::ProfilePoint> points;  ///< in the order in which they were tried
+  double end = absent;                                ///< of the interval [SI]; absent where not found
+};
+
+/// Moves parameter k from the least -2 ln L, `least` at `best`, to one side (-1 or 1) until its root has risen by
+/// `quantile`, with all of `free` (k among them) but k fitted again. The covariance of `result` says how they follow.
+ProfileSide profile_likelihood(const BenchFit& fit, BenchFitter& fitter, const std::vector<double>& best, double least,
+                               const std::vector<std::size_t>& free, const FitResult& result, std::size_t k, int side,
+                               double quantile);
+
+/// Puts both sides and the least, at `best`, into a parameter's profile.
+void add_profile(const ProfileSide& lower, const ProfileSide& upper, double best, FittedParameter& of);
 
 }  // namespace wingbeat

@@ -4,6 +4,11 @@
 
 namespace wingbeat {
 
+void for_all(const ForEach& for_each, std::size_t count, const std::function<void(std::size_t)>& act) {
+  if (for_each) return for_each(count, act);
+  for (std::size_t n = 0; n < count; ++n) act(n);
+}
+
 void run_tasks(const std::vector<std::function<void()>>& tasks, const ForEach& for_each,
                const std::function<void(double)>& done) {
   std::mutex mutex;

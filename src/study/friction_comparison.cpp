@@ -34,7 +34,8 @@ double mean_friction_torque(const BenchFit& fit, double& speed) {
 
 std::vector<FrictionCandidate> compare_friction(const BenchFit& fit,
                                                 const std::function<DesignParameter(const std::string&)>& parameter_of,
-                                                const std::function<void(const std::string&)>& progress) {
+                                                const std::function<void(const std::string&)>& progress,
+                                                const ForEach& for_each) {
   check_fit(fit);
   const auto is_friction = [](const FreeParameter& p) { return p.parameter.key.starts_with("friction."); };
   const auto own = std::find_if(fit.parameters.begin(), fit.parameters.end(), is_friction);
@@ -74,7 +75,7 @@ std::vector<FrictionCandidate> compare_friction(const BenchFit& fit,
     }
     FrictionCandidate candidate;
     candidate.law = law;
-    candidate.result = run_fit(trial, false, {});
+    candidate.result = run_fit(trial, false, {}, for_each);
 
     // Every condition predicted from the others.
     std::vector<std::pair<Condition, bool>> conditions;
@@ -91,13 +92,13 @@ std::vector<FrictionCandidate> compare_friction(const BenchFit& fit,
                     [&, c = condition, s = springs](const auto& l) { return l.condition == c && l.springs == s; });
       std::erase_if(left.logs,
                     [&, c = condition, s = springs](const auto& l) { return l.condition != c || l.springs != s; });
-      const FitResult without = run_fit(rest, false, {});
+      const FitResult without = run_fit(rest, false, {}, for_each);
       // What the rest cannot determine at all comes from the whole: it is the friction law that is on trial.
       std::vector<double> x;
       for (std::size_t k = 0; k < without.parameters.size(); ++k) {
         x.push_back(without.parameters[k].value ? *without.parameters[k].value : candidate.result.parameters[k].kept);
       }
-      BenchFitter predictor(left);
+      BenchFitter predictor(left, for_each);
       predictor.bench().evaluate(x, false);
       double own_squares = 0.0;
       int own_count = 0;

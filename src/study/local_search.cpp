@@ -1,13 +1,14 @@
 #include "study/local_search.hpp"
 
 #include <nlopt.hpp>
+#include <vector>
 
 namespace wingbeat::detail {
 namespace {
 
 /// What NLopt's functions are handed: the last evaluation, which serves objective and constraints.
 struct Memory {
-  const OptimiseProblem& problem;
+  const SearchedFunction& function;
   LocalSearch& search;
   Vector last;
   OptimiseProblem::Evaluation evaluation;
@@ -15,10 +16,15 @@ struct Memory {
   int walls = 0;
 
   const OptimiseProblem::Evaluation& at(const double* u) {
-    const Eigen::Map<const Vector> x(u, problem.size());
+    const Eigen::Map<const Vector> x(u, function.size);
     if (last.size() == 0 || last != x) {
       last = x;
-      evaluation = problem.evaluate(x);
+      try {
+        evaluation = function.evaluate(last);
+      } catch (...) {
+        search.raised = std::current_exception();
+        throw nlopt::forced_stop();
+      }
       ++search.evaluations;
       if (!evaluation.flaps) ++walls;
       const bool good = evaluation.flaps && evaluation.violation() <= feasible_to;
@@ -49,26 +55,39 @@ void constraints_of(unsigned m, double* values, unsigned n, const double* u, dou
 
 }  // namespace
 
-void LocalSearch::run(const OptimiseProblem& problem, const Vector& start) {
-  Memory memory{problem, *this, {}, {}, 1.0};
+void LocalSearch::run(const SearchedFunction& function, const Vector& start) {
+  Memory memory{function, *this, {}, {}, 1.0};
   std::vector<double> u(start.data(), start.data() + start.size());
-  const OptimiseProblem::Evaluation& first = memory.at(u.data());
+  try {
+    memory.at(u.data());
+  } catch (const nlopt::forced_stop&) {
+    return;
+  }
+  const OptimiseProblem::Evaluation& first = memory.evaluation;
   if (!first.flaps) return;
   began = first.objective;
   memory.scale = std::max(std::abs(first.objective), 1e-300);
   // A search that runs into designs that do not flap may end there; from its best point it then starts anew.
-  for (const nlopt::algorithm algorithm : {nlopt::LD_SLSQP, nlopt::LD_SLSQP, nlopt::LD_CCSAQ}) {
-    nlopt::opt solver(algorithm, unsigned(problem.size()));
+  const std::vector<nlopt::algorithm> algorithms = function.gradients
+                                                       ? std::vector{nlopt::LD_SLSQP, nlopt::LD_SLSQP, nlopt::LD_CCSAQ}
+                                                       : std::vector{nlopt::LN_COBYLA, nlopt::LN_COBYLA};
+  for (const nlopt::algorithm algorithm : algorithms) {
+    nlopt::opt solver(algorithm, unsigned(function.size));
     solver.set_lower_bounds(0.0);
     solver.set_upper_bounds(1.0);
     solver.set_min_objective(&objective_of, &memory);
-    const unsigned constraints = unsigned(problem.constraints());
+    const unsigned constraints = unsigned(function.constraints);
     if (constraints > 0) {
       solver.add_inequality_mconstraint(&constraints_of, &memory, std::vector<double>(constraints, 1e-9));
     }
     solver.set_xtol_abs(1e-8);
     solver.set_ftol_rel(1e-10);
-    solver.set_maxeval(algorithm == nlopt::LD_CCSAQ ? 200 : 100);
+    if (function.gradients) {
+      solver.set_maxeval(algorithm == nlopt::LD_CCSAQ ? 200 : 100);
+    } else {
+      solver.set_initial_step(0.1);
+      solver.set_maxeval(200 * int(function.size));
+    }
     double value = 0.0;
     bool converged = false;
     try {
@@ -76,7 +95,8 @@ void LocalSearch::run(const OptimiseProblem& problem, const Vector& start) {
     } catch (const std::exception&) {
       // What was reached until then counts.
     }
-    if (memory.walls == 0 && (converged || !feasible)) break;
+    // Where gradients lack, a second search, from where the first ended, shows that it had not merely become slow.
+    if (raised || (function.gradients && memory.walls == 0 && (converged || !feasible))) break;
     memory.walls = 0;
     if (feasible) u.assign(end.data(), end.data() + end.size());
     else u.assign(start.data(), start.data() + start.size());

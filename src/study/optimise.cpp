@@ -81,7 +81,7 @@ OptimiseResult optimise(const OptimiseStudy& study, const StartUp& start_up, con
     assess(problem, result);
     return result;
   }
-  const std::vector<Vector> ranked = detail::screened(problem, start_up, result.screen);
+  const std::vector<Vector> ranked = detail::screened(problem, start_up, for_each, result.screen);
 
   std::vector<Vector> starts;
   Vector given(problem.size());
@@ -96,10 +96,7 @@ OptimiseResult optimise(const OptimiseStudy& study, const StartUp& start_up, con
 
   std::vector<LocalSearch> searches(starts.size());
   const auto run = [&](std::size_t first, std::size_t last) {
-    const auto one = [&](std::size_t n) { searches[first + n].run(problem, starts[first + n]); };
-    if (for_each) for_each(last - first, one);
-    else
-      for (std::size_t n = 0; n < last - first; ++n) one(n);
+    for_all(for_each, last - first, [&](std::size_t n) { searches[first + n].run(problem, starts[first + n]); });
   };
   // Where the screening found nothing within the constraints, a few searches tell whether there is anything at all.
   const std::size_t scouts = result.screen.feasible > 0 ? 0 : std::min<std::size_t>(4, starts.size());
@@ -140,7 +137,7 @@ OptimiseResult optimise(const OptimiseStudy& study, const StartUp& start_up, con
   for (Eigen::Index k = 0; k < problem.size(); ++k) result.parameters.push_back(problem.value(k, best->end[k]));
   result.point = problem.evaluate(best->end).point;
   result.design = problem.found(best->end, result.point);
-  Neighbourhood around(problem, best->end, result.evaluations);
+  Neighbourhood around(problem, best->end, for_each, result.evaluations);
   result.active = around.active();
   result.directions = around.directions();
   return result;

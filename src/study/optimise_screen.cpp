@@ -8,7 +8,8 @@
 
 namespace wingbeat::detail {
 
-std::vector<Vector> screened(const OptimiseProblem& problem, const StartUp& start_up, ScreenCounts& counts) {
+std::vector<Vector> screened(const OptimiseProblem& problem, const StartUp& start_up, const ForEach& for_each,
+                             ScreenCounts& counts) {
   const OptimiseStudy& study = problem.study();
   const std::size_t constraints = study.constraints.size();
   SweepAxis axis;
@@ -34,10 +35,12 @@ std::vector<Vector> screened(const OptimiseProblem& problem, const StartUp& star
   for (const MetricConstraint& c : study.constraints) sweep.options.metrics.set(std::size_t(c.metric));
   SweepColumns columns;
   columns.resize(study.screen, sweep.options.metrics.count());
-  SweepSolver solver(sweep, start_up);
-  for (std::size_t begin = 0; begin < study.screen; begin += sweep_block) {
-    solver.solve(columns, begin, std::min<std::size_t>(study.screen, begin + sweep_block));
-  }
+  // Smaller blocks than a sweep's: there are as few designs as cores should share.
+  constexpr std::size_t block = sweep_block / 2;
+  for_all(for_each, (study.screen + block - 1) / block, [&](std::size_t n) {
+    SweepSolver solver(sweep, start_up);
+    solver.solve(columns, n * block, std::min<std::size_t>(study.screen, (n + 1) * block));
+  });
   const auto column = [&](Metric metric) -> const std::vector<double>& {
     std::size_t c = 0;
     for (int m = 0; m < int(metric); ++m) c += sweep.options.metrics[std::size_t(m)];

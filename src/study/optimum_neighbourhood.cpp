@@ -13,8 +13,9 @@ constexpr double at_bound = 1e-6;       ///< of the range
 
 }  // namespace
 
-Neighbourhood::Neighbourhood(const OptimiseProblem& problem, const Vector& best, int& evaluations)
-    : problem_(problem), best_(best), evaluations_(evaluations), at_(problem.evaluate(best)) {
+Neighbourhood::Neighbourhood(const OptimiseProblem& problem, const Vector& best, const ForEach& for_each,
+                             int& evaluations)
+    : problem_(problem), best_(best), for_each_(for_each), evaluations_(evaluations), at_(problem.evaluate(best)) {
   const Eigen::Index n = problem.size();
   for (Eigen::Index c = 0; c < at_.constraints.size(); ++c) {
     if (at_.constraints[c] > -active_within) constraints_.push_back(c);
@@ -72,23 +73,29 @@ std::vector<FlatDirection> Neighbourhood::directions() {
   if (free.cols() == 0) return {};
   const Eigen::MatrixXd h = free.transpose() * hessian() * free / std::abs(at_.objective);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (h + h.transpose()));
+  std::vector<Walk> walks(2 * std::size_t(free.cols()));
+  for_all(for_each_, walks.size(), [&](std::size_t w) {
+    const Vector direction = free * eigen.eigenvectors().col(Eigen::Index(w / 2));
+    walks[w] = w % 2 == 0 ? farthest(direction, 1.0) : farthest(-direction, -1.0);
+  });
   std::vector<FlatDirection> result;
   for (Eigen::Index k = 0; k < free.cols(); ++k) {
-    const Vector direction = free * eigen.eigenvectors().col(k);
+    const Walk& up = walks[2 * std::size_t(k)];
+    const Walk& down = walks[2 * std::size_t(k) + 1];
+    evaluations_ += up.evaluations + down.evaluations;
     FlatDirection flat;
     flat.curvature = eigen.eigenvalues()[k];
-    std::vector<FlatDirection::Step> beyond;
-    const auto [up, up_by_bound] = farthest(direction, 1.0, beyond);
-    const auto [down, down_by_bound] = farthest(-direction, -1.0, beyond);
+    std::vector<FlatDirection::Step> beyond = up.steps;
+    beyond.insert(beyond.end(), down.steps.begin(), down.steps.end());
     beyond.push_back({0.0, values(best_), problem_.study().maximise ? -at_.objective : at_.objective});
     std::sort(beyond.begin(), beyond.end(), [](const auto& a, const auto& b) { return a.distance < b.distance; });
     flat.walk = std::move(beyond);
     for (Eigen::Index j = 0; j < n; ++j) {
-      flat.from.push_back(problem_.value(j, down[j]));
-      flat.to.push_back(problem_.value(j, up[j]));
+      flat.from.push_back(problem_.value(j, down.end[j]));
+      flat.to.push_back(problem_.value(j, up.end[j]));
     }
-    flat.width = (up - down).lpNorm<Eigen::Infinity>();
-    flat.flat = up_by_bound || down_by_bound || flat.width > 0.5;
+    flat.width = (up.end - down.end).lpNorm<Eigen::Infinity>();
+    flat.flat = up.by_bound || down.by_bound || flat.width > 0.5;
     result.push_back(std::move(flat));
   }
   std::stable_sort(result.begin(), result.end(),
@@ -124,7 +131,6 @@ Eigen::MatrixXd Neighbourhood::hessian() {
   const Eigen::Index n = problem_.size();
   const auto slope = [&](const Vector& u) {
     const OptimiseProblem::Evaluation e = problem_.evaluate(u);
-    ++evaluations_;
     Vector g = e.gradient;
     for (std::size_t i = 0; i < constraints_.size(); ++i) {
       g += multipliers_[Eigen::Index(i)] * e.jacobian.row(constraints_[i]).transpose();
@@ -132,12 +138,19 @@ Eigen::MatrixXd Neighbourhood::hessian() {
     return e.flaps ? g : Vector(Vector::Constant(n, absent));
   };
   constexpr double step = 1e-3;
+  std::vector<Vector> slopes(2 * std::size_t(n));
+  const auto beside = [&](std::size_t side) {
+    const Eigen::Index k = Eigen::Index(side / 2);
+    Vector u = best_;
+    u[k] = side % 2 == 0 ? std::min(1.0, best_[k] + step) : std::max(0.0, best_[k] - step);
+    return u;
+  };
+  for_all(for_each_, slopes.size(), [&](std::size_t side) { slopes[side] = slope(beside(side)); });
+  evaluations_ += int(slopes.size());
   Eigen::MatrixXd h(n, n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    Vector up = best_, down = best_;
-    up[k] = std::min(1.0, best_[k] + step);
-    down[k] = std::max(0.0, best_[k] - step);
-    h.col(k) = (slope(up) - slope(down)) / (up[k] - down[k]);
+  for (std::size_t k = 0; k < std::size_t(n); ++k) {
+    const double apart = (beside(2 * k) - beside(2 * k + 1))[Eigen::Index(k)];
+    h.col(Eigen::Index(k)) = (slopes[2 * k] - slopes[2 * k + 1]) / apart;
   }
   // Beside designs that do not flap the curvature is unknown: taken as none, the walk below measures.
   return h.unaryExpr([](double x) { return std::isfinite(x) ? x : 0.0; });
@@ -149,14 +162,13 @@ std::vector<double> Neighbourhood::values(const Vector& u) const {
   return x;
 }
 
-std::optional<Vector> Neighbourhood::moved(const Vector& direction, double distance, double sign,
-                                           std::vector<FlatDirection::Step>& walk) {
+std::optional<Vector> Neighbourhood::moved(const Vector& direction, double distance, double sign, Walk& walk) const {
   Vector u = best_ + distance * direction;
   if (u.minCoeff() < -1e-9 || u.maxCoeff() > 1.0 + 1e-9) return std::nullopt;
   u = u.cwiseMax(0.0).cwiseMin(1.0);
   for (int iteration = 0; iteration < 4; ++iteration) {
     const OptimiseProblem::Evaluation e = problem_.evaluate(u, !constraints_.empty());
-    ++evaluations_;
+    ++walk.evaluations;
     if (e.point.status != SweepStatus::flapping) return std::nullopt;
     Vector residual(Eigen::Index(constraints_.size()));
     Eigen::MatrixXd a(Eigen::Index(constraints_.size()), problem_.size());
@@ -169,7 +181,7 @@ std::optional<Vector> Neighbourhood::moved(const Vector& direction, double dista
     if (on) {
       const bool worse = e.objective - at_.objective > flat_loss * std::abs(at_.objective);
       if (worse || e.violation() > active_within) return std::nullopt;
-      walk.push_back({sign * distance, values(u), problem_.study().maximise ? -e.objective : e.objective});
+      walk.steps.push_back({sign * distance, values(u), problem_.study().maximise ? -e.objective : e.objective});
       return u;
     }
     u -= a.completeOrthogonalDecomposition().solve(residual);
@@ -179,18 +191,22 @@ std::optional<Vector> Neighbourhood::moved(const Vector& direction, double dista
   return std::nullopt;
 }
 
-std::pair<Vector, bool> Neighbourhood::farthest(const Vector& direction, double sign,
-                                                std::vector<FlatDirection::Step>& walk) {
+Neighbourhood::Walk Neighbourhood::farthest(const Vector& direction, double sign) const {
+  Walk walk;
+  walk.end = best_;
   double room = HUGE_VAL;
   for (Eigen::Index k = 0; k < problem_.size(); ++k) {
     if (std::abs(direction[k]) < 1e-9) continue;
     room = std::min(room, ((direction[k] > 0.0 ? 1.0 : 0.0) - best_[k]) / direction[k]);
   }
-  if (!(room > 1e-6)) return {best_, false};
-  if (const auto end = moved(direction, room, sign, walk)) return {*end, true};
+  if (!(room > 1e-6)) return walk;
+  if (const auto end = moved(direction, room, sign, walk)) {
+    walk.end = *end;
+    walk.by_bound = true;
+    return walk;
+  }
   // Doubling first: the end may be very near, and what lies beyond a first failure does not count.
   double good = 0.0, bad = room;
-  Vector at = best_;
   for (double t = std::min(1e-3, 0.5 * room); t < room; t *= 2.0) {
     const auto u = moved(direction, t, sign, walk);
     if (!u) {
@@ -198,18 +214,18 @@ std::pair<Vector, bool> Neighbourhood::farthest(const Vector& direction, double 
       break;
     }
     good = t;
-    at = *u;
+    walk.end = *u;
   }
   for (int k = 0; k < 8; ++k) {
     const double t = 0.5 * (good + bad);
     if (const auto u = moved(direction, t, sign, walk)) {
       good = t;
-      at = *u;
+      walk.end = *u;
     } else {
       bad = t;
     }
   }
-  return {at, false};
+  return walk;
 }
 
 }  // namespace wingbeat::detail

@@ -36,12 +36,10 @@ CrankModel::CrankModel(const Vehicle<double>& of, const Supply<double>& on) : ve
 }
 
 void CrankModel::start(double theta, double omega, double current, double psi, double pitch_velocity) {
-  const Motor<double>& m = vehicle.motor;
-  const double R = circuit_resistance(vehicle), K = m.torque_constant;
   now = {};
   now.theta = theta;
   now.omega = omega;
-  inductive = m.armature_inductance > 0.0;
+  inductive = vehicle.motor.armature_inductance > 0.0;
   coupled = (inductive ? 3 : 2) + (pitching ? 2 : 0);
   now.psi = psi;
   now.pitch_velocity = pitch_velocity;
@@ -50,16 +48,26 @@ void CrankModel::start(double theta, double omega, double current, double psi, d
   constant_friction = breakaway_torque(vehicle);
   now.switched_voltage = supply.voltage;
   now.i = inductive ? current : algebraic_current(vehicle, voltage(0.0), omega);
+  start_speed_ = omega;
+  start_current_ = inductive ? current : 0.0;
+  start_pitch_ = psi;
+  start_pitch_velocity_ = pitch_velocity;
   find_jams();
+  scale_to(supply.voltage);
+  now.jammed = !wingless && uniqueness_now() <= smallest_margin;
+}
 
+void CrankModel::scale_to(double highest_voltage) {
+  const Motor<double>& m = vehicle.motor;
+  const double R = circuit_resistance(vehicle), K = m.torque_constant, omega = start_speed_;
   const double damping = m.viscous_damping + vehicle.friction.damping;
-  current_scale = supply.voltage / R;
-  speed_scale = K * supply.voltage / (K * K + R * damping);
+  current_scale = highest_voltage / R;
+  speed_scale = K * highest_voltage / (K * K + R * damping);
   if (vehicle.friction.quadratic > 0.0) {
     speed_scale = std::min(speed_scale, std::sqrt(K * current_scale / vehicle.friction.quadratic));
   }
   if (!(speed_scale > 0.0)) speed_scale = omega != 0.0 ? std::abs(omega) : 1.0;
-  if (!(current_scale > 0.0)) current_scale = std::max(std::abs(now.i), K * speed_scale / R);
+  if (!(current_scale > 0.0)) current_scale = std::max(std::abs(start_current_), K * speed_scale / R);
   const double wings = vehicle.wing_count * vehicle.wing_inertia * square(typical_stroke_slope(vehicle.transmission));
   electrical_time = m.armature_inductance / R;
   mechanical_time = (m.inertia + wings) * R / (K * K + R * m.viscous_damping);
@@ -68,11 +76,10 @@ void CrankModel::start(double theta, double omega, double current, double psi, d
   force_scale = (m.inertia + wings) * K * current_scale / typical_stroke_slope(vehicle.transmission);
   if (pitching) {
     const double slope = typical_stroke_slope(vehicle.transmission);
-    pitch_scale = std::max({typical_pitch(vehicle, slope * speed_scale, speed_scale), std::abs(psi),
-                            std::abs(pitch_velocity) / speed_scale});
+    pitch_scale = std::max({typical_pitch(vehicle, slope * speed_scale, speed_scale), std::abs(start_pitch_),
+                            std::abs(start_pitch_velocity_) / speed_scale});
     pitch_velocity_scale = speed_scale * pitch_scale;
   }
-  now.jammed = !wingless && uniqueness_now() <= smallest_margin;
   fastest_decay = inductive ? std::max(1.0 / electrical_time, damping / smallest_inertia)
                             : (damping + K * K / R) / smallest_inertia;
 }
@@ -98,6 +105,26 @@ Motion<double> CrankModel::motion(double t, const double* y, Branch<double>* use
     m = on_branch();
   }
   if (used) *used = branch;
+  return m;
+}
+
+Motion<double> CrankModel::motion_now() const {
+  double y[5];
+  unknowns(y);
+  Motion<double> m = motion(now.t, y);
+  if (!now.stuck) return m;
+  m.crank_acceleration = m.stroke_acceleration = 0.0;
+  m.stored_moment = spring_moment(vehicle, m.kinematics);
+  double moment = m.stored_moment;
+  if (pitching) {
+    const WingsAtPitch<double> wings = wings_standing(y);
+    const PitchState<double> at = pitch_state(now.psi, now.held ? 0.0 : now.pitch_velocity, 0.0);
+    m.aero.lift = lift_at_pitch(vehicle.pitch, wings, at, 0.0, wings.free_acceleration);
+    moment += wings.moment;
+  }
+  m.rod_force = wingless ? 0.0 : moment / m.kinematics.wing_lever;
+  m.motor_torque = vehicle.motor.torque_constant * m.current;
+  m.friction_torque = m.motor_torque - m.rod_force * m.kinematics.crank_lever;
   return m;
 }
 
@@ -237,7 +264,7 @@ void CrankModel::find_jams() {
 }
 
 double CrankModel::next_switch() const {
-  if (supply.type != SupplyType::pwm) return infinity;
+  if (supply.type != SupplyType::pwm || command) return infinity;
   // Even switches turn on, odd ones off; number 0 is the switching on at t = 0.
   const long next = now.switches + 1;
   return (double(next / 2) + (next % 2 == 1 ? supply.duty : 0.0)) / supply.frequency;
@@ -301,7 +328,8 @@ std::array<double, CrankModel::indicator_count> CrankModel::indicators(double t,
 /// At a standstill it is held, or moves on in the direction of the torque.
 void CrankModel::begin_piece() {
   resume();
-  if (now.stuck || now.jammed) return;
+  // Without inductance the current jumps with the voltage, and what friction held may not be held any more.
+  if (now.jammed || (now.stuck && inductive)) return;
   now.branch.direction = sign_of(now.omega);
   if (now.omega == 0.0) {
     if (!inductive) now.i = algebraic_current(vehicle, voltage(now.t), 0.0);
@@ -368,6 +396,13 @@ void CrankModel::handle(std::size_t indicator) {
   }
 }
 
+std::optional<TransientEvent::Kind> CrankModel::event_at(std::size_t indicator) const {
+  using Kind = TransientEvent::Kind;
+  if (indicator == standstill) return now.stuck ? Kind::breakaway : Kind::standstill;
+  if (indicator == force) return Kind::force_sign_change;
+  return std::nullopt;
+}
+
 /// True where a sign was wrong from the start of the piece, which an integrator may not see as a change.
 bool CrankModel::branch_lost() {
   if (pitching && !now.held && std::abs(now.psi) > vehicle.pitch.hinge.stop * (1.0 + 1e-9)) {
@@ -406,6 +441,13 @@ void CrankModel::switch_supply() {
   ++now.switches;
   now.switched_voltage = now.switches % 2 == 0 ? supply.voltage : 0.0;
   if (!inductive) now.i = algebraic_current(vehicle, now.switched_voltage, now.omega);
+}
+
+void CrankModel::catch_up_with_supply() {
+  if (supply.type != SupplyType::pwm || command) return;
+  now.switches = 2 * long(std::floor(now.t * supply.frequency));
+  now.switched_voltage = supply.voltage;
+  while (next_switch() <= now.t) switch_supply();
 }
 
 }  // namespace wingbeat::detail

@@ -4,11 +4,14 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <optional>
 
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
 #include "wingbeat/parts/supply.hpp"
+#include "wingbeat/time/transient.hpp"
 #include "wingbeat/vehicle/pitch_motion.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
@@ -31,6 +34,16 @@ class CrankModel {
     bool held = false;                          ///< a stop holds the wings
     double impact_loss = 0.0;                   ///< energy that impacts on stops have taken so far [J]
     double rotor_gain = 0.0;                    ///< kinetic energy that the rotor has gained in them [J]
+
+    /// Calls use(number) for each of them.
+    template <class Self, class Use>
+    static void each(Self& of, const Use& use) {
+      use(of.t), use(of.theta), use(of.omega), use(of.i);
+      use(of.branch.stroke), use(of.branch.force), use(of.branch.direction), use(of.branch.stored_power);
+      use(of.branch.pitching), use(of.branch.gear), use(of.force_branch_known);
+      use(of.switched_voltage), use(of.stuck), use(of.jammed), use(of.switches);
+      use(of.psi), use(of.pitch_velocity), use(of.held), use(of.impact_loss), use(of.rotor_gain);
+    }
   };
   /// Functions of the state whose sign changes are events.
   enum Indicator { force, standstill, jam, stored_moment, reversal, stop, turn, indicator_count };
@@ -39,6 +52,8 @@ class CrankModel {
   CrankModel(const Vehicle<double>& vehicle, const Supply<double>& supply);
   /// Sets the state at t = 0 and what follows from it; without inductance the current follows from the voltage instead.
   void start(double theta, double omega, double current, double psi = 0.0, double pitch_velocity = 0.0);
+  /// Sets typical sizes, and what follows from them, for voltages up to this one [V]: start() does so for the supply's.
+  void scale_to(double highest_voltage);
 
   // As TimeModel asks.
   bool ended() const { return now.jammed; }
@@ -47,6 +62,8 @@ class CrankModel {
   void set(double t, const double* y);
   std::array<int, indicator_count> directions() const;
   void handle(std::size_t indicator);
+  /// What a sign change of an indicator is to those who watch, but for impacts and jams.
+  std::optional<TransientEvent::Kind> event_at(std::size_t indicator) const;
   bool branch_lost();
   void tolerated(double relative, const double* y, double* errors) const;
   std::array<double, 5> typical() const;
@@ -54,6 +71,7 @@ class CrankModel {
   bool stiff() const;
 
   double voltage(double t) const {
+    if (command) return command(t);
     return supply.type == SupplyType::sine ? voltage_at(supply, t) : now.switched_voltage;
   }
   double current_of(double t, const double* y) const {
@@ -64,6 +82,8 @@ class CrankModel {
   }
   /// What acts at the unknowns y, on the branch `used`.
   Motion<double> motion(double t, const double* y, Branch<double>* used = nullptr) const;
+  /// What acts now, also where friction holds the crank.
+  Motion<double> motion_now() const;
   /// The same with what the wings do that pitch.
   PitchMotion<double> pitch_motion(double t, const double* y, Branch<double>* used = nullptr) const;
   /// dy/dt and, where asked for, the integrands of `quadratures` behind them. False: not finite.
@@ -99,9 +119,12 @@ class CrankModel {
   double next_switch() const;
   /// Switches it.
   void switch_supply();
+  /// Takes a pwm supply for as often switched as it has been by now, after a command in its place.
+  void catch_up_with_supply();
 
   Vehicle<double> vehicle;
   Supply<double> supply;
+  std::function<double(double t)> command;  ///< the voltage that drives in the supply's place [V], where there is one
   bool inductive = true;
   bool wingless = false;
   bool pitching = false;
@@ -121,6 +144,8 @@ class CrankModel {
  private:
   void find_jams();
   WingsAtPitch<double> wings_standing(const double* y) const;
+  double start_speed_ = 0.0, start_current_ = 0.0, start_pitch_ = 0.0, start_pitch_velocity_ = 0.0;
+
   double rotor_inertia() const;  ///< that counts where the mechanism may jam [kg m2]
   double stop_room(double t, const double* y) const;
   void meet_stop();

@@ -15,16 +15,21 @@ constexpr double stiff_decays_per_period = 500.0;
 DirectModel::DirectModel(const Vehicle<double>& of) : DrivenShaft(of), coupled(inductive ? 3 : 2) {}
 
 void DirectModel::start(double beta, double speed, double current) {
-  const Motor<double>& m = vehicle.motor;
-  const DirectBalance balance = direct_balance(vehicle);
-  drive_torque = balance.drive_torque;
-  holding_torque = balance.breakaway_torque;
-  sticks = holding_torque > 0.0;
   now = {};
   now.y[0] = beta;
   now.y[1] = speed;
   now.y[2] = inductive ? current : 0.0;
-  const auto typical = typical_from(balance, beta, speed, now.y[2]);
+  start_ = {beta, speed, now.y[2]};
+  scale_to(vehicle.voltage);
+}
+
+void DirectModel::scale_to(double highest_voltage) {
+  const Motor<double>& m = vehicle.motor;
+  const DirectBalance balance = balance_at(highest_voltage);
+  drive_torque = balance.drive_torque;
+  holding_torque = balance.breakaway_torque;
+  sticks = holding_torque > 0.0;
+  const auto typical = typical_from(balance, start_[0], start_[1], start_[2]);
   stroke_scale = typical[0];
   speed_scale = typical[1];
   current_scale = typical[2];
@@ -81,7 +86,12 @@ std::array<double, DirectModel::indicator_count> DirectModel::indicators(double 
 }
 
 void DirectModel::begin_piece() {
-  if (!sticks || now.stuck) return;
+  if (!sticks) return;
+  if (now.stuck) {
+    // Without inductance the current jumps with the voltage.
+    if (!inductive && std::abs(net_torque(now.t, now.y)) > holding_torque) break_away();
+    return;
+  }
   now.direction = sign_of(now.y[1]);
   if (now.y[1] == 0.0) come_to_rest();
 }

@@ -24,6 +24,12 @@ class DirectModel : public DrivenShaft {
     double y[3] = {};
     bool stuck = false;      ///< constant friction holds the shaft
     double direction = 1.0;  ///< of a slip, where there is constant friction
+
+    /// Calls use(number) for each of them.
+    template <class Self, class Use>
+    static void each(Self& of, const Use& use) {
+      use(of.t), use(of.y[0]), use(of.y[1]), use(of.y[2]), use(of.stuck), use(of.direction);
+    }
   };
   /// Functions of the state whose sign changes are events: of the motion, the speed or, where the shaft is stuck, what
   /// friction has left to hold; the moment stored in wings and springs; the speed.
@@ -37,6 +43,8 @@ class DirectModel : public DrivenShaft {
   /// Sets the state at t = 0 and the scales that follow from it.
   void start(double beta, double speed, double current);
   void start_from(const TransientOptions& from) { start(from.crank_angle, from.crank_speed, from.current); }
+  /// Sets typical sizes for voltages up to this one [V]: start() does so for the supply's.
+  void scale_to(double highest_voltage);
 
   // As TimeModel asks.
   void begin_piece();
@@ -46,6 +54,11 @@ class DirectModel : public DrivenShaft {
     std::copy_n(y, coupled, now.y);
   }
   void handle(std::size_t indicator);
+  /// What a sign change of an indicator is to those who watch.
+  std::optional<TransientEvent::Kind> event_at(std::size_t indicator) const {
+    if (indicator != motion_ends) return std::nullopt;
+    return now.stuck ? TransientEvent::Kind::breakaway : TransientEvent::Kind::standstill;
+  }
   bool branch_lost() { return sticks && !now.stuck && now.direction * now.y[1] < -1e-9 * speed_scale; }
   void tolerated(double relative, const double* y, double* errors) const;
   std::array<double, 3> typical() const { return {stroke_scale, speed_scale, current_scale}; }
@@ -62,6 +75,7 @@ class DirectModel : public DrivenShaft {
   }
   Branch<double> branch_at(const double* y) const;
   Motion<double> motion(double t, const double* y) const;
+  Motion<double> motion_now() const { return motion(now.t, now.y); }
   /// dy/dt and, where asked for, the integrands of `quadratures` behind them. False: not finite.
   bool rates(double t, const double* y, double* dy, bool quadrature) const;
   std::array<double, indicator_count> indicators(double t, const double* y, bool all = true) const;
@@ -89,6 +103,8 @@ class DirectModel : public DrivenShaft {
   State now;
 
  private:
+  std::array<double, 3> start_{};
+
   /// The shaft has come to rest where constant friction acts: it is held, or moves on where it is pulled.
   void come_to_rest();
   /// The net torque has outgrown what friction holds.

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/cycle/direct_balance.hpp"
@@ -13,7 +14,8 @@ struct DrivenShaft {
   Vehicle<double> vehicle;
   double w, period;  ///< of the supply: angular frequency [rad/s], duration [s]
   bool inductive;
-  double inertia;  ///< of rotor and wings [kg m2]
+  double inertia;                           ///< of rotor and wings [kg m2]
+  std::function<double(double t)> command;  ///< the voltage that drives in the supply's place [V], where there is one
 
   /// Throws ParameterError for numbers out of range.
   explicit DrivenShaft(const Vehicle<double>& of) : vehicle(of) {
@@ -33,8 +35,9 @@ struct DrivenShaft {
   static bool ended() { return false; }
   static double next_switch() { return infinity; }
   static void switch_supply() {}
+  static void catch_up_with_supply() {}
 
-  double voltage(double t) const { return vehicle.voltage * std::sin(w * t); }
+  double voltage(double t) const { return command ? command(t) : vehicle.voltage * std::sin(w * t); }
   /// Moment of all hinge springs [N m].
   double springs_of(double beta) const { return vehicle.wing_count * vehicle.spring.stiffness * beta; }
   /// Of what the reactive work is the variation: wings and springs [J].
@@ -42,6 +45,12 @@ struct DrivenShaft {
     return 0.5 * vehicle.wing_count * (vehicle.wing_inertia * square(speed) + vehicle.spring.stiffness * square(beta));
   }
 
+  /// The balance at that amplitude [V].
+  DirectBalance balance_at(double amplitude) const {
+    Vehicle<double> there = vehicle;
+    there.voltage = amplitude;
+    return direct_balance(there);
+  }
   /// Typical sizes of beta [rad], beta' [rad/s] and i [A] from these on.
   std::array<double, 3> typical_from(const DirectBalance& balance, double beta, double start_speed,
                                      double current) const {

@@ -16,12 +16,18 @@ PitchDirectModel::PitchDirectModel(const Vehicle<double>& of) : DrivenShaft(of),
 }
 
 void PitchDirectModel::start(const std::array<double, 5>& y) {
-  const auto [stroke, speed, current] = typical_from(direct_balance(vehicle), y[0], y[1], y[4]);
-  const double psi = std::max({typical_pitch(vehicle, speed), std::abs(y[2]), std::abs(y[3]) / w});
-  scale = {stroke, speed, psi, w * psi, current};
+  start_ = y;
+  scale_to(vehicle.voltage);
   now = {};
   std::copy(y.begin(), y.end(), now.y);
   if (!inductive) now.y[4] = 0.0;
+}
+
+void PitchDirectModel::scale_to(double highest_voltage) {
+  const std::array<double, 5>& y = start_;
+  const auto [stroke, speed, current] = typical_from(balance_at(highest_voltage), y[0], y[1], y[4]);
+  const double psi = std::max({typical_pitch(vehicle, speed), std::abs(y[2]), std::abs(y[3]) / w});
+  scale = {stroke, speed, psi, w * psi, current};
 }
 
 PitchMotion<double> PitchDirectModel::pitch_motion(double t, const double* y) const {

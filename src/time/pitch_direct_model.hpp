@@ -28,6 +28,13 @@ class PitchDirectModel : public DrivenShaft {
     double y[5] = {};
     bool held = false;         ///< a stop holds the wings
     double impact_loss = 0.0;  ///< energy that impacts on stops have taken so far [J]
+
+    /// Calls use(number) for each of them.
+    template <class Self, class Use>
+    static void each(Self& of, const Use& use) {
+      use(of.t), use(of.y[0]), use(of.y[1]), use(of.y[2]), use(of.y[3]), use(of.y[4]), use(of.held);
+      use(of.impact_loss);
+    }
   };
   /// Functions of the state whose sign changes are events: room to the stop or, of wings that it holds, how they press
   /// on it; stroke velocity and pitch velocity, at which the loads are kinked; the moment stored in wings and springs.
@@ -42,6 +49,8 @@ class PitchDirectModel : public DrivenShaft {
   explicit PitchDirectModel(const Vehicle<double>& vehicle);
   /// Sets the state at t = 0.
   void start(const std::array<double, 5>& y);
+  /// Sets typical sizes for voltages up to this one [V]: start() does so for the supply's.
+  void scale_to(double highest_voltage);
   void start_from(const TransientOptions& from) {
     start({from.crank_angle, from.crank_speed, from.pitch_angle, from.pitch_velocity, from.current});
   }
@@ -54,6 +63,8 @@ class PitchDirectModel : public DrivenShaft {
     std::copy_n(y, coupled, now.y);
   }
   void handle(std::size_t indicator);
+  /// Impacts apart, no sign change of an indicator is an event to those who watch.
+  static std::optional<TransientEvent::Kind> event_at(std::size_t) { return std::nullopt; }
   bool branch_lost() const { return !now.held && std::abs(now.y[2]) > vehicle.pitch.hinge.stop * (1.0 + 1e-9); }
   void tolerated(double relative, const double* y, double* errors) const;
   std::array<double, 5> typical() const { return scale; }
@@ -70,6 +81,7 @@ class PitchDirectModel : public DrivenShaft {
   static Branch<double> branch_at(const double* y) { return {sign_of(y[1]), 1.0, sign_of(y[1]), 1.0}; }
   PitchMotion<double> pitch_motion(double t, const double* y) const;
   Motion<double> motion(double t, const double* y) const { return pitch_motion(t, y).stroke; }
+  Motion<double> motion_now() const { return motion(now.t, now.y); }
   double wing_energy() const { return DrivenShaft::wing_energy(now.y[0], now.y[1]); }
   /// Kinetic energy of rotor, wings and the air that moves with them, elastic energy of springs and hinges, energy of
   /// the inductance [J].
@@ -91,6 +103,8 @@ class PitchDirectModel : public DrivenShaft {
   State now;
 
  private:
+  std::array<double, 5> start_{};
+
   double side() const { return sign_of(now.y[2]); }
   void meet_stop();
 };

@@ -5,6 +5,7 @@
 
 #include "parts/expect_error.hpp"
 #include "wingbeat/parts/motor.hpp"
+#include "wingbeat/parts/steady_motor.hpp"
 
 namespace wingbeat {
 namespace {
@@ -72,6 +73,28 @@ TEST(Motor, NoLoadSpeedWithoutDampingIsVoltageOverConstant) {
   m.viscous_damping = 0.0;
   EXPECT_DOUBLE_EQ(no_load_speed(m, 3.0), 300.0);
   EXPECT_DOUBLE_EQ(no_load_speed(m, 0.0), 0.0);
+}
+
+TEST(Motor, SteadyMotorKeepsPower) {
+  Motor<double> geared = reference_motor;
+  geared.gear_efficiency = 0.8;
+  for (const Motor<double>& m : {reference_motor, geared}) {
+    const double v = 3.0, free = free_speed(m, v);
+    EXPECT_LT(free, no_load_speed(m, v));
+    EXPECT_NEAR(steady_motor(m, v, free).torque, 0.0, 1e-17);
+    EXPECT_NEAR(steady_motor(m, v, 0.0).current, v / 9.0, 1e-15);
+    for (const double omega : {0.1 * free, 0.9 * free, 1.2 * free}) {
+      const SteadyMotor<double> at = steady_motor(m, v, omega);
+      const MotorLoads<double> loads = motor_loads(m, v, at.current, omega);
+      EXPECT_NEAR(loads.inductive_voltage, 0.0, 1e-14);
+      const double before_gear =
+          at.power_electrical - loads.power_copper - loads.power_viscous - m.friction_torque * omega;
+      const double e = before_gear > 0.0 ? m.gear_efficiency : 1.0 / m.gear_efficiency;
+      EXPECT_NEAR(at.power_mechanical, e * before_gear, 1e-15);
+      EXPECT_EQ(at.torque > 0.0, omega < free);
+    }
+  }
+  EXPECT_EQ(free_speed(reference_motor, 0.01), 0.0);
 }
 
 TEST(Motor, StalledMotorDrawsVoltageOverResistance) {

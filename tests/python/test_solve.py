@@ -1,10 +1,13 @@
 """One vehicle: what it does, its cycle, its derivatives, its start-up."""
 
 import json
+import os
+import shutil
 import subprocess
 import threading
 import time
 import unittest
+import unittest.mock
 
 import numpy as np
 import wingbeat as wb
@@ -25,6 +28,24 @@ class Solve(unittest.TestCase):
             self.assertEqual(unit == "", metric.unit == "1", metric)
         with self.assertRaises(AttributeError):
             result.lift
+
+    def test_a_notebook_shows_the_mechanism(self):
+        vehicle = reference()
+        result = vehicle.solve()
+        for file in ("friction2022", "two-wing-four-bar", "direct-drive"):
+            drawing = wb.read(DATA / "designs" / f"{file}.toml").drawing()
+            if shutil.which("gnuplot"):
+                self.assertTrue(drawing.startswith("<svg"), drawing[:80])
+                self.assertIn("wing" if file != "friction2022" else "slider", drawing)
+        with unittest.mock.patch.dict(os.environ, {"PATH": "/nowhere"}):
+            self.assertEqual(vehicle.drawing(), "")
+            bare = result._repr_html_()
+            self.assertNotIn("<svg", bare)
+            self.assertIn("<code>lift_mean</code>", bare)
+            self.assertIn("<code>motor.inertia</code></td><td style='text-align:left'>1.5e-07 kg m2", vehicle._repr_html_())
+        if shutil.which("gnuplot"):
+            self.assertIn("<svg", result._repr_html_())
+            self.assertIn("<svg", vehicle._repr_html_())
 
     def test_the_energy_balance_closes(self):
         balance = reference().solve(tolerance=1e-10).energy_balance

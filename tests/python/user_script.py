@@ -18,6 +18,12 @@ def main(file: str) -> float:
     found = wb.solve({"supply.voltage": np.linspace(2, 4, 5)}, vehicle=vehicle)
     best = float(found.lift_mean[found.flapping].max())
     print(inertia, unit, slope, slopes.shape, best, vehicle.simulate().time_to_steady.unit)
+    flight = vehicle.simulation(voltage=lambda time: 3.0 + time)
+    kinds: list[str] = [event.kind for event in flight.step_to("20 ms")]
+    speed: float = float(flight.state[1])
+    flight.voltage = 3.0
+    flight.restore(flight.save())
+    print(kinds, speed, float(vehicle.motor_curves().stall_torque))
     return result.frequency + best
 
 

@@ -63,11 +63,27 @@ TEST(RadauTableau, MeetsItsDefiningConditions) {
     for (int j = 0; j < s; ++j) sum += t.a[s - 1][j] * std::pow(t.c[j], power);
     EXPECT_NEAR(sum, 1.0 / (power + 1), 1e-15) << "power " << power;
   }
-  // The embedded formula is of order 5 with a weight at the step's start.
+  // The embedded formulas are of order 5, with a weight at the step's start, and of order 3.
   for (int power = 0; power < s; ++power) {
-    double sum = power == 0 ? t.start_weight : 0.0;
-    for (int j = 0; j < s; ++j) sum += (t.a[s - 1][j] + t.error[j]) * std::pow(t.c[j], power);
-    EXPECT_NEAR(sum, 1.0 / (power + 1), 1e-14) << "power " << power;
+    double fifth = power == 0 ? t.start_weight : 0.0, third = 0.0;
+    for (int j = 0; j < s; ++j) {
+      fifth += (t.a[s - 1][j] + t.error5[j]) * std::pow(t.c[j], power);
+      third += (t.a[s - 1][j] + t.error3[j]) * std::pow(t.c[j], power);
+    }
+    EXPECT_NEAR(fifth, 1.0 / (power + 1), 1e-14) << "power " << power;
+    if (power < 3) {
+      EXPECT_NEAR(third, 1.0 / (power + 1), 1e-14) << "power " << power;
+    }
+  }
+  // On states off the step's start by h A k for rates k.
+  for (int j = 0; j < s; ++j) {
+    double third = 0.0, fifth = 0.0;
+    for (int i = 0; i < s; ++i) {
+      third += t.state_error3[i] * t.a[i][j];
+      fifth += t.state_error5[i] * t.a[i][j];
+    }
+    EXPECT_NEAR(third, t.error3[j], 1e-14);
+    EXPECT_NEAR(fifth, t.error5[j], 1e-14);
   }
 }
 
@@ -134,6 +150,8 @@ TEST(Steps, EmbeddedErrorsHaveTheirOrders) {
   EXPECT_NEAR(order(Method::explicit_pair, 0.1, third_integral), 4.0, 0.4);
   EXPECT_NEAR(order(Method::explicit_pair, 0.1, fifth), 6.0, 0.5);
   EXPECT_NEAR(order(Method::explicit_pair, 0.1, fifth_integral), 6.0, 0.5);
+  EXPECT_NEAR(order(Method::radau, 0.1, third), 4.0, 0.4);
+  EXPECT_NEAR(order(Method::radau, 0.1, third_integral), 4.0, 0.4);
   EXPECT_NEAR(order(Method::radau, 0.1, fifth), 6.0, 0.5);
   EXPECT_NEAR(order(Method::radau, 0.1, fifth_integral), 6.0, 0.5);
 }

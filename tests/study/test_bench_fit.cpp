@@ -9,6 +9,7 @@
 #include "vehicle/reference_vehicle.hpp"
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/report/fit_report.hpp"
+#include "wingbeat/run/parallel.hpp"
 
 namespace wingbeat {
 namespace {
@@ -233,6 +234,42 @@ TEST(BenchFit, ProfileAgreesWithTheStandardErrorWhereTheModelIsNearlyLinear) {
     EXPECT_NEAR((*p.value - p.profile_lower_95) / (*p.value - p.lower_95), 1.0, 0.1) << p.key;
     for (const auto& point : p.profile) EXPECT_GE(point.excess, 0.0);
   }
+}
+
+TEST(BenchFit, DependsNeitherOnThreadsNorOnTheirOrder) {
+  BenchFit fit = bench(0.01, 3);
+  fit.design.motor.constants.armature_inductance = 2e-5;  // stiff
+  const std::vector<double> v = spaced_voltages(2.0, 4.0, 3);
+  const std::vector<Metric> seen = {Metric::voltage, Metric::current_mean};
+  fit.logs = {bench_log(fit.design, Condition::air, false, v, seen, Given::frequency),
+              bench_log(fit.design, Condition::wingless, false, v, {Metric::frequency, Metric::current_mean})};
+  set_deviations(fit, 0.01);
+  fit.starts = 3;
+  fit.profiles = true;
+  const FitResult alone = fit_bench(fit);
+  EXPECT_TRUE(alone.converged);
+  const auto backwards = [](std::size_t count, const auto& act) {
+    while (count > 0) act(--count);
+  };
+  const auto at_once = [](std::size_t count, const auto& act) { for_each_in_parallel(count, act); };
+  std::vector<std::string> told;
+  for (const ForEach& for_each : {ForEach(backwards), ForEach(at_once)}) {
+    const FitResult other = fit_bench(fit, [&](const std::string& what) { told.push_back(what); }, for_each);
+    EXPECT_EQ(other.deviance, alone.deviance);
+    EXPECT_EQ(other.evaluations, alone.evaluations);
+    EXPECT_EQ(other.starts_converged, alone.starts_converged);
+    for (std::size_t k = 0; k < alone.parameters.size(); ++k) {
+      const FittedParameter &a = alone.parameters[k], &b = other.parameters[k];
+      EXPECT_EQ(a.kept, b.kept) << a.key;
+      EXPECT_EQ(a.standard_error, b.standard_error) << a.key;
+      EXPECT_EQ(a.profile_lower_95, b.profile_lower_95) << a.key;
+      EXPECT_EQ(a.profile_upper_95, b.profile_upper_95) << a.key;
+      ASSERT_EQ(a.profile.size(), b.profile.size()) << a.key;
+      for (std::size_t n = 0; n < a.profile.size(); ++n) EXPECT_EQ(a.profile[n].excess, b.profile[n].excess) << a.key;
+    }
+  }
+  EXPECT_THAT(told, testing::Contains("start 2 of 3"));
+  EXPECT_THAT(told, testing::Contains("side of the profiles 6 of 6"));
 }
 
 TEST(BenchFit, RobustLossShrugsOffOutliers) {

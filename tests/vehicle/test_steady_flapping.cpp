@@ -6,6 +6,7 @@
 #include "vehicle/random_vehicle.hpp"
 #include "vehicle/reference_vehicle.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
+#include "wingbeat/cycle/static_balance.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/study/run.hpp"
 
@@ -72,6 +73,20 @@ TEST(SteadyFlapping, TakesAFewCyclesFromACoarseGuess) {
   EXPECT_LE(found.summary.residual, 1e-6);
   EXPECT_EQ(found.summary.newton_steps, 0);
   EXPECT_NEAR(found.metrics[Metric::floquet_multiplier_max], 9.7514e-5, 1e-8);
+}
+
+// docs/numerics.md quotes these numbers.
+TEST(SteadyFlapping, StartsFromTheEnergyAtTheBalancedSpeed) {
+  for (const bool springs : {false, true}) {
+    const Vehicle<double> vehicle = reference_vehicle(springs);
+    const OrbitGuess guess = guess_orbit(vehicle);
+    const SteadyFlapping found = find_steady_flapping(vehicle, {.tolerance = 1e-9});
+    EXPECT_NEAR(guess.crank_speed / found.crank_speed - 1.0, springs ? 0.032 : 0.056, 5e-4);
+    EXPECT_NEAR(guess.balanced.slowest / found.crank_speed - 1.0, springs ? 0.089 : 0.209, 5e-4);
+    const double multiplier = found.metrics[Metric::floquet_multiplier_max];
+    EXPECT_GT(guess.multiplier, 0.5 * multiplier);
+    EXPECT_LT(guess.multiplier, 5.0 * multiplier);
+  }
 }
 
 TEST(SteadyFlapping, FloquetMultiplierIsThatOfTheCycleMapByDifferences) {

@@ -6,6 +6,7 @@
 #include <concepts>
 
 #include "wingbeat/core/math.hpp"
+#include "wingbeat/cycle/configurations.hpp"
 #include "wingbeat/cycle/crank_turn.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/solve/iterate.hpp"
@@ -60,6 +61,14 @@ struct CrankSystem : CrankTurn<S> {
     return scale;
   }
 
+  /// True where the current follows the speed so quickly, within a small part of a radian, that explicit steps would
+  /// have to be shorter for it than their accuracy asks for.
+  bool stiff(const State& y) const
+    requires std::same_as<S, double> && (N == 2)
+  {
+    return circuit_resistance(vehicle) > 24.0 * vehicle.motor.armature_inductance * y[0];
+  }
+
   /// How many times smaller than what limits their errors (`scale`) the integrals of a cycle are: metrics are to be
   /// accurate relative to themselves. A mean lift below a thousandth of its peak need not be.
   double cancellation(const Quadrature& totals, const Quadrature& scale) const
@@ -77,7 +86,8 @@ struct CrankSystem : CrankTurn<S> {
     return largest;
   }
 
-  S current(const S&, const State& y) const {
+  S current(const S&, const State& y) const { return current(y); }
+  S current(const State& y) const {
     if constexpr (N == 2) {
       return y[1];
     } else {
@@ -89,12 +99,38 @@ struct CrankSystem : CrankTurn<S> {
     return {signs[stroke], signs[force], S(1.0), signs[stored] * signs[stroke], signs[pitching], signs[gear]};
   }
 
-  [[gnu::always_inline]] Motion<S> motion(const S& theta, const State& y, const Signs& signs) const {
+  Configuration<S> configuration(const S& theta) const {
     using std::cos;
     using std::sin;
-    const S i = current(theta, y);
+    return configuration_at(vehicle, S(sin(theta)), S(cos(theta)));
+  }
+  Configuration<S> place(const S& theta) const
+    requires std::same_as<S, double>
+  {
+    return configuration(theta);
+  }
+  template <std::size_t count>
+  std::array<Configuration<S>, count> places(const S& theta, const S& h, const double (&c)[count]) const
+    requires std::same_as<S, double>
+  {
+    std::array<double, count> at;
+    for (std::size_t n = 0; n < count; ++n) at[n] = theta + c[n] * h;
+    std::array<Configuration<S>, count> places;
+    if constexpr (std::same_as<V, Vehicle<double>>) {
+      configurations_at(vehicle, at, places);
+    } else {
+      for (std::size_t n = 0; n < count; ++n) places[n] = configuration(at[n]);
+    }
+    return places;
+  }
+
+  [[gnu::always_inline]] Motion<S> motion(const Configuration<S>& place, const State& y, const Signs& signs) const {
+    const S i = current(y);
     const S v_t = terminal_voltage(vehicle, vehicle.voltage, i);
-    return motion_at(vehicle, S(sin(theta)), S(cos(theta)), y[0], i, v_t, branch(signs));
+    return motion_at(vehicle, place, y[0], i, v_t, branch(signs));
+  }
+  [[gnu::always_inline]] Motion<S> motion(const S& theta, const State& y, const Signs& signs) const {
+    return motion(configuration(theta), y, signs);
   }
 
   CycleExtremes<S> candidates(const Motion<S>& m, const State& y, const Signs& signs) const {
@@ -103,7 +139,11 @@ struct CrankSystem : CrankTurn<S> {
 
   template <bool quadratures>
   solver::Rates<CrankSystem> rates(const S& theta, const State& y, const Signs& signs) const {
-    const Motion<S> m = motion(theta, y, signs);
+    return rates<quadratures>(configuration(theta), y, signs);
+  }
+  template <bool quadratures>
+  solver::Rates<CrankSystem> rates(const Configuration<S>& place, const State& y, const Signs& signs) const {
+    const Motion<S> m = motion(place, y, signs);
     const S per_omega = S(1.0) / y[0];
     solver::Rates<CrankSystem> r;
     r.dy[0] = m.crank_acceleration * per_omega;

@@ -85,8 +85,8 @@ class CycleGradient {
       solver::reset_map<true>(jets_, cycle_.steps, at, y, &totals_);
       starts_.push_back(y);
       const auto signs = solver::signs_of<Jets>(step);
-      const auto first = jets_.template rates<true>(W(step.x), y, signs);
-      const auto result = solver::take_step<true>(cycle_.method, jets_, W(step.x), y, W(step.h), signs, first);
+      const auto result =
+          solver::take_step<true>(cycle_.method, jets_, system_, W(step.x), y, W(step.h), signs, stages_of(at));
       for (std::size_t q = 0; q < totals_.size(); ++q) totals_[q] += result.dq[q];
       y = result.y;
       if constexpr (pitching) {
@@ -206,12 +206,14 @@ class CycleGradient {
     return of;
   }
 
+  /// Where known, the states at the stages of a step.
+  const auto* stages_of(std::size_t step) const { return cycle_.stages.empty() ? nullptr : &cycle_.stages[step]; }
+
   JetState state_at(std::size_t step, double x) const {
     const auto& s = cycle_.steps[step];
     if (x == s.x) return starts_[step];
     const auto signs = solver::signs_of<Jets>(s);
-    const auto first = jets_.template rates<false>(W(s.x), starts_[step], signs);
-    return solver::take_step<false>(cycle_.method, jets_, W(s.x), starts_[step], W(x - s.x), signs, first).y;
+    return solver::take_step<false>(cycle_.method, jets_, system_, W(s.x), starts_[step], W(x - s.x), signs).y;
   }
 
   /// True where step n begins with an impact on a stop.
@@ -290,9 +292,8 @@ class CycleGradient {
     for (std::size_t n = 0; n < cycle_.steps.size(); ++n) {
       const auto& step = cycle_.steps[n];
       const auto signs = solver::signs_of<Jets>(step);
-      const auto first = jets_.template rates<true>(W(step.x), starts_[n], signs);
       const auto along = [&](double h) {
-        return solver::take_step<true>(cycle_.method, jets_, W(step.x), starts_[n], W(h), signs, first);
+        return solver::take_step<true>(cycle_.method, jets_, system_, W(step.x), starts_[n], W(h), signs);
       };
       const W time = begins_[n];
       const auto add = [&](const W& weight, const W& t, const W& x, const JetState& y) {

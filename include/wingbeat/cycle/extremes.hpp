@@ -118,10 +118,22 @@ CycleExtremes<double> cycle_extremes(const System& system, const solver::Iterate
       // The cubic's own error is a small part of what it rises over its ends.
       const double doubt = 0.2 * (b.estimate - std::min(b.v0, b.v1)) + 5e-3 * (highest - lowest_candidate);
       if (b.estimate + doubt < highest) continue;
+      double x = b.step->x;
+      State y = b.step->y;
+      solver::Place<System> place = solver::place_at(system, x);
+      solver::Rates<System> rates = b.step->first;
       for (int iteration = 0; iteration < 30; ++iteration) {
-        const auto inside = solver::evaluate_inside<false>(system, cycle, *b.step, b.x);
-        const auto rates = system.template rates<false>(b.x, inside.y, b.step->signs);
-        const Derivative value = candidates(b.x, inside.y, rates.dy, b.step->signs)[c];
+        const bool moved = cycle.method == solver::Method::explicit_pair &&
+                           solver::is_little(b.x - x, b.step->h, cycle.tolerance) &&
+                           solver::move_a_little<false>(system, x, b.x - x, b.step->signs, rates, y, place);
+        if (!moved) {
+          const auto inside = solver::evaluate_inside<false>(system, cycle, *b.step, b.x);
+          y = inside.y;
+          place = inside.end;
+        }
+        x = b.x;
+        rates = system.template rates<false>(place, y, b.step->signs);
+        const Derivative value = candidates(x, y, rates.dy, b.step->signs)[c];
         const double v = value.a, d = value.v[0];
         // What is left to gain, from the flatter of the two secants of the slope.
         const double curvature = std::min(std::abs((b.d0 - d) / (b.x - b.x0)), std::abs((d - b.d1) / (b.x1 - b.x)));

@@ -43,13 +43,15 @@ class OrbitSearch {
 
   OrbitSearch(const System& system, const SteadyOptions& options) : options_(options), system_(system) {}
 
-  /// One search from a state at the start of an iterate.
-  bool search(const State& guess) {
-    solver::PeriodicOptions periodic{.tolerance = options_.tolerance, .stability = options_.stability};
+  /// One search from a state at the start of an iterate; of the multiplier see PeriodicOptions.
+  bool search(const State& guess, double expected_multiplier = 1.0) {
+    solver::PeriodicOptions periodic{
+        .tolerance = options_.tolerance, .stability = options_.stability, .expected_multiplier = expected_multiplier};
     if constexpr (requires { System::pitch; }) periodic.max_steps = pitching_steps;
+    if (stiff(guess)) periodic.method = solver::Method::radau;
     const int iterates_before = summary_.iterates;
     summary_ = solver::solve_periodic(system_, guess, periodic, iterate_);
-    if (summary_.status == solver::PeriodicStatus::too_many_steps) {
+    if (summary_.status == solver::PeriodicStatus::too_many_steps && periodic.method != solver::Method::radau) {
       periodic.method = solver::Method::radau;
       summary_ = solver::solve_periodic(system_, guess, periodic, iterate_);
     }
@@ -69,6 +71,7 @@ class OrbitSearch {
     solver::PeriodicOptions periodic{.tolerance = options_.tolerance, .stability = options_.stability, .near = true};
     if constexpr (requires { System::pitch; }) periodic.max_steps = pitching_steps;
     for (const auto method : {solver::Method::explicit_pair, solver::Method::radau}) {
+      if (method == solver::Method::explicit_pair && stiff(guess)) continue;
       periodic.method = method;
       const int iterates_before = summary_.iterates;
       summary_ = solver::solve_periodic(system_, guess, periodic, iterate_);
@@ -113,6 +116,12 @@ class OrbitSearch {
   }
 
  private:
+  /// True where explicit steps need not be tried.
+  bool stiff([[maybe_unused]] const State& guess) const {
+    if constexpr (requires { system_.stiff(guess); }) return system_.stiff(guess);
+    else return false;
+  }
+
   static constexpr int pitching_steps = 2000;  ///< a stiff hinge's own frequency is many times the supply's
 
   const SteadyOptions& options_;

@@ -159,6 +159,7 @@ template <Scalar S>
 struct BalancedSpeed {
   S slowest;  ///< first guess for the periodic orbit [rad/s]; the no-load speed where there is none
   S count;    ///< more than one, or nearly so, hints at several orbits; 0: the load stalls the motor
+  S slope;    ///< of the surplus of torque by the speed there, about [N m s]
 };
 
 /// What passive pitching can bend the drag's torque by: C_alpha |B1| omega at the largest stroke slope [rad].
@@ -175,13 +176,15 @@ S largest_pitch(const V<S>& v, std::span<const LoadPlace<S>> places, const S& om
 template <int speeds, template <Scalar> class V, Scalar S>
 BalancedSpeed<S> balanced_on_grid(const V<S>& v, std::span<const LoadPlace<S>> places) {
   const S no_load = no_load_speed(v), near = S(0.1) * stall_torque(v);
-  BalancedSpeed<S> balanced{no_load, S(0.0)};
+  BalancedSpeed<S> balanced{no_load, S(0.0), S(0.0)};
   S before = S(0.02) * no_load, surplus_before = torque_surplus(v, places, before), surplus_earlier = surplus_before;
   for (int n = 1; n <= speeds; ++n) {
     const S omega = no_load * S(double(n) / speeds), at = torque_surplus(v, places, omega);
     const auto crossed = surplus_before > S(0.0) && at <= S(0.0);
     const S root = before + (omega - before) * surplus_before / (surplus_before - at);
-    balanced.slowest = select<S>(crossed && balanced.count == S(0.0), root, balanced.slowest);
+    const auto first = crossed && balanced.count == S(0.0);
+    balanced.slowest = select<S>(first, root, balanced.slowest);
+    balanced.slope = select<S>(first, (at - surplus_before) / (omega - before), balanced.slope);
     balanced.count = select<S>(crossed, balanced.count + S(1.0), balanced.count);
     if (n > 1) {
       const auto touches =
@@ -205,6 +208,7 @@ BalancedSpeed<S> balanced_speed(const V<S>& v, std::span<const LoadPlace<std::ty
   if (any<S>(bends)) {
     const BalancedSpeed<S> finely = balanced_on_grid<40>(v, places);
     balanced.slowest = select<S>(bends, finely.slowest, balanced.slowest);
+    balanced.slope = select<S>(bends, finely.slope, balanced.slope);
     balanced.count = select<S>(bends, finely.count, balanced.count);
     balanced.count = select<S>(pitch > S(20.0), balanced.count + S(1.0), balanced.count);
   }
@@ -235,5 +239,15 @@ auto hardly_returns(const V<S>& v, const S& multiplier, const S& period) {
   return !(multiplier < S(0.8)) && !(S(1.0) - multiplier > S(0.1) * free_return(v, period));
 }
 BalancedSpeed<double> balanced_speed(const Vehicle<double>& vehicle);
+
+/// Where the search for a rotating orbit begins: a cycle of the energy that it has at the balanced speed.
+struct OrbitGuess {
+  BalancedSpeed<double> balanced;
+  double crank_speed;    ///< at crank angle zero [rad/s]
+  double earlier_speed;  ///< an electrical time constant before, which the current is still at [rad/s]
+  double multiplier;     ///< what a cycle leaves of a small disturbance of the speed, by mean torques and inertia; 1
+                         ///< where nothing balances
+};
+OrbitGuess guess_orbit(const Vehicle<double>& vehicle);
 
 }  // namespace wingbeat

@@ -25,13 +25,6 @@ constexpr std::size_t pack_integral(Integral which) {
   return at;
 }
 
-/// All that depends on the crank angle alone.
-template <Scalar S>
-struct Configuration {
-  CrankKinematics<S> kinematics;
-  S spring_moment;  ///< N_w k beta [N m]
-};
-
 /// The crank over half a cycle as a system for solve/: the independent variable u runs from -pi/2 to pi/2.
 template <Scalar S, int N>
 struct HalfCycle {

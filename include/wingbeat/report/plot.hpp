@@ -25,6 +25,11 @@ std::optional<PlotFormat> plot_format(const std::filesystem::path& file);
 void plot_cycle(std::span<const WaveformRow> rows, const Design<double>& design, const std::string& title,
                 PlotFormat format, const std::filesystem::path& file);
 
+/// The mechanism that the design has, alone, as it stands above a plotted cycle. `stroke_amplitude` [rad] is that of a
+/// direct drive; cranks have their own. Throws like plot_cycle.
+void plot_mechanism(const Design<double>& design, double stroke_amplitude, PlotFormat format,
+                    const std::filesystem::path& file);
+
 /// One case of a power breakdown.
 struct PowerBar {
   std::string label;

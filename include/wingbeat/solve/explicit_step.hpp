@@ -53,6 +53,24 @@ inline constexpr double e5[stages] =
 // clang-format on
 }  // namespace dop853
 
+/// True of systems that know many places at once: `place(x)` holds all that depends on x alone, `places(x, h, c)` is
+/// that at x + c[n] h, and rates() takes a place as it takes x.
+template <class System>
+concept KnowsPlaces = requires(const System& system, const typename System::Real& x) { system.place(x); };
+
+/// Where a system is at x, as its rates() take it.
+template <class System>
+auto place_at(const System& system, const typename System::Real& x) {
+  if constexpr (KnowsPlaces<System>) {
+    return system.place(x);
+  } else {
+    return x;
+  }
+}
+
+template <class System>
+using Place = decltype(place_at(std::declval<const System&>(), std::declval<const typename System::Real&>()));
+
 /// What a right-hand side returns at one point: dy/dx, and the integrands dq/dx where asked for.
 template <class System>
 struct Rates {
@@ -65,6 +83,7 @@ struct Rates {
 template <class System>
 struct StepResult {
   typename System::State y;                     ///< state at x + h
+  Place<System> end;                            ///< x + h
   typename System::Quadrature dq;               ///< integrals over the step; meaningful with quadratures only
   typename System::State error3;                ///< error of the embedded third-order formula
   typename System::State error5;                ///< error of the embedded fifth-order formula
@@ -73,10 +92,23 @@ struct StepResult {
   typename System::Switches lowest;   ///< least switch times its sign over the later stages: < 0 hints at a crossing
   typename System::State last_stage;  ///< with quadratures: where the explicit pair's last stage is, at x + h as y is,
   typename System::State last_slope;  ///< and the rates there
-  bool admissible = true;             ///< false: a stage left the region where the equations hold
+  std::array<typename System::State, 5> stages;  ///< of the implicit method: the states at its stages
+  bool admissible = true;                        ///< false: a stage left the region where the equations hold
 };
 
 namespace detail {
+
+/// The stages' places.
+template <class System>
+auto stage_places(const System& system, const typename System::Real& x, const typename System::Real& h) {
+  if constexpr (KnowsPlaces<System>) {
+    return system.places(x, h, dop853::c);
+  } else {
+    std::array<typename System::Real, dop853::stages> places;
+    for (std::size_t stage = 0; stage < places.size(); ++stage) places[stage] = x + dop853::c[stage] * h;
+    return places;
+  }
+}
 
 template <std::size_t... j, class F>
 constexpr void unroll(std::index_sequence<j...>, F&& f) {
@@ -101,6 +133,7 @@ StepResult<System> explicit_step(const System& system, const typename System::Re
   constexpr std::size_t stages = dop853::stages;
 
   StepResult<System> result;
+  const auto places = detail::stage_places(system, x, h);
   std::array<typename System::State, stages> k;
   k[0] = first.dy;
   if constexpr (quadratures) {
@@ -127,7 +160,7 @@ StepResult<System> explicit_step(const System& system, const typename System::Re
       return;
     }
     const Rates<System> rates =
-        system.template rates < quadratures && dop853::b[stage] != 0.0 > (x + dop853::c[stage] * h, at, branch);
+        system.template rates < quadratures && dop853::b[stage] != 0.0 > (places[stage], at, branch);
     k[stage] = rates.dy;
     if constexpr (quadratures && stage == stages - 1) {
       result.last_stage = at;
@@ -176,8 +209,47 @@ StepResult<System> explicit_step(const System& system, const typename System::Re
       result.integral_error5[q] = h * result.integral_error5[q];
     }
   }
+  result.end = places[stages - 1];
   result.admissible = system.admissible(result.y);
   return result;
+}
+
+/// True where move_a_little() is far more accurate than a step of length h, taken at `tolerance`: the step's error is
+/// about (h / r)^8, that of the move below (by / r)^5.
+inline bool is_little(double by, double h, double tolerance) {
+  return std::abs(by) < 0.1 * h * std::pow(tolerance, 0.2 - 1.0 / dop853::order);
+}
+
+/// Moves a state from x to x + by, a small part of a step, by the classical method of fourth order; `first` holds the
+/// rates at x. What integrals gain is added to `*gained`. False, nothing changed, where that is not admissible.
+template <bool quadratures, class System>
+bool move_a_little(const System& system, double x, double by, const typename System::Signs& branch,
+                   const Rates<System>& first, typename System::State& y, Place<System>& place,
+                   typename System::Quadrature* gained = nullptr) {
+  typename System::State at = y;
+  Place<System> there = place;
+  std::array<Rates<System>, 4> r;
+  r[0] = first;
+  for (std::size_t stage = 1; stage < 4; ++stage) {
+    const double part = stage == 3 ? by : 0.5 * by;
+    for (std::size_t n = 0; n < y.size(); ++n) at[n] = y[n] + part * r[stage - 1].dy[n];
+    if (!system.admissible(at)) return false;
+    if (stage != 2) there = place_at(system, x + part);
+    r[stage] = system.template rates<quadratures>(there, at, branch);
+  }
+  const auto mean = [](double a, double b, double c, double d) { return (a + 2.0 * (b + c) + d) / 6.0; };
+  for (std::size_t n = 0; n < y.size(); ++n) {
+    at[n] = y[n] + by * mean(r[0].dy[n], r[1].dy[n], r[2].dy[n], r[3].dy[n]);
+  }
+  if (!system.admissible(at)) return false;
+  y = at;
+  place = there;
+  if constexpr (quadratures) {
+    for (std::size_t q = 0; q < gained->size(); ++q) {
+      (*gained)[q] += by * mean(r[0].dq[q], r[1].dq[q], r[2].dq[q], r[3].dq[q]);
+    }
+  }
+  return true;
 }
 
 }  // namespace wingbeat::solver

@@ -173,7 +173,9 @@ auto monodromy_product(const System& system, const JetSystem& jets, const Iterat
       product.append(detail::stiff_factor(system, jets, iterate, step, pieces));
     } else {
       const typename JetSystem::Signs signs = signs_of<JetSystem>(step);
-      append_derivatives(take_step<false>(iterate.method, jets, Real(step.x), y, Real(step.h), signs, first).y);
+      append_derivatives(iterate.method == Method::explicit_pair
+                             ? explicit_step<false>(jets, Real(step.x), y, Real(step.h), signs, first).y
+                             : implicit_step<false>(jets, system, Real(step.x), y, Real(step.h), signs).y);
     }
     y = next_y;
     first = next;

@@ -49,8 +49,8 @@ void reset_map(const System& system, const std::vector<Step<Recorded>>& steps, s
   }
 }
 
-/// Repeats the steps of an iterate, mesh and branches frozen, from `start`; the scalar of `system` may differ from the
-/// iterate's (derivatives). Returns the state at the end; the integrals are added to `*totals` where given.
+/// Repeats the steps of an iterate, mesh and branches frozen, from `start`. Returns the state at the end; the integrals
+/// are added to `*totals` where given.
 template <bool quadratures, class System, class Recorded>
 typename System::State repeat_iterate(const System& system, const typename System::State& start,
                                       const Iterate<Recorded>& iterate, typename System::Quadrature* totals = nullptr) {

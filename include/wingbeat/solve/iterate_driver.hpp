@@ -44,7 +44,7 @@ double scaled_error(const System& system, const StepResult<System>& step, double
     sum3 += step.error3[n] * step.error3[n] * per * per;
     sum5 += step.error5[n] * step.error5[n] * per * per;
   }
-  // Hairer's combination of both embedded formulas, of order 8 in the step (radau has one, error5, alone).
+  // Hairer's combination of both embedded formulas, of order 8 in the step.
   const double denominator = sum5 + 0.01 * sum3;
   double error = denominator > 0.0 ? sum5 / std::sqrt(denominator * double(scale.size())) : 0.0;
   if constexpr (quadratures) {
@@ -93,13 +93,18 @@ class IterateDriver {
         located_(std::min(switch_count, std::size_t(options.switches))),
         position_tolerance_(switch_tolerance(options.tolerance)),
         error_exponent_(options.method == Method::explicit_pair ? -1.0 / dop853::order
-                                                                : -1.0 / (RadauTableau::stages + 1)) {}
+                                                                : -1.0 / RadauTableau::error_order) {}
 
   void run(const State& start) {
     begin(start);
     const double period = system_.period();
-    double h = iterate_.largest_step > 0.0 ? iterate_.largest_step : options_.first_step * period / two_pi;
+    double h = options_.first_step * period / two_pi;
+    if (iterate_.largest_step > 0.0) {
+      const double tighter = std::min(options_.tolerance / iterate_.tolerance, 1.0);
+      h = iterate_.largest_step * std::pow(tighter, -error_exponent_);
+    }
     iterate_.largest_step = 0.0;
+    iterate_.tolerance = options_.tolerance;
     // A step must not jump over the shape of what is integrated along.
     const double longest = quadratures ? period / 12.0 : period;
     while (x_ < period) {
@@ -129,7 +134,7 @@ class IterateDriver {
         continue;
       }
       double x1 = reaches ? target : x_ + step;
-      Rates<System> last = system_.template rates<quadratures>(x1, result.y, signs_);
+      Rates<System> last = system_.template rates<quadratures>(result.end, result.y, signs_);
       if constexpr (quadratures) {
         // Beyond the pair's interval of stability, steps feed an oscillation that the error estimates hardly see.
         if (options_.method == Method::explicit_pair) {
@@ -194,10 +199,12 @@ class IterateDriver {
     }
     iterate_.switches.clear();
     iterate_.steps.clear();
+    iterate_.stages.clear();
     iterate_.steps.reserve(64);
     iterate_.error_sum = 0.0;
     x_ = 0.0;
     y_ = start;
+    place_ = place_at(system_, x_);
     if constexpr (requires { system_.start_signs(start); }) {
       signs_ = system_.start_signs(start);
     } else {
@@ -206,10 +213,10 @@ class IterateDriver {
     // A switch may depend on the signs of those before it.
     for (std::size_t k = 0; k < switch_count; ++k) {
       if (jumps(system_, k)) continue;
-      const Rates<System> rates = system_.template rates<quadratures>(x_, y_, signs_);
+      const Rates<System> rates = system_.template rates<quadratures>(place_, y_, signs_);
       signs_[k] = rates.switches[k] >= 0.0 ? 1.0 : -1.0;
     }
-    first_ = system_.template rates<quadratures>(x_, y_, signs_);
+    first_ = system_.template rates<quadratures>(place_, y_, signs_);
     remember_switch_scale(first_);
     integral_scale_ = {};
     remember_integral_scale();
@@ -251,14 +258,28 @@ class IterateDriver {
       const double value = last.switches[k];
       moved -= off;
       if (!(moved > 0.7 * step && moved < 1.3 * step && x_ + moved < node)) return false;
-      const StepResult<System> again = take_step<quadratures>(options_.method, system_, x_, y_, moved, signs_, first_);
-      if (!again.admissible) return false;
-      result = again;
-      step = moved;
-      last = system_.template rates<quadratures>(x_ + step, result.y, signs_);
+      if (!move_end(k, moved, step, result, last)) return false;
       if (corrections > 3) slope = (value - last.switches[k]) / off;
     }
     return false;
+  }
+
+  /// Moves the end of a step to where it is `to` long, for switch k; false, nothing changed, where the state there is
+  /// not admissible.
+  bool move_end(std::size_t k, double to, double& step, StepResult<System>& result, Rates<System>& last) {
+    const bool little = is_little(to - step, step, options_.tolerance);
+    if (little && options_.method == Method::explicit_pair && !jumps(system_, k)) {
+      if (!move_a_little<quadratures>(system_, x_ + step, to - step, signs_, last, result.y, result.end, &result.dq)) {
+        return false;
+      }
+    } else {
+      const StepResult<System> again = take_step<quadratures>(options_.method, system_, x_, y_, to, signs_, first_);
+      if (!again.admissible) return false;
+      result = again;
+    }
+    step = to;
+    last = system_.template rates<quadratures>(result.end, result.y, signs_);
+    return true;
   }
 
   /// The switch that was crossed first in a step, or switch_count; `ended_on` is not looked at. Zero counts as not
@@ -314,7 +335,7 @@ class IterateDriver {
       const StepResult<System> again =
           take_step<quadratures>(options_.method, system_, x_, y_, shorter, signs_, first_);
       if (!again.admissible) return false;
-      const Rates<System> at = system_.template rates<quadratures>(x_ + shorter, again.y, signs_);
+      const Rates<System> at = system_.template rates<quadratures>(again.end, again.y, signs_);
       if (at.switches[k] * signs_[k] >= 0.0) continue;
       step = shorter;
       result = again;
@@ -379,9 +400,11 @@ class IterateDriver {
     const int corrections = jumps(system_, k) ? 12 : 4;
     double value_before = 0.0, moved = 0.0;
     for (int correction = 0; correction < corrections; ++correction) {
-      step = at;
-      result = take_step<quadratures>(options_.method, system_, x_, y_, step, signs_, first_);
-      last = system_.template rates<quadratures>(x_ + step, result.y, signs_);
+      if (correction == 0 || !move_end(k, at, step, result, last)) {
+        step = at;
+        result = take_step<quadratures>(options_.method, system_, x_, y_, step, signs_, first_);
+        last = system_.template rates<quadratures>(result.end, result.y, signs_);
+      }
       const double signed_value = last.switches[k] * signs_[k];
       if (corrections > 4 && moved != 0.0 && signed_value != value_before) {
         slope = (value_before - signed_value) / moved;
@@ -415,9 +438,11 @@ class IterateDriver {
 
   void accept(double x1, double step, const StepResult<System>& result, const Rates<System>& last) {
     iterate_.steps.push_back({x_, step, y_, signs_, first_, result.dq});
+    if (options_.method == Method::radau) iterate_.stages.push_back(result.stages);
     iterate_.largest_step = std::max(iterate_.largest_step, step);
     x_ = x1;
     y_ = result.y;
+    place_ = result.end;
     first_ = last;
     flips_here_ = 0;
     remember_integral_scale();
@@ -441,13 +466,13 @@ class IterateDriver {
     }
     ++flips_here_;
     iterate_.switches.push_back({x_, k});
-    first_ = system_.template rates<quadratures>(x_, y_, signs_);
+    first_ = system_.template rates<quadratures>(place_, y_, signs_);
     if (jumps(system_, k)) {
       // The other switches may have jumped over their zeros with the rates.
       for (std::size_t other = 0; other < switch_count; ++other) {
         if (!jumps(system_, other)) signs_[other] = first_.switches[other] >= 0.0 ? 1.0 : -1.0;
       }
-      first_ = system_.template rates<quadratures>(x_, y_, signs_);
+      first_ = system_.template rates<quadratures>(place_, y_, signs_);
     }
   }
 
@@ -457,7 +482,7 @@ class IterateDriver {
       signs_[k] = -signs_[k];
       ++fixed_;
     }
-    first_ = system_.template rates<quadratures>(x_, y_, signs_);
+    first_ = system_.template rates<quadratures>(place_, y_, signs_);
   }
 
   const System& system_;
@@ -471,6 +496,7 @@ class IterateDriver {
   std::size_t fixed_ = 0;
   int flips_here_ = 0;
   double x_ = 0.0;
+  Place<System> place_;  ///< at x_
   State y_;
   Signs signs_;
   Rates<System> first_;

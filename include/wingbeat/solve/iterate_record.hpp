@@ -46,12 +46,14 @@ enum class IterateStatus {
 template <class System>
 struct Iterate {
   std::vector<Step<System>> steps;
+  std::vector<detail::AtStages<typename System::State>> stages;  ///< of the steps, if implicit
   std::vector<SwitchNode> switches;  ///< located; on entry of run_iterate, the expected ones
   typename System::State end;
   IterateStatus status = IterateStatus::complete;
   Method method = Method::explicit_pair;
   double stop = 0.0;                             ///< where the iterate ended [same unit as the period]
   double largest_step = 0.0;                     ///< first guess for the next iterate's steps
+  double tolerance = 0.0;                        ///< that it was taken at
   double error_sum = 0.0;                        ///< of the steps' estimated errors, relative
   typename System::Switches switch_scale{};      ///< largest magnitudes of the switches
   typename System::Quadrature integral_scale{};  ///< what the integrals' errors were limited by a share of
@@ -72,6 +74,17 @@ StepResult<System> take_step(Method method, const System& system, const typename
                              const typename System::Signs& branch, const Rates<System>& first) {
   return method == Method::explicit_pair ? explicit_step<quadratures>(system, x, y, h, branch, first)
                                          : implicit_step<quadratures>(system, x, y, h, branch, first);
+}
+
+/// The same with derivatives: `jets` is `system` on dual numbers. `near` as in implicit_step.
+template <bool quadratures, class Jets, class System>
+StepResult<Jets> take_step(Method method, const Jets& jets, const System& system, const typename Jets::Real& x,
+                           const typename Jets::State& y, const typename Jets::Real& h,
+                           const typename Jets::Signs& branch,
+                           const detail::AtStages<typename System::State>* near = nullptr) {
+  if (method == Method::radau) return implicit_step<quadratures>(jets, system, x, y, h, branch, near);
+  const Rates<Jets> first = jets.template rates<quadratures>(x, y, branch);
+  return explicit_step<quadratures>(jets, x, y, h, branch, first);
 }
 
 /// True of systems whose event_transition() moves the state, as an impact does: a recorded step then begins elsewhere

@@ -27,6 +27,8 @@ struct PeriodicOptions {
   int max_steps = 80;     ///< of an iterate at the coarsest level, more is called stiff; ten times as many later
   bool stability = true;  ///< compute the monodromy matrix and the Floquet multipliers
   bool near = false;      ///< the guess is close to the orbit: no coarse iterates, which may lose it
+  double expected_multiplier = 1.0;  ///< what an iterate is thought to leave of a distance from the orbit; decides
+                                     ///< about coarse iterates, not about what is found
 };
 
 enum class PeriodicStatus {
@@ -80,6 +82,7 @@ double close_on_mesh(const System& system, Iterate<System>& iterate, double tole
                      bool& grazes) {
   typename System::State y = iterate.end;
   double apart = scaled_distance(system, y, iterate.steps.front().y);
+  Place<System> place = place_at(system, iterate.steps.front().x);
   for (std::size_t n = 0; n < iterate.steps.size() && apart > tolerance; ++n) {
     Step<System>& step = iterate.steps[n];
     typename System::Quadrature gained{};
@@ -88,12 +91,14 @@ double close_on_mesh(const System& system, Iterate<System>& iterate, double tole
       for (std::size_t q = 0; q < gained.size(); ++q) iterate.steps[n - 1].dq[q] += gained[q];
     }
     step.y = y;
-    step.first = system.template rates<true>(step.x, y, step.signs);
+    step.first = system.template rates<true>(place, y, step.signs);
     const StepResult<System> result =
         take_step<true>(iterate.method, system, step.x, y, step.h, step.signs, step.first);
     if (!result.admissible) return std::numeric_limits<double>::infinity();
     step.dq = result.dq;
+    if (iterate.method == Method::radau) iterate.stages[n] = result.stages;
     y = result.y;
+    place = result.end;
     for (std::size_t k = 0; k < result.lowest.size(); ++k) {
       grazes = grazes || result.lowest[k] < -position_error * iterate.switch_scale[k];
     }
@@ -205,7 +210,12 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   iterate.switches.clear();
   iterate.largest_step = 0.0;
 
-  std::array<double, 3> tolerances = {std::max(fine, 1e-2), std::max(10.0 * fine, 1e-7), fine};
+  // A fine iterate closes by repeating its mesh if its start was close enough for its switches to stay where they are.
+  const double near_quickly = 0.1 * std::sqrt(options.tolerance), near_slowly = 0.03 * near_quickly;
+  // Where an iterate all but forgets its start, what a coarse one leaves is soon gone.
+  const bool forgets = options.expected_multiplier < 0.03;
+  std::array<double, 3> tolerances = {std::max(fine, 1e-2), std::max(10.0 * fine, forgets ? 0.3 * near_quickly : 1e-7),
+                                      fine};
   State y = guess;
   double residual = 1.0, before_tolerance = tolerances[0];
   // Errors of an iterate are left in the orbit 1 / (1 - multiplier) times: unless iterates have been seen to contract
@@ -213,13 +223,20 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   bool contracts = false, moved_by_newton = true, known = false;
   double amplification = 1.0, cancellation = 1.0, off = 1.0;
   int repeats = 0;
-  for (std::size_t level = options.near ? 1 : 0; summary.iterates < options.max_iterates;) {
+  // A fine iterate too many costs twice what a coarse one does: the next may be thought near where it hardly is.
+  const auto is_near_after = [&](double distance) {
+    return forgets && distance * options.expected_multiplier < 2.0 * near_quickly;
+  };
+  constexpr double distance_of_guess = 0.05;
+  const bool one_is_enough = is_near_after(distance_of_guess);
+  for (std::size_t level = options.near || one_is_enough ? 1 : 0; summary.iterates < options.max_iterates;) {
     // Coarse iterates need only the switches that bend the solution itself.
-    const bool is_fine = level + 1 == tolerances.size();
-    const IterateOptions iterate_options = {.method = options.method,
-                                            .tolerance = tolerances[level],
-                                            .max_steps = level == 0 ? options.max_steps : 10 * options.max_steps,
-                                            .switches = is_fine ? 1000 : System::state_switches};
+    const bool is_fine = level + 1 == tolerances.size(), first = level == 0 || summary.iterates == 0;
+    const IterateOptions iterate_options = {
+        .method = options.method,
+        .tolerance = tolerances[level],
+        .max_steps = first && !options.near ? options.max_steps : 10 * options.max_steps,
+        .switches = is_fine ? 1000 : System::state_switches};
     if (is_fine) {
       run_iterate<true>(system, y, iterate_options, iterate);
     } else {
@@ -236,10 +253,20 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
     const State start = y;
     y = iterate.end;
 
+    if (is_fine && !contracts && !known) {
+      // Coarse iterates were left before they could tell how quickly they contract, and this one has not shown it.
+      const detail::IterateInverse<System> of_iterate(system, iterate);
+      ++summary.iterates;
+      known = true;
+      amplification = of_iterate.amplification();
+      if (amplification > 1.0 + slow_contraction) {
+        tolerances[2] = std::max(fine / amplification, tightest);
+        if (of_iterate.move(system, iterate, y)) ++summary.newton_steps, moved_by_newton = true;
+        continue;
+      }
+    }
     const bool slow = detail::contracts_slowly<System>() || amplification > 1.0 + slow_contraction;
-    // A fine iterate closes by repeating its mesh if its start was close enough for its switches to stay where they
-    // are.
-    const double near = (slow ? 3e-3 : 0.1) * std::sqrt(options.tolerance);
+    const double near = slow ? near_slowly : near_quickly;
     off = residual;
     bool grazes = false;
     const double position_error = 0.7 * detail::switch_tolerance(iterate_options.tolerance);
@@ -306,8 +333,8 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
     // What the coarser of the two iterates got wrong says nothing about the contraction.
     const bool stalls = summary.iterates > 1 && residual > slow_contraction * before && residual > before_tolerance;
     before_tolerance = iterate_options.tolerance;
-    const bool closes = residual < 0.1;
-    const bool ask = level + 2 == tolerances.size() && closes && !contracts && !known;
+    const bool closes = forgets && level > 0 ? is_near_after(residual) : residual < (forgets ? 0.5 : 0.1);
+    const bool ask = level + 2 == tolerances.size() && closes && !contracts && !known && !forgets;
     if ((stalls && residual < 0.5) || ask) {
       const detail::IterateInverse<System> of_iterate(system, iterate);
       ++summary.iterates;

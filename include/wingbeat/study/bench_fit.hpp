@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "wingbeat/cycle/orbit_gradient.hpp"
+#include "wingbeat/study/for_each.hpp"
 #include "wingbeat/study/frequency_search.hpp"
 
 namespace wingbeat {
@@ -207,8 +208,10 @@ struct FitResult {
 };
 
 /// Throws ParameterError for parameters without a place in the design, bounds out of order, quantities that the design
-/// does not have. `progress` is called now and then with what is under way.
-FitResult fit_bench(const BenchFit& fit, const std::function<void(const std::string&)>& progress = {});
+/// does not have. `progress` is called now and then with what is under way, by one thread at a time. Rows, starts and
+/// profiles are solved by `for_each`; what is found does not depend on it.
+FitResult fit_bench(const BenchFit& fit, const std::function<void(const std::string&)>& progress = {},
+                    const ForEach& for_each = {});
 
 /// One friction law fitted to the same data.
 struct FrictionCandidate {
@@ -226,7 +229,8 @@ struct FrictionCandidate {
 /// parameter is free.
 std::vector<FrictionCandidate> compare_friction(const BenchFit& fit,
                                                 const std::function<DesignParameter(const std::string&)>& parameter_of,
-                                                const std::function<void(const std::string&)>& progress = {});
+                                                const std::function<void(const std::string&)>& progress = {},
+                                                const ForEach& for_each = {});
 
 /// "air", "vacuum with springs".
 std::string condition_name(Condition condition, bool springs);

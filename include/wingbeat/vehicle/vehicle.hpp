@@ -240,6 +240,22 @@ S spring_moment(const V<S>& v, const CrankKinematics<S>& k) {
   return v.wing_count * spring_loads(v.spring, stroke_angle(k)).moment;
 }
 
+/// All that depends on the crank angle alone.
+template <Scalar S>
+struct Configuration {
+  CrankKinematics<S> kinematics;
+  S spring_moment;  ///< N_w k beta [N m]
+};
+
+/// The configuration at a crank angle given by its sine and cosine.
+template <template <Scalar> class V, Scalar S>
+[[gnu::always_inline]] inline Configuration<S> configuration_at(const V<S>& v, const S& sin_theta, const S& cos_theta) {
+  Configuration<S> at;
+  at.kinematics = crank_kinematics(v.transmission, sin_theta, cos_theta);
+  at.spring_moment = spring_moment(v, at.kinematics);
+  return at;
+}
+
 /// What is known of an instant before the sign of the rod force.
 template <Scalar S>
 struct Instant {
@@ -348,16 +364,21 @@ CrankKinematics<S> direct_kinematics() {
   return {S(0.0), S(0.0), S(1.0), S(0.0), S(1.0), S(1.0)};
 }
 
-/// Rod force and accelerations at crank angle theta (given by sine and cosine), crank speed omega [rad/s] and current
-/// i [A] under the terminal voltage v_t [V], on a given branch.
+/// Rod force and accelerations in a configuration, at crank speed omega [rad/s] and current i [A] under the terminal
+/// voltage v_t [V], on a given branch.
+template <template <Scalar> class V, Scalar S>
+[[gnu::always_inline]] inline Motion<S> motion_at(const V<S>& v, const Configuration<S>& place, const S& omega,
+                                                  const S& i, const S& v_t, const Branch<S>& branch) {
+  const Instant<S> at = instant_at(v, place.kinematics, place.spring_moment, omega, i, v_t, branch.stroke,
+                                   branch.direction, branch.pitching, branch.gear);
+  return motion_on(v, at, i, v_t, branch);
+}
+
+/// The same at the crank angle theta, given by sine and cosine.
 template <template <Scalar> class V, Scalar S>
 [[gnu::always_inline]] inline Motion<S> motion_at(const V<S>& v, const S& sin_theta, const S& cos_theta, const S& omega,
                                                   const S& i, const S& v_t, const Branch<S>& branch) {
-  const CrankKinematics<S> k = crank_kinematics(v.transmission, sin_theta, cos_theta);
-  const S N_k_beta = spring_moment(v, k);
-  const Instant<S> at =
-      instant_at(v, k, N_k_beta, omega, i, v_t, branch.stroke, branch.direction, branch.pitching, branch.gear);
-  return motion_on(v, at, i, v_t, branch);
+  return motion_at(v, configuration_at(v, sin_theta, cos_theta), omega, i, v_t, branch);
 }
 
 /// Voltage at the motor terminals [V] under the current i [A], where the supply drives `voltage` [V].

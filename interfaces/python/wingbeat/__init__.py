@@ -5,6 +5,7 @@
     result = vehicle.solve(voltage="3 V")               # result.status, result.lift_mean, result.cycle
     result.gradient("lift_mean", ["transmission.crank_radius"])
     vehicle.simulate().time_to_steady
+    vehicle.simulation().step_to(0.1)                   # under commanded voltages, for controllers
     vehicle.sweep({"supply.voltage": [2, 3, 4]})        # xarray
     wb.solve({"supply.voltage": [2, 3, 4]}, vehicle=vehicle).lift_mean
     vehicle.equations_of_motion().rates(time, state)    # for SciPy
@@ -18,10 +19,13 @@ from ._core import version as __version__
 from ._ensemble import Ensemble, solve_columns
 from ._equations import EquationsOfMotion
 from ._errors import InputError
+from ._optimise import Front, OwnOptimum, optimise
+from ._parts import coefficient_curves, kinematics, motor_curves
 from ._quantity import Quantity
-from ._result import EnergyBalance, RunResult, StartUp, simulate, solve
+from ._result import EnergyBalance, Event, RunResult, StartUp, simulate, solve
 from ._sections import Section
-from ._studies import Flight, Found, Identification, StudyResult, endurance, fit, identify_motor, optimise, tolerance
+from ._simulation import Simulation, SimulationState
+from ._studies import Flight, Found, Identification, StudyResult, endurance, fit, identify_motor, tolerance
 from ._sweep import open_dataset, sweep
 from ._tables import Metric, Parameter, metrics, parameters
 from ._vehicle import Vehicle, read
@@ -30,23 +34,31 @@ __all__ = [
     "EnergyBalance",
     "Ensemble",
     "EquationsOfMotion",
+    "Event",
     "Flight",
     "Found",
+    "Front",
     "Identification",
     "InputError",
     "Metric",
+    "OwnOptimum",
     "Parameter",
     "Quantity",
     "RunResult",
     "Section",
+    "Simulation",
+    "SimulationState",
     "StartUp",
     "StudyResult",
     "Vehicle",
     "__version__",
+    "coefficient_curves",
     "endurance",
     "fit",
     "identify_motor",
+    "kinematics",
     "metrics",
+    "motor_curves",
     "open_dataset",
     "optimise",
     "parameters",

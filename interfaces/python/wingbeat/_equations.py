@@ -17,15 +17,15 @@ class EquationsOfMotion:
     """The equations of motion of a vehicle in time: `scipy.integrate.solve_ivp(equations.rates, ...)`.
 
     The state is crank angle, not wrapped [rad], crank speed [rad/s] and, with an armature inductance, current [A]; of a
-    direct drive stroke angle [rad], flapping velocity [rad/s] and current: `states` has the names. The motor is as warm
-    as its surroundings.
+    direct drive stroke angle [rad], flapping velocity [rad/s] and current; behind them, of wings that pitch on hinges,
+    pitch angle [rad] and pitch velocity [rad/s]: `states` has the names. The motor is as warm as its surroundings.
 
     Rates are continuous but for standstill, where friction changes its direction, and for what the supply does; they
-    have kinks where the rod force, the stroke velocity or the torque of a lossy gearbox changes sign. Standstill is no
-    part of them: where friction holds a crank, they are those of a crank about to turn forwards. `wingbeat.simulate`
-    knows standstill.
+    have kinks where the rod force, the stroke velocity, the pitch velocity or the torque of a lossy gearbox changes sign.
+    Standstill is no part of them: where friction holds a crank, they are those of a crank about to turn forwards. Nor
+    are the stops of hinges: they are those of wings that go on beyond them. `wingbeat.Simulation` knows both.
 
-    Raises InputError for a condition that there is not, and for wings that pitch on a hinge.
+    Raises InputError for a condition that there is not.
     """
 
     #: Names of the states.

@@ -28,6 +28,14 @@ def quantity(name: str, value: Any, unit: str) -> float | None:
     return None if value is None else _core.quantity(name, value, unit)
 
 
+class Event(NamedTuple):
+    """What happens to a vehicle in time."""
+
+    time: float  #: [s]
+    crank_angle: float  #: not wrapped; of a direct drive the stroke angle [rad]
+    kind: str  #: "revolution", "standstill", "breakaway", "jam", "force-sign-change", "supply-switch", "stop-impact"
+
+
 class EnergyBalance(NamedTuple):
     """Mean powers of a cycle [W]: the electrical input and where it goes."""
 
@@ -134,7 +142,9 @@ class RunResult(WithMetrics):
             for name, value in self.metrics.items()
             if value is not None
         )
-        return f"<p><b>{escape(self.status)}</b>: {escape(self.evidence)}</p><table>{rows}</table>"
+        drawing = self.vehicle.drawing(self.stroke_amplitude or np.radians(60))
+        shown = f"<div style='max-width: 28em'>{drawing}</div>" if drawing else ""
+        return f"<p><b>{escape(self.status)}</b>: {escape(self.evidence)}</p>{shown}<table>{rows}</table>"
 
 
 def _waveform(columns: Sequence[Any]) -> xarray.Dataset:
@@ -230,14 +240,14 @@ class StartUp(WithMetrics):
     inrush_current: Quantity  #: highest current of the whole start-up [A]
     inrush_current_time: Quantity  #: [s]
     cycles: int  #: revolutions of the crank
-    events: list[tuple[float, float, str]]  #: time [s], crank angle [rad], what happened
+    events: list[Event]  #: what happened on the way
 
     def __init__(self, found: dict[str, Any]) -> None:
         self.status = found["status"]
         self.evidence = found["evidence"]
         self.settled = found["settled"]
         self.cycles = found["cycles"]
-        self.events = found["events"]
+        self.events = [Event(*event) for event in found["events"]]
         self.end_time = Quantity(found["end_time"], "s", "time simulated")
         self.time_to_steady = Quantity(found["time_to_steady"], "s", "time to steady flapping, or to rest")
         self.inrush_current = Quantity(found["inrush_current"], "A", "highest current of the start-up")

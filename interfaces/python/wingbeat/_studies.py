@@ -15,6 +15,7 @@ import numpy as np
 from . import _core
 from ._progress import shown
 from ._result import quantity
+from ._study import without_place
 from ._tables import metric_rows
 from ._vehicle import Vehicle, _assignments, _toml
 
@@ -116,7 +117,8 @@ def _file_of(study: Study, vehicle: Vehicle | None) -> Iterator[str]:
             tables["study"]["vehicle"] = str(file)
         name = pathlib.Path(folder) / "study.toml"
         name.write_text("".join(f"{key} = {_toml(value)}\n" for key, value in tables.items()), encoding="utf-8")
-        yield str(name)
+        with without_place(str(name)):
+            yield str(name)
 
 
 def endurance(vehicle: Vehicle, *, allow_extrapolation: bool = False) -> Flight:
@@ -202,27 +204,3 @@ def tolerance(
     with _file_of(study, vehicle) as file, shown(progress, 0) as tell:
         return StudyResult(_core.tolerance(file, _assignments(values or {}), allow_extrapolation, threads, tell))
 
-
-def optimise(
-    study: Study,
-    *,
-    vehicle: Vehicle | None = None,
-    values: Mapping[str, Any] | None = None,
-    allow_extrapolation: bool = False,
-    threads: int = 0,
-) -> Found:
-    """The best design within bounds and constraints: `wingbeat optimise`, of one objective.
-
-    Parameters
-    ----------
-    study : study file (TOML), or a dict of its tables; a file names its vehicle
-    vehicle : of a study that is a dict
-    values : keys of the vehicle with other values
-    allow_extrapolation : designs outside the model's domain count
-    threads : at most so many; 0: one for each core
-
-    Objectives that are no metric, and constraints of one's own, are for SciPy, with `solve` and `gradient`
-    (docs/python.md). Raises InputError.
-    """
-    with _file_of(study, vehicle) as file:
-        return Found(_core.optimise(file, _assignments(values or {}), allow_extrapolation, threads))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import tempfile
 import tomllib
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
@@ -14,10 +15,13 @@ from ._sections import Sections, sections
 from ._tables import parameters
 
 if TYPE_CHECKING:
+    from xarray import Dataset
+
     from ._accessor import SweepData
     from ._ensemble import Ensemble
     from ._equations import EquationsOfMotion
     from ._result import RunResult, StartUp
+    from ._simulation import Simulation
     from ._studies import Flight
 
 
@@ -173,6 +177,35 @@ class Vehicle(Sections):
     def __repr__(self) -> str:
         return f"<wingbeat.Vehicle {self.name!r}>"
 
+    def drawing(self, stroke_amplitude: float = 1.0) -> str:
+        """Its mechanism as SVG, to be shown in a page; "" where gnuplot, which draws it, is not installed.
+
+        `stroke_amplitude` [rad] is that of a direct drive; a crank has its own.
+        """
+        with tempfile.TemporaryDirectory(prefix="wingbeat-") as folder:
+            svg = _core.mechanism_svg(self._design, stroke_amplitude, os.path.join(folder, "mechanism.svg"))
+        return svg[max(0, svg.find("<svg")) :]
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        def shown_value(key: str) -> str:
+            value = self[key]
+            if isinstance(value, Quantity):
+                return f"{value:.6g} {'' if value.unit == '1' else value.unit}"
+            text = str(value)
+            return text if len(text) < 80 else f"{text[:76]} ..."
+
+        rows = "".join(
+            f"<tr><td style='text-align:left'><code>{escape(key)}</code></td>"
+            f"<td style='text-align:left'>{escape(shown_value(key))}</td></tr>"
+            for key in self.keys()
+            if key != "vehicle.name"
+        )
+        drawing = self.drawing()
+        shown = f"<div style='max-width: 28em'>{drawing}</div>" if drawing else ""
+        return f"<p><b>{escape(self.name or 'vehicle')}</b></p>{shown}<table>{rows}</table>"
+
     # ---- what it does
 
     def solve(self, **options: Any) -> RunResult:
@@ -186,6 +219,12 @@ class Vehicle(Sections):
         from ._result import simulate
 
         return simulate(self, **options)
+
+    def simulation(self, **options: Any) -> Simulation:
+        """It in time, to be stepped under commanded voltages: see wingbeat.Simulation."""
+        from ._simulation import Simulation
+
+        return Simulation(self, **options)
 
     def solve_columns(self, columns: Mapping[str, Any], **options: Any) -> Ensemble:
         """Very many vehicles like it: see wingbeat.solve."""
@@ -204,6 +243,24 @@ class Vehicle(Sections):
         from ._studies import endurance
 
         return endurance(self, **options)
+
+    def motor_curves(self, **options: Any) -> Dataset:
+        """Torque, current, powers and efficiency of its motors over speed: see wingbeat.motor_curves."""
+        from ._parts import motor_curves
+
+        return motor_curves(self, **options)
+
+    def coefficient_curves(self, **options: Any) -> Dataset:
+        """Force coefficients of its wings over the angle of attack: see wingbeat.coefficient_curves."""
+        from ._parts import coefficient_curves
+
+        return coefficient_curves(self, **options)
+
+    def kinematics(self, **options: Any) -> Dataset:
+        """Stroke angle and its derivatives over the crank angle: see wingbeat.kinematics."""
+        from ._parts import kinematics
+
+        return kinematics(self, **options)
 
     def equations_of_motion(self, **options: Any) -> EquationsOfMotion:
         """For integrators of one's own: see wingbeat.EquationsOfMotion."""

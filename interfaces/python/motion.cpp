@@ -1,0 +1,177 @@
+// Vehicles in time for Python: equations of motion, and simulations that are stepped. Nothing is computed here.
+#include <array>
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "binding.hpp"
+#include "wingbeat/files/waveform_file.hpp"
+#include "wingbeat/time/simulation.hpp"
+
+namespace wingbeat::python {
+namespace {
+
+// ---- equations of motion
+
+/// Derivatives of states in rows, one column or many.
+py::array_t<double> rates(const EquationsOfMotion& equations, double time,
+                          const py::array_t<double, py::array::c_style | py::array::forcecast>& state,
+                          std::optional<double> voltage) {
+  const std::size_t rows = equations.state_count();
+  if (state.ndim() < 1 || state.ndim() > 2 || std::size_t(state.shape(0)) != rows) {
+    throw py::value_error("expected a state of " + std::to_string(rows) + " numbers, or an array with as many rows");
+  }
+  py::array_t<double> derivatives(std::vector<py::ssize_t>(state.shape(), state.shape() + state.ndim()));
+  if (state.ndim() == 1) {
+    equations.rates(time, state.data(), derivatives.mutable_data(), voltage);
+    return derivatives;
+  }
+  const auto from = state.unchecked<2>();
+  auto to = derivatives.mutable_unchecked<2>();
+  std::array<double, 5> column, slopes;
+  for (py::ssize_t n = 0; n < state.shape(1); ++n) {
+    for (std::size_t r = 0; r < rows; ++r) column[r] = from(py::ssize_t(r), n);
+    equations.rates(time, column.data(), slopes.data(), voltage);
+    for (std::size_t r = 0; r < rows; ++r) to(py::ssize_t(r), n) = slopes[r];
+  }
+  return derivatives;
+}
+
+// ---- simulations
+
+py::list events_of(const std::vector<TransientEvent>& events) {
+  py::list found;
+  for (const TransientEvent& event : events) {
+    found.append(py::make_tuple(event.time, event.crank_angle, name_of(event.kind)));
+  }
+  return found;
+}
+
+/// A simulation that one thread steps at a time, and that its commanding function does not step.
+class Stepped {
+ public:
+  explicit Stepped(Simulation simulation) : simulation_(std::move(simulation)) {}
+  Stepped(const Stepped& other) : simulation_(other.idle()) {}
+
+  const Simulation& idle() const {
+    if (busy_) throw std::runtime_error("the simulation is being stepped");
+    return simulation_;
+  }
+  Simulation& idle() { return const_cast<Simulation&>(std::as_const(*this).idle()); }
+
+  /// Without the GIL; now and then signals reach Python.
+  std::vector<TransientEvent> step_to(double until, const std::string& event) {
+    using namespace std::chrono_literals;
+    Simulation& simulation = idle();
+    StepOptions options;
+    if (!event.empty()) options.until_event = event_kind(event);
+    auto listened = std::chrono::steady_clock::now();
+    options.check = [&] {
+      const auto now = std::chrono::steady_clock::now();
+      if (now - listened < 50ms) return;
+      listened = now;
+      const py::gil_scoped_acquire own;
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    };
+    const Busy stepping(busy_);
+    const py::gil_scoped_release others;
+    return simulation.step_to(until, options);
+  }
+
+  void command(const py::object& voltage) {
+    if (voltage.is_none()) return idle().release();
+    if (!PyCallable_Check(voltage.ptr())) return idle().command(voltage.cast<double>());
+    idle().command([voltage](double time) {
+      const py::gil_scoped_acquire own;
+      return voltage(time).cast<double>();
+    });
+  }
+
+ private:
+  struct Busy {
+    explicit Busy(bool& flag) : flag(flag) { flag = true; }
+    ~Busy() { flag = false; }
+    bool& flag;
+  };
+
+  static TransientEvent::Kind event_kind(const std::string& name) {
+    using Kind = TransientEvent::Kind;
+    std::string names;
+    for (const Kind kind : {Kind::revolution, Kind::force_sign_change, Kind::standstill, Kind::breakaway,
+                            Kind::supply_switch, Kind::stop_impact, Kind::jam}) {
+      if (name == name_of(kind)) return kind;
+      names += (names.empty() ? "" : kind == Kind::jam ? " or " : ", ") + std::string(name_of(kind));
+    }
+    throw InputError("", 0, 0, "until", "must be " + names + ", got " + in_quotes(name));
+  }
+
+  Simulation simulation_;
+  bool busy_ = false;
+};
+
+Stepped simulation_of(const Design<double>& design, const std::string& condition, double tolerance, double angle,
+                      double speed, double current, double pitch_angle, double pitch_velocity) {
+  const SimulationOptions options{tolerance, angle, speed, current, pitch_angle, pitch_velocity};
+  return Stepped(simulation(design, options, choice<Condition>("condition", condition)));
+}
+
+/// Steps to each of the times. What acts there as columns, NaN behind a jam; and the events.
+py::tuple recorded(Stepped& stepped, const std::vector<double>& times) {
+  std::vector<WaveformRow> rows;
+  std::vector<TransientEvent> events;
+  for (const double time : times) {
+    if (time < stepped.idle().time()) throw InputError("", 0, 0, "times", "must not fall, nor begin in the past");
+    for (const TransientEvent& event : stepped.step_to(time, "")) events.push_back(event);
+    WaveformRow row = stepped.idle().now();
+    if (row.time < time) {
+      for (const WaveformColumn& column : waveform_columns()) row.*column.value = absent;
+      row.time = time;
+    }
+    rows.push_back(row);
+  }
+  return py::make_tuple(columns_of(rows), events_of(events));
+}
+
+py::list acting(const Stepped& stepped) {
+  const WaveformRow row = stepped.idle().now();
+  py::list numbers;
+  for (const WaveformColumn& column : waveform_columns()) numbers.append(row.*column.value);
+  return numbers;
+}
+
+}  // namespace
+
+void add_motion(py::module_& m) {
+  using namespace py::literals;
+  py::class_<EquationsOfMotion>(m, "EquationsOfMotion")
+      .def(py::init([](const Design<double>& design, const std::string& condition) {
+        return EquationsOfMotion(design, choice<Condition>("condition", condition));
+      }))
+      .def("state_names", &EquationsOfMotion::state_names)
+      .def("rates", &rates);
+  py::class_<Stepped>(m, "Simulation")
+      .def(py::init(&simulation_of), "design"_a, "condition"_a, "tolerance"_a, "angle"_a, "speed"_a, "current"_a,
+           "pitch_angle"_a, "pitch_velocity"_a)
+      .def("copy", [](const Stepped& of) { return Stepped(of); })
+      .def("time", [](const Stepped& of) { return of.idle().time(); })
+      .def("state", [](const Stepped& of) { return array_of(of.idle().state()); })
+      .def("state_names", [](const Stepped& of) { return of.idle().state_names(); })
+      .def("acting", &acting)
+      .def("stands", [](const Stepped& of) { return of.idle().stands(); })
+      .def("ended", [](const Stepped& of) { return of.idle().ended(); })
+      .def("command", &Stepped::command, "voltage"_a.none(true))
+      .def("command_samples",
+           [](Stepped& of, std::vector<double> times, std::vector<double> voltages) {
+             of.idle().command(std::move(times), std::move(voltages));
+           })
+      .def("step_to",
+           [](Stepped& of, double until, const std::string& event) { return events_of(of.step_to(until, event)); })
+      .def("record", &recorded)
+      .def("save", [](const Stepped& of) { return py::tuple(py::cast(of.idle().save().numbers)); })
+      .def("restore", [](Stepped& of, std::vector<double> numbers) { of.idle().restore({std::move(numbers)}); });
+}
+
+}  // namespace wingbeat::python

@@ -1,0 +1,233 @@
+"""Optima: by metrics, by functions of the user's own, and fronts of several objectives."""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import shutil
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _core
+from ._errors import InputError
+from ._progress import shown
+from ._result import RunResult
+from ._studies import Found, Study, _file_of
+from ._tables import metric_called, metric_index, metric_rows, parameters
+from ._vehicle import Vehicle, _assignments
+
+if TYPE_CHECKING:
+    import xarray
+
+
+class Front(Found):
+    """The designs that no other beats in every objective; `vehicle` is that at the knee, None where none was found."""
+
+    #: The vehicles of the front, by the first objective, best first; as `designs`.
+    all_vehicles: tuple[Vehicle, ...]
+    #: Vehicles picked from it by name: "end-lift_mean_n" for the best by each objective, "knee", "even-1" and so on.
+    vehicles: dict[str, Vehicle]
+
+    def __init__(self, found: dict[str, Any]) -> None:
+        super().__init__({**found, "design": None})
+        self.all_vehicles = tuple(Vehicle._of(design) for design in found["vehicles"])
+        self.vehicles = {name: self.all_vehicles[place] for name, place in found["picks"]}
+        self.vehicle = self.vehicles.get("knee")
+        self._found = found
+
+    @property
+    def designs(self) -> xarray.Dataset:
+        """Metrics by name and parameters by key of each design of the front, over the dimension `design`."""
+        import xarray
+
+        made: dict[str, Any] = {
+            row.name: ("design", column, {"units": row.unit, "long_name": row.long_name})
+            for row, column in zip(metric_rows, self._found["metrics"])
+            if not np.all(np.isnan(column))
+        }
+        for key, column in zip(self._found["keys"], self._found["parameters"]):
+            made[key] = ("design", column, {"units": parameters[key].unit, "long_name": parameters[key].meaning})
+        return xarray.Dataset(made)
+
+
+class OwnOptimum(Found):
+    """An optimum by functions of the user's own: `value`, `parameters`, `outcome`, how the searches ended."""
+
+    #: What the vehicle that was found does; None where none was.
+    result: RunResult | None
+
+
+def optimise(
+    study: Study,
+    *,
+    vehicle: Vehicle | None = None,
+    values: Mapping[str, Any] | None = None,
+    allow_extrapolation: bool = False,
+    threads: int = 0,
+    progress: bool | Callable[[int, int], object] | None = None,
+) -> Found:
+    """The best design within bounds and constraints, or the front of several objectives: `wingbeat optimise`.
+
+    Parameters
+    ----------
+    study : study file (TOML), or a dict of its tables; a file names its vehicle
+    vehicle : of a study that is a dict
+    values : keys of the vehicle with other values
+    allow_extrapolation : designs outside the model's domain count
+    threads : at most so many; 0: one for each core
+    progress : of a front: True shows a bar (tqdm where it is installed), a function is called with designs done and
+        designs
+
+    In a dict, what `minimise`, `maximise` or the `metric` of a constraint names may be a function of the result of a
+    design, which flaps: `{"objective": {"minimise": f}, "constraint": [{"metric": g, "at_most": 2}]}`. It returns a
+    number [SI], or a number and its derivatives by whatever it uses, a dict by names of metrics and keys of parameters:
+
+        def cost(result):                                    # cost of a second of hovering, and what it follows from
+            return 3 * result.power_electrical + 2 * result.current_peak, {"power_electrical": 3, "current_peak": 2}
+
+    With derivatives everywhere the search uses exact gradients, through the orbit; without, it is derivative-free
+    (COBYLA) and takes more designs. Such a search starts from the vehicle and from the best of `screen` designs (default
+    32 a parameter), `starts` times (default 4), on one thread. None or NaN: the design does not count.
+
+    Returns a Found; of several objectives a Front, by functions an OwnOptimum. Ctrl-C ends it within a design. Raises InputError, and what
+    a function raises.
+    """
+    if isinstance(study, Mapping):
+        own = _OwnProblem(study)
+        if own.functions:
+            with _file_of(own.study, vehicle) as file:
+                return own.solved(file, _assignments(values or {}), allow_extrapolation)
+    with _file_of(study, vehicle) as file, shown(progress, 0) as tell:
+        found = _core.optimise(file, _assignments(values or {}), allow_extrapolation, threads, _module_folders(), tell)
+        return Front(found) if "picks" in found else Found(found)
+
+
+def _module_folders() -> list[str]:
+    """Where the library's part with pagmo may be: beside this package, in its build folder, beside the program."""
+    here = pathlib.Path(_core.__file__ or "").resolve().parent
+    program = shutil.which("wingbeat")
+    folders = [here, here.parent.parent]
+    if program:
+        folders.append(pathlib.Path(program).resolve().parent)
+    return [os.fspath(folder) for folder in folders]
+
+
+class _OwnProblem:
+    """A study with functions: what of it is a study of the program, and the functions."""
+
+    def __init__(self, study: Mapping[str, Any]) -> None:
+        objective = study.get("objective")
+        constraints = study.get("constraint", [])
+        terms = [c for c in constraints if callable(c.get("metric"))] if isinstance(constraints, (list, tuple)) else []
+        wanted = dict(objective) if isinstance(objective, Mapping) else {}
+        self.goal = next((goal for goal in ("minimise", "maximise") if goal in wanted), "minimise")
+        self.functions = bool(terms) or callable(wanted.get(self.goal))
+        self.study: Mapping[str, Any] = study
+        if not self.functions:
+            return
+        self.objective = wanted.get(self.goal)
+        if callable(self.objective):
+            wanted[self.goal] = "frequency_hz"  # in its place, not used
+        elif isinstance(self.objective, str):
+            self.objective = _metric_term(self.objective)
+        count = len(study.get("parameter", []))
+        self.study = {
+            **study,
+            "objective": {"starts": 4, "screen": 32 * max(1, count), **wanted},
+            "constraint": [c for c in constraints if not callable(c.get("metric"))],
+        }
+        self.constraints: list[tuple[Callable[[RunResult], Any], float, float]] = []
+        for term in terms:
+            unknown = set(term) - {"metric", "at_least", "at_most"}
+            if unknown or not ({"at_least", "at_most"} & set(term)):
+                raise InputError(f"constraint: a function has at_least, at_most or both, got {', '.join(map(str, term))}")
+            for key, sign in (("at_least", -1.0), ("at_most", 1.0)):
+                if key in term:
+                    limit = float(term[key])
+                    self.constraints.append((term["metric"], sign / (abs(limit) or 1.0), limit))
+
+    def solved(self, file: str, overrides: list[str], allow_extrapolation: bool) -> OwnOptimum:
+        """The search, and what it found."""
+        settings = self.study.get("study", {})
+        options: dict[str, Any] = {
+            "condition": settings.get("condition", "air"),
+            "method": "orbit",
+            "tolerance": settings.get("tolerance", 1e-8),
+            "frequency": None,
+            "lift": None,
+            "allow_extrapolation": allow_extrapolation,
+            "points": 0,
+            "endurance": False,
+        }
+        keys = [parameter["key"] for parameter in self.study.get("parameter", [])]
+        sign = -1.0 if self.goal == "maximise" else 1.0
+
+        def evaluate(design: _core.Design, found: dict[str, Any]) -> list[Any]:
+            result = RunResult(found, Vehicle._of(design), options)
+            terms = [_term(self.objective, result, sign, 0.0, keys)]
+            terms += [_term(function, result, factor, limit, keys) for function, factor, limit in self.constraints]
+            return terms
+
+        found = _core.optimise_own(file, overrides, allow_extrapolation, evaluate, len(self.constraints))
+        return _own_optimum(found, sign, options)
+
+
+def _metric_term(name: str) -> Callable[[RunResult], Any]:
+    row = metric_rows[metric_called(name)]
+    return lambda result: (result.metrics[row.name], {row.name: 1.0})
+
+
+def _term(function: Any, result: RunResult, factor: float, limit: float, keys: list[str]) -> tuple[Any, ...]:
+    """factor (f - limit) with its derivatives, as the compiled half takes it."""
+    value = function(result)
+    slopes: Mapping[str, float] | None = None
+    if isinstance(value, tuple):
+        value, slopes = value
+    number = float("nan") if value is None else factor * (float(value) - limit)
+    if slopes is None:
+        return (number,)
+    by_metric: dict[int, float] = {}
+    by_parameter = [0.0] * len(keys)
+    for name, slope in slopes.items():
+        if name in keys:
+            by_parameter[keys.index(name)] = factor * float(slope)
+        elif name in metric_index or name not in parameters:
+            by_metric[metric_called(name)] = factor * float(slope)
+    return number, by_metric, by_parameter
+
+
+def _own_optimum(found: dict[str, Any], sign: float, options: dict[str, Any]) -> OwnOptimum:
+    starts, same, elsewhere, failed = found["starts"]
+    there = found["design"] is not None
+    told: dict[str, Any] = {
+        "outcome": found["outcome"],
+        "value": sign * found["objective"] if there else None,
+        "parameters": dict(zip(found["keys"], found["parameters"])) if there else None,
+        "starts": {"all": starts, "same": same, "elsewhere": elsewhere, "failed": failed},
+        "evaluations": found["evaluations"],
+        "exact_gradients": found["gradients"],
+        "searches": [
+            {
+                "start": start,
+                "end": end or None,
+                "began": sign * began if began == began else None,
+                "ended": sign * ended if ended == ended else None,
+                "evaluations": evaluations,
+            }
+            for start, end, began, ended, evaluations in found["searches"]
+        ],
+    }
+    lines = [f"{found['outcome'].replace('_', ' ')}: {starts} starts, {same} ended in the best optimum, {found['evaluations']} designs"]
+    if there:
+        lines = [f"best value: {told['value']:.6g}", *lines]
+        for key, value in told["parameters"].items():
+            unit = parameters[key].unit
+            lines.append(f"  {key:<34}{value:>14.6g} {'' if unit == '1' else unit}".rstrip())
+    made = OwnOptimum({"json": json.dumps(told), "text": "\n".join(lines) + "\n", "design": found["design"]})
+    made.result = None
+    if made.vehicle is not None:
+        made.result = RunResult(_core.run(made.vehicle._design, **options), made.vehicle, options)
+    return made

@@ -1,0 +1,153 @@
+"""Parts of a vehicle by themselves: curves of the motor, of the force coefficients and of the transmission."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _core
+from ._result import quantity
+from ._tables import parameters
+from ._vehicle import Vehicle
+
+if TYPE_CHECKING:
+    import xarray
+
+#: What the rest of a vehicle is made of around a part that is given alone.
+_KEYS = (
+    "supply.voltage",
+    *(f"motor.{name}" for name in ("armature_resistance", "armature_inductance", "torque_constant", "inertia")),
+    "motor.viscous_damping",
+    *(f"transmission.{name}" for name in ("crank_radius", "rod_length", "hinge_offset", "formulation")),
+    *(f"wing.{name}" for name in ("count", "inertia", "planform.shape", "planform.length", "planform.root_chord")),
+    *(f"aerodynamics.{name}" for name in ("air_density", "pitch_coefficient", "coefficients")),
+)
+_CHOICES = {"supply.type": "constant", "transmission.type": "slider-crank", "friction.type": "none"}
+
+
+def _vehicle_with(section: str, part: Vehicle | Mapping[str, Any]) -> Vehicle:
+    """A vehicle that has the part."""
+    if isinstance(part, Vehicle):
+        return part
+    around = {key: parameters[key].example for key in _KEYS} | _CHOICES
+    kept: dict[str, Any] = {key: value for key, value in around.items() if not key.startswith(f"{section}.")}
+    return Vehicle({**kept, section: dict(part)})
+
+
+def _column(dimension: str | tuple[()], values: Any, unit: str, long_name: str) -> Any:
+    return (dimension, values, {"units": unit, "long_name": long_name})
+
+
+def motor_curves(
+    motor: Vehicle | Mapping[str, Any], *, voltage: float | str | None = None, speed: Any = None
+) -> xarray.Dataset:
+    """What a motor gives at constant speed and terminal voltage, over the speed of its output shaft [rad/s].
+
+    Parameters
+    ----------
+    motor : a Vehicle, or the keys of its section [motor] as a dict, with all constants that a vehicle file needs
+    voltage : at the terminals [V]; of a dict needed, of a vehicle its supply's where not given
+    speed : array [rad/s], >= 0; default: from rest to no load
+
+    Returns current [A], torque [N m], electrical and mechanical power [W], and efficiency, their ratio, absent (NaN)
+    where the load drives the motor; as scalars `no_load_speed`, `no_load_current`, `stall_current`, `stall_torque`. Of
+    several motors on one supply currents, torques and powers are the sums. Friction of the mechanism is no part of it;
+    the motor is as warm as its surroundings. Raises InputError.
+    """
+    import xarray
+
+    vehicle = _vehicle_with("motor", motor)
+    if voltage is None and not isinstance(motor, Vehicle):
+        raise TypeError("a motor without a vehicle needs a voltage")
+    speeds = [] if speed is None else np.asarray(speed, dtype=float).ravel().tolist()
+    v, free, idle, stalled, torque, columns = _core.motor_curves(
+        vehicle._design, quantity("voltage", voltage, "V"), speeds
+    )
+    current, shaft_torque, electrical, mechanical, omega = columns
+    efficiency = np.divide(
+        mechanical, electrical, out=np.full_like(electrical, np.nan), where=(electrical > 0) & (mechanical >= 0)
+    )
+    return xarray.Dataset(
+        {
+            "current": _column("speed", current, "A", "current"),
+            "torque": _column("speed", shaft_torque, "N m", "torque on the output shaft"),
+            "power_electrical": _column("speed", electrical, "W", "electrical power"),
+            "power_mechanical": _column("speed", mechanical, "W", "mechanical power"),
+            "efficiency": _column("speed", efficiency, "1", "efficiency"),
+            "no_load_speed": _column((), free, "rad/s", "no-load speed"),
+            "no_load_current": _column((), idle, "A", "no-load current"),
+            "stall_current": _column((), stalled, "A", "stall current"),
+            "stall_torque": _column((), torque, "N m", "stall torque"),
+        },
+        {"speed": _column("speed", omega, "rad/s", "speed of the output shaft")},
+        {"voltage": v},
+    )
+
+
+def coefficient_curves(
+    aerodynamics: Vehicle | Mapping[str, Any] | str, *, angle_of_attack: Any = None
+) -> xarray.Dataset:
+    """The force coefficients of a vehicle's wings over the angle of attack [rad].
+
+    Parameters
+    ----------
+    aerodynamics : a Vehicle, or the value of the key aerodynamics.coefficients: the name of a set
+        ("translational-2022", "normal-force-robofly") or the dict of a set of one's own
+    angle_of_attack : array [rad]; default: 0 to 90 deg
+
+    Returns lift C_L, drag C_D and the coefficient of the force normal to the chord C_N; of wings on hinges the centre of
+    pressure behind the leading edge over the chord as well. Raises InputError.
+    """
+    import xarray
+
+    if isinstance(aerodynamics, Vehicle):
+        vehicle = aerodynamics
+    else:
+        own = {name.split(".")[1]: parameters[name].example for name in _KEYS if name.startswith("aerodynamics.")}
+        vehicle = _vehicle_with("aerodynamics", {**own, "coefficients": aerodynamics})
+    alpha = np.radians(np.linspace(0, 90, 181)) if angle_of_attack is None else np.asarray(angle_of_attack, dtype=float)
+    lift, drag, normal, pressure = _core.coefficient_curves(vehicle._design, alpha.ravel().tolist())
+    made = {
+        "lift": _column("angle_of_attack", lift, "1", "lift coefficient"),
+        "drag": _column("angle_of_attack", drag, "1", "drag coefficient"),
+        "normal_force": _column("angle_of_attack", normal, "1", "coefficient of the force normal to the chord"),
+    }
+    if not np.all(np.isnan(pressure)):
+        made["centre_of_pressure"] = _column(
+            "angle_of_attack", pressure, "1", "centre of pressure behind the leading edge over the chord"
+        )
+    return xarray.Dataset(made, {"angle_of_attack": _column("angle_of_attack", alpha.ravel(), "rad", "angle of attack")})
+
+
+def kinematics(transmission: Vehicle | Mapping[str, Any], *, crank_angle: Any = None) -> xarray.Dataset:
+    """The stroke of a transmission over the crank angle [rad].
+
+    Parameters
+    ----------
+    transmission : a Vehicle, or the keys of its section [transmission] as a dict
+    crank_angle : array [rad]; default: one turn
+
+    Returns the stroke angle [rad], its first and second derivative by the crank angle, and the levers of the internal
+    force (of a slider-crank the rod force) on the crank and on all wings [m]; the stroke amplitude [rad] as a scalar, and
+    the crank angles at which the stroke turns over the dimension `reversal`. Raises InputError, for a direct drive too.
+    """
+    import xarray
+
+    vehicle = _vehicle_with("transmission", transmission)
+    theta = np.linspace(0, 2 * np.pi, 361) if crank_angle is None else np.asarray(crank_angle, dtype=float).ravel()
+    amplitude, reversals, columns = _core.kinematics(vehicle._design, theta.tolist())
+    stroke, slope, curve, crank_lever, wing_lever = columns
+    return xarray.Dataset(
+        {
+            "stroke_angle": _column("crank_angle", stroke, "rad", "stroke angle"),
+            "stroke_slope": _column("crank_angle", slope, "1", "stroke angle by crank angle"),
+            "stroke_curve": _column("crank_angle", curve, "1", "stroke angle twice by crank angle"),
+            "crank_lever": _column("crank_angle", crank_lever, "m", "lever of the internal force on the crank"),
+            "wing_lever": _column("crank_angle", wing_lever, "m", "lever of the internal force on all wings"),
+            "stroke_amplitude": _column((), amplitude, "rad", "stroke amplitude"),
+            "reversal_angle": _column("reversal", np.array(reversals), "rad", "crank angle at which the stroke turns"),
+        },
+        {"crank_angle": _column("crank_angle", theta, "rad", "crank angle")},
+    )

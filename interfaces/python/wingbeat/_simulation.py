@@ -1,0 +1,206 @@
+"""A vehicle in time, step by step: for controllers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from . import _core
+from ._quantity import Quantity
+from ._result import Event, _waveform, quantity
+from ._tables import waveforms
+from ._vehicle import Vehicle
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    import xarray
+
+
+class SimulationState(NamedTuple):
+    """Everything that moves, and what commands the voltage: what `Simulation.save` returns and `restore` takes.
+
+    Can be compared, copied and pickled; with a function that commands, where that can be.
+    """
+
+    numbers: tuple[float, ...]
+    voltage: Any  #: as `Simulation.voltage`
+
+    @property
+    def time(self) -> float:
+        """Since the start [s]."""
+        return self.numbers[6]
+
+
+class Simulation:
+    """A vehicle in time, stepped from event to event: `vehicle.simulation()`.
+
+    Parameters
+    ----------
+    vehicle : a Vehicle, at rest at time 0 unless another state is given
+    voltage : what commands the voltage, see the attribute
+    condition : "air", "vacuum" or "wingless"
+    tolerance : admissible relative error of an integration step, 1e-12 to 1e-2
+    angle, speed, current, pitch_angle, pitch_velocity : at the start [rad, rad/s, A, rad, rad/s]: of the crank or, of a
+        direct drive, of the stroke; the pitch of wings on hinges
+
+    Sticking, jamming, stops of hinges and the switching of a pwm supply are part of it. The motor is as warm as its
+    surroundings. A simulation has one user at a time: another thread, or a commanding function, must not step it
+    meanwhile. `copy.copy` makes one that goes its own way; it can be pickled.
+
+    Raises InputError.
+    """
+
+    #: Names of the numbers in `state`: "crank_angle" and "crank_speed" (of a direct drive "stroke_angle" and
+    #: "flapping_velocity"); with an armature inductance "current"; of wings on hinges "pitch_angle", "pitch_velocity".
+    states: tuple[str, ...]
+    #: The vehicle.
+    vehicle: Vehicle
+
+    def __init__(
+        self,
+        vehicle: Vehicle,
+        *,
+        voltage: Any = None,
+        condition: str = "air",
+        tolerance: float = 1e-8,
+        angle: float | str = 0.0,
+        speed: float | str = 0.0,
+        current: float | str = 0.0,
+        pitch_angle: float | str = 0.0,
+        pitch_velocity: float | str = 0.0,
+    ) -> None:
+        self.vehicle = vehicle
+        self._start = (
+            condition,
+            tolerance,
+            _core.quantity("angle", angle, "rad"),
+            _core.quantity("speed", speed, "rad/s"),
+            _core.quantity("current", current, "A"),
+            _core.quantity("pitch_angle", pitch_angle, "rad"),
+            _core.quantity("pitch_velocity", pitch_velocity, "rad/s"),
+        )
+        self._simulation = _core.Simulation(vehicle._design, *self._start)
+        self.states = tuple(self._simulation.state_names())
+        self._voltage: Any = None
+        if voltage is not None:
+            self.voltage = voltage
+
+    @property
+    def time(self) -> float:
+        """Since the start [s]."""
+        return self._simulation.time()
+
+    @property
+    def state(self) -> npt.NDArray[np.float64]:
+        """A number for each of `states`, SI; the crank angle is not wrapped."""
+        return self._simulation.state()
+
+    @property
+    def now(self) -> dict[str, Quantity | None]:
+        """Everything that acts, by the names of `RunResult.cycle`; None where the vehicle does not have it."""
+        return {
+            row.name: None if value != value else Quantity(value, row.unit, row.long_name)
+            for row, value in zip(waveforms.values(), self._simulation.acting())
+        }
+
+    @property
+    def stands(self) -> bool:
+        """Friction holds the crank, or the shaft of a direct drive."""
+        return self._simulation.stands()
+
+    @property
+    def ended(self) -> bool:
+        """The mechanism has jammed: time does not go on."""
+        return self._simulation.ended()
+
+    @property
+    def voltage(self) -> Any:
+        """What drives the motor in place of the supply [V], through the same resistance; None: the supply does.
+
+        A number or a text with a unit holds until something else is set. A function of time [s] is asked at any moments
+        of a step and should be smooth within it. A pair of arrays, times [s] and voltages [V], is straight lines between
+        samples, of which the ends go on as constants; two samples at one time are a jump.
+        """
+        return self._voltage
+
+    @voltage.setter
+    def voltage(self, voltage: float | str | Callable[[float], float] | tuple[Any, Any] | None) -> None:
+        if isinstance(voltage, (tuple, list)) and len(voltage) == 2:
+            times, volts = (np.array(samples, dtype=float) for samples in voltage)
+            self._simulation.command_samples(times.tolist(), volts.tolist())
+            self._voltage = tuple(times.tolist()), tuple(volts.tolist())
+        elif voltage is None or callable(voltage):
+            self._simulation.command(voltage)
+            self._voltage = voltage
+        else:
+            held = quantity("voltage", voltage, "V")
+            self._simulation.command(held)
+            self._voltage = held
+
+    def step_to(self, time: float | str, *, until: str | None = None) -> list[Event]:
+        """Goes on to a time [s] and returns what has happened on the way.
+
+        Parameters
+        ----------
+        until : stops behind the first event of this kind: "revolution" (the crank angle passes a multiple of 2 pi
+            forwards), "force-sign-change" (of the rod), "standstill", "breakaway", "supply-switch", "stop-impact", "jam"
+
+        A time in the past changes nothing. It ends early where the mechanism jams. Other Python threads run meanwhile.
+        What a commanding function raises, and Ctrl-C, leave the simulation where the call began.
+        """
+        end = _core.quantity("time", time, "s")
+        return [Event(*event) for event in self._simulation.step_to(end, until or "")]
+
+    def step(self, duration: float | str, *, until: str | None = None) -> list[Event]:
+        """Goes on for a time [s]: see step_to."""
+        return self.step_to(self.time + _core.quantity("duration", duration, "s"), until=until)
+
+    def record(self, times: Any) -> xarray.Dataset:
+        """Steps to each of these moments [s], which must not fall, and returns everything that acts there over time.
+
+        The variables are those of `RunResult.cycle`, with units and long names, NaN behind a jam; over the dimension
+        `event`: `event`, `event_time` and `event_crank_angle` of what has happened on the way.
+        """
+        columns, events = self._simulation.record(np.asarray(times, dtype=float).ravel().tolist())
+        made = _waveform(columns)
+        made["time"].attrs["long_name"] = "time since the start"
+        time, angle, kind = zip(*events) if events else ((), (), ())
+        return made.assign(
+            event=("event", np.array(kind, dtype=str)),
+            event_time=("event", np.array(time, dtype=float), {"units": "s", "long_name": "time of the event"}),
+            event_crank_angle=("event", np.array(angle, dtype=float), {"units": "rad", "long_name": "crank angle then"}),
+        )
+
+    def save(self) -> SimulationState:
+        """Its state, from which the same steps give the same bits, in this and in other simulations of the vehicle."""
+        return SimulationState(self._simulation.save(), self._voltage)
+
+    def restore(self, state: SimulationState) -> None:
+        """Goes back, or on, to a saved state. Raises InputError for one of another kind of vehicle."""
+        self._simulation.restore(state.numbers)
+        self.voltage = state.voltage
+
+    def __copy__(self) -> Simulation:
+        made = Simulation.__new__(Simulation)
+        made.__dict__.update(self.__dict__)
+        made._simulation = self._simulation.copy()
+        return made
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Simulation:
+        return self.__copy__()
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        return _restored, (self.vehicle, self._start, self.save())
+
+    def __repr__(self) -> str:
+        shown = ", ".join(f"{name}={value:.6g}" for name, value in zip(self.states, self.state))
+        return f"<wingbeat.Simulation of {self.vehicle.name!r} at {self.time:.6g} s: {shown}>"
+
+
+def _restored(vehicle: Vehicle, start: tuple[Any, ...], state: SimulationState) -> Simulation:
+    names = ("condition", "tolerance", "angle", "speed", "current", "pitch_angle", "pitch_velocity")
+    made = Simulation(vehicle, **dict(zip(names, start)))
+    made.restore(state)
+    return made

@@ -1,0 +1,63 @@
+#include "wingbeat/cycle/configurations.hpp"
+
+#include <array>
+#include <cmath>
+
+#if defined(__x86_64__) || defined(_M_X64)
+#define WINGBEAT_LANES xsimd::sse2
+#elif defined(__aarch64__)
+#define WINGBEAT_LANES xsimd::neon64
+#endif
+
+#ifdef WINGBEAT_LANES
+#include "wingbeat/core/pack.hpp"
+#endif
+
+namespace wingbeat {
+namespace {
+
+void one_by_one(const Vehicle<double>& v, std::span<const double> theta, std::span<Configuration<double>> at) {
+  for (std::size_t n = 0; n < theta.size(); ++n) at[n] = configuration_at(v, std::sin(theta[n]), std::cos(theta[n]));
+}
+
+#ifdef WINGBEAT_LANES
+
+using Lanes = Pack<WINGBEAT_LANES, 2>;
+
+void on_lanes(const Vehicle<double>& v, std::span<const double> theta, std::span<Configuration<double>> at) {
+  constexpr std::size_t count = Lanes::lanes;
+  const CrankGeometry<Lanes> geometry = geometry_of(cast<Lanes>(v.transmission.slider_crank));
+  const double stiffness = v.wing_count * v.spring.stiffness;
+  for (std::size_t begin = 0; begin < theta.size(); begin += count) {
+    const std::size_t used = std::min(count, theta.size() - begin);
+    alignas(64) std::array<double, count> number;
+    for (std::size_t n = 0; n < count; ++n) number[n] = theta[begin + std::min(n, used - 1)];
+    const Lanes angle = Lanes::load(number.data());
+    const CrankKinematics<Lanes> k = crank_kinematics(geometry, sin(angle), cos(angle));
+    const auto scatter = [&](const Lanes& from, const auto& to) {
+      from.store(number.data());
+      for (std::size_t n = 0; n < used; ++n) to(at[begin + n]) = number[n];
+    };
+    scatter(k.stroke_offset, [](auto& c) -> double& { return c.kinematics.stroke_offset; });
+    scatter(k.tan_stroke, [](auto& c) -> double& { return c.kinematics.tan_stroke; });
+    scatter(k.stroke_slope, [](auto& c) -> double& { return c.kinematics.stroke_slope; });
+    scatter(k.stroke_curve, [](auto& c) -> double& { return c.kinematics.stroke_curve; });
+    scatter(k.wing_lever, [](auto& c) -> double& { return c.kinematics.wing_lever; });
+    scatter(k.crank_lever, [](auto& c) -> double& { return c.kinematics.crank_lever; });
+    scatter(stiffness > 0.0 ? Lanes(stiffness) * stroke_angle(k) : Lanes(0.0),
+            [](auto& c) -> double& { return c.spring_moment; });
+  }
+}
+
+#endif
+
+}  // namespace
+
+void configurations_at(const Vehicle<double>& v, std::span<const double> theta, std::span<Configuration<double>> at) {
+#ifdef WINGBEAT_LANES
+  if (v.transmission.type == TransmissionType::slider_crank) return on_lanes(v, theta, at);
+#endif
+  one_by_one(v, theta, at);
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,279 @@
+#include "wingbeat/time/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "time/crank_model.hpp"
+#include "time/direct_model.hpp"
+#include "time/pitch_direct_model.hpp"
+#include "time/simulation.hpp"
+#include "wingbeat/vehicle/drive.hpp"
+
+namespace wingbeat {
+namespace {
+
+using AnyTimeModel = std::variant<detail::CrankModel, detail::DirectModel, detail::PitchDirectModel>;
+
+AnyTimeModel time_model_of(const Vehicle<double>& vehicle, const Supply<double>& supply) {
+  if (!drive_of(vehicle).alternating) return detail::CrankModel(vehicle, supply);
+  if (pitches(vehicle)) return detail::PitchDirectModel(vehicle);
+  return detail::DirectModel(vehicle);
+}
+
+void start_model(detail::CrankModel& model, const SimulationOptions& o) {
+  model.start(o.angle, o.speed, o.current, o.pitch_angle, o.pitch_velocity);
+}
+void start_model(detail::DirectModel& model, const SimulationOptions& o) { model.start(o.angle, o.speed, o.current); }
+void start_model(detail::PitchDirectModel& model, const SimulationOptions& o) {
+  model.start({o.angle, o.speed, o.pitch_angle, o.pitch_velocity, o.current});
+}
+
+/// Highest voltage of what is in the model's own supply [V].
+double supply_voltage(const detail::CrankModel& model) { return model.supply.voltage; }
+double supply_voltage(const detail::DrivenShaft& model) { return model.vehicle.voltage; }
+
+/// Turns of a crank that are done.
+double turns_at(double theta) { return std::floor(theta / two_pi); }
+
+/// Keeps the events, and stops where it is asked to.
+struct EventWatch {
+  std::vector<TransientEvent> events;
+  const StepOptions& options;
+
+  template <class Model>
+  std::optional<double> stepped(const Model& model, detail::Integrator& steps, double from) {
+    if (options.check) options.check();
+    if constexpr (std::is_same_v<Model, detail::CrankModel>) {
+      const auto theta = [&](double t) { return steps.dense(t)[0]; };
+      const double before = theta(from), turns = turns_at(before);
+      if (turns_at(model.now.theta) <= turns) return std::nullopt;
+      const auto short_of = [&](double t) { return turns_at(theta(t)) <= turns; };
+      const double short_by = turns + 1.0 - before / two_pi, beyond = turns + 1.0 - model.now.theta / two_pi;
+      const double after = beyond < 0.0 ? find_zero([&](double t) { return turns + 1.0 - theta(t) / two_pi; }, from,
+                                                    short_by, model.now.t, beyond, 4e-16 * model.now.t)
+                                              .after
+                                        : bisect(short_of, from, model.now.t).after;
+      events.push_back({after, theta(after), TransientEvent::Kind::revolution});
+      if (options.until_event == TransientEvent::Kind::revolution) return after;
+    }
+    return std::nullopt;
+  }
+  bool happened(const auto& model, TransientEvent::Kind kind) {
+    double y[5];
+    model.unknowns(y);
+    events.push_back({model.now.t, y[0], kind});
+    return options.until_event == kind;
+  }
+};
+
+/// Leaves the model where it was where an exception ends what is done to it.
+template <class Model>
+struct BackUnlessDone {
+  explicit BackUnlessDone(Model& of) : model(of), before(of.now) {}
+  ~BackUnlessDone() {
+    if (!done) model.now = before;
+  }
+  Model& model;
+  typename Model::State before;
+  bool done = false;
+};
+
+}  // namespace
+
+std::vector<std::string> time_state_names(const Vehicle<double>& vehicle) {
+  std::vector<std::string> names{"crank_angle", "crank_speed"};
+  if (drive_of(vehicle).alternating) names = {"stroke_angle", "flapping_velocity"};
+  if (vehicle.motor.armature_inductance > 0.0) names.emplace_back("current");
+  if (pitches(vehicle)) names.insert(names.end(), {"pitch_angle", "pitch_velocity"});
+  return names;
+}
+
+struct Simulation::Model {
+  AnyTimeModel any;
+  SimulationOptions options;
+  std::vector<double> times{}, voltages{};  ///< samples that command the voltage
+  double scaled_to = 0.0;                   ///< [V]
+
+  void start() {
+    std::visit(
+        [&](auto& model) {
+          start_model(model, options);
+          scaled_to = supply_voltage(model);
+        },
+        any);
+  }
+  /// The line through the samples that holds from the time t on, and the time until which it does.
+  double command_line(double t, std::function<double(double)>& line) const {
+    const std::size_t next = std::size_t(std::upper_bound(times.begin(), times.end(), t) - times.begin());
+    const double until = next < times.size() ? times[next] : infinity;
+    if (next == 0 || next == times.size()) {
+      line = [v = next == 0 ? voltages.front() : voltages.back()](double) { return v; };
+    } else {
+      const double t0 = times[next - 1], v0 = voltages[next - 1], slope = (voltages[next] - v0) / (times[next] - t0);
+      line = [=](double at) { return v0 + slope * (at - t0); };
+    }
+    return until;
+  }
+};
+
+Simulation::Simulation(const Vehicle<double>& vehicle, const Supply<double>& supply, const SimulationOptions& options)
+    : model_(new Model{time_model_of(vehicle, supply), options}) {
+  if (!(options.tolerance >= 1e-12 && options.tolerance <= 1e-2)) {
+    throw ParameterError("tolerance", "must be a number between 1e-12 and 1e-2");
+  }
+  for (const double number :
+       {options.angle, options.speed, options.current, options.pitch_angle, options.pitch_velocity}) {
+    if (!std::isfinite(number)) throw ParameterError("simulation", "starts from finite numbers");
+  }
+  model_->start();
+}
+Simulation::Simulation(const Simulation& other) : model_(new Model(*other.model_)) {}
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(const Simulation& other) {
+  model_.reset(new Model(*other.model_));
+  return *this;
+}
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+Simulation::~Simulation() = default;
+
+double Simulation::time() const {
+  return std::visit([](const auto& model) { return model.now.t; }, model_->any);
+}
+
+std::vector<std::string> Simulation::state_names() const {
+  return std::visit([](const auto& model) { return time_state_names(model.vehicle); }, model_->any);
+}
+
+std::vector<double> Simulation::state() const {
+  return std::visit(
+      [](const auto& model) {
+        double y[5];
+        model.unknowns(y);
+        std::vector<double> numbers(y, y + model.coupled);
+        // Behind the pitch, where a direct drive keeps its current.
+        using M = std::remove_cvref_t<decltype(model)>;
+        if (std::is_same_v<M, detail::PitchDirectModel> && model.inductive) {
+          std::rotate(numbers.begin() + 2, numbers.begin() + 4, numbers.end());
+        }
+        return numbers;
+      },
+      model_->any);
+}
+
+WaveformRow Simulation::now() const {
+  return std::visit(
+      [](const auto& model) {
+        double y[5];
+        model.unknowns(y);
+        double pitch_angle = absent;
+        double stroke = y[0];
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(model)>, detail::CrankModel>) {
+          stroke = stroke_angle(model.kinematics(y[0]));
+          if (model.pitching) pitch_angle = model.now.psi;
+        } else if constexpr (std::is_same_v<std::remove_cvref_t<decltype(model)>, detail::PitchDirectModel>) {
+          pitch_angle = y[2];
+        }
+        return waveform_row(model.vehicle, model.motion_now(), model.now.t, y[0], y[1], stroke, pitch_angle);
+      },
+      model_->any);
+}
+
+bool Simulation::stands() const {
+  return std::visit([](const auto& model) { return model.now.stuck; }, model_->any);
+}
+bool Simulation::ended() const {
+  return std::visit([](const auto& model) { return model.ended(); }, model_->any);
+}
+
+void Simulation::command(double voltage) {
+  if (!std::isfinite(voltage)) throw ParameterError("voltage", "must be a finite number");
+  command({time()}, {voltage});
+}
+
+void Simulation::command(std::function<double(double)> voltage) {
+  model_->times.clear();
+  std::visit([&](auto& model) { model.command = std::move(voltage); }, model_->any);
+}
+
+void Simulation::command(std::vector<double> times, std::vector<double> voltages) {
+  if (times.empty() || times.size() != voltages.size()) {
+    throw ParameterError("voltage", "must have as many samples as times, at least one");
+  }
+  for (std::size_t n = 0; n < times.size(); ++n) {
+    if (!std::isfinite(times[n]) || !std::isfinite(voltages[n])) throw ParameterError("voltage", "must be finite");
+    if (n > 0 && times[n] < times[n - 1]) throw ParameterError("voltage", "has times that fall");
+  }
+  model_->times = std::move(times);
+  model_->voltages = std::move(voltages);
+  std::visit([&](auto& model) { model_->command_line(model.now.t, model.command); }, model_->any);
+}
+
+void Simulation::release() {
+  model_->times.clear();
+  std::visit(
+      [](auto& model) {
+        if (!model.command) return;
+        model.command = nullptr;
+        model.catch_up_with_supply();
+      },
+      model_->any);
+}
+
+std::vector<TransientEvent> Simulation::step_to(double until, const StepOptions& options) {
+  if (!std::isfinite(until)) throw ParameterError("time", "must be a finite number");
+  EventWatch watch{{}, options};
+  std::visit(
+      [&](auto& model) {
+        BackUnlessDone back{model};
+        detail::StepOutcome outcome = detail::StepOutcome::reached;
+        while (model.now.t < until && outcome == detail::StepOutcome::reached) {
+          double end = until;
+          if (!model_->times.empty()) end = std::min(until, model_->command_line(model.now.t, model.command));
+          double highest = supply_voltage(model);
+          if (model.command) {
+            highest = std::max({highest, std::abs(model.command(model.now.t)), std::abs(model.command(end))});
+          }
+          if (highest != model_->scaled_to) model.scale_to(model_->scaled_to = highest);
+          outcome = detail::step_to(model, end, model_->options.tolerance, TimeIntegrator::own_steps, watch);
+        }
+        if (outcome == detail::StepOutcome::failed) {
+          throw std::runtime_error("the simulation could not go on behind " + std::to_string(model.now.t) + " s");
+        }
+        back.done = true;
+      },
+      model_->any);
+  return std::move(watch.events);
+}
+
+SimulationState Simulation::save() const {
+  const SimulationOptions& o = model_->options;
+  SimulationState state{{double(model_->any.index()), o.angle, o.speed, o.current, o.pitch_angle, o.pitch_velocity}};
+  std::visit(
+      [&](const auto& model) {
+        model.now.each(model.now, [&](const auto& number) { state.numbers.push_back(double(number)); });
+      },
+      model_->any);
+  return state;
+}
+
+void Simulation::restore(const SimulationState& state) {
+  if (state.numbers.size() != save().numbers.size() || state.numbers[0] != double(model_->any.index())) {
+    throw ParameterError("state", "is that of another kind of vehicle");
+  }
+  const double* next = state.numbers.data() + 1;
+  SimulationOptions& o = model_->options;
+  for (double* number : {&o.angle, &o.speed, &o.current, &o.pitch_angle, &o.pitch_velocity}) *number = *next++;
+  // What is fixed by the start: typical sizes, how far the crank can turn.
+  model_->start();
+  std::visit(
+      [&](auto& model) {
+        model.now.each(model.now, [&](auto& number) { number = std::remove_reference_t<decltype(number)>(*next++); });
+      },
+      model_->any);
+}
+
+}  // namespace wingbeat
