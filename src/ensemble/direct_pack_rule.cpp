@@ -26,6 +26,13 @@ DirectPackRule make_direct_pack_rule() {
   for (int k = 0; k < int(points); ++k) {
     for (int m = 0; m < int(points); ++m) rule.power[k][m] = double(of_values(k, m));
   }
+  for (int m = 0; m < int(points); ++m) {
+    for (int j = 0; j < int(points); ++j) {
+      long double sum = 0.0L;
+      for (int k = int(points) - 1; k > 0; --k) sum = sum * (long double)(rule.at[m]) + k * of_values(k, j);
+      rule.slope[m][j] = double(sum);
+    }
+  }
   for (std::size_t j = 0; j < 2 * stages; ++j) {
     const long double half = j < stages ? 0.0L : 1.0L;
     const long double t = 0.5L * (half + (long double)(rule.at[1 + j % stages]));

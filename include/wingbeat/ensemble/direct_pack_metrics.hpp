@@ -57,33 +57,67 @@ L DirectPackOrbit<L, N>::stored_in_wings(const L& beta, const L& omega) const {
 }
 
 /// Calls visit(segment, at, where) where the slopes at the stages, those of half a period before being the negative
-/// ones, change their sign, `at` between 0 and 1 in the segment being the zero of the polynomial through them.
+/// ones, change their sign, `at` between 0 and 1 in the segment being the zero of the polynomial through them. A
+/// polynomial that dips through zero and back between two stages has two.
 template <class L, int N>
 template <class Visit>
 void DirectPackOrbit<L, N>::for_each_zero(const std::array<L, max_nodes>& slopes, const Visit& visit) const {
+  const L zero(0.0);
   for (std::size_t s = 0; s < segments_; ++s) {
-    std::array<L, points> slope;
+    std::array<L, points> slope, bend;
     slope[0] = s > 0 ? slopes[s * stages - 1] : -slopes[nodes() - 1];
     for (std::size_t m = 1; m < points; ++m) slope[m] = slopes[s * stages + m - 1];
+    for (std::size_t m = 0; m < points; ++m) {
+      bend[m] = zero;
+      for (std::size_t j = 0; j < points; ++j) bend[m] = bend[m] + L(rule_.slope[m][j]) * slope[j];
+    }
     for (std::size_t m = 1; m < points; ++m) {
-      const L before = slope[m - 1], after = slope[m];
-      const Mask where = (before > L(0.0) && !(after > L(0.0))) || (before < L(0.0) && !(after < L(0.0)));
-      if (!any<L>(where)) continue;
+      const L before = slope[m - 1], after = slope[m], sign = sign_of(before);
+      const Mask where = (before > zero && !(after > zero)) || (before < zero && !(after < zero));
+      const Mask dips = before * after > zero && sign * bend[m - 1] < zero && sign * bend[m] > zero;
+      if (!any<L>(where || dips)) continue;
       const Polynomial of = polynomial(slope);
-      const L fall = before - after, from(rule_.at[m - 1]), to(rule_.at[m]);
-      L at = from + before * inverse_of(select<L>(where, fall, L(1.0))) * L(rule_.at[m] - rule_.at[m - 1]);
-      for (int n = 0; n < 3; ++n) {
-        L value = of[points - 1], change(0.0);
-        for (std::size_t k = points - 1; k-- > 0;) {
-          change = value + change * at;
-          value = of[k] + value * at;
-        }
-        const L per_change = inverse_of(select<L>(where && !(change == L(0.0)), change, L(1e300)));
-        at = min(max(at - value * per_change, from), to);
+      const L from(rule_.at[m - 1]), to(rule_.at[m]), width = to - from;
+      if (any<L>(where)) {
+        const L part = before * inverse_of(select<L>(where, before - after, L(1.0)));
+        visit(s, zero_of(of, 0, from + part * width, from, to, where), where);
       }
-      visit(s, at, where);
+      if (!any<L>(dips)) continue;
+      const L part = bend[m - 1] * inverse_of(select<L>(dips, bend[m - 1] - bend[m], L(1.0)));
+      const L lowest = zero_of(of, 1, from + part * width, from, to, dips);
+      const L value = sign * derivative_of(of, 0, lowest), curve = sign * derivative_of(of, 2, lowest);
+      const Mask twice = dips && value < zero && curve > zero;
+      if (!any<L>(twice)) continue;
+      const L reach = sqrt(select<L>(twice, L(-2.0) * value * inverse_of(select<L>(twice, curve, L(1.0))), zero));
+      visit(s, zero_of(of, 0, max(lowest - reach, from), from, lowest, twice), twice);
+      visit(s, zero_of(of, 0, min(lowest + reach, to), lowest, to, twice), twice);
     }
   }
+}
+
+/// The order-th derivative of a polynomial.
+template <class L, int N>
+L DirectPackOrbit<L, N>::derivative_of(const Polynomial& of, std::size_t order, const L& at) {
+  L value(0.0);
+  for (std::size_t k = points; k-- > order;) {
+    double factor = 1.0;
+    for (std::size_t n = 0; n < order; ++n) factor = factor * double(k - n);
+    const L coefficient = order == 0 ? of[k] : L(factor) * of[k];
+    value = L(0.0) + coefficient + value * at;
+  }
+  return value;
+}
+
+/// A zero of the order-th derivative between two places, by Newton's method from `at`.
+template <class L, int N>
+L DirectPackOrbit<L, N>::zero_of(const Polynomial& of, std::size_t order, L at, const L& from, const L& to,
+                                 const Mask& where) {
+  for (int n = 0; n < 3; ++n) {
+    const L value = derivative_of(of, order, at), change = derivative_of(of, order + 1, at);
+    const L per_change = inverse_of(select<L>(where && !(change == L(0.0)), change, L(1e300)));
+    at = min(max(at - value * per_change, from), to);
+  }
+  return at;
 }
 
 /// The polynomial through a segment's values, in powers of the part of the segment.
@@ -105,10 +139,7 @@ L DirectPackOrbit<L, N>::inside(const std::array<L, max_nodes>& values, const L&
   std::array<L, points> through;
   through[0] = segment > 0 ? values[segment * stages - 1] : start;
   for (std::size_t m = 1; m < points; ++m) through[m] = values[segment * stages + m - 1];
-  const Polynomial of = polynomial(through);
-  L value = of[points - 1];
-  for (std::size_t k = points - 1; k-- > 0;) value = of[k] + value * at;
-  return value;
+  return derivative_of(polynomial(through), 0, at);
 }
 
 /// Extremes at the zeros of their derivatives; and whether the velocity keeps its sign.

@@ -15,6 +15,7 @@ struct DirectPackRule {
   double at[points];                     ///< 0 and the stages, the last of them 1
   double a[stages][stages];              ///< RadauCollocation::a; the last row holds the weights
   double power[points][points];          ///< [k][m]: coefficient of t^k in the polynomial that is 1 at point m alone
+  double slope[points][points];          ///< [m][j]: derivative at point m of the polynomial that is 1 at point j alone
   double halved[2 * stages][points];     ///< [j][m]: that polynomial at the stages of the first and the second half
   double balance_sine[balance_samples];  ///< at the midpoints of a quarter period
   double balance_ratio;                  ///< of a speed to the next larger one
