@@ -47,7 +47,9 @@ TEST(OwnSearch, FindsTheOptimumByMetrics) {
     const double tolerance = differentiated ? 1e-6 : 1e-4;
     EXPECT_NEAR(own.objective / found.point.metrics[Metric::power_electrical], 1.0, tolerance);
     EXPECT_EQ(own.design.supply.voltage, own.parameters[0]);
-    if (differentiated) EXPECT_NEAR(own.parameters[0] / found.parameters[0], 1.0, 1e-4);
+    if (differentiated) {
+      EXPECT_NEAR(own.parameters[0] / found.parameters[0], 1.0, 1e-4);
+    }
   }
 }
 
