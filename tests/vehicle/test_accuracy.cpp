@@ -20,6 +20,18 @@ Vehicle<double> next_vehicle(WideBox box, std::mt19937_64& random) {
   }
 }
 
+// Where speed and current are constant to rounding, their slopes have no curvature that could promise a peak.
+TEST(Accuracy, ConstantSpeedHasNoPeaks) {
+  std::mt19937_64 random(7);
+  for (int n = 0; n <= 862; ++n) {
+    const Vehicle<double> vehicle = next_vehicle(WideBox::wingless, random);
+    if (n != 89 && n != 685 && n != 790 && n != 862) continue;
+    const Metrics<double> m = find_steady_flapping(vehicle, {.tolerance = 1e-12, .stability = false}).metrics;
+    EXPECT_NEAR(m[Metric::crank_speed_min] / m[Metric::crank_speed_max], 1.0, 1e-12) << n;
+    EXPECT_NEAR(m[Metric::current_peak] / m[Metric::current_mean], 1.0, 1e-9) << n;
+  }
+}
+
 // Steps as long as the decay of the current allows: beyond the pair's interval of stability they fed an oscillation of
 // the speed of 1e-4 that neither error estimate nor closure showed.
 TEST(Accuracy, AMotorAloneTurnsAtConstantSpeed) {

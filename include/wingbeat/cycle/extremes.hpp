@@ -137,7 +137,9 @@ CycleExtremes<double> cycle_extremes(const System& system, const solver::Iterate
         const double v = value.a, d = value.v[0];
         // What is left to gain, from the flatter of the two secants of the slope.
         const double curvature = std::min(std::abs((b.d0 - d) / (b.x - b.x0)), std::abs((d - b.d1) / (b.x1 - b.x)));
-        const double gain = curvature > 0.0 ? 0.5 * d * d / curvature : 0.0;
+        // No more than the slope gives on the rest of the way: slopes that differ by rounding alone have no curvature.
+        const double most = d > 0.0 ? d * (b.x1 - x) : d * (b.x0 - x);
+        const double gain = curvature > 0.0 ? std::min(0.5 * d * d / curvature, most) : 0.0;
         best[c] = std::max(best[c], v);
         if (!(gain > 0.03 * tolerance * std::abs(v)) || b.x1 - b.x0 < 1e-13) {
           best[c] = std::max(best[c], v + gain);
