@@ -141,7 +141,7 @@ CycleExtremes<double> cycle_extremes(const System& system, const solver::Iterate
         const double most = d > 0.0 ? d * (b.x1 - x) : d * (b.x0 - x);
         const double gain = curvature > 0.0 ? std::min(0.5 * d * d / curvature, most) : 0.0;
         best[c] = std::max(best[c], v);
-        if (!(gain > 0.03 * tolerance * std::abs(v)) || b.x1 - b.x0 < 1e-13) {
+        if (!(gain > 0.01 * tolerance * std::abs(v)) || b.x1 - b.x0 < 1e-13) {
           best[c] = std::max(best[c], v + gain);
           break;
         }
