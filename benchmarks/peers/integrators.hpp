@@ -19,7 +19,7 @@ struct Dopri5 {
   using State = std::array<double, N>;
   const Peer& peer;
   double tolerance;
-  double step = 0.1;
+  double step = first_step;
 
   void integrate(double* u, double from, double to) {
     namespace odeint = boost::numeric::odeint;
@@ -128,7 +128,9 @@ class Adams {
   std::array<double, N> last_{};
 };
 
-inline Steady by_cvode(Adams<2>& plain, Adams<all_states>& measured, const Peer& peer, double tolerance) {
+// With a method of two states and one of all, which `begin` at a state and go on from one iterate to the next.
+template <class Plain, class Measured>
+inline Steady by_stepping(Plain& plain, Measured& measured, const Peer& peer, double tolerance) {
   bool fine = false;
   return flap(
       peer, tolerance < coarse,

@@ -61,7 +61,7 @@ struct Rival {
   std::string missing;  // why it cannot be run; empty if it can
   std::string setting;  // printf format of what is tuned
   std::vector<double> ladder;
-  int rounds;  // of timing, the best counts
+  int rounds;  // of timing, the median counts
   std::function<Answers(double)> solve;
 };
 
