@@ -21,6 +21,12 @@ class ErkStep {
     ERKStepSetUserData(memory_, this);
     ERKStepSetErrHandlerFn(memory_, [](int, const char*, const char*, char*, void*) {}, nullptr);
     ERKStepSetMaxNumSteps(memory_, 100000);
+    // The rates jump where the sign of the rod force changes: more than seven failed steps there are no failure, and a
+    // PI controller without further bias goes on faster than the default.
+    ERKStepSetMaxErrTestFails(memory_, 50);
+    ERKStepSetAdaptivityMethod(memory_, ARK_ADAPT_PI, 1, 0, nullptr);
+    ERKStepSetErrorBias(memory_, 1.0);
+    ERKStepSetSafetyFactor(memory_, 0.9);
   }
   ErkStep(const ErkStep&) = delete;
   ErkStep& operator=(const ErkStep&) = delete;

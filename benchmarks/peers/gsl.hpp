@@ -1,5 +1,5 @@
-// The GNU Scientific Library's methods: variable-order Adams in Nordsieck form (msadams), Prince and Dormand's eighth
-// order (rk8pd).
+// The GNU Scientific Library's methods: variable-order Adams in Nordsieck form (msadams), Cash and Karp's fifth order
+// (rkck), Prince and Dormand's eighth (rk8pd).
 #pragma once
 
 #include <gsl/gsl_errno.h>

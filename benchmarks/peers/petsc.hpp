@@ -29,6 +29,9 @@ class TsRk {
     TSSetFunctionDomainError(ts_, &turns_forwards);
     TSSetType(ts_, TSRK);
     TSRKSetType(ts_, method);
+    TSAdapt adapt = nullptr;
+    TSGetAdapt(ts_, &adapt);
+    TSAdaptSetType(adapt, TSADAPTDSP);  // a PI controller, faster here than the default
     TSSetExactFinalTime(ts_, TS_EXACTFINALTIME_MATCHSTEP);
     TSSetMaxSteps(ts_, 100000);
     TSSetMaxStepRejections(ts_, -1);
