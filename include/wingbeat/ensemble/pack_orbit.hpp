@@ -185,6 +185,7 @@ class PackOrbit {
   Matrix derivatives(const State& y, const State& rates, const RatesAt& rates_at) const;
   [[gnu::noinline]] Matrix jacobian_at(const System& system, const Configuration<L>& place, const State& y,
                                        const State& rates, const L& force) const;
+  [[gnu::noinline]] Matrix jacobian_at_node(System system, std::size_t node, const L& force) const;
   static Mask is_stiff(const Matrix& jacobian, const L& h);
   [[gnu::noinline, gnu::flatten]] static void find_rates(const System& system, const L& u, const State& y, State& rates,
                                                          L& force) {
@@ -270,14 +271,14 @@ class PackOrbit {
   L error_estimate_;
 };
 
-/// Derivatives by the state of the rates, which rates_at(state) gives, to four digits.
+/// Derivatives by the state of the rates, which rates_at(state) gives, to six digits.
 template <class L, int N>
 template <class RatesAt>
 auto PackOrbit<L, N>::derivatives(const State& y, const State& rates, const RatesAt& rates_at) const -> Matrix {
   Matrix jacobian;
   for (std::size_t n = 0; n < N; ++n) {
     State moved = y;
-    const L by = n == 0 ? L(1e-4) * y[0] : L(1e-4) * current_scale_;
+    const L by = n == 0 ? L(1e-6) * y[0] : L(1e-6) * current_scale_;
     moved[n] = moved[n] + by;
     const State there = rates_at(moved);
     const L per_move = inverse_of(by);
