@@ -21,13 +21,12 @@ inline constexpr std::array<std::string_view, 8> kind_box_names = {
 inline std::shared_ptr<const CoefficientTable> random_table(std::mt19937_64& random) {
   const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
   const double spacing = std::array{2.5, 5.0, 10.0}[std::size_t(uniform(0.0, 3.0))];
-  const double scatter = uniform(0.0, 1.0) < 0.5 ? 0.0 : 0.02;
+  const double scatter = uniform(0.0, 1.0) < 0.5 ? 0.0 : 0.002 * spacing;  // the denser, the smoother
   const double peak = uniform(1.3, 1.8), rise = uniform(1.3, 1.7);
-  double first = -5.0 + spacing * std::floor(uniform(0.0, 45.0) / spacing);
-  if (uniform(0.0, 1.0) < 0.5) first = 0.0;
+  const double low = uniform(0.0, 1.0) < 0.5 ? 0.0 : uniform(0.0, 45.0);
   std::vector<double> alpha, lift, drag;
-  for (double degrees = first; degrees <= 90.0; degrees += spacing) {
-    const double a = degrees / degrees_per_radian;
+  for (int row = int((90.0 - low) / spacing); row >= 0; --row) {
+    const double a = (90.0 - spacing * row) / degrees_per_radian;
     alpha.push_back(a);
     lift.push_back(0.2 + peak * std::sin(2.1 * a - 0.12) + scatter * uniform(-1.0, 1.0));
     drag.push_back(1.9 - rise * std::cos(2.05 * a - 0.17) + scatter * uniform(-1.0, 1.0));

@@ -80,6 +80,7 @@ L PackOrbit<L, N>::floquet_multiplier() {
     for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
       const std::size_t base = first_node(half, s);
       const L h = mesh.u[s + 1] - mesh.u[s];
+      if (bends_) system.pitching = mesh.pitching[s];
       Matrix end_before = jacobian[intervals];
       for (std::size_t m = 0; m <= intervals; ++m) {
         if (lags_) system.drop = drop_[base + m];
