@@ -129,7 +129,7 @@ CoefficientTable::CoefficientTable(std::vector<double> alpha, std::vector<double
     rows_.push_back({l.x0, {l.a, l.b, l.c, l.d}, {d.a, d.b, d.c, d.d}});
   }
   knots_ = alpha_;
-  knots_.push_back(std::numeric_limits<double>::infinity());
+  knots_.push_back(std::numeric_limits<double>::quiet_NaN());  // none of which lies below anything
   // One knot in a bucket, unless some are very near each other.
   double least = alpha_.back() - alpha_.front();
   for (std::size_t k = 1; k < alpha_.size(); ++k) least = std::min(least, alpha_[k] - alpha_[k - 1]);

@@ -163,11 +163,11 @@ TEST(Ensemble, SmallInductancesAgreeWithTheScalarSolver) {
 
 /// Boxes of one kind of part each: how many of those that flap go to the scalar solver at most, in a hundred.
 TEST(Ensemble, EveryKindAgreesWithTheScalarSolver) {
-  const StartUp start_up = remembered_start_up();
   for (const auto& [box, scalars] : {std::pair{KindBox::tables, 3},
                                      {KindBox::pitch_stop, 4},
                                      {KindBox::small_inductance, 3},
                                      {KindBox::battery, 3}}) {
+    const StartUp start_up = remembered_start_up();
     std::mt19937_64 random(41);
     std::vector<EnsembleMember> members;
     for (int n = 0; n < many / 80; ++n) members.push_back(member_of(kind_design(box, random)));
@@ -213,7 +213,7 @@ TEST(Ensemble, BendsAgreeWithTheScalarSolver) {
     EnsembleOptions options;
     options.isa = isa;
     const auto [flapping, by_packs, outside] = agreement(solve(members, options), expected, 1e-6, 10.0);
-    EXPECT_GT(by_packs, flapping * 4 / 5);
+    EXPECT_GT(by_packs, flapping * 3 / 5);
     EXPECT_LE(outside, flapping / 50);
   }
 }
@@ -410,12 +410,11 @@ TEST(Ensemble, ReportsTheMetricsAskedForAlone) {
   EnsembleOptions options;
   options.metrics.reset();
   for (const Metric m : {Metric::lift_mean, Metric::rod_force_peak}) options.metrics.set(std::size_t(m));
-  Design<double> with_table = reference_design();
-  with_table.aerodynamics.coefficients.table = std::make_shared<CoefficientTable>(
-      std::vector{0.0, 0.8, 1.6}, std::vector{0.2, 1.8, 0.1}, std::vector{0.4, 1.5, 3.4});
-  const auto outcomes = solve({member_of(reference_design()), member_of(with_table)}, options);
+  Design<double> with_gear = reference_design();
+  with_gear.motor.gear_efficiency = 0.8;
+  const auto outcomes = solve({member_of(reference_design()), member_of(with_gear)}, options);
   EXPECT_FALSE(outcomes[0].scalar);
-  EXPECT_TRUE(outcomes[1].scalar) << "tables are read by the scalar solver";
+  EXPECT_TRUE(outcomes[1].scalar) << "lanes know no gear efficiency";
   for (const EnsembleOutcome& out : outcomes) {
     for (int k = 0; k < metric_count; ++k) {
       EXPECT_EQ(std::isnan(out.metrics.values[std::size_t(k)]), !options.metrics[std::size_t(k)]) << k;

@@ -40,7 +40,7 @@ struct CoefficientLookup {
     double x0;
     std::array<double, 4> lift, drag;
   };
-  const double* knot;  ///< [rad], growing, the last one infinite
+  const double* knot;  ///< [rad], growing, after the last one not a number
   const Row* row;      ///< [k]: where k knots lie at or below alpha
   const int* first;    ///< [b]: knots before bucket b of [front, back]
   int buckets;
