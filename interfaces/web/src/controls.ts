@@ -142,7 +142,11 @@ export class Controls {
           html(
             'details',
             {class: 'others', 'data-section': `${section}+`, ...(open.has(`${section}+`) ? {open: true} : {})},
-            html('summary', {}, `${others.length} more keys, not stated`),
+            html(
+              'summary',
+              {},
+              others.length === 1 ? '1 more key, not stated' : `${others.length} more keys, not stated`,
+            ),
             ...others.map((key) => this.build_row(key, values, base)),
           ),
         );

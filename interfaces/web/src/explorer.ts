@@ -230,6 +230,11 @@ export class Explorer {
     this.settle = window.setTimeout(() => this.settled(), final ? 0 : 120);
   }
 
+  /** Pictures whose letters keep their size follow the width of the page. */
+  resized() {
+    drawSankey(document.querySelector<SVGSVGElement>('#sankey')!, this.hasCycle() ? this.current.solved.balance : null);
+  }
+
   drawCycle() {
     const force =
       {'four-bar': 'coupler force', tabulated: 'reaction'}[this.current.mechanism.type as string] ?? 'rod force';

@@ -1,4 +1,5 @@
 import './style.css';
+import './pictures/pictures.css';
 import {Background} from './background';
 import {compiledCore, startCore} from './core';
 import {byId} from './dom';
@@ -18,6 +19,7 @@ async function start() {
   explorer.keysChanged = () => studies.offerKeys();
   new Toolbar(explorer);
   new Tour(explorer);
+  window.addEventListener('resize', () => explorer.resized());
   window.addEventListener('hashchange', async () => {
     explorer.open(await stateOf(location.hash));
     explorer.refreshTools();

@@ -37,6 +37,13 @@ export function digits(x: number, figures = 4): string {
   return Number(x.toPrecision(figures)).toString();
 }
 
+/** A number beside an axis. */
+export function tickText(x: number): string {
+  const short = Number(x.toPrecision(6));
+  const size = Math.abs(short);
+  return size > 0 && (size >= 1e5 || size < 1e-3) ? short.toExponential() : String(short);
+}
+
 export function readable(x: number | null | undefined, unit: string, figures = 4): string {
   if (x === null || x === undefined || !Number.isFinite(x)) return '–';
   const scale = scaleFor(x, unit);

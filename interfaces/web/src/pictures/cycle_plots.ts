@@ -3,7 +3,7 @@ import {scaleLinear} from 'd3-scale';
 import {line} from 'd3-shape';
 import type {Columns} from '../core';
 import {html, set, svg} from '../dom';
-import {digits, scaleFor, shownUnit} from '../quantities';
+import {digits, scaleFor, shownUnit, tickText} from '../quantities';
 
 interface Panel {
   id: string;
@@ -45,7 +45,7 @@ const width = 420,
   left = 52,
   right = 8,
   top = 22,
-  bottom = 26;
+  bottom = 32;
 
 interface Drawn {
   panel: Panel;
@@ -144,12 +144,12 @@ export class CyclePlots {
     for (const tick of y.ticks(4)) {
       d.axes.append(
         svg('line', {class: 'grid', x1: left, x2: width - right, y1: y(tick), y2: y(tick)}),
-        svg('text', {x: left - 5, y: y(tick) + 3.5, 'text-anchor': 'end'}, digits(tick)),
+        svg('text', {x: left - 5, y: y(tick) + 3.5, 'text-anchor': 'end'}, tickText(tick)),
       );
     }
     const ticks = this.abscissa === 'time' ? x.ticks(5) : [0, 90, 180, 270, 360];
     for (const tick of ticks) {
-      d.axes.append(svg('text', {x: x(tick), y: height - bottom + 13, 'text-anchor': 'middle'}, digits(tick)));
+      d.axes.append(svg('text', {x: x(tick), y: height - bottom + 12, 'text-anchor': 'middle'}, tickText(tick)));
     }
     d.axes.append(
       svg('text', {x: left, y: 14, class: 'title'}, `${title}, ${shownUnit(scale.unit)}`),

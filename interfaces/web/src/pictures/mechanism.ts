@@ -154,7 +154,7 @@ function sliderCrank(m: Mechanism, i: Instant, range: [number, number], names: b
     s.ground(hinge);
     s.arrow(onCircle(hinge, 0.7 * wing, zero - side * i.strokeAngle), 0, -55 * i.lift, 'lift');
     if (names && side > 0) {
-      s.name('wing', tip, 'end', 0, -8);
+      s.name('wing', tip, 'middle', 0, 20);
       if (m.springs) s.name('spring', hinge, 'start', 20, 6);
     }
   }
@@ -258,7 +258,7 @@ function shaftAndWing(m: Mechanism, i: Instant, range: [number, number], names: 
 function chord(i: Instant): SVGGElement {
   const group = svg('g', {class: 'section'});
   if (i.angleOfAttack === null) return group;
-  const x = width - 58,
+  const x = width - 74,
     y = 44,
     sense = i.strokeVelocity < 0 ? -1 : 1,
     alpha = (i.angleOfAttack * Math.PI) / 180;

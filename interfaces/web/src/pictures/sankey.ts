@@ -15,8 +15,7 @@ interface Flow {
   kind: string;
 }
 
-const width = 640,
-  height = 250;
+const height = 270;
 
 /** Stations and flows of a balance [W]. A flow below a thousandth of the input is left to the table; a residual that
  * brings power in enters at the mechanism. */
@@ -46,6 +45,7 @@ function network(b: Balance): {nodes: Place[]; links: Flow[]} {
 }
 
 export function drawSankey(picture: SVGSVGElement, balance: Balance | null) {
+  const width = Math.max(330, Math.min(720, picture.clientWidth || 640)); // letters keep their size
   picture.setAttribute('viewBox', `0 0 ${width} ${height}`);
   picture.replaceChildren();
   if (!balance || !(balance.electrical > 0)) {
@@ -59,7 +59,7 @@ export function drawSankey(picture: SVGSVGElement, balance: Balance | null) {
     .nodePadding(22)
     .extent([
       [4, 22],
-      [width - 190, height - 16],
+      [width - (width < 500 ? 160 : 275), height - 24],
     ]);
   const {nodes, links} = layout(network(balance));
   for (const link of links) {
@@ -84,12 +84,10 @@ export function drawSankey(picture: SVGSVGElement, balance: Balance | null) {
       svg('rect', {class: `node node-${node.kind}`, x: x0, y: y0, width: x1 - x0, height: Math.max(1, y1 - y0)}),
     );
     const share = `${digits((100 * (node.value ?? 0)) / balance.electrical, 3)} %`;
-    const label = `${node.name} ${readable(node.value, 'W')} (${share})`;
+    const label = width < 500 ? `${node.name} ${share}` : `${node.name} ${readable(node.value, 'W')} (${share})`;
     const above = node.kind === 'station' || node.kind === 'input';
     picture.append(
-      above
-        ? svg('text', {x: x0, y: Math.max(11, y0 - 6)}, node.name)
-        : svg('text', {x: x1 + 6, y: (y0 + y1) / 2 + 4}, label),
+      above ? svg('text', {x: x0, y: y1 + 14}, node.name) : svg('text', {x: x1 + 6, y: (y0 + y1) / 2 + 4}, label),
     );
   }
 }

@@ -2,7 +2,7 @@
 import {scaleLinear} from 'd3-scale';
 import {line} from 'd3-shape';
 import {svg} from '../dom';
-import {digits, scaleFor, shownUnit} from '../quantities';
+import {digits, scaleFor, shownUnit, tickText} from '../quantities';
 
 export interface Axis {
   name: string;
@@ -64,11 +64,11 @@ export function drawTrend(
   for (const tick of y.ticks(5)) {
     picture.append(
       svg('line', {class: 'grid', x1: left, x2: width - right, y1: y(tick), y2: y(tick)}),
-      svg('text', {x: left - 6, y: y(tick) + 4, 'text-anchor': 'end'}, digits(tick)),
+      svg('text', {x: left - 6, y: y(tick) + 4, 'text-anchor': 'end'}, tickText(tick)),
     );
   }
   for (const tick of x.ticks(6)) {
-    picture.append(svg('text', {x: x(tick), y: height - bottom + 16, 'text-anchor': 'middle'}, digits(tick)));
+    picture.append(svg('text', {x: x(tick), y: height - bottom + 16, 'text-anchor': 'middle'}, tickText(tick)));
   }
   picture.append(
     svg('text', {x: left, y: 14, class: 'title'}, vertical.title),
@@ -179,9 +179,9 @@ export function drawMap(
     [height - bottom - cell[1] / 2, top + cell[1] / 2],
   );
   for (const tick of x.ticks(6))
-    picture.append(svg('text', {x: x(tick), y: height - bottom + 16, 'text-anchor': 'middle'}, digits(tick)));
+    picture.append(svg('text', {x: x(tick), y: height - bottom + 16, 'text-anchor': 'middle'}, tickText(tick)));
   for (const tick of y.ticks(6))
-    picture.append(svg('text', {x: left - 6, y: y(tick) + 4, 'text-anchor': 'end'}, digits(tick)));
+    picture.append(svg('text', {x: left - 6, y: y(tick) + 4, 'text-anchor': 'end'}, tickText(tick)));
   picture.append(
     svg('text', {x: width - right, y: height - 8, 'text-anchor': 'end'}, a.title),
     svg('text', {x: 4, y: 14, class: 'title'}, u.title),
