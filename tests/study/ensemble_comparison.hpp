@@ -62,7 +62,7 @@ inline void expect_no_company(const std::vector<EnsembleMember>& members, const 
 
 /// Members of a comparison that is to show one in a thousand.
 #if defined(__SANITIZE_ADDRESS__)
-inline constexpr int many_members = 4000;
+inline constexpr int many_members = 8000;
 #else
 inline constexpr int many_members = 20000;
 #endif
