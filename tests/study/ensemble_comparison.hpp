@@ -61,7 +61,7 @@ inline void expect_no_company(const std::vector<EnsembleMember>& members, const 
 }
 
 /// Members of a comparison that is to show one in a thousand.
-#if defined(__SANITIZE_ADDRESS__)
+#ifdef WINGBEAT_SANITIZED
 inline constexpr int many_members = 8000;
 #else
 inline constexpr int many_members = 20000;

@@ -26,7 +26,7 @@ void expect_gradients(const Design<double>& design, double tolerance) {
 }
 
 // A vehicle takes a minute under sanitizers, which look for other mistakes than differences do.
-#if defined(__SANITIZE_ADDRESS__)
+#ifdef WINGBEAT_SANITIZED
 constexpr int vehicles = 1;
 #else
 constexpr int vehicles = 4;
