@@ -128,7 +128,7 @@ constexpr MetricDefinition metric_definitions[] = {
     {Metric::frequency, R"($f$)", R"($1 / \int_0^{2\pi} \mathrm{d}\theta / \omega$)"},
     {Metric::current_mean, R"($\overline{i}$)",
      "mean of the motor current; of a direct drive, which alternates, near 0"},
-    {Metric::current_peak, R"($\max \lvert i \rvert$)", "largest magnitude of the current within a cycle"},
+    {Metric::current_peak, R"($\max \lvert i \rvert$)", ""},
     {Metric::current_rms, R"($\sqrt{\overline{i^2}}$)", "heats the winding"},
     {Metric::power_electrical, R"($P_\mathrm{e}$)", R"(mean of $v\, i$ (eq 15))"},
     {Metric::power_motor, R"($P_\mathrm{m}$)", R"(mean of $T_\mathrm{m} \omega$ (eq 16), behind the gearbox)"},
@@ -147,16 +147,16 @@ constexpr MetricDefinition metric_definitions[] = {
     {Metric::power_residual, R"($P_\mathrm{residual}$)",
      R"(mean of $F (h \omega - g \dot\beta)$: 0 with `virtual-work`, a property of `rod-force`)"},
     {Metric::lift_mean, R"($\overline{L}$)", "mean lift of all wings, normal to the stroke plane (eq 2)"},
-    {Metric::lift_peak, R"($\max L$)", "largest lift within a cycle"},
+    {Metric::lift_peak, R"($\max L$)", ""},
     {Metric::rod_force_peak, R"($\max \lvert F \rvert$)",
      "largest magnitude of the rod force (of a four-bar, the coupler force); absent of a direct drive"},
-    {Metric::rod_force_mean, R"($\overline{\lvert F \rvert}$)", "mean magnitude of that force"},
-    {Metric::stroke_amplitude, R"($\tfrac12 (\beta_\mathrm{max} - \beta_\mathrm{min})$)", "half peak to peak"},
+    {Metric::rod_force_mean, R"($\overline{\lvert F \rvert}$)", ""},
+    {Metric::stroke_amplitude, R"($\tfrac12 (\beta_\mathrm{max} - \beta_\mathrm{min})$)", ""},
     {Metric::flapping_velocity_peak, R"($\max \lvert \dot\beta \rvert$)", "of a wing about its hinge"},
     {Metric::angle_of_attack_min, R"($\alpha_\mathrm{min}$)",
      R"(of the law $\alpha = 90^\circ - C_\alpha \lvert\dot\beta\rvert\, 180^\circ/\pi$ (eq 14), or of the pitch angle)"},
-    {Metric::crank_speed_min, R"($\omega_\mathrm{min}$)", "lowest crank speed within a cycle"},
-    {Metric::crank_speed_max, R"($\omega_\mathrm{max}$)", "highest crank speed within a cycle"},
+    {Metric::crank_speed_min, R"($\omega_\mathrm{min}$)", ""},
+    {Metric::crank_speed_max, R"($\omega_\mathrm{max}$)", ""},
     {Metric::efficiency_system, R"($\eta_\mathrm{s}$)", R"($P_\mathrm{aero} / P_\mathrm{e}$ (eq 24))"},
     {Metric::efficiency_motor, R"($\eta_\mathrm{m}$)", R"($P_\mathrm{m} / P_\mathrm{e}$ (eq 25))"},
     {Metric::efficiency_mechanism, R"($\eta_\mathrm{t}$)", R"($P_\mathrm{aero} / P_\mathrm{m}$ (eq 26))"},
@@ -171,7 +171,7 @@ constexpr MetricDefinition metric_definitions[] = {
      "`aerodynamics.added_mass = true`"},
     {Metric::power_hinge, R"($P_\mathrm{hinge}$)",
      R"(mean of $c_\psi \dot\psi^2$ of all wings and what impacts at the stops take; wings on pitch hinges)"},
-    {Metric::pitch_amplitude, R"($\tfrac12 (\psi_\mathrm{max} - \psi_\mathrm{min})$)", "half peak to peak"},
+    {Metric::pitch_amplitude, R"($\tfrac12 (\psi_\mathrm{max} - \psi_\mathrm{min})$)", ""},
     {Metric::pitch_phase, R"($\varphi_\psi$)",
      R"(by how much the first harmonic of $\psi$ is ahead of that of $-\dot\beta$: 0 for symmetric flips)"},
     {Metric::angle_of_attack_max, R"($\alpha_\mathrm{max}$)",
@@ -250,9 +250,10 @@ std::string metric_reference() {
   std::string result = "\n| key | unit | symbol | definition |\n| --- | --- | --- | --- |\n";
   for (const MetricDefinition& of : metric_definitions) {
     const MetricInfo& metric = metric_info(of.metric);
-    result += fmt::format("| `{}` | {} | {} | {}: {} |\n", metric.key,
+    const std::string_view definition = of.definition;
+    result += fmt::format("| `{}` | {} | {} | {}{}{} |\n", metric.key,
                           std::string_view(metric.unit) == "1" ? "-" : metric.unit, of.symbol, metric.long_name,
-                          of.definition);
+                          definition.empty() ? "" : ": ", definition);
   }
   return result;
 }
