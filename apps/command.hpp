@@ -34,6 +34,7 @@ void add_reproduce(CLI::App& program, Action& action);
 void add_new(CLI::App& program, Action& action);
 void add_keys(CLI::App& program, Action& action);
 void add_metrics(CLI::App& program, Action& action);
+void add_schema(CLI::App& program, Action& action);
 
 /// The whole tree of commands. Parsing a command line by it stores what is to be done in `action`, which must outlive
 /// it.

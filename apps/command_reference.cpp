@@ -1,4 +1,4 @@
-// wingbeat keys, metrics and new: what may stand in a vehicle file, what comes out, and a file to start from.
+// wingbeat keys, metrics, schema and new: what may stand in a vehicle file, what comes out, and a file to start from.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -13,6 +13,7 @@
 #include "wingbeat/files/output_file.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/report/reference.hpp"
+#include "wingbeat/report/schema.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat::app {
@@ -98,6 +99,28 @@ void add_metrics(CLI::App& program, Action& action) {
       std::vector<std::string_view> names;
       for (const MetricInfo& metric : metric_table()) names.push_back(metric.key);
       return show(*a, text_metrics, json_metrics, "metric", names);
+    };
+  });
+}
+
+void add_schema(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("schema", "Print the JSON Schema of what a command's --json prints");
+  const auto of = std::make_shared<std::string>("run");
+  Values values;
+  for (const std::string_view name : schema_commands()) values.choices.push_back({std::string(name)});
+  takes(command->add_option("command", *of, "The command (default run)")->type_name("COMMAND"), std::move(values));
+  command->footer("Example:\n  wingbeat schema run");
+  command->callback([of, &action] {
+    action = [of] {
+      const std::string schema = json_schema(*of);
+      if (schema.empty()) {
+        const std::string_view near = nearest_name(*of, schema_commands());
+        throw InputError(in_quotes(*of), 0, 0, "",
+                         near.empty() ? "no command with --json has this name"
+                                      : fmt::format("no command with --json has this name; did you mean {}?", near));
+      }
+      print(schema);
+      return done;
     };
   });
 }

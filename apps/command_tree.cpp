@@ -46,6 +46,7 @@ std::unique_ptr<CLI::App> command_tree(Action& action) {
   add_new(*program, action);
   add_keys(*program, action);
   add_metrics(*program, action);
+  add_schema(*program, action);
   return program;
 }
 

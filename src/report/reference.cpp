@@ -117,6 +117,69 @@ std::string comment_on(const ParameterText& key, bool is_stated, std::span<const
   return text;
 }
 
+/// Symbol and definition of each metric in the words of docs/model.md, in the order of the metric table.
+struct MetricDefinition {
+  Metric metric;
+  const char* symbol;
+  const char* definition;
+};
+constexpr MetricDefinition metric_definitions[] = {
+    {Metric::voltage, R"($v$)", "mean voltage of the supply; a sine's amplitude"},
+    {Metric::frequency, R"($f$)", R"($1 / \int_0^{2\pi} \mathrm{d}\theta / \omega$)"},
+    {Metric::current_mean, R"($\overline{i}$)",
+     "mean of the motor current; of a direct drive, which alternates, near 0"},
+    {Metric::current_peak, R"($\max \lvert i \rvert$)", ""},
+    {Metric::current_rms, R"($\sqrt{\overline{i^2}}$)", "heats the winding"},
+    {Metric::power_electrical, R"($P_\mathrm{e}$)", R"(mean of $v\, i$ (eq 15))"},
+    {Metric::power_motor, R"($P_\mathrm{m}$)", R"(mean of $T_\mathrm{m} \omega$ (eq 16), behind the gearbox)"},
+    {Metric::power_motor_reference, R"($P_\mathrm{m,ref}$)",
+     R"($2 \pi f K_\mathrm{ref} \overline{i}$ (eq 17): what a test bench would say, `bench.torque_constant` given)"},
+    {Metric::power_friction, R"($P_\mathrm{friction}$)",
+     R"(mean of $T_\mathrm{f} \omega$ (eq 18), all friction torques of transmission and motor)"},
+    {Metric::power_aerodynamic, R"($P_\mathrm{aero}$)", R"(mean of $M_\mathrm{aero} \dot\beta$ (eq 19))"},
+    {Metric::power_reactive, R"($P_\mathrm{re}$)",
+     R"(mean of $\lvert (N_\mathrm{w} J_\mathrm{w} \ddot\beta + N_\mathrm{w} k \beta)\, \dot\beta \rvert$ (eq 23))"},
+    {Metric::power_copper, R"($P_\mathrm{cu}$)", R"($R_\mathrm{a} \overline{i^2}$)"},
+    {Metric::power_viscous, R"($P_\mathrm{visc}$)", R"($b\, \overline{\omega^2}$)"},
+    {Metric::power_gear, R"($P_\mathrm{gear}$)",
+     R"(mean of $(1 - e)\, T_\mathrm{g} \omega$, 0 unless `motor.gear_efficiency` is below 1)"},
+    {Metric::power_loss, R"($P_\mathrm{loss}$)", R"($P_\mathrm{e} - P_\mathrm{aero}$ (eq 20))"},
+    {Metric::power_residual, R"($P_\mathrm{residual}$)",
+     R"(mean of $F (h \omega - g \dot\beta)$: 0 with `virtual-work`, a property of `rod-force`)"},
+    {Metric::lift_mean, R"($\overline{L}$)", "mean lift of all wings, normal to the stroke plane (eq 2)"},
+    {Metric::lift_peak, R"($\max L$)", ""},
+    {Metric::rod_force_peak, R"($\max \lvert F \rvert$)",
+     "largest magnitude of the rod force (of a four-bar, the coupler force); absent of a direct drive"},
+    {Metric::rod_force_mean, R"($\overline{\lvert F \rvert}$)", ""},
+    {Metric::stroke_amplitude, R"($\tfrac12 (\beta_\mathrm{max} - \beta_\mathrm{min})$)", ""},
+    {Metric::flapping_velocity_peak, R"($\max \lvert \dot\beta \rvert$)", "of a wing about its hinge"},
+    {Metric::angle_of_attack_min, R"($\alpha_\mathrm{min}$)",
+     R"(of the law $\alpha = 90^\circ - C_\alpha \lvert\dot\beta\rvert\, 180^\circ/\pi$ (eq 14), or of the pitch angle)"},
+    {Metric::crank_speed_min, R"($\omega_\mathrm{min}$)", ""},
+    {Metric::crank_speed_max, R"($\omega_\mathrm{max}$)", ""},
+    {Metric::efficiency_system, R"($\eta_\mathrm{s}$)", R"($P_\mathrm{aero} / P_\mathrm{e}$ (eq 24))"},
+    {Metric::efficiency_motor, R"($\eta_\mathrm{m}$)", R"($P_\mathrm{m} / P_\mathrm{e}$ (eq 25))"},
+    {Metric::efficiency_mechanism, R"($\eta_\mathrm{t}$)", R"($P_\mathrm{aero} / P_\mathrm{m}$ (eq 26))"},
+    {Metric::floquet_multiplier_max, R"($\max \lvert \mu_\mathrm{F} \rvert$)",
+     "by how much a small disturbance grows in a cycle: below 1 the orbit is stable"},
+    {Metric::lift_to_weight, R"($\overline{L} / (m g)$)", "1 hovers; `vehicle.mass` given"},
+    {Metric::winding_temperature, R"($T_\mathrm{w}$)", "at which the winding settles; thermal resistances given"},
+    {Metric::case_temperature, R"($T_\mathrm{case}$)", "at which the motor's case settles"},
+    {Metric::winding_temperature_margin, R"($T_\mathrm{w,max} - T_\mathrm{w}$)",
+     "`motor.winding_temperature_max` given"},
+    {Metric::added_mass_inertia_ratio, R"($J_\mathrm{a} / (N_\mathrm{w} J_\mathrm{w})$)",
+     "`aerodynamics.added_mass = true`"},
+    {Metric::power_hinge, R"($P_\mathrm{hinge}$)",
+     R"(mean of $c_\psi \dot\psi^2$ of all wings and what impacts at the stops take; wings on pitch hinges)"},
+    {Metric::pitch_amplitude, R"($\tfrac12 (\psi_\mathrm{max} - \psi_\mathrm{min})$)", ""},
+    {Metric::pitch_phase, R"($\varphi_\psi$)",
+     R"(by how much the first harmonic of $\psi$ is ahead of that of $-\dot\beta$: 0 for symmetric flips)"},
+    {Metric::angle_of_attack_max, R"($\alpha_\mathrm{max}$)",
+     "of wings on pitch hinges, above 90 degrees at reversals"},
+    {Metric::endurance, R"($t_\mathrm{end}$)",
+     "of a flight on a battery; in `run --json` and studies that ask for it"}};
+static_assert(std::size(metric_definitions) == std::size_t(metric_count), "a metric lacks its definition");
+
 }  // namespace
 
 std::string text_keys(const std::string& filter) {
@@ -172,13 +235,25 @@ std::string vehicle_file_reference() {
     const std::string top(key.path.substr(0, key.path.find('.')));
     if (top != section) {
       section = top;
-      result += fmt::format("\n## [{}]\n\n| key | unit | range | default | meaning |\n", section);
+      result += fmt::format("\n### [{}]\n\n| key | unit | range | default | meaning |\n", section);
       result += "| --- | --- | --- | --- | --- |\n";
     }
     std::string meaning(key.meaning);
     if (!key.only_with.empty()) meaning += " (only with `" + choices_of(key.only_with) + "`)";
     const std::string_view unit = key.unit.empty() ? "text" : key.unit == "1" ? "-" : key.unit;
     result += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.path, unit, key.range.text, default_text(key), meaning);
+  }
+  return result;
+}
+
+std::string metric_reference() {
+  std::string result = "\n| key | unit | symbol | definition |\n| --- | --- | --- | --- |\n";
+  for (const MetricDefinition& of : metric_definitions) {
+    const MetricInfo& metric = metric_info(of.metric);
+    const std::string_view definition = of.definition;
+    result += fmt::format("| `{}` | {} | {} | {}{}{} |\n", metric.key,
+                          std::string_view(metric.unit) == "1" ? "-" : metric.unit, of.symbol, metric.long_name,
+                          definition.empty() ? "" : ": ", definition);
   }
   return result;
 }

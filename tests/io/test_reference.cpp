@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
@@ -12,22 +13,42 @@
 namespace wingbeat {
 namespace {
 
-const std::string reference_file = std::string(WINGBEAT_DATA) + "/../docs/vehicle-file.md";
+/// What stands between the marks of a generated part must be what is wanted; WINGBEAT_UPDATE_DOCS puts it there.
+/// Returns the page.
+std::string page_with(const std::string& name, std::string wanted) {
+  const std::string file = std::string(WINGBEAT_DATA) + "/../docs/" + name;
+  const std::string begin = "rewrites it -->\n", end = "<!-- end of the generated part -->";
+  std::string text = read_text_file(file);
+  const auto from = text.find(begin) + begin.size(), to = text.find(end);
+  wanted += "\n";
+  if (to == std::string::npos || from >= to) {
+    ADD_FAILURE() << name << " has no generated part";
+  } else if (std::getenv("WINGBEAT_UPDATE_DOCS")) {
+    text.replace(from, to - from, wanted);
+    std::ofstream(file, std::ios::binary) << text;
+  } else {
+    EXPECT_EQ(text.substr(from, to - from), wanted) << "run test_io with WINGBEAT_UPDATE_DOCS=1";
+  }
+  return text;
+}
 
 TEST(Reference, IsTheParameterTable) {
-  const std::string begin = "rewrites it -->\n", end = "<!-- end of the generated part -->";
-  std::string text = read_text_file(reference_file);
-  const auto from = text.find(begin) + begin.size(), to = text.find(end);
-  ASSERT_TRUE(to != std::string::npos && from < to);
-  const std::string wanted = vehicle_file_reference() + "\n";
-  if (std::getenv("WINGBEAT_UPDATE_DOCS")) {
-    text.replace(from, to - from, wanted);
-    std::ofstream(reference_file, std::ios::binary) << text;
-    return;
-  }
-  EXPECT_EQ(text.substr(from, to - from), wanted) << "run test_io with WINGBEAT_UPDATE_DOCS=1";
+  const std::string text = page_with("vehicle-file.md", vehicle_file_reference());
   for (const auto& key : parameter_table<double>())
     EXPECT_THAT(text, testing::HasSubstr("| `" + std::string(key.path)));
+}
+
+TEST(Reference, DefinesEveryMetric) {
+  const std::string text = page_with("metrics.md", metric_reference());
+  // In the order of the table, each once.
+  auto at = text.find("| key |");
+  for (const MetricInfo& metric : metric_table()) {
+    const std::string row = "\n| `" + std::string(metric.key) + "` |";
+    const auto found = text.find(row, at);
+    ASSERT_NE(found, std::string::npos) << metric.key;
+    EXPECT_EQ(text.find(row, found + 1), std::string::npos) << metric.key;
+    at = found;
+  }
 }
 
 TEST(Reference, KnowsEveryUnit) {

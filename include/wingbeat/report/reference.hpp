@@ -19,6 +19,9 @@ std::string json_metrics(const std::string& filter);
 /// All keys as Markdown: the generated part of docs/vehicle-file.md.
 std::string vehicle_file_reference();
 
+/// All metrics with symbol and definition (TeX) as Markdown: the generated part of docs/metrics.md.
+std::string metric_reference();
+
 /// A vehicle file that flaps and holds every key that such a vehicle may have, each explained, the optional ones as
 /// comments.
 std::string starting_vehicle(TransmissionType transmission, const std::string& name);

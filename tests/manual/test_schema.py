@@ -1,0 +1,196 @@
+"""What commands print with --json is what `wingbeat schema` says of it, key by key, and nothing else is."""
+
+import copy
+import json
+import os
+import pathlib
+import re
+import subprocess
+import tempfile
+import unittest
+
+try:
+    import jsonschema
+except ImportError:
+    jsonschema = None
+
+PROGRAM = pathlib.Path(os.environ["WINGBEAT_PROGRAM"])
+DATA = pathlib.Path(__file__).resolve().parents[2] / "data"
+TOLERANCE = """[study]
+vehicle = "friction2022-springs"
+[samples]
+method = "{method}"
+count = 8
+seed = 1
+[[parameter]]
+key = "friction.radius"
+distribution = "lognormal"
+geometric_deviation = 1.1
+[[parameter]]
+key = "motor.torque_constant"
+distribution = "normal"
+relative_deviation = 0.03
+"""
+FRONT = """[study]
+vehicle = "friction2022-springs"
+[search]
+method = "nsga2"
+population = 8
+generations = 2
+seed = 1
+[[objective]]
+maximise = "lift_mean_n"
+reference = "0 N"
+[[objective]]
+minimise = "power_electrical_w"
+reference = "4 W"
+[[parameter]]
+key = "supply.voltage"
+lower = "2 V"
+upper = "8 V"
+"""
+OPTIMUM = """[study]
+vehicle = "friction2022-springs"
+{more}
+[objective]
+maximise = "lift_mean_n"
+starts = 2
+[[parameter]]
+key = "supply.voltage"
+lower = "2 V"
+upper = "{upper}"
+{constraint}
+"""
+MOTORS = """[motors]
+catalogue = "{catalogue}"
+gear_ratio = 10
+mass_without = "2.5 g"
+"""
+SWEEP = """[study]
+vehicle = "friction2022-springs"
+[[axis]]
+key = "springs"
+values = [false, true]
+[[axis]]
+key = "supply.voltage"
+from = "{low}"
+to = "3 V"
+count = 3
+"""
+
+
+def schema_of(command):
+    return json.loads(subprocess.run([PROGRAM, "schema", command], capture_output=True, text=True, check=True).stdout)
+
+
+@unittest.skipUnless(jsonschema, "python3-jsonschema is not installed")
+class Schema(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="wingbeat-schema-"))
+        self.addCleanup(lambda: subprocess.run(["rm", "-r", self.folder]))
+
+    def file(self, name, text):
+        (self.folder / name).write_text(text)
+        return self.folder / name
+
+    def printed(self, command, *arguments, statuses=(0,)):
+        done = subprocess.run([PROGRAM, command, *arguments, "--json"], capture_output=True, text=True, cwd=self.folder,
+                              timeout=280)
+        self.assertIn(done.returncode, statuses, done.stderr)
+        return json.loads(done.stdout)
+
+    def check(self, command, *arguments, statuses=(0,)):
+        """Prints by the command and validates; what is then changed must be refused."""
+        shown = self.printed(command, *arguments, statuses=statuses)
+        validator = jsonschema.Draft202012Validator(schema_of(command))
+        errors = [f"{'/'.join(map(str, e.absolute_path))}: {e.message[:300]}" for e in validator.iter_errors(shown)]
+        self.assertEqual(errors, [], (command, *arguments))
+        for key in shown:
+            # A key of an alternative schema may be missing.
+            if key in validator.schema.get("required", ()):
+                without = {name: value for name, value in shown.items() if name != key}
+                self.assertFalse(validator.is_valid(without), f"{command} without {key}")
+        self.assertFalse(validator.is_valid({**shown, "more": 1}), f"{command} with a key more")
+        return shown
+
+    def test_schemas_are_schemas_of_every_command_with_json(self):
+        listed = subprocess.run([PROGRAM, "--help"], capture_output=True, text=True, check=True).stdout
+        commands = re.findall(r"^  (\S+)", listed.split("Subcommands:\n")[1].split("\n\n")[0], re.M)
+        helps = {name: subprocess.run([PROGRAM, name, "--help"], capture_output=True, text=True, check=True).stdout
+                 for name in commands}
+        self.assertGreater(len(commands), 10)
+        for name in commands:
+            if "\n  --json" in helps[name]:
+                jsonschema.Draft202012Validator.check_schema(schema_of(name))
+        wrong = subprocess.run([PROGRAM, "schema", "runs"], capture_output=True, text=True)
+        self.assertEqual((wrong.returncode, wrong.stdout), (2, ""))
+        self.assertIn("did you mean run?", wrong.stderr)
+
+    def test_metrics_of_a_run_are_those_of_the_table(self):
+        schema = schema_of("run")
+        metrics = [metric["key"] for metric in self.printed("metrics")["metrics"]]
+        self.assertEqual([key for key in schema["properties"] if key in metrics], metrics)
+        self.assertTrue(set(metrics) < set(schema["required"]))
+
+    def test_run(self):
+        self.check("run", "friction2022")
+        self.check("run", "friction2022", "--voltage", "5 V", "--set", "motor.thermal_resistance_winding=20 K/W",
+                   "--set", "motor.thermal_resistance_case=48 K/W")
+        locked = self.check("run", "friction2022-springs", "--voltage", "0.8 V", statuses=(3,))
+        self.assertIsNone(locked["frequency_hz"])
+        self.assertIn("start_up", self.check("run", "friction2022", "--method", "transient"))
+        for vehicle in ("friction2022-battery", "direct-drive", "pitch-hinge", "x-wing-crank"):
+            self.check("run", vehicle)
+
+    def test_a_wrong_value_is_refused(self):
+        validator = jsonschema.Draft202012Validator(schema_of("run"))
+        shown = self.printed("run", "friction2022")
+        for key, value in (("status", "flies"), ("lift_mean_n", "8 mN"), ("warnings", None), ("domain", 1)):
+            wrong = copy.deepcopy(shown)
+            wrong[key] = value
+            self.assertFalse(validator.is_valid(wrong), key)
+
+    def test_lists(self):
+        self.check("keys")
+        self.check("metrics", "power")
+
+    def test_compare(self):
+        self.check("compare", DATA / "published/friction2022.toml")
+
+    def test_sweep(self):
+        self.check("sweep", self.file("study.toml", SWEEP.format(low="2 V")), "-o", "sweep.nc")
+        self.check("sweep", self.file("none.toml", SWEEP.format(low="0.1 V")), "-o", "none.nc")
+
+    def test_motors(self):
+        for sheet in ("0816K003SR", "pololu-1098"):
+            self.check("identify-motor", DATA / f"motors/{sheet}.toml")
+
+    def test_fit(self):
+        self.check("fit", DATA / "bench/flapper.toml")
+        compared = self.check("fit", DATA / "bench/flapper.toml", "--compare-friction", "--no-profiles")
+        self.assertTrue(compared["friction"])
+
+    def test_tolerance(self):
+        for method in ("sobol", "monte-carlo"):
+            self.check("tolerance", self.file("study.toml", TOLERANCE.format(method=method)))
+
+    def test_optimise(self):
+        one = {"more": "", "upper": "4 V", "constraint": ""}
+        found = self.check("optimise", self.file("one.toml", OPTIMUM.format(**one)))
+        self.assertEqual(found["outcome"], "found")
+        none = one | {"constraint": '[[constraint]]\nmetric = "lift_mean_n"\nat_least = "1 N"\n'}
+        found = self.check("optimise", self.file("none.toml", OPTIMUM.format(**none)), statuses=(0, 1, 3))
+        self.assertEqual((found["outcome"], found["value"]), ("infeasible", None))
+        motors = one | {"more": MOTORS.format(catalogue=DATA / "motors/motors.csv")}
+        self.assertIn("motors", self.check("optimise", self.file("motors.toml", OPTIMUM.format(**motors))))
+        self.assertTrue(self.check("optimise", self.file("front.toml", FRONT))["front"])
+
+    def test_endurance(self):
+        self.check("endurance", "friction2022-battery")
+
+    def test_reproduce(self):
+        self.check("reproduce", "friction2022", "--coarse", "-o", self.folder / "reproduce")
+
+
+if __name__ == "__main__":
+    unittest.main()
