@@ -42,6 +42,13 @@ async function inProgram(list) {
   return answers;
 }
 
+/** Asserts that both take the design or both refuse it; the design in words. */
+function refusedByBothOrNone(design, ours, theirs) {
+  const what = JSON.stringify(design);
+  assert.equal('refused' in ours, 'refused' in theirs, `${what}: ${JSON.stringify(ours)} ${JSON.stringify(theirs)}`);
+  return what;
+}
+
 /** The largest relative difference of the numbers, after asserting that all else is equal. */
 function compare(ours, theirs, what) {
   assert.deepEqual(Object.keys(ours), Object.keys(theirs), what);
@@ -74,12 +81,7 @@ test('500 designs: statuses are equal, metrics to 1e-12', {timeout: 240000}, asy
     far = [];
   let largest = 0;
   list.forEach((design, n) => {
-    const what = JSON.stringify(design);
-    assert.equal(
-      'refused' in ours[n],
-      'refused' in theirs[n],
-      `${what}: ${JSON.stringify(ours[n])} ${JSON.stringify(theirs[n])}`,
-    );
+    const what = refusedByBothOrNone(design, ours[n], theirs[n]);
     const status = theirs[n].report ? theirs[n].report.status : 'refused';
     statuses[status] = (statuses[status] ?? 0) + 1;
     if (!theirs[n].report) return;
@@ -109,12 +111,7 @@ test('quantities in many spellings', async () => {
   );
   const [ours, theirs] = [await inPage(list), await inProgram(list)];
   list.forEach((design, n) => {
-    const what = JSON.stringify(design);
-    assert.equal(
-      'refused' in ours[n],
-      'refused' in theirs[n],
-      `${what}: ${JSON.stringify(ours[n])} ${JSON.stringify(theirs[n])}`,
-    );
+    const what = refusedByBothOrNone(design, ours[n], theirs[n]);
     if (theirs[n].report) assert.ok(compare(ours[n].report, theirs[n].report, what) <= 1e-12, what);
   });
 });
