@@ -34,10 +34,9 @@ void for_each_jet(OrbitGradient& g, const Visit& visit) {
   }
 }
 
-/// Derivatives with the motor's constants at the temperatures of `vehicle`.
 template <class System>
-OrbitGradient repeat(const SteadyFlapping& orbit, const RecordedCycle<System>& recorded, const Vehicle<J>& vehicle,
-                     const GradientVehicle& given, const GradientOptions& options) {
+OrbitGradient repeat_recorded(const SteadyFlapping& orbit, const RecordedCycle<System>& recorded,
+                              const Vehicle<J>& vehicle, const GradientVehicle& given, const GradientOptions& options) {
   const bool voltage_varies = drive_of(vehicle).voltage_sets_frequency;
   CycleGradient<System> cycle(recorded, vehicle);
   OrbitGradient g;
@@ -58,18 +57,24 @@ OrbitGradient repeat(const SteadyFlapping& orbit, const RecordedCycle<System>& r
   return g;
 }
 
+/// Derivatives with the motor's constants at the temperatures of `vehicle`.
+OrbitGradient repeat(const SteadyFlapping& orbit, const Vehicle<J>& vehicle, const GradientVehicle& given,
+                     const GradientOptions& options) {
+  return std::visit([&](const auto& recorded) { return repeat_recorded(orbit, recorded, vehicle, given, options); },
+                    orbit.record.cycles());
+}
+
 /// Lets the motor's temperatures follow: they are the fixed point T = G(T, p), so dT/dp = (I - dG/dT)^-1 dG/dp, and
 /// what they change comes on top of the derivatives `g` at given temperatures.
-template <class System>
-void follow_temperatures(const SteadyFlapping& orbit, const RecordedCycle<System>& recorded, Vehicle<J> constant,
-                         const GradientVehicle& given, const GradientOptions& options, OrbitGradient& g) {
+void follow_temperatures(const SteadyFlapping& orbit, Vehicle<J> constant, const GradientVehicle& given,
+                         const GradientOptions& options, OrbitGradient& g) {
   for_each_number(constant, [](J& x) { x.v.setZero(); });
   constexpr int w = gradient_first_slot, c = gradient_first_slot + 1;
   const Vehicle<J> seeded = with_motor_at(
       constant, {gradient_seed(orbit.temperatures.winding, 0), gradient_seed(orbit.temperatures.casing, 1)});
   GradientVehicle beside = given;
   for (J* x : {&beside.mass, &beside.bench_torque_constant}) x->v.setZero();
-  OrbitGradient by_temperature = repeat(orbit, recorded, seeded, beside, options);
+  OrbitGradient by_temperature = repeat(orbit, seeded, beside, options);
   g.regular = g.regular && by_temperature.regular;
 
   const J T_w = by_temperature.metrics[Metric::winding_temperature];
@@ -93,19 +98,24 @@ void follow_temperatures(const SteadyFlapping& orbit, const RecordedCycle<System
   });
 }
 
-template <class System>
-OrbitGradient differentiate(const SteadyFlapping& orbit, const RecordedCycle<System>& recorded,
-                            const GradientVehicle& given, const GradientOptions& options) {
+}  // namespace
+
+OrbitGradient orbit_gradient(const SteadyFlapping& orbit, const GradientVehicle& given,
+                             const GradientOptions& options) {
   Vehicle<J> vehicle = given.vehicle;
-  vehicle.voltage.a = recorded.system.vehicle.voltage;
-  vehicle.drive_frequency.a = recorded.system.vehicle.drive_frequency;
+  std::visit(
+      [&](const auto& recorded) {
+        vehicle.voltage.a = recorded.system.vehicle.voltage;
+        vehicle.drive_frequency.a = recorded.system.vehicle.drive_frequency;
+      },
+      orbit.record.cycles());
   // A direct drive's frequency is its supply's: no voltage follows it, and its slot is a third state's.
   const bool voltage_varies = drive_of(vehicle).voltage_sets_frequency;
   if (voltage_varies) vehicle.voltage.v[gradient_voltage_slot] = 1.0;
   const MotorTemperatures<J> at{J(orbit.temperatures.winding), J(orbit.temperatures.casing)};
   const bool warm = heats_up(vehicle.thermal);
-  OrbitGradient g = repeat(orbit, recorded, warm ? with_motor_at(vehicle, at) : vehicle, given, options);
-  if (warm) follow_temperatures(orbit, recorded, vehicle, given, options, g);
+  OrbitGradient g = repeat(orbit, warm ? with_motor_at(vehicle, at) : vehicle, given, options);
+  if (warm) follow_temperatures(orbit, vehicle, given, options, g);
 
   if (options.held == Held::frequency && voltage_varies) {
     const J f = g.metrics[Metric::frequency];
@@ -130,8 +140,6 @@ OrbitGradient differentiate(const SteadyFlapping& orbit, const RecordedCycle<Sys
   return g;
 }
 
-}  // namespace
-
 bool is_peak(Metric which, const Drive& drive) {
   switch (which) {
     case Metric::current_peak:
@@ -155,12 +163,6 @@ GradientVehicle gradient_vehicle(const Design<GradientJet>& design, Condition co
   if (const auto mass = total_mass(design)) v.mass = *mass;
   if (design.bench_torque_constant) v.bench_torque_constant = *design.bench_torque_constant;
   return v;
-}
-
-OrbitGradient orbit_gradient(const SteadyFlapping& orbit, const GradientVehicle& vehicle,
-                             const GradientOptions& options) {
-  return std::visit([&](const auto& recorded) { return differentiate(orbit, recorded, vehicle, options); },
-                    orbit.record.cycles());
 }
 
 MetricGradients metric_gradients(const Design<double>& design, Condition condition, const SteadyFlapping& orbit,

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "time/integrator.hpp"
+#include "time/pitch_direct_model.hpp"
 #include "time/transient_tools.hpp"
 #include "wingbeat/core/root.hpp"
 #include "wingbeat/solve/explicit_step.hpp"
@@ -16,27 +17,34 @@ namespace {
 constexpr int max_attempts = 400;  // to take one step
 constexpr int looks = 4;           // within a step, for root functions that change sign twice
 
-/// The problem as solve/explicit_step.hpp and implicit_step.hpp want it.
-template <int N>
+constexpr int pitching_quadratures = quadrature_count + PitchDirectModel::other_quadratures;
+
+/// 0, 1, ... Q - 1
+template <std::size_t... q>
+constexpr std::array<std::size_t, sizeof...(q)> counted(std::index_sequence<q...>) {
+  return {q...};
+}
+
+/// The problem of N coupled unknowns and Q quadratures as solve/explicit_step.hpp and implicit_step.hpp want it.
+template <int N, int Q>
 struct OwnSystem {
   using Real = double;
   using State = std::array<double, N>;
-  using Quadrature = std::array<double, quadrature_count>;
+  using Quadrature = std::array<double, Q>;
   using Switches = std::array<double, 0>;
   using Signs = std::array<double, 0>;
-  static constexpr std::array<std::size_t, quadrature_count> controlled_integrals = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
-  static_assert(quadrature_count == 10);
+  static constexpr std::array<std::size_t, Q> controlled_integrals = counted(std::make_index_sequence<Q>());
 
   const IntegratorProblem* problem;
   mutable bool evaluated = true;  ///< false: some rates could not be evaluated
 
   template <bool quadratures>
   solver::Rates<OwnSystem> rates(const double& t, const State& y, const Signs&) const {
-    double dy[N + quadrature_count];
+    double dy[N + Q];
     solver::Rates<OwnSystem> result;
     if (!problem->rates(t, y.data(), dy)) evaluated = false;
     std::copy(dy, dy + N, result.dy.begin());
-    if (quadratures) std::copy(dy + N, dy + N + quadrature_count, result.dq.begin());
+    if (quadratures) std::copy(dy + N, dy + N + Q, result.dq.begin());
     return result;
   }
   bool admissible(const State& y) const { return evaluated && std::isfinite(y[0]) && std::isfinite(y[N - 1]); }
@@ -47,10 +55,11 @@ struct OwnSystem {
   }
 };
 
-template <int N>
+/// Where only the unknowns are integrated, none of the Q quadratures is.
+template <int N, int Q>
 class OwnIntegrator : public Integrator {
  public:
-  using System = OwnSystem<N>;
+  using System = OwnSystem<N, Q>;
   using State = typename System::State;
 
   explicit OwnIntegrator(IntegratorProblem problem)
@@ -163,7 +172,7 @@ class OwnIntegrator : public Integrator {
     };
     for (std::size_t n = 0; n < N; ++n) add(step.error3[n], step.error5[n], errors_[n]);
     if (measuring_) {
-      for (std::size_t q = 0; q < quadrature_count; ++q) {
+      for (std::size_t q = 0; q < Q; ++q) {
         add(step.integral_error3[q], step.integral_error5[q], errors_[N + q]);
       }
     }
@@ -180,7 +189,7 @@ class OwnIntegrator : public Integrator {
   }
   void add_integrals(const solver::StepResult<System>& step) {
     std::copy(y_.begin(), y_.end(), state_.begin());
-    for (std::size_t q = 0; measuring_ && q < quadrature_count; ++q) state_[N + q] += step.dq[q];
+    for (std::size_t q = 0; measuring_ && q < Q; ++q) state_[N + q] += step.dq[q];
   }
 
   bool changes(std::size_t k, double sign, double value) const {
@@ -274,11 +283,16 @@ class OwnIntegrator : public Integrator {
 }  // namespace
 
 std::unique_ptr<Integrator> own_integrator(IntegratorProblem problem) {
+  const int quadratures = problem.size - problem.coupled;
+  if (quadratures == pitching_quadratures) {
+    if (problem.coupled == 4) return std::make_unique<OwnIntegrator<4, pitching_quadratures>>(std::move(problem));
+    return std::make_unique<OwnIntegrator<5, pitching_quadratures>>(std::move(problem));
+  }
   switch (problem.coupled) {
-    case 2: return std::make_unique<OwnIntegrator<2>>(std::move(problem));
-    case 3: return std::make_unique<OwnIntegrator<3>>(std::move(problem));
-    case 4: return std::make_unique<OwnIntegrator<4>>(std::move(problem));
-    default: return std::make_unique<OwnIntegrator<5>>(std::move(problem));
+    case 2: return std::make_unique<OwnIntegrator<2, quadrature_count>>(std::move(problem));
+    case 3: return std::make_unique<OwnIntegrator<3, quadrature_count>>(std::move(problem));
+    case 4: return std::make_unique<OwnIntegrator<4, quadrature_count>>(std::move(problem));
+    default: return std::make_unique<OwnIntegrator<5, quadrature_count>>(std::move(problem));
   }
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "vehicle/any_start.hpp"
+#include "vehicle/pitching_vehicle.hpp"
 #include "vehicle/wide_design.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/time/transient.hpp"
@@ -40,6 +41,22 @@ TEST(Integrators, AgreeInWideBoxes) {
         EXPECT_NEAR(*ours.lock_angle, *theirs.lock_angle, 1e-3);
       }
       ++n;
+    }
+  }
+}
+
+// Beside what every vehicle has, the work of the hinges and Fourier parts of both angles are integrated.
+TEST(Integrators, AgreeOnPitchingDirectDrives) {
+  std::mt19937_64 random(17);
+  for (int n = 0; n < 4; ++n) {
+    const Vehicle<double> vehicle = random_pitching_vehicle(random, false);
+    const TransientResult theirs = simulated(vehicle, {}, TimeIntegrator::sundials);
+    const TransientResult ours = simulated(vehicle, {}, TimeIntegrator::own_steps);
+    SCOPED_TRACE(testing::Message() << n << ": " << describe(theirs.evidence) << "; " << describe(ours.evidence));
+    EXPECT_EQ(ours.status, theirs.status);
+    ASSERT_TRUE(ours.metrics && theirs.metrics);
+    for (const Metric m : {Metric::power_electrical, Metric::lift_mean, Metric::power_hinge, Metric::pitch_phase}) {
+      EXPECT_NEAR((*ours.metrics)[m], (*theirs.metrics)[m], 1e-6 * std::abs((*theirs.metrics)[m])) << int(m);
     }
   }
 }

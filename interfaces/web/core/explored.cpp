@@ -40,6 +40,7 @@ Json evidence_of(const StatusEvidence& e) {
 }
 
 void keep_columns(std::span<const WaveformRow> rows, Columns& columns) {
+  if (rows.empty()) return;
   for (const WaveformColumn& column : waveform_columns(rows)) {
     std::vector<double> numbers;
     numbers.reserve(rows.size());
@@ -136,6 +137,7 @@ RunOptions options_of(const nlohmann::json& options) {
   run.frequency = number("frequency");
   run.lift = number("lift");
   run.allow_extrapolation = options.value("allow_extrapolation", false);
+  run.endurance = options.value("endurance", false);
   run.waveform_rows = options.value("rows", 0);
   return run;
 }

@@ -30,7 +30,8 @@ const Design<double>& explored(const std::string& text, const std::vector<std::s
 /// Every key that the design has with its value: numbers [SI], texts, true or false.
 Json values_of(const Design<double>& design);
 
-/// condition, method, tolerance, frequency [Hz], lift [N], allow_extrapolation, rows: those of `wingbeat run`.
+/// condition, method, tolerance, frequency [Hz], lift [N], allow_extrapolation, rows: those of `wingbeat run`, which
+/// with --json computes the endurance on a battery; here `endurance` asks for it.
 RunOptions options_of(const nlohmann::json& options);
 
 /// {"report": the object of `wingbeat run --json`, "balance": mean powers [W], "evidence": angles [rad] and torques

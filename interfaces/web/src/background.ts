@@ -29,6 +29,12 @@ export class Background {
     return reply.kind === 'gradients' ? reply.gradients : null;
   }
 
+  /** The report with what takes longer than a frame; null where a later request overtook it. */
+  async report(stated: Stated, options: RunOptions) {
+    const reply = await this.ask({kind: 'report', stated, options});
+    return reply.kind === 'report' ? reply.report : null;
+  }
+
   async ensemble(
     stated: Stated,
     keys: string[],

@@ -88,6 +88,7 @@ export interface RunOptions {
   frequency?: number;
   lift?: number;
   allow_extrapolation?: boolean;
+  endurance?: boolean;
   rows?: number;
 }
 export interface Motor {
@@ -196,5 +197,7 @@ export async function startCore(compiled: WebAssembly.Module): Promise<Core> {
     WebAssembly.instantiate(compiled, imports).then(done);
     return {};
   };
-  return new Core((await createCore({instantiateWasm})) as Module);
+  // Named, the file is not looked for beside the script, which has no place of its own in a worker made from text.
+  const locateFile = (name: string) => name;
+  return new Core((await createCore({instantiateWasm, locateFile})) as Module);
 }

@@ -222,7 +222,7 @@ export class Explorer {
     const cycle = this.hasCycle() ? solved.columns : null;
     drawSankey(document.querySelector<SVGSVGElement>('#sankey')!, cycle ? solved.balance : null);
     showBalance(byId('balance'), cycle ? solved.balance : null);
-    showMetrics(byId('metrics'), this.core.tables.metrics, solved.report, this.pinned?.solved.report ?? null);
+    this.showAllMetrics();
     this.drawCycle();
     if (!cycle) this.playback.share = 0;
     this.drawInstant(this.playback.share);
@@ -283,6 +283,7 @@ export class Explorer {
   /** After the last of a row of changes: derivatives, the link, the commands. */
   private async settled() {
     const state = this.state;
+    this.findEndurance();
     byId('shell').textContent = shellCommand(state);
     byId('python').textContent = pythonProgram(state);
     linkOf(state).then((link) => {
@@ -318,6 +319,23 @@ export class Explorer {
     }
     this.controls.sensitivities(sensitivities);
     document.body.dataset.sensitivities = 'shown';
+  }
+
+  /** How long a battery lasts: some forty designs of the vehicle, beside the page. */
+  private async findEndurance() {
+    const current = this.current;
+    if (!String(current.values['supply.type']).startsWith('battery') || current.solved.report.status !== 'flapping')
+      return;
+    const stated = {text: this.stated.text, changes: {...this.stated.changes}};
+    const found = await this.background.report(stated, {...runOptions(this.state), endurance: true});
+    if (!found || this.current !== current) return;
+    current.solved.report.endurance_s = found.endurance_s;
+    this.showAllMetrics();
+  }
+
+  private showAllMetrics() {
+    const {report} = this.current.solved;
+    showMetrics(byId('metrics'), this.core.tables.metrics, report, this.pinned?.solved.report ?? null);
   }
 
   // ---- comparison and playback

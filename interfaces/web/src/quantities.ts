@@ -29,8 +29,7 @@ export function digits(x: number, figures = 4): string {
   if (!Number.isFinite(x)) return '–';
   if (x === 0) return '0';
   const size = Math.abs(x);
-  if (size >= 1e5 || size < 1e-3)
-    return x.toExponential(figures - 1).replace('e+', 'e');
+  if (size >= 1e5 || size < 1e-3) return x.toExponential(figures - 1).replace('e+', 'e');
   return Number(x.toPrecision(figures)).toString();
 }
 

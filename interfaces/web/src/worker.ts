@@ -1,8 +1,9 @@
 // Derivatives, trends and maps beside the page, by a second instance of the library.
-import {type Columns, type Core, type RunOptions, startCore, type Stated} from './core';
+import {type Columns, type Core, type Report, type RunOptions, startCore, type Stated} from './core';
 
 export type Task =
   | {kind: 'gradients'; stated: Stated; keys: string[]; options: RunOptions}
+  | {kind: 'report'; stated: Stated; options: RunOptions}
   | {kind: 'ensemble'; stated: Stated; keys: string[]; values: Float64Array; options: RunOptions; chunk: number};
 export interface Request {
   id: number;
@@ -11,19 +12,25 @@ export interface Request {
 export type Reply = {id: number} & (
   | {kind: 'progress'; done: number}
   | {kind: 'gradients'; gradients: Record<string, (number | null)[]>}
+  | {kind: 'report'; report: Report}
   | {kind: 'ensemble'; statuses: string[]; columns: Columns}
   | {kind: 'refused'; message: string}
 );
 
 const reply = (message: Reply) => self.postMessage(message);
 let core: Promise<Core>;
-let latest = 0; // a request for derivatives that is overtaken is not computed
+/** The last request of each kind that asks for one design: what is overtaken is not computed. */
+const latest: Partial<Record<Task['kind'], number>> = {};
 
-async function gradients(id: number, task: Extract<Task, {kind: 'gradients'}>) {
+async function one(id: number, task: Extract<Task, {kind: 'gradients' | 'report'}>) {
   const library = await core;
   await new Promise((resume) => setTimeout(resume)); // later requests arrive first
-  if (id < latest) return reply({id, kind: 'refused', message: 'overtaken'});
-  reply({id, kind: 'gradients', gradients: library.gradients(task.stated, task.keys, task.options)});
+  if (id < (latest[task.kind] ?? 0)) return reply({id, kind: 'refused', message: 'overtaken'});
+  if (task.kind === 'report') {
+    reply({id, kind: 'report', report: library.solve(task.stated, task.options).report});
+  } else {
+    reply({id, kind: 'gradients', gradients: library.gradients(task.stated, task.keys, task.options)});
+  }
 }
 
 async function ensemble(id: number, task: Extract<Task, {kind: 'ensemble'}>) {
@@ -56,8 +63,8 @@ self.onmessage = (event: MessageEvent<Request | {compiled: WebAssembly.Module}>)
     return;
   }
   const {id, task} = event.data;
-  if (task.kind === 'gradients') latest = id;
-  (task.kind === 'gradients' ? gradients(id, task) : ensemble(id, task)).catch((error: Error) =>
+  if (task.kind !== 'ensemble') latest[task.kind] = id;
+  (task.kind === 'ensemble' ? ensemble(id, task) : one(id, task)).catch((error: Error) =>
     reply({id, kind: 'refused', message: error.message}),
   );
 };

@@ -3,7 +3,8 @@ import {scaleLinear} from 'd3-scale';
 import {line} from 'd3-shape';
 import type {Columns} from '../core';
 import {html, set, svg} from '../dom';
-import {digits, scaleFor, shownUnit, tickText} from '../quantities';
+import {digits, scaleFor, shownUnit} from '../quantities';
+import {extent, type Frame, numbersBelow, numbersBeside, placeOf, sayNothing} from './axes';
 
 interface Panel {
   id: string;
@@ -40,12 +41,8 @@ const panels: Panel[] = [
 ];
 
 export type Abscissa = 'time' | 'crank angle';
-const width = 420,
-  height = 150,
-  left = 52,
-  right = 8,
-  top = 22,
-  bottom = 32;
+const frame: Frame = {width: 420, height: 150, left: 52, right: 8, top: 22, bottom: 32};
+const {width, height, left, right, top, bottom} = frame;
 
 interface Drawn {
   panel: Panel;
@@ -87,8 +84,7 @@ export class CyclePlots {
       );
       const figure = html('figure', {class: 'plot', 'data-picture': panel.id}, picture);
       const point = (event: PointerEvent) => {
-        const box = picture.getBoundingClientRect();
-        const x = ((event.clientX - box.left) / box.width) * width;
+        const {x} = placeOf(event, picture, frame);
         scrub(this.shareAt(Math.min(1, Math.max(0, (x - left) / (width - left - right)))));
       };
       picture.addEventListener('pointermove', (e) => point(e as PointerEvent));
@@ -114,9 +110,7 @@ export class CyclePlots {
       d.axes.replaceChildren();
       d.curves.replaceChildren();
       if (!columns || shown.length === 0) {
-        d.curves.append(
-          svg('text', {x: width / 2, y: height / 2, class: 'nothing', 'text-anchor': 'middle'}, 'no steady cycle'),
-        );
+        sayNothing(d.curves, frame, 'no steady cycle');
         d.readout.textContent = d.panel.title;
         continue;
       }
@@ -127,13 +121,7 @@ export class CyclePlots {
 
   private drawPanel(d: Drawn, columns: Columns, ghost: Columns | null, shown: [string, string][], title: string) {
     const all = shown.flatMap(([name]) => [columns[name], ...(ghost && finite(ghost[name]) ? [ghost[name]] : [])]);
-    let low = Infinity,
-      high = -Infinity;
-    for (const numbers of all)
-      for (const x of numbers) {
-        low = Math.min(low, x);
-        high = Math.max(high, x);
-      }
+    const [low, high] = extent(...all) ?? [0, 0];
     const scale = scaleFor(Math.max(Math.abs(low), Math.abs(high)), d.panel.unit);
     const y = scaleLinear(
       [Math.min(0, low) * scale.factor, Math.max(0, high) * scale.factor],
@@ -141,16 +129,8 @@ export class CyclePlots {
     ).nice(4);
     const along = this.abscissaOf(columns);
     const x = scaleLinear([0, along.end], [left, width - right]);
-    for (const tick of y.ticks(4)) {
-      d.axes.append(
-        svg('line', {class: 'grid', x1: left, x2: width - right, y1: y(tick), y2: y(tick)}),
-        svg('text', {x: left - 5, y: y(tick) + 3.5, 'text-anchor': 'end'}, tickText(tick)),
-      );
-    }
-    const ticks = this.abscissa === 'time' ? x.ticks(5) : [0, 90, 180, 270, 360];
-    for (const tick of ticks) {
-      d.axes.append(svg('text', {x: x(tick), y: height - bottom + 12, 'text-anchor': 'middle'}, tickText(tick)));
-    }
+    numbersBeside(d.axes, frame, y, 4, true);
+    numbersBelow(d.axes, frame, x, this.abscissa === 'time' ? x.ticks(5) : [0, 90, 180, 270, 360], 12);
     d.axes.append(
       svg('text', {x: left, y: 14, class: 'title'}, `${title}, ${shownUnit(scale.unit)}`),
       svg('text', {x: width - right, y: height - 2, 'text-anchor': 'end'}, along.name),

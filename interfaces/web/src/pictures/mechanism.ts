@@ -259,7 +259,7 @@ function chord(i: Instant): SVGGElement {
   const group = svg('g', {class: 'section'});
   if (i.angleOfAttack === null) return group;
   const x = width - 74,
-    y = 44,
+    y = height - 62,
     sense = i.strokeVelocity < 0 ? -1 : 1,
     alpha = (i.angleOfAttack * Math.PI) / 180;
   const dx = 26 * Math.cos(alpha) * sense,

@@ -59,7 +59,7 @@ export function drawSankey(picture: SVGSVGElement, balance: Balance | null) {
     .nodePadding(22)
     .extent([
       [4, 22],
-      [width - (width < 500 ? 160 : 275), height - 24],
+      [width - (width < 500 ? 196 : 290), height - 12],
     ]);
   const {nodes, links} = layout(network(balance));
   for (const link of links) {
@@ -87,7 +87,9 @@ export function drawSankey(picture: SVGSVGElement, balance: Balance | null) {
     const label = width < 500 ? `${node.name} ${share}` : `${node.name} ${readable(node.value, 'W')} (${share})`;
     const above = node.kind === 'station' || node.kind === 'input';
     picture.append(
-      above ? svg('text', {x: x0, y: y1 + 14}, node.name) : svg('text', {x: x1 + 6, y: (y0 + y1) / 2 + 4}, label),
+      above
+        ? svg('text', {x: x0, y: y0 - 6, class: 'halo'}, node.name)
+        : svg('text', {x: x1 + 6, y: (y0 + y1) / 2 + 4}, label),
     );
   }
 }

@@ -2,7 +2,8 @@
 import {scaleLinear} from 'd3-scale';
 import {line} from 'd3-shape';
 import {svg} from '../dom';
-import {digits, scaleFor, shownUnit, tickText} from '../quantities';
+import {digits, scaleFor, shownUnit} from '../quantities';
+import {cleared, clickable, extent, type Frame, numbersBelow, numbersBeside, sayNothing} from './axes';
 
 export interface Axis {
   name: string;
@@ -25,13 +26,10 @@ const scaledOf = (name: string, unit: string, size: number): Scaled => {
   const {factor, unit: shown} = scaleFor(size, unit);
   return {factor, title: shown ? `${name}, ${shownUnit(shown)}` : name};
 };
-const largest = (numbers: Iterable<number>) => {
-  let most = 0;
-  for (const x of numbers) if (Number.isFinite(x)) most = Math.max(most, Math.abs(x));
-  return most;
-};
-const nothing = (picture: SVGSVGElement, x: number, y: number) =>
-  picture.append(svg('text', {x, y, 'text-anchor': 'middle', class: 'nothing'}, 'no design here flaps'));
+const largest = ([low, high]: [number, number]) => Math.max(Math.abs(low), Math.abs(high));
+const noneFlaps = 'no design here flaps';
+const trend: Frame = {width: 560, height: 260, left: 60, right: 14, top: 26, bottom: 40};
+const map: Frame = {width: 560, height: 440, left: 64, right: 92, top: 30, bottom: 44};
 
 /** `pick` is told the index of the design clicked. */
 export function drawTrend(
@@ -42,34 +40,19 @@ export function drawTrend(
   current: number,
   pick: (index: number) => void,
 ) {
-  const width = 560,
-    height = 260,
-    left = 60,
-    right = 14,
-    top = 26,
-    bottom = 40;
-  picture.setAttribute('viewBox', `0 0 ${width} ${height}`);
-  picture.replaceChildren();
-  const numbers = outcome.metric.filter((x) => Number.isFinite(x));
-  if (numbers.length === 0) return nothing(picture, width / 2, height / 2);
-  const horizontal = scaledOf(axis.name, axis.unit, largest(axis.values));
-  const vertical = scaledOf(metric.name, metric.unit, largest(numbers));
+  const {width, height, left, right, top, bottom} = trend;
+  cleared(picture, trend);
+  const range = extent(outcome.metric);
+  if (!range) return sayNothing(picture, trend, noneFlaps);
+  const horizontal = scaledOf(axis.name, axis.unit, largest(extent(axis.values)!));
+  const vertical = scaledOf(metric.name, metric.unit, largest(range));
   const x = scaleLinear(
     [axis.values[0] * horizontal.factor, axis.values[axis.values.length - 1] * horizontal.factor],
     [left, width - right],
   );
-  const low = numbers.reduce((a, b) => Math.min(a, b)),
-    high = numbers.reduce((a, b) => Math.max(a, b));
-  const y = scaleLinear([low * vertical.factor, high * vertical.factor], [height - bottom, top]).nice(5);
-  for (const tick of y.ticks(5)) {
-    picture.append(
-      svg('line', {class: 'grid', x1: left, x2: width - right, y1: y(tick), y2: y(tick)}),
-      svg('text', {x: left - 6, y: y(tick) + 4, 'text-anchor': 'end'}, tickText(tick)),
-    );
-  }
-  for (const tick of x.ticks(6)) {
-    picture.append(svg('text', {x: x(tick), y: height - bottom + 16, 'text-anchor': 'middle'}, tickText(tick)));
-  }
+  const y = scaleLinear([range[0] * vertical.factor, range[1] * vertical.factor], [height - bottom, top]).nice(5);
+  numbersBeside(picture, trend, y, 5, true);
+  numbersBelow(picture, trend, x, x.ticks(6));
   picture.append(
     svg('text', {x: left, y: 14, class: 'title'}, vertical.title),
     svg('text', {x: width - right, y: height - 6, 'text-anchor': 'end'}, horizontal.title),
@@ -94,23 +77,14 @@ export function drawTrend(
   if (here >= x.domain()[0] && here <= x.domain()[1]) {
     picture.append(svg('line', {class: 'cursor', x1: x(here), x2: x(here), y1: top, y2: height - bottom}));
   }
-  const surface = svg('rect', {
-    class: 'surface',
-    x: left,
-    y: top,
-    width: width - left - right,
-    height: height - top - bottom,
-  });
-  surface.addEventListener('click', (event) => {
-    const box = picture.getBoundingClientRect();
-    const at = x.invert(((event.clientX - box.left) / box.width) * width) / horizontal.factor;
+  clickable(picture, trend, (place) => {
+    const at = x.invert(place.x) / horizontal.factor;
     let nearest = 0;
     axis.values.forEach((v, i) => {
       if (Math.abs(v - at) < Math.abs(axis.values[nearest] - at)) nearest = i;
     });
     pick(nearest);
   });
-  picture.append(surface);
 }
 
 /** Designs row by row, the first axis inside. Cells that do not flap are hatched, the feasible region is outlined. */
@@ -124,21 +98,14 @@ export function drawMap(
   current: [number, number],
   pick: (index: number) => void,
 ) {
-  const width = 560,
-    height = 440,
-    left = 64,
-    right = 92,
-    top = 30,
-    bottom = 44;
-  picture.setAttribute('viewBox', `0 0 ${width} ${height}`);
-  picture.replaceChildren();
-  const numbers = outcome.metric.filter((x) => Number.isFinite(x));
-  if (numbers.length === 0) return nothing(picture, width / 2, height / 2);
+  const {width, height, left, right, top, bottom} = map;
+  cleared(picture, map);
+  const range = extent(outcome.metric);
+  if (!range) return sayNothing(picture, map, noneFlaps);
+  const [low, high] = range;
   const columns = across.values.length,
     rows = up.values.length;
   const cell = [(width - left - right) / columns, (height - top - bottom) / rows];
-  const low = numbers.reduce((a, b) => Math.min(a, b)),
-    high = numbers.reduce((a, b) => Math.max(a, b));
   const shade = (v: number) => (high > low ? (v - low) / (high - low) : 0.5);
   const colour = (share: number) => `hsl(${(250 - 195 * share).toFixed(0)} 62% ${(30 + 42 * share).toFixed(0)}%)`;
   const feasible = (c: number, r: number) =>
@@ -167,9 +134,9 @@ export function drawMap(
     }
   }
   picture.append(cells, svg('path', {class: 'feasible', d: outline.join('')}));
-  const a = scaledOf(across.name, across.unit, largest(across.values)),
-    u = scaledOf(up.name, up.unit, largest(up.values));
-  const m = scaledOf(metric.name, metric.unit, largest(numbers));
+  const a = scaledOf(across.name, across.unit, largest(extent(across.values)!)),
+    u = scaledOf(up.name, up.unit, largest(extent(up.values)!));
+  const m = scaledOf(metric.name, metric.unit, largest(range));
   const x = scaleLinear(
     [across.values[0] * a.factor, across.values[columns - 1] * a.factor],
     [left + cell[0] / 2, width - right - cell[0] / 2],
@@ -178,10 +145,8 @@ export function drawMap(
     [up.values[0] * u.factor, up.values[rows - 1] * u.factor],
     [height - bottom - cell[1] / 2, top + cell[1] / 2],
   );
-  for (const tick of x.ticks(6))
-    picture.append(svg('text', {x: x(tick), y: height - bottom + 16, 'text-anchor': 'middle'}, tickText(tick)));
-  for (const tick of y.ticks(6))
-    picture.append(svg('text', {x: left - 6, y: y(tick) + 4, 'text-anchor': 'end'}, tickText(tick)));
+  numbersBelow(picture, map, x, x.ticks(6));
+  numbersBeside(picture, map, y, 6, false);
   picture.append(
     svg('text', {x: width - right, y: height - 8, 'text-anchor': 'end'}, a.title),
     svg('text', {x: 4, y: 14, class: 'title'}, u.title),
@@ -216,18 +181,9 @@ export function drawMap(
   if (best !== null) {
     mark(x(across.values[best % columns] * a.factor), y(up.values[Math.floor(best / columns)] * u.factor), 'best');
   }
-  const surface = svg('rect', {
-    class: 'surface',
-    x: left,
-    y: top,
-    width: width - left - right,
-    height: height - top - bottom,
-  });
-  surface.addEventListener('click', (event) => {
-    const box = picture.getBoundingClientRect();
-    const c = Math.floor((((event.clientX - box.left) / box.width) * width - left) / cell[0]);
-    const r = Math.floor((height - bottom - ((event.clientY - box.top) / box.height) * height) / cell[1]);
+  clickable(picture, map, (place) => {
+    const c = Math.floor((place.x - left) / cell[0]);
+    const r = Math.floor((height - bottom - place.y) / cell[1]);
     pick(Math.min(rows - 1, Math.max(0, r)) * columns + Math.min(columns - 1, Math.max(0, c)));
   });
-  picture.append(surface);
 }
