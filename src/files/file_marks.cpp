@@ -45,6 +45,7 @@ bool says_so(std::string_view comment) {
 }
 
 bool text_is_own(std::string_view head) {
+  if (head.starts_with("{") || head.starts_with("MATLAB 5.0")) return says_so(head.substr(0, 400));
   if (head.starts_with("<")) return head.find(fmt::format("<!-- {} -->", drawn)) != std::string_view::npos;
   for (int line = 0; line < 3; ++line) {
     const std::string_view content = head.substr(0, head.find_first_of("\r\n"));

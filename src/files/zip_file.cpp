@@ -1,0 +1,34 @@
+#include "wingbeat/files/zip_file.hpp"
+
+#include <zip.h>
+
+#include <stdexcept>
+
+namespace wingbeat {
+
+void write_zip(const std::filesystem::path& file, const std::vector<std::pair<std::string, std::string>>& content) {
+  const auto fail = [&](const std::string& reason) {
+    throw std::runtime_error(file.string() + ": the archive cannot be written: " + reason);
+  };
+  int code = 0;
+  zip_t* const archive = zip_open(file.c_str(), ZIP_CREATE | ZIP_TRUNCATE, &code);
+  if (!archive) fail("libzip error " + std::to_string(code));
+  for (const auto& [name, bytes] : content) {
+    zip_source_t* const source = zip_source_buffer(archive, bytes.data(), bytes.size(), 0);
+    const zip_int64_t place = source ? zip_file_add(archive, name.c_str(), source, ZIP_FL_ENC_UTF_8) : -1;
+    if (place < 0) {
+      const std::string reason = zip_strerror(archive);
+      if (source) zip_source_free(source);
+      zip_discard(archive);
+      fail(reason);
+    }
+    zip_file_set_dostime(archive, zip_uint64_t(place), 0, 0x21, 0);  // 1 January 1980, the first that a ZIP knows
+  }
+  if (zip_close(archive) != 0) {
+    const std::string reason = zip_strerror(archive);
+    zip_discard(archive);
+    fail(reason);
+  }
+}
+
+}  // namespace wingbeat
