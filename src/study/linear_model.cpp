@@ -62,15 +62,17 @@ ContinuousModel continuous_of(const CycleMap& map) {
     inputs.row(n) = drive.row(k) * (std::abs(growth) > 0.0 ? rate / growth : Complex(1.0 / map.period));
     outputs.col(n) = seen.col(k);
   }
+  if (count == 0) {
+    model.a.resize(0, 0), model.b.resize(0, map.b.cols()), model.c.resize(map.c.rows(), 0);
+    return model;
+  }
   Eigen::MatrixXcd to_states(count, count);
   Eigen::VectorXd kept_size(count);
-  if (count > 0) {
-    const std::vector<Index> rows = pivot_rows(shapes);
-    for (Index n = 0; n < count; ++n) {
-      to_states.row(n) = shapes.row(rows[std::size_t(n)]);
-      kept_size[n] = size[rows[std::size_t(n)]];
-      model.states.push_back(map.states[std::size_t(rows[std::size_t(n)])]);
-    }
+  const std::vector<Index> rows = pivot_rows(shapes);
+  for (Index n = 0; n < count; ++n) {
+    to_states.row(n) = shapes.row(rows[std::size_t(n)]);
+    kept_size[n] = size[rows[std::size_t(n)]];
+    model.states.push_back(map.states[std::size_t(rows[std::size_t(n)])]);
   }
   const Eigen::MatrixXcd from_states = to_states.fullPivLu().inverse();
   const Eigen::MatrixXd a = (to_states * rates * from_states).real();

@@ -320,5 +320,43 @@ class Functions(unittest.TestCase):
         self.assertLessEqual(needed, {"linux-vdso", "libm", "libc", "ld-linux-x86-64"})
 
 
+class Importers(unittest.TestCase):
+    REFERENCES = ("crank_angle", "current", "frequency_mean", "lift_mean", "power_friction")
+
+    def told(self, importer, package, binary, folder=""):
+        references = [str(package.reference(name)) for name in self.REFERENCES]
+        command = [*importer, folder + str(binary), folder + str(package.root / "resources"), package.token,
+                   str(package.version), "0.5", "0.001", *references]  # fmt: skip
+        found = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120)
+        return [float(line) for line in found.stdout.split()]
+
+    def binary(self, package, windows):
+        platform = {(2, False): "linux64", (2, True): "win64", (3, False): "x86_64-linux", (3, True): "x86_64-windows"}
+        ending = ".dll" if windows else ".so"
+        return package.root / "binaries" / platform[package.version, windows] / (package.identifier + ending)
+
+    def test_one_in_c(self):
+        for version in (2, 3):
+            package = export(CRANK, version)
+            found = self.told([os.environ["FMU_IMPORTER"]], package, self.binary(package, False))
+            instance = Instance(package, True, 0.0)
+            for k in range(500):
+                instance.step(k * 0.001, 0.001)
+            self.assertEqual(found, instance.get(*self.REFERENCES))
+            instance.close()
+
+    @unittest.skipUnless(os.environ.get("FMU_IMPORTER_WINDOWS"), "needs the binary for Windows and wine")
+    def test_the_windows_binary_gives_the_same_numbers(self):
+        for vehicle in (CRANK, DIRECT):
+            for version in (2, 3):
+                package = export(vehicle, version)
+                if vehicle == DIRECT:
+                    self.REFERENCES = ("stroke_angle", "current", "lift_mean")
+                here = self.told([os.environ["FMU_IMPORTER"]], package, self.binary(package, False))
+                wine = [os.environ["WINE"], os.environ["FMU_IMPORTER_WINDOWS"]]
+                there = self.told(wine, package, self.binary(package, True), "Z:")
+                np.testing.assert_allclose(there, here, rtol=1e-12)
+
+
 if __name__ == "__main__":
     unittest.main()

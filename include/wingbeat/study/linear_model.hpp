@@ -38,7 +38,7 @@ struct LinearModel {
   std::vector<Eigen::MatrixXd> step_responses;
 
   /// A cycle fades to less than this part of a settled mode.
-  static constexpr double settled_multiplier = 1e-2;
+  static constexpr double settled_multiplier = 1e-4;
 };
 
 /// The model of a linearised cycle, with step responses of `cycles` cycles; 0: about five of the slowest time constant,
