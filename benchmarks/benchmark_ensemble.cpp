@@ -1,8 +1,8 @@
 // The batched solver on the reference box and on direct drives: designs a second on one core, the accuracy reached, and
 // the distance to what the core's multipliers would allow.
 //
-//   benchmark_ensemble            every instruction set, four sets of metrics; then what the recomputed designs cost,
-//                                 and other kinds of vehicle
+//   benchmark_ensemble            every instruction set, four sets of metrics; tolerances; then what the recomputed
+//                                 designs cost, and other kinds of vehicle
 //   benchmark_ensemble SECONDS    measure each for that long (default 2)
 #include <algorithm>
 #include <chrono>
@@ -61,6 +61,34 @@ double quantile(std::vector<double> values, double q) {
   if (values.empty()) return NAN;
   std::sort(values.begin(), values.end());
   return values[std::size_t(q * double(values.size() - 1))];
+}
+
+/// Relative errors of the checked designs that flap.
+struct Errors {
+  std::vector<double> lift, worst;
+};
+
+/// `expected` holds every checked_every-th design.
+Errors errors_of(const std::vector<EnsembleOutcome>& outcomes, const std::vector<EnsembleOutcome>& expected,
+                 const MetricSet& metrics) {
+  Errors errors;
+  for (std::size_t n = 0; n < expected.size(); ++n) {
+    const EnsembleOutcome& got = outcomes[n * checked_every];
+    if (got.status != FlappingStatus::flapping || expected[n].status != FlappingStatus::flapping) continue;
+    errors.lift.push_back(std::abs(got.metrics[Metric::lift_mean] / expected[n].metrics[Metric::lift_mean] - 1.0));
+    double largest = 0.0;
+    for (std::size_t m = 0; m < std::size_t(metric_count); ++m) {
+      // A residual power of zero, and an angle near zero, have no relative error.
+      if (!metrics[m] || m == std::size_t(Metric::floquet_multiplier_max) || m == std::size_t(Metric::power_residual) ||
+          m == std::size_t(Metric::angle_of_attack_min)) {
+        continue;
+      }
+      const double e = std::abs(got.metrics.values[m] / expected[n].metrics.values[m] - 1.0);
+      if (e > largest) largest = e;
+    }
+    errors.worst.push_back(largest);
+  }
+  return errors;
 }
 
 template <class F>
@@ -174,23 +202,7 @@ int main(int argc, char** argv) {
       options.isa = isa;
       options.metrics = wanted.metrics;
       const double time = best_time([&] { solve_ensemble(members, options, start_up, outcomes); }, seconds);
-      std::vector<double> lift, worst;
-      for (std::size_t n = 0; n < checked.size(); ++n) {
-        const EnsembleOutcome& got = outcomes[n * checked_every];
-        if (got.status != FlappingStatus::flapping || expected[n].status != FlappingStatus::flapping) continue;
-        lift.push_back(std::abs(got.metrics[Metric::lift_mean] / expected[n].metrics[Metric::lift_mean] - 1.0));
-        double largest = 0.0;
-        for (std::size_t m = 0; m < std::size_t(metric_count); ++m) {
-          // A residual power of zero, and an angle near zero, have no relative error.
-          if (!wanted.metrics[m] || m == std::size_t(Metric::floquet_multiplier_max) ||
-              m == std::size_t(Metric::power_residual) || m == std::size_t(Metric::angle_of_attack_min)) {
-            continue;
-          }
-          const double e = std::abs(got.metrics.values[m] / expected[n].metrics.values[m] - 1.0);
-          if (e > largest) largest = e;
-        }
-        worst.push_back(largest);
-      }
+      const Errors errors = errors_of(outcomes, expected, wanted.metrics);
       int recomputed = 0, still = 0;
       for (const EnsembleOutcome& out : outcomes) {
         recomputed += out.scalar;
@@ -198,8 +210,29 @@ int main(int argc, char** argv) {
       }
       std::printf("%-8s %-20s %10.0f %8.1f %10d %9d   %.1e %.1e %.1e; %.1e\n", std::string(name).c_str(), wanted.name,
                   double(design_count) / time, scalar_time * double(design_count) / time, recomputed, still,
-                  quantile(lift, 0.5), quantile(lift, 0.99), quantile(lift, 0.999), quantile(worst, 0.999));
+                  quantile(errors.lift, 0.5), quantile(errors.lift, 0.99), quantile(errors.lift, 0.999),
+                  quantile(errors.worst, 0.999));
     }
+  }
+
+  std::printf("\npower and lift by tolerance, widest instruction set; outside and tenfold of %zu checked\n",
+              checked.size());
+  std::printf("%-10s %10s %10s %10s %10s   %s\n", "tolerance", "designs/s", "recomputed", "outside", "tenfold",
+              "lift error 50 %, 99 %; worst metric 99 %");
+  for (const double by_tolerance : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9}) {
+    EnsembleOptions options;
+    options.tolerance = by_tolerance;
+    options.metrics = wanted_sets()[1].metrics;
+    const double time = best_time([&] { solve_ensemble(members, options, start_up, outcomes); }, seconds);
+    const Errors errors = errors_of(outcomes, expected, options.metrics);
+    const auto beyond = [&](double limit) {
+      return std::count_if(errors.worst.begin(), errors.worst.end(), [&](double e) { return e > limit; });
+    };
+    const auto recomputed =
+        std::count_if(outcomes.begin(), outcomes.end(), [](const EnsembleOutcome& out) { return out.scalar; });
+    std::printf("%-10g %10.0f %10td %10td %10td   %.1e %.1e; %.1e\n", by_tolerance, double(design_count) / time,
+                recomputed, beyond(by_tolerance), beyond(10.0 * by_tolerance), quantile(errors.lift, 0.5),
+                quantile(errors.lift, 0.99), quantile(errors.worst, 0.99));
   }
 
   EnsembleOptions options;

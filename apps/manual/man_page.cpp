@@ -132,8 +132,8 @@ std::string man_page(const CommandFacts& command, const std::vector<CommandFacts
   if (command.name.empty()) {
     page += filled(
         "wingbeat computes how a motor-driven flapping-wing micro air vehicle flaps and what that costs: from a "
-        "vehicle file it gives flapping frequency, lift, forces, where the electrical power goes, waveforms, and, for a "
-        "design that does not flap, the reason.");
+        "vehicle file it gives flapping frequency, lift, forces, where the electrical power goes, waveforms, and, for "
+        "a design that does not flap, the reason.");
     page += ".SH COMMANDS\n";
     for (const CommandFacts& other : all) {
       if (!other.name.empty()) page += ".TP\n" + page_reference(other) + "\n" + filled(other.description + ".");

@@ -152,32 +152,9 @@ BalancedSpeed<double> balanced_speed(const Vehicle<double>& v) {
   return balanced_speed(v, places);
 }
 
-OrbitGuess guess_orbit(const Vehicle<double>& v) {
-  const std::vector<LoadPlace<double>> places = load_places(v);
-  OrbitGuess guess{balanced_speed(v, places), 0.0, 0.0, 1.0};
-  const double balanced = guess.balanced.slowest;
-  guess.crank_speed = guess.earlier_speed = balanced;
-  if (places.empty() || !(guess.balanced.count > 0.0)) return guess;
-  const double all_springs = v.wing_count * v.spring.stiffness;
-  const auto inertia_of = [&](double slope) { return v.motor.inertia + v.wing_count * v.wing_inertia * square(slope); };
-  const auto elastic_of = [&](double moment) { return all_springs > 0.0 ? 0.5 * square(moment) / all_springs : 0.0; };
-  double mean_inertia = 0.0, mean_elastic = 0.0;
-  for (const LoadPlace<double>& p : places) {
-    mean_inertia += inertia_of(p.slope) / double(places.size());
-    mean_elastic += elastic_of(p.spring) / double(places.size());
-  }
-  const auto speed_at = [&](double angle) {
-    const Configuration<double> at = configuration_at(v, std::sin(angle), std::cos(angle));
-    const double kinetic = 0.5 * mean_inertia * square(balanced) + mean_elastic - elastic_of(at.spring_moment);
-    // Strong springs may hold more energy than the cycle has.
-    return std::sqrt(std::max(2.0 * kinetic / inertia_of(at.kinematics.stroke_slope), square(balanced / 3.0)));
-  };
-  const double lag = v.motor.armature_inductance / circuit_resistance(v);
-  guess.crank_speed = speed_at(0.0);
-  guess.earlier_speed = speed_at(-std::min(lag * balanced, 1.0));
-  constexpr double dwell = 1.2;  // a crank spends more time where it is slow
-  guess.multiplier = std::exp(std::min(dwell * two_pi * guess.balanced.slope / (mean_inertia * balanced), 0.0));
-  return guess;
+OrbitGuess<double> guess_orbit(const Vehicle<double>& v) {
+  return guess_orbit(v, load_places(v),
+                     [&](double angle) { return configuration_at(v, -std::sin(angle), std::cos(angle)); });
 }
 
 }  // namespace wingbeat

@@ -51,7 +51,7 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
   CrankSearch<N> orbit(vehicle, options);
   bool found = false, ambiguous = false;
   if (!statics.can_jam()) {
-    const OrbitGuess guess = guess_orbit(vehicle);
+    const OrbitGuess<double> guess = guess_orbit(vehicle);
     found = guess.balanced.count > 0.0 && orbit.from(guess.crank_speed, guess.earlier_speed, guess.multiplier);
     // The fastest start: if cycles from there fail, no slower one can be expected to last.
     if (!found) found = orbit.from(no_load_speed(vehicle), no_load_speed(vehicle));

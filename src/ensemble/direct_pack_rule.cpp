@@ -18,9 +18,10 @@ DirectPackRule make_direct_pack_rule() {
     rule.at[j + 1] = collocation.c[j];
     for (std::size_t l = 0; l < stages; ++l) rule.a[j][l] = collocation.a[j][l];
   }
+  for (std::size_t m = 0; m < points; ++m) rule.place[m] = 2.0 * rule.at[m] - 1.0;
   Matrix powers;
   for (int m = 0; m < int(points); ++m) {
-    for (int k = 0; k < int(points); ++k) powers(m, k) = std::pow((long double)(rule.at[m]), k);
+    for (int k = 0; k < int(points); ++k) powers(m, k) = std::pow((long double)(rule.place[m]), k);
   }
   const Matrix of_values = powers.fullPivLu().inverse();
   for (int k = 0; k < int(points); ++k) {
@@ -29,13 +30,13 @@ DirectPackRule make_direct_pack_rule() {
   for (int m = 0; m < int(points); ++m) {
     for (int j = 0; j < int(points); ++j) {
       long double sum = 0.0L;
-      for (int k = int(points) - 1; k > 0; --k) sum = sum * (long double)(rule.at[m]) + k * of_values(k, j);
-      rule.slope[m][j] = double(sum);
+      for (int k = int(points) - 1; k > 0; --k) sum = sum * (long double)(rule.place[m]) + k * of_values(k, j);
+      rule.slope[m][j] = double(2.0L * sum);
     }
   }
   for (std::size_t j = 0; j < 2 * stages; ++j) {
-    const long double half = j < stages ? 0.0L : 1.0L;
-    const long double t = 0.5L * (half + (long double)(rule.at[1 + j % stages]));
+    const long double middle = j < stages ? -0.5L : 0.5L;
+    const long double t = middle + 0.5L * (long double)(rule.place[1 + j % stages]);
     for (int m = 0; m < int(points); ++m) {
       long double value = 0.0L;
       for (int k = int(points) - 1; k >= 0; --k) value = value * t + of_values(k, m);

@@ -69,6 +69,16 @@ std::vector<DirectPackSettings> direct_plan_for(const EnsembleOptions& options) 
   return plan;
 }
 
+/// Where benchmarks/benchmark_ensemble is fastest on the reference box, for tolerances down to 10^-digits.
+struct MeshOfTolerance {
+  double digits;
+  int segments, intervals, newton_iterations;
+};
+constexpr std::array meshes_by_tolerance = {
+    MeshOfTolerance{3.5, 6, 4, 2},  MeshOfTolerance{4.5, 8, 4, 2},   MeshOfTolerance{5.5, 6, 6, 3},
+    MeshOfTolerance{6.5, 8, 6, 3},  MeshOfTolerance{7.5, 10, 6, 4},  MeshOfTolerance{8.5, 8, 8, 4},
+    MeshOfTolerance{9.5, 10, 8, 5}, MeshOfTolerance{10.5, 8, 10, 6}, MeshOfTolerance{12.0, 8, 12, 7}};
+
 Plan plan_for(const EnsembleOptions& options) {
   const auto wanted = [&](Metric m) { return options.metrics[std::size_t(m)]; };
   Plan plan{};
@@ -84,18 +94,16 @@ Plan plan_for(const EnsembleOptions& options) {
   want(Quantity::energy, wanted(Metric::power_reactive));
   s.multipliers = wanted(Metric::floquet_multiplier_max);
 
-  // Where benchmarks/benchmark_ensemble is fastest at 1e-6. The order of the means is twice the number of intervals,
-  // that of peaks little more than it; an iteration gains about two digits.
-  const double digits = -std::log10(options.tolerance);
-  const bool peaks = std::any_of(s.wanted.begin(), s.wanted.end(), [](bool on) { return on; });
-  const auto even = [](double x) {
-    return std::clamp(2 * int(std::ceil(0.5 * x)), 6, solver::max_collocation_intervals);
-  };
   want(Quantity::velocity, velocity || options.domain);
   s.velocity_aside = options.domain && !velocity;
-  s.segments = digits > 5.0 ? 8 : 6;
-  s.intervals = even(peaks ? 1.6 * (digits - 2.8) : digits - 1.5);
-  s.newton_iterations = std::max(2, int(std::ceil((digits - 1.4) / 1.7)));
+  const double digits = -std::log10(options.tolerance);
+  const auto mesh = std::find_if(meshes_by_tolerance.begin(), meshes_by_tolerance.end() - 1,
+                                 [&](const MeshOfTolerance& m) { return digits <= m.digits; });
+  s.segments = mesh->segments;
+  s.intervals = mesh->intervals;
+  s.newton_iterations = mesh->newton_iterations;
+  // The error of a segment's end off its sign change is of third order: at 1e-6 it does not count.
+  s.follow_switches = digits > 6.5;
   s.coarse_iterates = 2;
   s.peak_tolerance = 0.5 * options.tolerance;
 

@@ -84,13 +84,8 @@ OptimiseResult optimise(const OptimiseStudy& study, const StartUp& start_up, con
   const std::vector<Vector> ranked = detail::screened(problem, start_up, for_each, result.screen);
 
   std::vector<Vector> starts;
-  Vector given(problem.size());
-  for (Eigen::Index k = 0; k < given.size(); ++k) {
-    const auto x = study.parameters[std::size_t(k)].parameter.value(study.design);
-    given[k] = x ? problem.coordinate(k, *x) : absent;
-  }
-  const bool inside = given.allFinite() && given.minCoeff() >= 0.0 && given.maxCoeff() <= 1.0;
-  if (inside && problem.evaluate(given).flaps) starts.push_back(given);
+  const std::optional<Vector> given = problem.given();
+  if (given && problem.evaluate(*given).flaps) starts.push_back(*given);
   for (const Vector& u : detail::spread(ranked, std::size_t(study.starts) - starts.size())) starts.push_back(u);
   if (starts.empty()) return result;
 

@@ -10,6 +10,17 @@ constexpr double domain_margin = 1e-5;
 
 }  // namespace
 
+std::optional<Vector> OptimiseProblem::given() const {
+  Vector u(size());
+  for (Eigen::Index k = 0; k < u.size(); ++k) {
+    const auto x = parameters_[std::size_t(k)].value(study_.design);
+    if (!x) return std::nullopt;
+    u[k] = coordinate(k, *x);
+  }
+  if (!u.allFinite() || (u.array() < 0.0).any() || (u.array() > 1.0).any()) return std::nullopt;
+  return u;
+}
+
 Design<double> OptimiseProblem::found(const Vector& u, const DesignPoint& point) const {
   Design<double> d = design(u);
   if (study_.options.frequency && !set_drive_frequency(d, *study_.options.frequency)) {

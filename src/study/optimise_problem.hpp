@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "wingbeat/study/optimise.hpp"
@@ -41,6 +42,8 @@ class OptimiseProblem {
     const OptimisedParameter& p = study_.parameters[std::size_t(k)];
     return p.logarithmic ? std::log(x / p.lower) / std::log(p.upper / p.lower) : (x - p.lower) / (p.upper - p.lower);
   }
+  /// The coordinates of the given design; nothing where it lies outside the box or lacks a parameter.
+  std::optional<Vector> given() const;
   /// dx/du
   double slope(Eigen::Index k, double u) const {
     const OptimisedParameter& p = study_.parameters[std::size_t(k)];

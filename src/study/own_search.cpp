@@ -67,13 +67,8 @@ OwnOptimum optimise_own(const OptimiseStudy& study, const OwnTerms& terms, const
   };
 
   std::vector<Vector> starts;
-  Vector given(problem.size());
-  for (Eigen::Index k = 0; k < given.size(); ++k) {
-    const auto x = study.parameters[std::size_t(k)].parameter.value(study.design);
-    given[k] = x ? problem.coordinate(k, *x) : absent;
-  }
-  const bool inside = given.allFinite() && given.minCoeff() >= 0.0 && given.maxCoeff() <= 1.0;
-  if (inside && evaluate(given).flaps) starts.push_back(given);
+  const std::optional<Vector> given = problem.given();
+  if (given && evaluate(*given).flaps) starts.push_back(*given);
 
   struct Rank {
     double violation, objective;

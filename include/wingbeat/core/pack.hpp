@@ -163,6 +163,12 @@ Pack<Arch, K> sqrt(const Pack<Arch, K>& x) {
   for (int n = 0; n < K; ++n) r.part[n] = xsimd::sqrt(x.part[n]);
   return r;
 }
+template <class Arch, int K>
+Pack<Arch, K> exp(const Pack<Arch, K>& x) {
+  Pack<Arch, K> r;
+  for (int n = 0; n < K; ++n) r.part[n] = xsimd::exp(x.part[n]);
+  return r;
+}
 
 namespace detail {
 

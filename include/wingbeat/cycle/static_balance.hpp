@@ -242,13 +242,56 @@ auto hardly_returns(const V<S>& v, const S& multiplier, const S& period) {
 BalancedSpeed<double> balanced_speed(const Vehicle<double>& vehicle);
 
 /// Where the search for a rotating orbit begins: a cycle of the energy that it has at the balanced speed.
+template <Scalar S>
 struct OrbitGuess {
-  BalancedSpeed<double> balanced;
-  double crank_speed;    ///< at crank angle zero [rad/s]
-  double earlier_speed;  ///< an electrical time constant before, which the current is still at [rad/s]
-  double multiplier;     ///< what a cycle leaves of a small disturbance of the speed, by mean torques and inertia; 1
-                         ///< where nothing balances
+  BalancedSpeed<S> balanced;
+  S crank_speed;    ///< where the cycle starts [rad/s]
+  S earlier_speed;  ///< an electrical time constant before, which the current is still at [rad/s]
+  S multiplier;     ///< what a cycle leaves of a small disturbance of the speed, by mean torques and inertia; 1 where
+                    ///< nothing balances
 };
-OrbitGuess guess_orbit(const Vehicle<double>& vehicle);
+
+/// `before(angle)` is the Configuration at an angle [rad] before the one that the cycle starts at.
+template <template <Scalar> class V, Scalar S, class Before>
+OrbitGuess<S> guess_orbit(const V<S>& v, std::span<const LoadPlace<std::type_identity_t<S>>> places,
+                          const Before& before) {
+  using std::exp;
+  using std::max;
+  using std::min;
+  using std::sqrt;
+  OrbitGuess<S> guess{balanced_speed(v, places), S(0.0), S(0.0), S(1.0)};
+  const S balanced = guess.balanced.slowest;
+  guess.crank_speed = guess.earlier_speed = balanced;
+  if (places.empty()) return guess;
+  const auto balances = guess.balanced.count > S(0.0);
+  const S all_springs = v.wing_count * v.spring.stiffness;
+  const S compliance = select<S>(all_springs > S(0.0), S(0.5) / max(all_springs, S(1e-300)), S(0.0));
+  const auto inertia_of = [&](const S& slope) -> S {
+    return v.motor.inertia + v.wing_count * v.wing_inertia * square(slope);
+  };
+  const auto elastic_of = [&](const S& moment) -> S { return compliance * square(moment); };
+  S mean_inertia(0.0), mean_elastic(0.0);
+  for (const LoadPlace<S>& p : places) {
+    mean_inertia = mean_inertia + inertia_of(p.slope);
+    mean_elastic = mean_elastic + elastic_of(p.spring);
+  }
+  const S per_place(1.0 / double(places.size()));
+  mean_inertia = mean_inertia * per_place;
+  mean_elastic = mean_elastic * per_place;
+  const auto speed_before = [&](const S& angle) -> S {
+    const Configuration<S> at = before(angle);
+    const S kinetic = S(0.5) * mean_inertia * square(balanced) + (mean_elastic - elastic_of(at.spring_moment));
+    // Strong springs may hold more energy than the cycle has.
+    return sqrt(max(S(S(2.0) * kinetic / inertia_of(at.kinematics.stroke_slope)), S(square(balanced * S(1.0 / 3.0)))));
+  };
+  const S lag = v.motor.armature_inductance / circuit_resistance(v);
+  guess.crank_speed = select<S>(balances, speed_before(S(0.0)), balanced);
+  guess.earlier_speed = select<S>(balances, speed_before(min(S(lag * balanced), S(1.0))), balanced);
+  const S dwell(1.2);  // a crank spends more time where it is slow
+  const S gain = dwell * S(two_pi) * guess.balanced.slope / (mean_inertia * balanced);
+  guess.multiplier = select<S>(balances, exp(min(gain, S(0.0))), S(1.0));
+  return guess;
+}
+OrbitGuess<double> guess_orbit(const Vehicle<double>& vehicle);
 
 }  // namespace wingbeat

@@ -57,7 +57,7 @@ L DirectPackOrbit<L, N>::stored_in_wings(const L& beta, const L& omega) const {
 }
 
 /// Calls visit(segment, at, where) where the slopes at the stages, those of half a period before being the negative
-/// ones, change their sign, `at` between 0 and 1 in the segment being the zero of the polynomial through them. A
+/// ones, change their sign, `at` between -1 and 1 in the segment being the zero of the polynomial through them. A
 /// polynomial that dips through zero and back between two stages has two.
 template <class L, int N>
 template <class Visit>
@@ -77,7 +77,7 @@ void DirectPackOrbit<L, N>::for_each_zero(const std::array<L, max_nodes>& slopes
       const Mask dips = before * after > zero && sign * bend[m - 1] < zero && sign * bend[m] > zero;
       if (!any<L>(where || dips)) continue;
       const Polynomial of = polynomial(slope);
-      const L from(rule_.at[m - 1]), to(rule_.at[m]), width = to - from;
+      const L from(rule_.place[m - 1]), to(rule_.place[m]), width = to - from;
       if (any<L>(where)) {
         const L part = before * inverse_of(select<L>(where, before - after, L(1.0)));
         visit(s, zero_of(of, 0, from + part * width, from, to, where), where);
@@ -120,7 +120,8 @@ L DirectPackOrbit<L, N>::zero_of(const Polynomial& of, std::size_t order, L at, 
   return at;
 }
 
-/// The polynomial through a segment's values, in powers of the part of the segment.
+/// The polynomial through a segment's values, in powers of the place from its middle: of the place from its start the
+/// powers would cancel at its end.
 template <class L, int N>
 auto DirectPackOrbit<L, N>::polynomial(const std::array<L, points>& values) const -> Polynomial {
   Polynomial of;

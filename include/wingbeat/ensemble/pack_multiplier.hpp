@@ -64,37 +64,49 @@ void PackOrbit<L, N>::close_iterate(State& off) const {
   }
 }
 
+/// Derivatives by the state of the rates at a node of the orbit; behind a small inductance they see the
+/// lag of the current.
+template <class L, int N>
+auto PackOrbit<L, N>::jacobian_at_node(System system, std::size_t node, const L& force) const -> Matrix {
+  const Configuration<L>& place = configuration_of(node);
+  solver::Rates<System> below, above;
+  if (!lags_) {
+    evaluate<false>(system, place, trajectory_[node], force, below);
+    return jacobian_at(system, place, trajectory_[node], below.dy, force);
+  }
+  system.drop = drop_[node];
+  const L by = L(1e-4) * trajectory_[node][0];
+  State moved = trajectory_[node];
+  moved[0] = moved[0] - by;
+  evaluate<false>(system, place, moved, force, below);
+  moved[0] = trajectory_[node][0] + by;
+  evaluate<false>(system, place, moved, force, above);
+  lag_with(system, node, by, force, below, above);
+  Matrix jacobian;
+  for (auto& row : jacobian) row.fill(L(0.0));
+  jacobian[0][0] = (above.dy[0] - below.dy[0]) * L(0.5) * inverse_of(by);
+  return jacobian;
+}
+
 /// The largest modulus of the eigenvalues of the return map's derivative, by collocation of the variational equation.
 template <class L, int N>
 L PackOrbit<L, N>::floquet_multiplier() {
+  constexpr int repeats = 3;  // each gains about two digits
   const std::size_t intervals = std::size_t(rule_.intervals);
   Matrix M;
   for (std::size_t row = 0; row < N; ++row) {
     for (std::size_t column = 0; column < N; ++column) M[row][column] = L(row == column ? 1.0 : 0.0);
   }
   std::array<Matrix, nodes_per_segment> jacobian, path, moves;
-  solver::Rates<System> below, above;
   for (int half = 0; half < 2; ++half) {
-    System system = half_cycle(half);
+    const System system = half_cycle(half);
     const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
     for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
       const std::size_t base = first_node(half, s);
       const L h = mesh.u[s + 1] - mesh.u[s];
       Matrix end_before = jacobian[intervals];
       for (std::size_t m = 0; m <= intervals; ++m) {
-        if (lags_) system.drop = drop_[base + m];
-        for (std::size_t column = 0; column < N; ++column) {
-          const L by = column == 0 ? L(1e-4) * trajectory_[base + m][0] : L(1e-4) * current_scale_;
-          State moved = trajectory_[base + m];
-          moved[column] = moved[column] - by;
-          evaluate<false>(system, configuration_of(base + m), moved, mesh.force[s], below);
-          moved[column] = trajectory_[base + m][column] + by;
-          evaluate<false>(system, configuration_of(base + m), moved, mesh.force[s], above);
-          if (lags_) lag_with(system, base + m, by, mesh.force[s], below, above);
-          const L per_both = L(0.5) * inverse_of(by);
-          for (std::size_t row = 0; row < N; ++row)
-            jacobian[m][row][column] = (above.dy[row] - below.dy[row]) * per_both;
-        }
+        jacobian[m] = jacobian_at_node(system, base + m, mesh.force[s]);
         if (m == 0) {
           // What newton_iteration() corrects by grows with the square of the distance, its derivative with the
           // distance.
@@ -115,7 +127,7 @@ L PackOrbit<L, N>::floquet_multiplier() {
         path[m] = path[m - 1];
         append(step_[base + m], path[m]);
       }
-      for (int repeat = 0; repeat < settings_.newton_iterations + 2; ++repeat) {
+      for (int repeat = 0; repeat < repeats; ++repeat) {
         std::array<Matrix, nodes_per_segment> rates;
         for (std::size_t m = 0; m <= intervals; ++m) {
           rates[m] = path[m];
@@ -156,15 +168,7 @@ L PackOrbit<L, N>::floquet_multiplier() {
       M = path[intervals];
     }
   }
-  if constexpr (N == 1) {
-    return abs(M[0][0]);
-  } else {
-    const L mean = L(0.5) * (M[0][0] + M[1][1]), half_difference = L(0.5) * (M[0][0] - M[1][1]);
-    const L determinant = M[0][0] * M[1][1] - M[0][1] * M[1][0];
-    const L discriminant = square(half_difference) + M[0][1] * M[1][0];
-    const L real = abs(mean) + sqrt(max(discriminant, L(0.0)));
-    return select<L>(discriminant >= L(0.0), real, sqrt(max(determinant, L(0.0))));
-  }
+  return largest_modulus(M);
 }
 
 }  // namespace wingbeat

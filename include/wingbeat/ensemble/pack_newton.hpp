@@ -47,7 +47,7 @@ void PackOrbit<L, N>::place_nodes() {
       }
       for (std::size_t m = 0; m <= std::size_t(rule_.intervals); ++m) {
         const double x = rule_.node[m];
-        if (m > 0 || s == 0) places_[base + m] = system.place(u + L(x) * h);
+        if (m > 0 || s == 0) find_node(system, u, h, L(x), places_[base + m]);
         const L moved = (shift + L(x) * stretched) * per_h_before;
         for (std::size_t n = 0; n < N; ++n) {
           trajectory_[base + m][n] = from.y[n] + L(x) * (c1[n] + L(x) * (c2[n] + L(x) * c3[n])) +
@@ -137,7 +137,8 @@ void PackOrbit<L, N>::correct(State end) {
 ///
 /// Where a node stands off the sign change it was meant for by d, the wrong branch has held, or will hold, over d. The
 /// difference of the branches grows linearly from zero there, so that half of d times the difference at the node is the
-/// error left behind, up to O(d^3).
+/// error left behind, up to O(d^3). Where d is longer than the segment, or where the sign changes are others than those
+/// that the segments were made for, an error of O(d^2) stays.
 template <class L, int N>
 template <bool last>
 void PackOrbit<L, N>::newton_iteration() {
@@ -154,7 +155,7 @@ void PackOrbit<L, N>::newton_iteration() {
     integrals_.fill(L(0.0));
     high_.fill(L(0.0));
     low_.fill(L(0.0));
-    switch_offset_ = layer_ = L(0.0);
+    switch_error_ = layer_ = L(0.0);
   }
   for (int half = 0; half < 2; ++half) {
     System system = half_cycle(half);
@@ -179,7 +180,7 @@ void PackOrbit<L, N>::newton_iteration() {
         rates_[base + m] = rates.dy;
         force_[base + m] = rates.switches[0];
         if (m > 0) continue;
-        if constexpr (last) off_[std::size_t(half * segments_) + s] = L(0.0);
+        off_[std::size_t(half * segments_) + s] = L(0.0);
         if (half == 0 && s == 0) continue;
         // From the end of the segment before to the start of this one.
         State& jump = correction_[base];
@@ -190,8 +191,10 @@ void PackOrbit<L, N>::newton_iteration() {
         L slope(0.0);
         for (std::size_t j = 0; j <= intervals; ++j)
           slope = slope + L(rule_.slope[intervals][j]) * force_[base - 1 - intervals + j];
-        const L off = min(max(force_[base - 1] * h_before * inverse_of(slope), -h), h);
+        const L found = min(max(force_[base - 1] * h_before * inverse_of(slope), L(-1.0)), L(1.0));
+        const L off = min(max(found, -h), h);
         const L half_off = select<L>(switches, L(0.5) * off, L(0.0));
+        off_[std::size_t(half * segments_) + s] = select<L>(switches, last ? off : found, L(0.0));
         for (std::size_t n = 0; n < N; ++n) jump[n] = jump[n] - half_off * (rates_[base - 1][n] - rates_[base][n]);
         if (lags_) {
           const solver::Rates<System> by = relaxation(system, base, sign);
@@ -207,8 +210,8 @@ void PackOrbit<L, N>::newton_iteration() {
           for (std::size_t q = 0; q < integrals_.size(); ++q) {
             integrals_[q] = integrals_[q] - half_off * (integrands_before[q] - rates.dq[q]);
           }
-          off_[std::size_t(half * segments_) + s] = L(2.0) * half_off;
-          switch_offset_ = max(switch_offset_, L(2.0) * abs(half_off));
+          const L left_behind = select<L>(off == found, abs(off) * square(off), misplaced(found));
+          switch_error_ = max(switch_error_, select<L>(switches, left_behind, L(0.0)));
         }
       }
       h_before = h;
@@ -216,6 +219,7 @@ void PackOrbit<L, N>::newton_iteration() {
       if constexpr (last) {
         integrands_before = rates.dq;
         add_tails(controlled, base, h);
+        overlooked = max(overlooked, dip_between_nodes(base, sign));
         if (wanted_[std::size_t(Quantity::force)]) {
           const L per_h = inverse_of(max(h, L(1e-12)));
           auto& observables = observables_[std::size_t(Quantity::force)];
@@ -239,7 +243,11 @@ void PackOrbit<L, N>::newton_iteration() {
       }
       u[2 * std::size_t(segments_)] = mesh.u[std::size_t(segments_)];
       force[2 * std::size_t(segments_)] = force_[first_node(half, std::size_t(segments_)) - 1];
-      switch_offset_ = max(switch_offset_, find_switches(half, u.data(), force.data(), 2 * segments_));
+      const ForceSwitches<L> known = switches_[std::size_t(half)];
+      const L offset = find_switches(half, u.data(), force.data(), 2 * segments_);
+      const ForceSwitches<L>& now = switches_[std::size_t(half)];
+      const Mask same = known.count == now.count && known.first_sign == now.first_sign && offset < L(0.1);
+      switch_error_ = max(switch_error_, select<L>(same, L(0.0), misplaced(offset)));
     }
   }
   correct(end);
@@ -257,6 +265,55 @@ void PackOrbit<L, N>::newton_iteration() {
       if (c < 2) speed_error_ = max(speed_error_, error);
     }
   }
+}
+
+/// Moves the ends of segments onto the sign changes that the last iteration found near them, and the nodes along.
+template <class L, int N>
+void PackOrbit<L, N>::follow_switches() {
+  const std::size_t intervals = std::size_t(rule_.intervals);
+  for (int half = 0; half < 2; ++half) {
+    const System system = half_cycle(half);
+    HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+    L end_before = mesh.u[0], shift(0.0);
+    for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
+      const std::size_t base = first_node(half, s);
+      const L start = end_before, start_shift = shift, end = mesh.u[s + 1];
+      end_before = end;
+      shift = L(0.0);
+      if (s + 1 < std::size_t(segments_)) {
+        const L off = off_[std::size_t(half * segments_) + s + 1];
+        const L narrowed = select<L>(off > L(0.0), end - start, mesh.u[s + 2] - end);
+        shift = select<L>(abs(off) < L(0.2) * narrowed, -off, L(0.0));
+      }
+      if (!any<L>(!(shift == L(0.0)) || !(start_shift == L(0.0)))) continue;
+      mesh.u[s + 1] = end + shift;
+      const L u = start + start_shift, h = mesh.u[s + 1] - u, stretched = shift - start_shift;
+      for (std::size_t m = 0; m <= intervals; ++m) {
+        const L x(rule_.node[m]), moved = start_shift + x * stretched;
+        for (std::size_t n = 0; n < N; ++n) {
+          trajectory_[base + m][n] = trajectory_[base + m][n] + moved * rates_[base + m][n];
+        }
+        if (m > 0 || s == 0) find_node(system, u, h, x, places_[base + m]);
+      }
+    }
+  }
+}
+
+/// How deep the rod force, times the sign that it has on a segment, dips below zero between the nodes, by parabolas
+/// [N]; 0 where it does not.
+template <class L, int N>
+L PackOrbit<L, N>::dip_between_nodes(std::size_t base, const L& sign) const {
+  L depth(0.0);
+  for (std::size_t m = 1; m < std::size_t(rule_.intervals); ++m) {
+    const double x0 = rule_.node[m - 1], x1 = rule_.node[m], x2 = rule_.node[m + 1];
+    const L f0 = sign * force_[base + m - 1], f1 = sign * force_[base + m], f2 = sign * force_[base + m + 1];
+    const L left = (f1 - f0) * L(1.0 / (x1 - x0)), right = (f2 - f1) * L(1.0 / (x2 - x1));
+    const L curve = (right - left) * L(1.0 / (x2 - x0)), slope = left + curve * L(x1 - x0);
+    const L at = -(L(0.5) * slope * inverse_of(select<L>(curve > L(0.0), curve, L(1.0))));
+    const Mask inside = curve > L(0.0) && at > L(x0 - x1) && at < L(x2 - x1);
+    depth = max(depth, select<L>(inside, -(f1 + L(0.5) * slope * at), L(0.0)));
+  }
+  return depth;
 }
 
 /// Adds the last coefficients of a segment's rates of speed and integrals.

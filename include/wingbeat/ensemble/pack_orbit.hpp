@@ -144,6 +144,9 @@ class PackOrbit {
   [[gnu::noinline, gnu::flatten]] void place_nodes();
   template <bool last>
   [[gnu::noinline]] void newton_iteration();
+  [[gnu::noinline, gnu::flatten]] void follow_switches();
+  static L misplaced(const L& by) { return L(0.15) * square(by); }
+  [[gnu::noinline, gnu::flatten]] L dip_between_nodes(std::size_t base, const L& sign) const;
   [[gnu::noinline, gnu::flatten]] void propose(std::size_t base, const L& h, State& end);
   [[gnu::noinline, gnu::flatten]] void correct(State end);
   [[gnu::noinline, gnu::flatten]] void lag_current();
@@ -182,6 +185,7 @@ class PackOrbit {
   Matrix derivatives(const State& y, const State& rates, const RatesAt& rates_at) const;
   [[gnu::noinline]] Matrix jacobian_at(const System& system, const Configuration<L>& place, const State& y,
                                        const State& rates, const L& force) const;
+  [[gnu::noinline]] Matrix jacobian_at_node(System system, std::size_t node, const L& force) const;
   static Mask is_stiff(const Matrix& jacobian, const L& h);
   [[gnu::noinline, gnu::flatten]] static void find_rates(const System& system, const L& u, const State& y, State& rates,
                                                          L& force) {
@@ -195,10 +199,20 @@ class PackOrbit {
   static void append(const Matrix& step, Matrix& product);
   static L largest_modulus(const Matrix& M);
   void close_iterate(State& off) const;
+  /// Without springs the first guess is as good as what a coarse iterate would make of it.
+  int coarse_iterates() const {
+    const bool guessed_well = settings_.approach == PackApproach::guess && !any<L>(vehicle_.spring.stiffness > L(0.0));
+    return guessed_well ? settings_.coarse_iterates - 1 : settings_.coarse_iterates;
+  }
 
   [[gnu::noinline, gnu::flatten]] static void find_configuration(const System& system, const L& u,
                                                                  Configuration<L>& place) {
     place = system.place(u);
+  }
+  // One function for all who place nodes: a lane that stays has the bits of one whose neighbours move.
+  [[gnu::noinline, gnu::flatten]] static void find_node(const System& system, const L& u, const L& h, const L& x,
+                                                        Configuration<L>& place) {
+    place = system.place(u + x * h);
   }
   /// Segments that meet share the place of their common node.
   const Configuration<L>& configuration_of(std::size_t node) const {
@@ -249,21 +263,22 @@ class PackOrbit {
   L lag_residual_;                 ///< its last change, of the voltage
   L layer_;                        ///< largest relaxation() of the speed, relative
 
-  L slowest_, residual_, switch_offset_;
+  L slowest_, residual_;
+  L switch_error_;              ///< of segments that end off the rod force's sign changes
   L step_error_, speed_error_;  ///< of what the segments' polynomials leave out: at all, and of speed and time
   L overlooked_;  ///< depth to which the rod force has the wrong sign inside a segment, of its largest magnitude
   L peak_error_;
   L error_estimate_;
 };
 
-/// Derivatives by the state of the rates, which rates_at(state) gives, to four digits.
+/// Derivatives by the state of the rates, which rates_at(state) gives, to six digits.
 template <class L, int N>
 template <class RatesAt>
 auto PackOrbit<L, N>::derivatives(const State& y, const State& rates, const RatesAt& rates_at) const -> Matrix {
   Matrix jacobian;
   for (std::size_t n = 0; n < N; ++n) {
     State moved = y;
-    const L by = n == 0 ? L(1e-4) * y[0] : L(1e-4) * current_scale_;
+    const L by = n == 0 ? L(1e-6) * y[0] : L(1e-6) * current_scale_;
     moved[n] = moved[n] + by;
     const State there = rates_at(moved);
     const L per_move = inverse_of(by);
@@ -389,13 +404,16 @@ Metrics<L> PackOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
       start_from_rest();
       unresolved_ = unresolved_ || balances > L(1.0);
     }
-    for (int n = 1; n < settings_.coarse_iterates; ++n) coarse_iterate<false>();
+    for (int n = 1; n < coarse_iterates(); ++n) coarse_iterate<false>();
     coarse_iterate<true>();
   }
   march();
   place_nodes();
   if (lags_) drop_.fill(L(0.0));
-  for (int n = 0; n < settings_.newton_iterations; ++n) newton_iteration<false>();
+  for (int n = 0; n < settings_.newton_iterations; ++n) {
+    newton_iteration<false>();
+    if (n == 1 && settings_.follow_switches) follow_switches();
+  }
   newton_iteration<true>();
 
   CycleIntegrals<L> integrals;
@@ -427,8 +445,8 @@ Metrics<L> PackOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   seek(Quantity::speed, Extreme::crank_speed_max);
   const L multiplier = settings_.multipliers ? floquet_multiplier() : L(0.0);
 
-  error_estimate_ = L(1.5) * (step_error_ + L(2.0) * residual_ + peak_error_) + L(0.03) * square(switch_offset_) +
-                    overlooked_ * sqrt(overlooked_);
+  error_estimate_ =
+      L(1.5) * (step_error_ + L(2.0) * residual_ + peak_error_) + switch_error_ + overlooked_ * sqrt(overlooked_);
   // A motor near its speed without load draws the small difference of two large voltages.
   const L back_emf = L(two_pi) * vehicle_.motor.torque_constant;
   const L resistive = circuit_resistance(vehicle_) * abs(integrals_[pack_integral(Integral::current)]);

@@ -39,7 +39,7 @@ void PackOrbit<L, N>::assess_statics() {
   }
 }
 
-/// Starts at the balanced_speed(); returns how many there are.
+/// Starts at guess_orbit()'s speed; returns how many speeds balance.
 template <class L, int N>
 L PackOrbit<L, N>::guess_speed() {
   constexpr int stride = 4, count = coarse_samples / stride;
@@ -48,10 +48,12 @@ L PackOrbit<L, N>::guess_speed() {
     const Configuration<L>& at = table_[std::size_t(n / count)][std::size_t(stride / 2 + stride * (n % count))];
     places[std::size_t(n)] = load_place(vehicle_, at.kinematics, at.spring_moment);
   }
-  const BalancedSpeed<L> balanced = balanced_speed(vehicle_, places);
-  y_[0] = balanced.slowest;
-  if constexpr (N == 2) y_[1] = algebraic_current(vehicle_, vehicle_.voltage, y_[0]);
-  return balanced.count;
+  const System downward = half_cycle(1);
+  const OrbitGuess<L> guess =
+      guess_orbit(vehicle_, places, [&](const L& angle) { return downward.place(L(quarter) - angle); });
+  y_[0] = guess.crank_speed;
+  if constexpr (N == 2) y_[1] = algebraic_current(vehicle_, vehicle_.voltage, guess.earlier_speed);
+  return guess.balanced.count;
 }
 
 /// From rest at crank angle zero, in time, by the classical fourth-order method: over the lower dead centre twice,
