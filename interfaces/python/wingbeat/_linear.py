@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -41,15 +42,13 @@ class LinearModel:
 
     def to_scipy(self) -> Any:
         """As scipy.signal.StateSpace, with `dt` where it has one."""
-        from scipy import signal
-
+        signal = importlib.import_module("scipy.signal")
         matrices = (self.A, self.B, self.C, self.D)
         return signal.StateSpace(*matrices) if self.dt is None else signal.StateSpace(*matrices, dt=self.dt)
 
     def to_control(self) -> Any:
         """As control.StateSpace of the package `control`, with names."""
-        import control
-
+        control = importlib.import_module("control")
         return control.ss(
             self.A,
             self.B,
