@@ -129,7 +129,7 @@ Json tree_of(const ControlModels& models, const std::string& version) {
 bool is_table(const Json& of) { return of.is_object(); }
 bool is_tables(const Json& of) { return of.is_array() && !of.empty() && of.front().is_object(); }
 
-std::string toml_value(const Json& of) {
+std::string value_in_toml(const Json& of) {
   if (of.is_null()) return "nan";
   if (of.is_number_float()) {
     const std::string text = fmt::format("{}", of.get<double>());
@@ -137,13 +137,13 @@ std::string toml_value(const Json& of) {
   }
   if (!of.is_array()) return of.dump();
   std::string text = "[";
-  for (const Json& x : of) text += fmt::format("{}{}", &x == &of.front() ? "" : ", ", toml_value(x));
+  for (const Json& x : of) text += fmt::format("{}{}", &x == &of.front() ? "" : ", ", value_in_toml(x));
   return text + "]";
 }
 
 void put_toml(const Json& table, const std::string& path, std::string& text) {
   for (const auto& [key, value] : table.items()) {
-    if (!is_table(value) && !is_tables(value)) text += fmt::format("{} = {}\n", key, toml_value(value));
+    if (!is_table(value) && !is_tables(value)) text += fmt::format("{} = {}\n", key, value_in_toml(value));
   }
   for (const auto& [key, value] : table.items()) {
     const std::string name = path.empty() ? key : path + "." + key;
