@@ -15,6 +15,7 @@ inline constexpr double periodic = 1e-6;  // an iterate that returns to its star
 inline constexpr double coarse = 1e-4;    // tolerance of the first iterates, which only approach the orbit
 inline constexpr double settled = 3e-2;   // change over a coarse iterate below which the real ones begin
 inline constexpr int max_iterates = 60;
+inline constexpr double first_step = 0.1;           // of crank angle, where a method does not choose its own
 inline constexpr double iterate_start = -0.5 * pi;  // the lower dead centre
 
 struct Steady {

@@ -8,24 +8,26 @@
 #include <array>
 #include <boost/numeric/odeint.hpp>
 #include <cmath>
+#include <tuple>
 
 #include "peers/equations.hpp"
 
 namespace wingbeat::peers {
 
-// Boost.odeint, Dormand and Prince.
-template <std::size_t N>
-struct Dopri5 {
-  using State = std::array<double, N>;
+// Boost.odeint: an embedded method such as runge_kutta_dopri5.
+template <class Method>
+struct Controlled {
+  using State = typename Method::state_type;
+  static constexpr std::size_t N = std::tuple_size_v<State>;
   const Peer& peer;
   double tolerance;
-  double step = 0.1;
+  double step = first_step;
 
   void integrate(double* u, double from, double to) {
     namespace odeint = boost::numeric::odeint;
     State state;
     std::copy_n(u, N, state.begin());
-    auto stepper = odeint::make_controlled(tolerance, tolerance, odeint::runge_kutta_dopri5<State>());
+    auto stepper = odeint::make_controlled(tolerance, tolerance, Method());
     const auto rates = [&](const State& x, State& dx, double theta) { peer.rates<N>(theta, x.data(), dx.data()); };
     // As odeint::integrate_adaptive, but the step found is kept for the next iterate, and a step to where the crank
     // would turn back (which odeint accepts if its error is no number) is taken again in quarters.
@@ -42,7 +44,7 @@ struct Dopri5 {
         theta = theta_before;
         step = 0.25 * std::min(step, to - theta);
         if (step < 1e-9) break;
-        stepper.reset();
+        if constexpr (requires { stepper.reset(); }) stepper.reset();
       } else if (!cut) {
         step = h;
       }
@@ -52,9 +54,15 @@ struct Dopri5 {
   }
 };
 
-inline Steady by_odeint(const Peer& peer, double tolerance, std::array<double, 2>* start = nullptr) {
-  Dopri5<2> plain{peer, std::max(coarse, tolerance)};
-  Dopri5<all_states> measured{peer, tolerance};
+template <std::size_t N>
+using Dopri5 = boost::numeric::odeint::runge_kutta_dopri5<std::array<double, N>>;
+template <std::size_t N>
+using CashKarp = boost::numeric::odeint::runge_kutta_cash_karp54<std::array<double, N>>;
+
+template <template <std::size_t> class Method>
+Steady by_odeint(const Peer& peer, double tolerance, std::array<double, 2>* start = nullptr) {
+  Controlled<Method<2>> plain{peer, std::max(coarse, tolerance)};
+  Controlled<Method<all_states>> measured{peer, tolerance};
   const auto iterate = [](auto& method, double* u) {
     method.integrate(u, iterate_start, iterate_start + two_pi);
     return std::isfinite(u[0]) && u[0] > 0.0;
@@ -128,7 +136,9 @@ class Adams {
   std::array<double, N> last_{};
 };
 
-inline Steady by_cvode(Adams<2>& plain, Adams<all_states>& measured, const Peer& peer, double tolerance) {
+// With a method of two states and one of all, which `begin` at a state and go on from one iterate to the next.
+template <class Plain, class Measured>
+inline Steady by_stepping(Plain& plain, Measured& measured, const Peer& peer, double tolerance) {
   bool fine = false;
   return flap(
       peer, tolerance < coarse,

@@ -134,7 +134,7 @@ inline Answers by_auto(const std::vector<EnsembleMember>& members, int intervals
   for (const EnsembleMember& member : members) {
     const Peer peer(member.vehicle);
     std::array<double, 2> start{};
-    by_odeint(peer, 1e-8, &start);
+    by_odeint<Dopri5>(peer, 1e-8, &start);
     std::ofstream design(folder / "design.txt");
     design.precision(17);
     for (const auto& [name, value] : numbers_of(member.vehicle)) design << value << '\n';
@@ -145,7 +145,7 @@ inline Answers by_auto(const std::vector<EnsembleMember>& members, int intervals
     std::array<double, all_states> u{start[0], start[1]};
     for (int row = 0; row < rows; ++row) {
       const auto angle = [&](int n) { return iterate_start + two_pi * n / (rows - 1); };
-      if (row > 0) Dopri5<all_states>{peer, 1e-8}.integrate(u.data(), angle(row - 1), angle(row));
+      if (row > 0) Controlled<Dopri5<all_states>>{peer, 1e-8}.integrate(u.data(), angle(row - 1), angle(row));
       for (const double value : u) table << value << ' ';
       table << double(row) / (rows - 1) << '\n';
     }

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <functional>
 #include <string>
 #include <vector>
@@ -15,10 +15,11 @@ namespace wingbeat::peers {
 inline constexpr double goal = 1e-6;              // lift error that every method is to reach at the median
 inline constexpr double high_goal = 10.0 * goal;  // and at the 99th percentile
 
+// Processor time, so that other programs count as little as they can.
 inline double seconds_of(const std::function<void()>& f) {
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   f();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return double(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
 struct Answers {
@@ -61,7 +62,7 @@ struct Rival {
   std::string missing;  // why it cannot be run; empty if it can
   std::string setting;  // printf format of what is tuned
   std::vector<double> ladder;
-  int rounds;  // of timing, the best counts
+  int rounds;  // of timing, the median counts
   std::function<Answers(double)> solve;
 };
 

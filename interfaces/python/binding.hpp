@@ -9,6 +9,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <future>
 #include <mutex>
 #include <optional>
@@ -19,7 +20,9 @@
 #include "wingbeat/core/names.hpp"
 #include "wingbeat/files/file_record.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/run/parallel.hpp"
 #include "wingbeat/run/sweep_run.hpp"
+#include "wingbeat/study/for_each.hpp"
 #include "wingbeat/wingbeat.hpp"
 
 namespace wingbeat::python {
@@ -107,6 +110,17 @@ auto watched(const py::object& progress, const Work& work) {
     throw py::error_already_set(*raised);
   }
   return found.get();
+}
+
+/// Side by side on at most so many threads (0: one for each core), until the user has interrupted.
+inline ForEach until_stopped(const Watch& watch, int threads) {
+  return [&watch, threads](std::size_t count, const std::function<void(std::size_t)>& act) {
+    const auto unless_stopped = [&](std::size_t n) {
+      if (watch.stopped()) throw Interrupted();
+      act(n);
+    };
+    for_each_in_parallel(count, unless_stopped, threads);
+  };
 }
 
 /// What a study found, as `--json` and as the program's readable report.

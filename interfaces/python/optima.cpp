@@ -9,22 +9,10 @@
 #include "wingbeat/report/optimise_report.hpp"
 #include "wingbeat/report/pareto_report.hpp"
 #include "wingbeat/run/evolution_module.hpp"
-#include "wingbeat/run/parallel.hpp"
 #include "wingbeat/study/own_search.hpp"
 
 namespace wingbeat::python {
 namespace {
-
-/// Side by side, until the user has interrupted.
-ForEach until_stopped(const Watch& watch, int threads) {
-  return [&watch, threads](std::size_t count, const std::function<void(std::size_t)>& act) {
-    const auto unless_stopped = [&](std::size_t n) {
-      if (watch.stopped()) throw Interrupted();
-      act(n);
-    };
-    for_each_in_parallel(count, unless_stopped, threads);
-  };
-}
 
 /// Of one objective.
 py::dict find_best(OptimiseFile study, int threads) {

@@ -130,15 +130,16 @@ py::dict identify(const std::string& file, std::optional<double> frequency, bool
 }
 
 py::dict fit(const std::string& file, const std::vector<std::string>& overrides, bool profiles,
-             bool compare_friction_laws) {
+             bool compare_friction_laws, int threads) {
   forget_files();
   BenchFit bench = read_bench(file, overrides);
   bench.profiles = profiles;
   FitResult found;
   std::vector<FrictionCandidate> candidates;
-  watched(py::none(), [&](const Watch&) {
-    found = fit_bench(bench, {});
-    if (compare_friction_laws) candidates = compare_friction(bench, design_parameter, {});
+  watched(py::none(), [&](const Watch& watch) {
+    const ForEach for_each = until_stopped(watch, threads);
+    found = fit_bench(bench, {}, for_each);
+    if (compare_friction_laws) candidates = compare_friction(bench, design_parameter, {}, for_each);
     return true;
   });
   py::dict result = told(json_fit(bench, found, candidates),

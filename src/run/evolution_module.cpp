@@ -12,7 +12,11 @@ namespace wingbeat {
 Evolve load_evolution() {
   std::string reason;
   const void* const symbol = module_symbol("wingbeat-evolution", "wingbeat_evolution_module", RTLD_LOCAL, reason);
-  if (!symbol) throw std::runtime_error("several objectives need the library with pagmo: " + reason);
+  if (!symbol) {
+    throw std::runtime_error(
+        "several objectives need the module with pagmo (Debian package wingbeat; to build it, libpagmo-dev): " +
+        reason);
+  }
   return *static_cast<const Evolve*>(symbol);
 }
 

@@ -1,7 +1,9 @@
 """Vehicles in time, stepped under commanded voltages."""
 
 import copy
+import os
 import pickle
+import signal
 import threading
 import time
 import unittest
@@ -14,6 +16,10 @@ from shared import DATA, reference
 def ramp(at):
     """A function that pickle finds."""
     return 2.0 + 10.0 * at
+
+
+def ramp_to_3(at):
+    return min(3.0, ramp(at))
 
 
 class Simulations(unittest.TestCase):
@@ -154,6 +160,23 @@ class Simulations(unittest.TestCase):
         ):
             with self.assertRaisesRegex(wb.InputError, text):
                 act()
+
+    def test_ctrl_c_ends_a_step(self):
+        # A test started in the background ignores it.
+        self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
+        for voltage in (None, ramp_to_3):
+            simulation = reference().simulation(tolerance=1e-10, voltage=voltage)
+            simulation.step_to(0.01)
+            before = simulation.save()
+            threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+            begin = time.process_time()
+            with self.assertRaises(KeyboardInterrupt):
+                simulation.step_to(1e5)
+            # 0.3 s until then at most, and 50 ms between two looks at signals.
+            self.assertLess(time.process_time() - begin, 1.0)
+            self.assertEqual(simulation.save(), before)
+            simulation.step(0.01)
+            self.assertEqual(simulation.time, 0.02)
 
     def test_other_threads_run_meanwhile(self):
         counted = [0]

@@ -66,6 +66,7 @@ class Studies(unittest.TestCase):
         file = DATA / "bench" / "flapper.toml"
         found = wb.fit(file, profiles=False)
         self.assertEqual(dict(found), told("fit", file, "--no-profiles"))
+        self.assertEqual(dict(found), dict(wb.fit(file, profiles=False, threads=1)))
         self.assertEqual(found.vehicle is None, "misfit" in found.get("status", ""))
 
     @unittest.skipUnless(PROGRAM, "needs the program")
@@ -101,6 +102,15 @@ class Studies(unittest.TestCase):
         found = wb.optimise(study, vehicle=reference())
         self.assertIsNone(found.vehicle)
         self.assertIn("lift_mean", str(found))
+
+    def test_ctrl_c_ends_a_fit(self):
+        self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
+        threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+        begin = time.process_time()
+        with self.assertRaises(KeyboardInterrupt):
+            wb.fit(DATA / "bench" / "flapper.toml", compare_friction=True)
+        # It takes some 8 s where nobody interrupts.
+        self.assertLess(time.process_time() - begin, 2.0)
 
     def test_ctrl_c_ends_a_search(self):
         self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))

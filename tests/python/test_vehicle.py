@@ -1,6 +1,7 @@
 """Vehicles as values: keys, errors, copies, files."""
 
 import copy
+import io
 import pathlib
 import pickle
 import tempfile
@@ -130,6 +131,19 @@ class Errors(unittest.TestCase):
         error = caught.exception
         line = 1 + text.splitlines().index('armature_resistance = "9 m"')
         self.assertEqual((error.file, error.line, error.key), (str(file), line, "motor.armature_resistance"))
+
+    def test_files_may_be_open(self):
+        path = DATA / "designs" / "friction2022.toml"
+        with open(path, encoding="utf-8") as file:
+            self.assertEqual(wb.read(file), wb.read(path))
+        self.assertEqual(wb.read(io.StringIO(path.read_text())), wb.read(str(path)))
+        with self.assertRaises(wb.InputError) as caught:
+            wb.read(io.StringIO("[motor"))
+        self.assertEqual((caught.exception.file, caught.exception.line), ("vehicle", 1))
+        with open(path, "rb") as file, self.assertRaisesRegex(TypeError, "open for reading text, got BufferedReader"):
+            wb.read(file)
+        with self.assertRaisesRegex(TypeError, "^expected a path or a file open for reading text, got int$"):
+            wb.read(1)
 
     def test_what_is_no_value_at_all(self):
         with self.assertRaises(TypeError):

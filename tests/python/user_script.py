@@ -7,7 +7,8 @@ import wingbeat as wb
 
 
 def main(file: str) -> float:
-    vehicle = wb.read(file)
+    with open(file, encoding="utf-8") as opened:
+        vehicle = wb.read(opened)
     inertia: float = 2.0 * vehicle.wing.count
     result = vehicle.replace({"supply.voltage": "3 V"}).solve(tolerance=1e-8)
     if result.lift_mean is None or result.frequency is None:

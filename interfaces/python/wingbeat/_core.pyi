@@ -114,7 +114,9 @@ def linearise(
 def identify_motor(
     file: str, frequency: float | None, assume_steel_cylinder: bool, assume_typical_damping: bool, shaft: str
 ) -> dict[str, Any]: ...
-def fit(file: str, overrides: Sequence[str], profiles: bool, compare_friction: bool) -> dict[str, Any]: ...
+def fit(
+    file: str, overrides: Sequence[str], profiles: bool, compare_friction: bool, threads: int
+) -> dict[str, Any]: ...
 def tolerance(
     file: str,
     overrides: Sequence[str],

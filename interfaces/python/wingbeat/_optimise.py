@@ -92,8 +92,8 @@ def optimise(
     (COBYLA) and takes more designs. Such a search starts from the vehicle and from the best of `screen` designs (default
     32 a parameter), `starts` times (default 4), on one thread. None or NaN: the design does not count.
 
-    Returns a Found; of several objectives a Front, by functions an OwnOptimum. Ctrl-C ends it within a design. Raises InputError, and what
-    a function raises.
+    Returns a Found; of several objectives a Front, by functions an OwnOptimum. Ctrl-C ends it within a design. Raises
+    InputError, and what a function raises.
     """
     if isinstance(study, Mapping):
         own = _OwnProblem(study)

@@ -28,6 +28,11 @@ def quantity(name: str, value: Any, unit: str) -> float | None:
     return None if value is None else _core.quantity(name, value, unit)
 
 
+def quantities(**given: tuple[Any, str]) -> tuple[float, ...]:
+    """The SI numbers of options, each its value and its unit, in their order."""
+    return tuple(_core.quantity(name, value, unit) for name, (value, unit) in given.items())
+
+
 class Event(NamedTuple):
     """What happens to a vehicle in time."""
 
@@ -299,10 +304,12 @@ def simulate(
             vehicle._design,
             condition,
             tolerance,
-            _core.quantity("max_time", max_time, "s"),
-            _core.quantity("crank_angle", crank_angle, "rad"),
-            _core.quantity("crank_speed", crank_speed, "rad/s"),
-            _core.quantity("current", current, "A"),
-            _core.quantity("record_interval", record_interval, "s"),
+            *quantities(
+                max_time=(max_time, "s"),
+                crank_angle=(crank_angle, "rad"),
+                crank_speed=(crank_speed, "rad/s"),
+                current=(current, "A"),
+                record_interval=(record_interval, "s"),
+            ),
         )
     )

@@ -9,7 +9,7 @@ import numpy as np
 
 from . import _core
 from ._quantity import Quantity
-from ._result import Event, _waveform, quantity
+from ._result import Event, _waveform, quantities, quantity
 from ._tables import waveforms
 from ._vehicle import Vehicle
 
@@ -72,15 +72,14 @@ class Simulation:
         pitch_velocity: float | str = 0.0,
     ) -> None:
         self.vehicle = vehicle
-        self._start = (
-            condition,
-            tolerance,
-            _core.quantity("angle", angle, "rad"),
-            _core.quantity("speed", speed, "rad/s"),
-            _core.quantity("current", current, "A"),
-            _core.quantity("pitch_angle", pitch_angle, "rad"),
-            _core.quantity("pitch_velocity", pitch_velocity, "rad/s"),
+        state = quantities(
+            angle=(angle, "rad"),
+            speed=(speed, "rad/s"),
+            current=(current, "A"),
+            pitch_angle=(pitch_angle, "rad"),
+            pitch_velocity=(pitch_velocity, "rad/s"),
         )
+        self._start: tuple[Any, ...] = (condition, tolerance, *state)
         self._simulation = _core.Simulation(vehicle._design, *self._start)
         self.states = tuple(self._simulation.state_names())
         self._voltage: Any = None

@@ -164,6 +164,7 @@ def fit(
     values: Mapping[str, Any] | None = None,
     profiles: bool = True,
     compare_friction: bool = False,
+    threads: int = 0,
 ) -> Found:
     """A vehicle's parameters from bench measurements, and how sure they are: `wingbeat fit`.
 
@@ -173,10 +174,11 @@ def fit(
     values : keys of the vehicle with other values than in its file
     profiles : False: intervals from the curvature alone, which is faster
     compare_friction : fits one law of friction after the other as well
+    threads : at most so many; 0: one for each core. What is found does not depend on it
 
-    Raises InputError.
+    Other Python threads run meanwhile; Ctrl-C ends it. Raises InputError.
     """
-    return Found(_core.fit(os.fspath(bench), _assignments(values or {}), profiles, compare_friction))
+    return Found(_core.fit(os.fspath(bench), _assignments(values or {}), profiles, compare_friction, threads))
 
 
 def tolerance(

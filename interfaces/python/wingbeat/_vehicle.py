@@ -7,7 +7,7 @@ import os
 import tempfile
 import tomllib
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 from . import _core
 from ._quantity import Quantity
@@ -280,9 +280,16 @@ def _restored(toml: str) -> Vehicle:
     return Vehicle.from_toml(toml)
 
 
-def read(file: str | os.PathLike[str]) -> Vehicle:
-    """The vehicle in a vehicle file (TOML). CSV files that it names are sought beside it.
+def read(file: str | os.PathLike[str] | IO[str]) -> Vehicle:
+    """The vehicle in a vehicle file (TOML): a path, or a file open for reading text.
 
-    Raises InputError with file, line and column of all that is wrong.
+    CSV files that it names are sought beside it; in an open file, tables stand in place. Raises InputError with file,
+    line and column of all that is wrong.
     """
-    return Vehicle._of(_core.read(os.fspath(file)))
+    if isinstance(file, (str, os.PathLike)):
+        return Vehicle._of(_core.read(os.fspath(file)))
+    text = file.read() if hasattr(file, "read") else None
+    if not isinstance(text, str):
+        raise TypeError(f"expected a path or a file open for reading text, got {type(file).__name__}")
+    name = getattr(file, "name", None)
+    return Vehicle.from_toml(text, name if isinstance(name, str) else "vehicle")
