@@ -1,5 +1,6 @@
-# netCDF, HDF5, matio, libzip and UDUNITS-2 as imported targets, here and in projects that link wingbeat's archives: libraries and headers
-# alone. Their own CMake packages name curl, crypto and whatever else they were built with, by absolute paths.
+# netCDF, HDF5, matio, libzip and UDUNITS-2 as imported targets, here and in projects that link wingbeat's archives:
+# libraries and headers alone. Their own CMake packages name curl, crypto and whatever else they were built with, by
+# absolute paths.
 function(wingbeat_c_library name header)
   cmake_parse_arguments(OF "" "" "NAMES;FOLDERS" ${ARGN})
   if(TARGET wingbeat::${name})

@@ -43,7 +43,10 @@ struct Plan {
 
 /// Whether the batched solver knows all of a vehicle.
 bool suits_packs(const Vehicle<double>& v) {
-  if (v.wings.coefficients.table || has_pitch_stop(v.wings) || has_gear_loss(v.motor) || pitches(v)) return false;
+  if (v.wings.coefficients.table || has_pitch_stop(v.wings) || has_gear_loss(v.motor) || pitches(v) ||
+      v.load_torque != 0.0) {
+    return false;
+  }
   // Where constant friction holds a shaft that swings, the equations jump.
   return v.transmission.type == TransmissionType::slider_crank ||
          (v.transmission.type == TransmissionType::direct && breakaway_torque(v) == 0.0);

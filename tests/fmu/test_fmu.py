@@ -327,7 +327,7 @@ class Importers(unittest.TestCase):
         references = [str(package.reference(name)) for name in self.REFERENCES]
         command = [*importer, folder + str(binary), folder + str(package.root / "resources"), package.token,
                    str(package.version), "0.5", "0.001", *references]  # fmt: skip
-        found = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120)
+        found = subprocess.run(command, capture_output=True, text=True, check=True, timeout=500)
         return [float(line) for line in found.stdout.split()]
 
     def binary(self, package, windows):

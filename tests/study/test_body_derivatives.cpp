@@ -83,7 +83,9 @@ void expect_derivatives(const Design<double>& design, double hinge_offset) {
     EXPECT_LT((exact.col(k).tail<3>() - difference.tail<3>()).norm(), 2e-3 * moment) << body_motions[std::size_t(k)];
   }
   for (int k = 0; k < 6; ++k) {
-    if (k != 1) EXPECT_LT(exact(k, k), 0.0) << "damps " << body_motions[std::size_t(k)];
+    if (k != 1) {
+      EXPECT_LT(exact(k, k), 0.0) << "damps " << body_motions[std::size_t(k)];
+    }
   }
 }
 

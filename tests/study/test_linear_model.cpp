@@ -3,14 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <array>
 #include <cmath>
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "vehicle/direct_design.hpp"
 #include "vehicle/hinged_design.hpp"
 #include "wingbeat/cycle/orbit_gradient.hpp"
+#include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/study/linear_model.hpp"
 #include "wingbeat/time/simulation.hpp"
+#include "wingbeat/time/transient.hpp"
 
 namespace wingbeat {
 namespace {
@@ -256,6 +259,19 @@ TEST(LinearModel, IsNoneWhereNothingFlaps) {
   const Linearisation at = linearise(design);
   EXPECT_EQ(at.operating_point.status, FlappingStatus::stalled);
   EXPECT_FALSE(at.model);
+}
+
+TEST(LoadTorque, EnsemblesLeaveItToTheScalarSolver) {
+  Vehicle<double> loaded = resolve(reference_design());
+  std::array<EnsembleMember, 2> members = {{{loaded, {}}, {loaded, {}}}};
+  loaded.load_torque = members[1].vehicle.load_torque = 2e-5;
+  std::array<EnsembleOutcome, 2> outcomes;
+  solve_ensemble(members, {}, start_up_in_time(), outcomes);
+  EXPECT_EQ(outcomes[0].scalar, !has_packs);
+  EXPECT_TRUE(outcomes[1].scalar);
+  const double frequency = accurate(loaded).metrics[Metric::frequency];
+  EXPECT_NEAR(outcomes[1].metrics[Metric::frequency], frequency, 1e-6 * frequency);
+  EXPECT_LT(frequency, 0.999 * outcomes[0].metrics[Metric::frequency]);
 }
 
 }  // namespace
