@@ -65,7 +65,7 @@ void plot_step_responses(const ControlModels& models, PlotFormat format, const s
                   fmt::format("screen 0.5,{} center", 1.0 - 0.12 / inches));
       figure.text("time since the step [ms]", 7.5,
                   fmt::format("screen {},{} center", 0.5 * (left + right), 0.09 / inches));
-      constexpr std::array places = {0.0, 0.23, 0.56};
+      constexpr std::array places = {0.0, 0.22, 0.56};
       for (std::size_t k = 0; k < outputs.size(); ++k) {
         figure.key_entry(left + places[k], 1.0 - 0.32 / inches, response_styles[k],
                          in_words(map.outputs[outputs[k]].name));

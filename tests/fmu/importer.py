@@ -51,9 +51,8 @@ class Package:
         self.xml = ElementTree.parse(root / "modelDescription.xml").getroot()
         self.version = int(self.xml.get("fmiVersion")[0])
         self.token = self.xml.get("guid") or self.xml.get("instantiationToken")
-        self.identifier = next(self.xml.find(k) for k in ("ModelExchange", "CoSimulation") if self.xml.find(k) is not None).get(
-            "modelIdentifier"
-        )
+        kinds = [self.xml.find(kind) for kind in ("ModelExchange", "CoSimulation")]
+        self.identifier = next(kind for kind in kinds if kind is not None).get("modelIdentifier")
         self.variables = {v.get("name"): v for v in self.xml.find("ModelVariables")}
         platform = "linux64" if self.version == 2 else "x86_64-linux"
         self.library = c.CDLL(str(root / "binaries" / platform / f"{self.identifier}.so"))
@@ -115,7 +114,8 @@ class Instance:
             self.call("SetupExperiment", int(given), t, c.c_double(start), 0, c.c_double(0.0))
             self.call("EnterInitializationMode")
         else:
-            self.call("EnterInitializationMode", c.c_bool(given), t, c.c_double(start), c.c_bool(False), c.c_double(0.0))
+            no, zero = c.c_bool(False), c.c_double(0.0)
+            self.call("EnterInitializationMode", c.c_bool(given), t, c.c_double(start), no, zero)
         self.call("ExitInitializationMode")
 
     def _sized(self, count):
@@ -144,9 +144,8 @@ class Instance:
     def set(self, values):
         n = len(values)
         references = (c.c_uint * n)(*map(self.package.reference, values))
-        self.call(
-            "SetReal", references, c.c_size_t(n), (c.c_double * n)(*values.values()), *self._sized(n), name3="SetFloat64"
-        )
+        numbers = (c.c_double * n)(*values.values())
+        self.call("SetReal", references, c.c_size_t(n), numbers, *self._sized(n), name3="SetFloat64")
 
     # ---- co-simulation
     def step(self, time, length):
