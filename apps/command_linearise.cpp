@@ -84,7 +84,7 @@ void add_linearise(CLI::App& program, Action& action) {
       ->type_name("NUMBER");
   command
       ->add_option("--hinge-offset", a->hinge_offset,
-                   "From the body's middle plane to the axis of a wing's stroke, as \"5 mm\" (default 0 m)")
+                   "From the middle plane to a wing's stroke axis, as \"5 mm\" (default 0 m)")
       ->type_name("QUANTITY");
   command->add_flag("--no-maps", a->no_maps, "Leave the static maps for allocation out");
   add_json(command, a->json);

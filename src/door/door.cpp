@@ -1,9 +1,10 @@
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
+#include <system_error>
 #include <utility>
 
+#include "files/read_number.hpp"
 #include "files/study_sections.hpp"
 #include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/files/units.hpp"
@@ -31,7 +32,7 @@ std::optional<double> number_in(std::string_view text, std::string_view unit) {
     }
   }
   double number = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const auto [end, error] = detail::read_number(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(number)) return std::nullopt;
   return number;
 }

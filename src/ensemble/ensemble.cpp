@@ -9,6 +9,7 @@
 #include "wingbeat/cycle/thermal_equilibrium.hpp"
 #include "wingbeat/ensemble/direct_pack_blocks.hpp"
 #include "wingbeat/ensemble/pack_blocks.hpp"
+#include "wingbeat/ensemble/pack_tables.hpp"
 #include "wingbeat/solve/collocation.hpp"
 
 namespace wingbeat {
@@ -43,13 +44,11 @@ struct Plan {
 
 /// Whether the batched solver knows all of a vehicle.
 bool suits_packs(const Vehicle<double>& v) {
-  if (v.wings.coefficients.table || has_pitch_stop(v.wings) || has_gear_loss(v.motor) || pitches(v) ||
-      v.load_torque != 0.0) {
-    return false;
-  }
-  // Where constant friction holds a shaft that swings, the equations jump.
-  return v.transmission.type == TransmissionType::slider_crank ||
-         (v.transmission.type == TransmissionType::direct && breakaway_torque(v) == 0.0);
+  if (has_gear_loss(v.motor) || pitches(v) || v.load_torque != 0.0) return false;
+  if (v.transmission.type == TransmissionType::slider_crank) return lanes_know_coefficients(v);
+  // Where constant friction holds a shaft that swings, the equations jump; where coefficients bend, so do their slopes.
+  return v.transmission.type == TransmissionType::direct && breakaway_torque(v) == 0.0 && !v.wings.coefficients.table &&
+         !has_pitch_stop(v.wings);
 }
 
 std::vector<DirectPackSettings> direct_plan_for(const EnsembleOptions& options) {
@@ -174,9 +173,10 @@ class EnsembleRun {
   }
 
  private:
-  static constexpr std::size_t kinds = 24;
+  static constexpr std::size_t kinds = 144;
   std::size_t kind_of(const Vehicle<double>& v) const {
-    return (v.wings.added_inertia > 0.0 ? 12 : 0) +
+    const std::size_t coefficients = v.wings.coefficients.table ? 2 : has_pitch_stop(v.wings) ? 1 : 0;
+    return (is_stiff(v) ? 72 : 0) + 24 * coefficients + (v.wings.added_inertia > 0.0 ? 12 : 0) +
            (v.transmission.slider_crank.formulation == Formulation::virtual_work ? 6 : 0) +
            (v.spring.stiffness > 0.0 ? 3 : 0) + std::size_t(current_of(v));
   }
@@ -190,6 +190,17 @@ class EnsembleRun {
     if (!(v.motor.armature_inductance > 0.0)) return PackCurrent::algebraic;
     const double lag = v.motor.armature_inductance / circuit_resistance(v) * no_load_speed(v);
     return lag < max_lag(options_.tolerance) ? PackCurrent::lagging : PackCurrent::state;
+  }
+
+  /// Whether current or speed settle within a part of a coarse step at the speed without load, so that explicit steps
+  /// there would be unstable.
+  bool is_stiff(const Vehicle<double>& v) const {
+    constexpr double coarse_step = pi / 8.0, stable = 1.0;
+    const double R = circuit_resistance(v), K = v.motor.torque_constant, no_load = no_load_speed(v);
+    const double inertia = v.motor.inertia + 0.5 * v.wing_count * v.wing_inertia;
+    const double braking = (K * K / R + v.motor.viscous_damping) / inertia;
+    return (current_of(v) == PackCurrent::state && R * coarse_step > stable * v.motor.armature_inductance * no_load) ||
+           braking * coarse_step > stable * no_load;
   }
 
   /// Few need more than the first attempt: all of a kind together fill the lanes of the others.
@@ -248,6 +259,12 @@ class EnsembleRun {
            std::vector<std::size_t>& inexact) {
     if (which.empty()) return;
     settings.current = current_of(members_[which.front()].vehicle);
+    if (!settings.implicit && is_stiff(members_[which.front()].vehicle)) {
+      settings.implicit = true;
+      settings.newton_iterations += 1;
+      settings.segments = max_half_segments;  // as after a start from rest
+    }
+    refine_for(members_[which.front()].vehicle, settings);
     run_blocks(which, settings, solver_.solve, results_);
     for (const std::size_t n : which) {
       const PackResult& r = results_[n];
@@ -261,6 +278,18 @@ class EnsembleRun {
       } else {
         accept(n, r.metrics, r.error_estimate);
       }
+    }
+  }
+
+  /// Where coefficients bend, segments have more places to end at; with the knots of a table, means converge with the
+  /// fourth power of the nodes only.
+  static void refine_for(const Vehicle<double>& v, PackSettings& settings) {
+    const bool table = bool(v.wings.coefficients.table);
+    if (!table && !has_pitch_stop(v.wings)) return;
+    settings.segments = table ? max_half_segments : std::min(settings.segments + 2, max_half_segments);
+    if (table) {
+      const int more = settings.approach == PackApproach::resume ? 4 : 2;
+      settings.intervals = std::min(settings.intervals + more, solver::max_collocation_intervals);
     }
   }
 

@@ -1,20 +1,19 @@
 #include "wingbeat/files/units.hpp"
 
 #include <fmt/format.h>
-#include <udunits2.h>
 
 #include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 #include <map>
-#include <memory>
-#include <mutex>
 #include <optional>
 #include <regex>
 #include <system_error>
 #include <utility>
 
+#include "files/read_number.hpp"
+#include "files/unit_system.hpp"
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/text.hpp"
 
@@ -22,131 +21,20 @@ namespace wingbeat {
 
 namespace {
 
+using detail::UnitAnatomy;
+
 constexpr std::size_t longest_unit = 80;
 
-struct FreeUnit {
-  void operator()(ut_unit* unit) const { ut_free(unit); }
-};
-struct FreeSystem {
-  void operator()(ut_system* system) const { ut_free_system(system); }
-};
-struct FreeConverter {
-  void operator()(cv_converter* converter) const { cv_free(converter); }
-};
-using Unit = std::unique_ptr<ut_unit, FreeUnit>;
-
-/// A unit taken apart: `scale` times a product of powers of base units, the radian counted on its own.
-struct Anatomy {
-  double scale = 1.0;
-  int angle = 0;
-  std::map<std::string, int> dimension;
-  bool plain = true;  ///< neither offset nor logarithm nor time stamp
-};
-
-Anatomy& anatomy(void* argument) { return *static_cast<Anatomy*>(argument); }
-
-void add_power(Anatomy& a, const ut_unit* base, int power) {
-  const char* symbol = ut_get_symbol(base, UT_ASCII);
-  const std::string name = symbol ? symbol : "?";
-  if (name == "rad") {
-    a.angle += power;
-  } else if (power != 0) {
-    a.dimension[name] += power;
-  }
+/// "gcm2" as "g cm2". No symbol can say this: UDUNITS takes the exponent for that of the whole word.
+std::string inertia_apart(const std::string& unit) {
+  static const std::regex together("(^|[^A-Za-z_])([kmu]?g)([cm]?m)(2|\\^2|\\*\\*2|\u00b2)(?![0-9])");
+  return std::regex_replace(unit, together, "$1$2 $3$4");
 }
 
-ut_status visit_basic(const ut_unit* unit, void* argument) {
-  add_power(anatomy(argument), unit, 1);
-  return UT_SUCCESS;
+std::optional<UnitAnatomy> dissect(const std::string& unit) {
+  const std::optional<UnitAnatomy> found = detail::dissect_unit(unit);
+  return found ? found : detail::dissect_unit(inertia_apart(unit));
 }
-ut_status visit_product(const ut_unit*, int count, const ut_unit* const* bases, const int* powers, void* argument) {
-  for (int n = 0; n < count; ++n) add_power(anatomy(argument), bases[n], powers[n]);
-  return UT_SUCCESS;
-}
-ut_status visit_scaled(const ut_unit* unit, double scale, const ut_unit* underlying, double offset, void* argument);
-ut_status visit_timestamp(const ut_unit*, const ut_unit*, double, void* argument) {
-  anatomy(argument).plain = false;
-  return UT_SUCCESS;
-}
-ut_status visit_logarithm(const ut_unit*, double, const ut_unit*, void* argument) {
-  anatomy(argument).plain = false;
-  return UT_SUCCESS;
-}
-const ut_visitor visitor = {visit_basic, visit_product, visit_scaled, visit_timestamp, visit_logarithm};
-
-ut_status visit_scaled(const ut_unit*, double scale, const ut_unit* underlying, double offset, void* argument) {
-  anatomy(argument).scale *= scale;
-  if (offset != 0.0) anatomy(argument).plain = false;
-  return ut_accept_visitor(underlying, &visitor, argument);
-}
-
-/// The unit database. UDUNITS keeps global state while it parses, so one mutex guards all of it.
-class UnitSystem {
- public:
-  static UnitSystem& instance() {
-    static UnitSystem system;
-    return system;
-  }
-
-  /// A temperature in another unit, their zeros taken into account; empty where one of the units is none of
-  /// temperature.
-  std::optional<double> temperature(double value, const std::string& unit, const std::string& wanted) {
-    const std::lock_guard lock(mutex_);
-    const Unit from(ut_parse(system_.get(), unit.c_str(), UT_UTF8));
-    const Unit to(ut_parse(system_.get(), wanted.c_str(), UT_UTF8));
-    if (!from || !to) return std::nullopt;
-    const std::unique_ptr<cv_converter, FreeConverter> converter(ut_get_converter(from.get(), to.get()));
-    if (!converter) return std::nullopt;
-    return cv_convert_double(converter.get(), value);
-  }
-
-  std::optional<Anatomy> dissect(const std::string& unit) {
-    const std::lock_guard lock(mutex_);
-    Unit parsed(ut_parse(system_.get(), unit.c_str(), UT_UTF8));
-    if (!parsed) parsed.reset(ut_parse(system_.get(), inertia_apart(unit).c_str(), UT_UTF8));
-    if (!parsed) return std::nullopt;
-    Anatomy result;
-    if (ut_accept_visitor(parsed.get(), &visitor, &result) != UT_SUCCESS) return std::nullopt;
-    std::erase_if(result.dimension, [](const auto& power) { return power.second == 0; });
-    if (!(std::isfinite(result.scale) && result.scale > 0.0)) return std::nullopt;
-    return result;
-  }
-
- private:
-  UnitSystem() {
-    ut_set_error_message_handler(ut_ignore);
-    system_.reset(ut_read_xml(nullptr));
-    if (!system_) {
-      throw std::runtime_error(
-          "cannot read the UDUNITS-2 unit database; install it, or name it in the environment variable "
-          "UDUNITS2_XML_PATH");
-    }
-    // The database knows only the long names of these.
-    const Unit radian(ut_get_unit_by_name(system_.get(), "radian"));
-    add("deg", ut_scale(pi / 180.0, radian.get()));
-    add("rev", ut_scale(two_pi, radian.get()));
-    // Products as they stand in catalogues; UDUNITS puts its prefixes before them: mAh, mNm, uNm.
-    for (const auto& [symbol, definition] : products) add(symbol, ut_parse(system_.get(), definition, UT_UTF8));
-  }
-
-  static constexpr std::pair<const char*, const char*> products[] = {{"Ah", "A h"},   {"Wh", "W h"},   {"Nm", "N m"},
-                                                                     {"Ncm", "N cm"}, {"Nmm", "N mm"}, {"Nms", "N m s"},
-                                                                     {"Vs", "V s"},   {"RPM", "rpm"}};
-
-  /// "gcm2" as "g cm2". No symbol can say this: UDUNITS takes the exponent for that of the whole word.
-  static std::string inertia_apart(const std::string& unit) {
-    static const std::regex together("(^|[^A-Za-z_])([kmu]?g)([cm]?m)(2|\\^2|\\*\\*2|\u00b2)(?![0-9])");
-    return std::regex_replace(unit, together, "$1$2 $3$4");
-  }
-
-  void add(const char* symbol, ut_unit* unit) {
-    const Unit owner(unit);
-    ut_map_symbol_to_unit(symbol, UT_UTF8, owner.get());
-  }
-
-  std::mutex mutex_;
-  std::unique_ptr<ut_system, FreeSystem> system_;
-};
 
 /// Units of what is asked for that have a zero of their own to be converted to.
 bool is_temperature(std::string_view unit) { return unit == "K" || unit == "degC"; }
@@ -207,7 +95,7 @@ double scaled(std::string_view number, double value, double factor) {
   }
   const std::string moved = fmt::format("{}e{}", number.substr(0, e), exponent + long(power));
   double result = value * factor;
-  std::from_chars(moved.data(), moved.data() + moved.size(), result);
+  detail::read_number(moved.data(), moved.data() + moved.size(), result);
   return result;
 }
 
@@ -220,7 +108,7 @@ struct Factor {
 
 Factor refuse(std::string complaint) { return {1.0, std::move(complaint), false}; }
 
-bool are_reciprocals(const Anatomy& a, const Anatomy& b) {
+bool are_reciprocals(const UnitAnatomy& a, const UnitAnatomy& b) {
   return a.dimension.size() == b.dimension.size() &&
          std::all_of(a.dimension.begin(), a.dimension.end(), [&](const auto& power) {
            const auto other = b.dimension.find(power.first);
@@ -231,13 +119,13 @@ bool are_reciprocals(const Anatomy& a, const Anatomy& b) {
 Factor factor_for(const std::string& unit, std::string_view expected_unit) {
   if (unit.empty()) return {};
   const bool garbled = unit.size() > longest_unit || unit.find('\0') != std::string::npos;
-  std::optional<Anatomy> given;
+  std::optional<UnitAnatomy> given;
   if (!garbled) {
     if (has_stray_number(unit)) return refuse(", which holds a second number");
-    given = UnitSystem::instance().dissect(unit);
+    given = dissect(unit);
   }
   if (!given) return refuse(fmt::format(" with the unknown unit {}", in_quotes(unit)));
-  const std::optional<Anatomy> expected = UnitSystem::instance().dissect(std::string(expected_unit));
+  const std::optional<UnitAnatomy> expected = dissect(std::string(expected_unit));
   if (!expected) throw std::logic_error(fmt::format("{} is not a unit", in_quotes(expected_unit)));
 
   if (!given->plain) return refuse(fmt::format("; {} has an offset or a logarithm", in_quotes(unit)));
@@ -359,13 +247,13 @@ double parse_quantity(std::string_view text, std::string_view expected_unit, Spe
     return fail(", which does not begin with a number");
   }
   double value = 0.0;
-  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+  const auto [end, error] = detail::read_number(number.data(), number.data() + number.size(), value);
   if (error != std::errc{}) return fail(", a number too large or too small to store");
   const std::string_view mantissa = number.substr(0, std::size_t(end - number.data()));
   const std::string unit(detail::trimmed(number.substr(mantissa.size())));
   if (unit.starts_with(',')) return fail("; write a decimal point, not a comma");
   if (is_temperature(expected_unit) && !unit.empty() && unit.size() <= longest_unit && !has_stray_number(unit)) {
-    const auto kelvin_or_celsius = UnitSystem::instance().temperature(value, unit, std::string(expected_unit));
+    const auto kelvin_or_celsius = detail::converted_temperature(value, unit, std::string(expected_unit));
     if (kelvin_or_celsius && std::isfinite(*kelvin_or_celsius)) return *kelvin_or_celsius;
   }
   const Factor factor = factor_for(unit, expected_unit);

@@ -1,6 +1,7 @@
 // Range checks and the coefficient table: the untemplated half of parts/.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/core/text.hpp"
@@ -122,13 +123,40 @@ CoefficientTable::CoefficientTable(std::vector<double> alpha, std::vector<double
       throw ParameterError(key, where + " must have a larger angle of attack than the row before it");
     }
   }
-  lift_ = spline_pieces(alpha_, lift_values_);
-  drag_ = spline_pieces(alpha_, drag_values_);
+  const auto lift_pieces = spline_pieces(alpha_, lift_values_), drag_pieces = spline_pieces(alpha_, drag_values_);
+  for (std::size_t k = 0; k < lift_pieces.size(); ++k) {
+    const Cubic &l = lift_pieces[k], &d = drag_pieces[k];
+    rows_.push_back({l.x0, {l.a, l.b, l.c, l.d}, {d.a, d.b, d.c, d.d}});
+  }
+  knots_ = alpha_;
+  knots_.push_back(std::numeric_limits<double>::quiet_NaN());  // none of which lies below anything
+  // One knot in a bucket, unless some are very near each other.
+  double least = alpha_.back() - alpha_.front();
+  for (std::size_t k = 1; k < alpha_.size(); ++k) least = std::min(least, alpha_[k] - alpha_[k - 1]);
+  first_.resize(std::size_t(std::min(std::ceil((alpha_.back() - alpha_.front()) / least) + 1.0, 512.0)), 0);
+  const CoefficientLookup found = lookup();
+  std::vector<int> in_bucket(first_.size(), 0);
+  for (const double x : alpha_) {
+    const double at = (x - found.front) * found.buckets_per_angle;
+    ++in_bucket[std::size_t(std::min(at, double(first_.size() - 1)))];
+  }
+  for (std::size_t b = 1; b < first_.size(); ++b) first_[b] = first_[b - 1] + in_bucket[b - 1];
+  most_ = *std::max_element(in_bucket.begin(), in_bucket.end());
 }
 
-CoefficientTable::Cubic CoefficientTable::piece(const std::vector<Cubic>& pieces, double alpha) const {
-  const auto after = std::upper_bound(alpha_.begin(), alpha_.end(), alpha);
-  return pieces[std::size_t(after - alpha_.begin())];
+CoefficientLookup CoefficientTable::lookup() const {
+  return {knots_.data(), rows_.data(),   first_.data(), int(first_.size()),
+          most_,         alpha_.front(), alpha_.back(), double(first_.size()) / (alpha_.back() - alpha_.front())};
+}
+
+CoefficientTable::Cubic CoefficientTable::lift_piece(double alpha) const {
+  const CoefficientLookup::Row& r = rows_[std::size_t(lookup().knots_up_to(alpha))];
+  return {r.x0, r.lift[0], r.lift[1], r.lift[2], r.lift[3]};
+}
+
+CoefficientTable::Cubic CoefficientTable::drag_piece(double alpha) const {
+  const CoefficientLookup::Row& r = rows_[std::size_t(lookup().knots_up_to(alpha))];
+  return {r.x0, r.drag[0], r.drag[1], r.drag[2], r.drag[3]};
 }
 
 }  // namespace wingbeat

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "parts/expect_error.hpp"
 #include "wingbeat/core/jet.hpp"
@@ -224,6 +225,27 @@ TEST(CoefficientTable, SplineConvergesAtOrderFour) {
       EXPECT_NEAR(std::log2(before / error), 4.0, 0.4) << rows;
     }
     before = error;
+  }
+}
+
+TEST(CoefficientTable, FindsThePieceThatHolds) {
+  std::mt19937_64 random(5);
+  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  for (int n = 0; n < 50; ++n) {
+    // Rows from evenly spaced to one upon the other.
+    std::vector<double> alpha = {uniform(-1.0, 1.0)};
+    const double unevenness = uniform(0.0, 12.0);
+    for (int row = 0; row < 3 + n; ++row) alpha.push_back(alpha.back() + std::exp(-unevenness * uniform(0.0, 1.0)));
+    const std::vector<double> zero(alpha.size(), 0.0);
+    const CoefficientTable table(alpha, zero, zero);
+    std::vector<double> at = alpha;
+    for (const double x : alpha) at.insert(at.end(), {std::nextafter(x, -10.0), std::nextafter(x, 1e3)});
+    for (int k = 0; k < 200; ++k) at.push_back(uniform(alpha.front() - 0.1, alpha.back() + 0.1));
+    at.insert(at.end(), {-1e300, 1e300, -INFINITY, INFINITY});
+    for (const double x : at) {
+      const auto after = std::upper_bound(alpha.begin(), alpha.end(), x);
+      ASSERT_EQ(table.lookup().knots_up_to(x), after - alpha.begin()) << x;
+    }
   }
 }
 

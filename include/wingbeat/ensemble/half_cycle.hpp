@@ -38,11 +38,12 @@ struct HalfCycle {
 
   const Vehicle<S>& vehicle;
   CrankGeometry<S> geometry;
-  S per_inductance;  ///< 1 / L_a [1/H]
-  S per_resistance;  ///< 1 / (R_a + R_i) [1/ohm]
-  S half;            ///< +1: crank angle u, stroke upward; -1: crank angle pi + u, stroke downward
-  bool added_mass;   ///< whether the air that the wings accelerate counts (model.md section 10)
-  S drop = S(0.0);   ///< N = 1: L_a di/dt [V], which a small inductance takes from the voltage
+  S per_inductance;     ///< 1 / L_a [1/H]
+  S per_resistance;     ///< 1 / (R_a + R_i) [1/ohm]
+  S half;               ///< +1: crank angle u, stroke upward; -1: crank angle pi + u, stroke downward
+  bool has_every_law;   ///< whether added mass, coefficient tables or stops of the pitching count: see aero_loads()
+  S drop = S(0.0);      ///< N = 1: L_a di/dt [V], which a small inductance takes from the voltage
+  S pitching = S(1.0);  ///< as in Branch
 
   S current(const State& y) const {
     if constexpr (N == 2) {
@@ -58,39 +59,45 @@ struct HalfCycle {
   }
   Configuration<S> configuration_of(const CrankKinematics<S>& k) const { return {k, spring_moment(vehicle, k)}; }
 
-  Branch<S> branch(const S& force) const { return {half, force, S(1.0), S(1.0)}; }
+  Branch<S> branch(const S& force) const { return {half, force, S(1.0), S(1.0), pitching}; }
+
+  /// pitch_margin() of the wings [rad].
+  S pitch_margin_at(const Configuration<S>& place, const State& y) const {
+    return pitch_margin(vehicle.wings, S(half * place.kinematics.stroke_slope * y[0]));
+  }
 
   [[gnu::always_inline]] Motion<S> motion(const Configuration<S>& place, const State& y, const S& force) const {
-    return added_mass ? motion_with_added_mass(place, y, force) : motion_of<false>(place, y, force);
+    return has_every_law ? motion_by_every_law(place, y, force) : motion_of<false>(place, y, force);
   }
 
   /// The branch that holds is chosen on the spot.
   [[gnu::always_inline]] Motion<S> motion_on_its_branch(const Configuration<S>& place, const State& y) const {
     const S i = current(y);
     const S v_t = terminal_voltage(vehicle, vehicle.voltage, i);
-    const Instant<S> at = added_mass ? instant_with_added_mass(place, y, i, v_t) : instant_of<false>(place, y, i, v_t);
+    const Instant<S> at = has_every_law ? instant_by_every_law(place, y, i, v_t, sign_of(pitch_margin_at(place, y)))
+                                        : instant_of<false>(place, y, i, v_t, S(1.0));
     return motion_on(vehicle, at, i, v_t, branch(sign_of(at.force_switch)));
   }
 
-  template <bool has_added_mass>
-  [[gnu::always_inline]] Instant<S> instant_of(const Configuration<S>& place, const State& y, const S& i,
-                                               const S& v_t) const {
-    return instant_at<has_added_mass>(vehicle, place.kinematics, place.spring_moment, y[0], i, v_t, half, S(1.0));
+  template <bool every_law>
+  [[gnu::always_inline]] Instant<S> instant_of(const Configuration<S>& place, const State& y, const S& i, const S& v_t,
+                                               const S& on_pitching) const {
+    return instant_at<every_law>(vehicle, place.kinematics, place.spring_moment, y[0], i, v_t, half, S(1.0),
+                                 on_pitching);
   }
-  template <bool has_added_mass>
+  template <bool every_law>
   [[gnu::always_inline]] Motion<S> motion_of(const Configuration<S>& place, const State& y, const S& force) const {
     const S i = current(y);
     const S v_t = terminal_voltage(vehicle, vehicle.voltage, i);
-    return motion_on(vehicle, instant_of<has_added_mass>(place, y, i, v_t), i, v_t, branch(force));
+    return motion_on(vehicle, instant_of<every_law>(place, y, i, v_t, pitching), i, v_t, branch(force));
   }
 
   // Out of the way of vehicles without: a call in the midst of an evaluation costs registers.
-  [[gnu::noinline, gnu::cold]] Instant<S> instant_with_added_mass(const Configuration<S>& place, const State& y,
-                                                                  const S& i, const S& v_t) const {
-    return instant_of<true>(place, y, i, v_t);
+  [[gnu::noinline]] Instant<S> instant_by_every_law(const Configuration<S>& place, const State& y, const S& i,
+                                                    const S& v_t, const S& on_pitching) const {
+    return instant_of<true>(place, y, i, v_t, on_pitching);
   }
-  [[gnu::noinline, gnu::cold]] Motion<S> motion_with_added_mass(const Configuration<S>& place, const State& y,
-                                                                const S& force) const {
+  [[gnu::noinline]] Motion<S> motion_by_every_law(const Configuration<S>& place, const State& y, const S& force) const {
     return motion_of<true>(place, y, force);
   }
 
@@ -112,19 +119,19 @@ struct HalfCycle {
 };
 
 // A cycle's code must stay within the processor's instruction cache: the right-hand side is one function.
-template <bool quadratures, bool has_added_mass, class System>
+template <bool quadratures, bool every_law, class System>
 [[gnu::noinline, gnu::flatten]] void evaluate_of(const System& system,
                                                  const Configuration<typename System::Real>& place,
                                                  const typename System::State& y, const typename System::Real& force,
                                                  solver::Rates<System>& out) {
-  out = system.template rates_of<quadratures>(system.template motion_of<has_added_mass>(place, y, force), y, force);
+  out = system.template rates_of<quadratures>(system.template motion_of<every_law>(place, y, force), y, force);
 }
 
 template <bool quadratures, class System>
 [[gnu::always_inline]] inline void evaluate(const System& system, const Configuration<typename System::Real>& place,
                                             const typename System::State& y, const typename System::Real& force,
                                             solver::Rates<System>& out) {
-  if (system.added_mass) return evaluate_of<quadratures, true>(system, place, y, force, out);
+  if (system.has_every_law) return evaluate_of<quadratures, true>(system, place, y, force, out);
   evaluate_of<quadratures, false>(system, place, y, force, out);
 }
 

@@ -3,6 +3,7 @@
 
 #include <type_traits>
 
+#include "wingbeat/ensemble/pack_bends.hpp"
 #include "wingbeat/ensemble/pack_blocks.hpp"
 #include "wingbeat/ensemble/pack_lag.hpp"
 #include "wingbeat/ensemble/pack_multiplier.hpp"
@@ -10,6 +11,7 @@
 #include "wingbeat/ensemble/pack_orbit.hpp"
 #include "wingbeat/ensemble/pack_peaks.hpp"
 #include "wingbeat/ensemble/pack_start.hpp"
+#include "wingbeat/ensemble/pack_tables.hpp"
 
 namespace wingbeat {
 
@@ -27,8 +29,19 @@ void solve_block(const EnsembleMember* const* members, int count, const PackSett
   };
   const auto with_states = [&](auto states) {
     constexpr int N = decltype(states)::value;
-    const Vehicle<L> vehicle =
-        in_packs<L, Vehicle>([&](int lane) -> const Vehicle<double>& { return member(lane).vehicle; });
+    Vehicle<L> vehicle = in_packs<L, Vehicle>([&](int lane) -> const Vehicle<double>& { return member(lane).vehicle; });
+    const Vehicle<double>& first = member(0).vehicle;
+    LaneTables<L>& tables = vehicle.wings.coefficients.table;
+    tables.from_tables = bool(first.wings.coefficients.table);
+    tables.bends = tables.from_tables || has_pitch_stop(first.wings);
+    if (tables.bends) tables.bend = gather([](const EnsembleMember& m) { return bend_of_coefficients(m.vehicle); });
+    if (tables.from_tables) {
+      const auto table_of = [](const EnsembleMember& m) { return m.vehicle.wings.coefficients.table->lookup(); };
+      for (int lane = 0; lane < L::lanes; ++lane) tables.of[lane] = table_of(member(lane));
+      tables.front = gather([&](const EnsembleMember& m) { return table_of(m).front; });
+      tables.buckets_per_angle = gather([&](const EnsembleMember& m) { return table_of(m).buckets_per_angle; });
+      tables.last_bucket = gather([&](const EnsembleMember& m) { return double(table_of(m).buckets - 1); });
+    }
     PackOrbit<L, N> orbit(vehicle, settings);
     if (settings.approach == PackApproach::resume) {
       orbit.visit_start([&](L& to, const auto& of) {

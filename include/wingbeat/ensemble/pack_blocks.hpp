@@ -34,9 +34,10 @@ struct EnsembleMember {
 
 /// Where an iterate begins: near the orbit, at the lower dead centre.
 struct IterateStart {
-  std::array<double, 2> state;                                      ///< omega [rad/s], i [A]
-  std::array<std::array<double, max_force_switches>, 2> switch_at;  ///< of either half cycle [rad]
-  std::array<double, 2> switch_count, first_sign;
+  std::array<double, 2> state;  ///< omega [rad/s], i [A]
+  /// Of either half cycle [rad]: of the rod force, then of the pitch margin.
+  std::array<std::array<double, max_force_switches>, 4> switch_at;
+  std::array<double, 4> switch_count, first_sign;
   std::array<double, 4> monodromy;  ///< of an iterate, to a few per cent
 };
 
@@ -83,9 +84,9 @@ struct PackResult {
   IterateStart start;
 };
 
-/// Solves `count` members, at most lanes_* of them, alike in formulation, in whether they have springs, in
-/// whether they count the added mass, and in what their inductance makes of the current. A member's result does not
-/// depend on the others.
+/// Solves `count` members, at most lanes_* of them, alike in formulation, in whether they have springs, coefficient
+/// tables and stops of the pitching, in whether they count the added mass, and in what their inductance makes of the
+/// current. A member's result does not depend on the others.
 void solve_block_base(const EnsembleMember* const* members, int count, const PackSettings& settings,
                       PackResult* const* results);
 #ifdef WINGBEAT_X86

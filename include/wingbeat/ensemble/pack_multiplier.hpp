@@ -99,11 +99,12 @@ L PackOrbit<L, N>::floquet_multiplier() {
   }
   std::array<Matrix, nodes_per_segment> jacobian, path, moves;
   for (int half = 0; half < 2; ++half) {
-    const System system = half_cycle(half);
+    System system = half_cycle(half);
     const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
     for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
       const std::size_t base = first_node(half, s);
       const L h = mesh.u[s + 1] - mesh.u[s];
+      if (bends_) system.pitching = mesh.pitching[s];
       Matrix end_before = jacobian[intervals];
       for (std::size_t m = 0; m <= intervals; ++m) {
         jacobian[m] = jacobian_at_node(system, base + m, mesh.force[s]);

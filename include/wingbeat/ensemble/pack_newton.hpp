@@ -3,7 +3,6 @@
 #pragma once
 
 #include "wingbeat/ensemble/pack_orbit.hpp"
-
 namespace wingbeat {
 
 /// Nodes on segments that end at the switches as march() left them, with its trajectory and derivatives interpolated
@@ -35,7 +34,8 @@ void PackOrbit<L, N>::place_nodes() {
       // The derivatives by the parabola through start, middle and end; across a switch they jump, and a straight line
       // goes on from the middle.
       const bool last = s + 1 == std::size_t(segments_);
-      const Mask smooth = (last ? L(-1.0) : before.force[s] * before.force[s + 1]) > L(0.0);
+      Mask smooth = (last ? L(-1.0) : before.force[s] * before.force[s + 1]) > L(0.0);
+      if (bends_ && !last) smooth = smooth && before.pitching[s] * before.pitching[s + 1] > L(0.0);
       Matrix linear, bend;
       for (std::size_t row = 0; row < N; ++row) {
         for (std::size_t column = 0; column < N; ++column) {
@@ -147,7 +147,7 @@ void PackOrbit<L, N>::newton_iteration() {
   State end;
   end.fill(L(0.0));
   correction_[0] = end;
-  L overlooked(0.0), highest(0.0);
+  L overlooked(0.0), highest(0.0), bend_depth(0.0);
   std::array<std::array<L, nodes_per_segment>, 4> controlled;
   typename System::Quadrature integrands_before;
   if (lags_) lag_current();
@@ -164,8 +164,10 @@ void PackOrbit<L, N>::newton_iteration() {
     for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
       const std::size_t base = first_node(half, s);
       const L sign = mesh.force[s], h = mesh.u[s + 1] - mesh.u[s];
+      if (bends_) system.pitching = mesh.pitching[s];
       for (std::size_t m = 0; m <= intervals; ++m) {
         if (lags_) system.drop = drop_[base + m];
+        if (bends_) margin_[base + m] = system.pitch_margin_at(configuration_of(base + m), trajectory_[base + m]);
         if constexpr (last) {
           visit_node(system, base + m, sign, rates);
           const L weight = L(rule_.weight[m]) * h;
@@ -186,12 +188,16 @@ void PackOrbit<L, N>::newton_iteration() {
         State& jump = correction_[base];
         for (std::size_t n = 0; n < N; ++n) jump[n] = trajectory_[base - 1][n] - trajectory_[base][n];
         if (s == 0) continue;
-        const Mask switches = mesh.force[s - 1] * sign < L(0.0);
+        const Mask forces = mesh.force[s - 1] * sign < L(0.0);
+        const Mask switches = bends_ ? forces || mesh.pitching[s - 1] * mesh.pitching[s] < L(0.0) : forces;
         if (!any<L>(switches)) continue;
+        const auto switch_at = [&](std::size_t node) {
+          return bends_ ? select<L>(forces, force_[node], margin_[node]) : force_[node];
+        };
         L slope(0.0);
         for (std::size_t j = 0; j <= intervals; ++j)
-          slope = slope + L(rule_.slope[intervals][j]) * force_[base - 1 - intervals + j];
-        const L found = min(max(force_[base - 1] * h_before * inverse_of(slope), L(-1.0)), L(1.0));
+          slope = slope + L(rule_.slope[intervals][j]) * switch_at(base - 1 - intervals + j);
+        const L found = min(max(switch_at(base - 1) * h_before * inverse_of(slope), L(-1.0)), L(1.0));
         const L off = min(max(found, -h), h);
         const L half_off = select<L>(switches, L(0.5) * off, L(0.0));
         off_[std::size_t(half * segments_) + s] = select<L>(switches, last ? off : found, L(0.0));
@@ -243,16 +249,28 @@ void PackOrbit<L, N>::newton_iteration() {
       }
       u[2 * std::size_t(segments_)] = mesh.u[std::size_t(segments_)];
       force[2 * std::size_t(segments_)] = force_[first_node(half, std::size_t(segments_)) - 1];
-      const ForceSwitches<L> known = switches_[std::size_t(half)];
-      const L offset = find_switches(half, u.data(), force.data(), 2 * segments_);
-      const ForceSwitches<L>& now = switches_[std::size_t(half)];
-      const Mask same = known.count == now.count && known.first_sign == now.first_sign && offset < L(0.1);
-      switch_error_ = max(switch_error_, select<L>(same, L(0.0), misplaced(offset)));
+      const auto compare = [&](ForceSwitches<L>& switches) {
+        const ForceSwitches<L> known = switches;
+        const L offset = find_switches(switches, u.data(), force.data(), 2 * segments_);
+        const Mask same = known.count == switches.count && known.first_sign == switches.first_sign && offset < L(0.1);
+        switch_error_ = max(switch_error_, select<L>(same, L(0.0), misplaced(offset)));
+      };
+      compare(switches_[std::size_t(half)]);
+      if (bends_) {
+        for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
+          const std::size_t base = first_node(half, s);
+          force[2 * s] = margin_[base];
+          force[2 * s + 1] = margin_[base + intervals / 2];
+        }
+        force[2 * std::size_t(segments_)] = margin_[first_node(half, std::size_t(segments_)) - 1];
+        compare(bend_switches_[std::size_t(half)]);
+        bend_depth = max(bend_depth, overlooked_bend(half));
+      }
     }
   }
   correct(end);
   if constexpr (last) {
-    overlooked_ = overlooked * inverse_of(max(highest, L(1e-300)));
+    overlooked_ = max(L(overlooked * inverse_of(max(highest, L(1e-300)))), bend_depth);
     // The coefficients fall geometrically, and the sums over the nodes see none below the 2 n-th.
     step_error_ = speed_error_ = L(0.0);
     for (std::size_t c = 0; c < high_.size(); ++c) {
@@ -261,6 +279,9 @@ void PackOrbit<L, N>::newton_iteration() {
       const L ratio = high_[c] * inverse_of(max(low_[c], L(1e-300)));
       L error = high_[c] * scale;
       for (std::size_t k = 0; k < intervals / 2; ++k) error = error * ratio;
+      // At the knots of a table third derivatives jump: coefficients fall with their fourth power only, in random
+      // signs.
+      if (vehicle_.wings.coefficients.table.from_tables) error = max(error, L(L(1.0 / 128.0) * high_[c] * scale));
       step_error_ = max(step_error_, error);
       if (c < 2) speed_error_ = max(speed_error_, error);
     }
@@ -379,10 +400,10 @@ void PackOrbit<L, N>::read(const System& system, const L& u, const State& y, con
 
 /// Rates and observables at a node.
 template <class L, int N>
-template <bool has_added_mass>
+template <bool every_law>
 void PackOrbit<L, N>::visit_node_of(const System& system, std::size_t node, const L& force,
                                     solver::Rates<System>& rates) {
-  const Motion<L> motion = system.template motion_of<has_added_mass>(configuration_of(node), trajectory_[node], force);
+  const Motion<L> motion = system.template motion_of<every_law>(configuration_of(node), trajectory_[node], force);
   rates = system.template rates_of<true>(motion, trajectory_[node], force);
   if (!reads_) return;
   std::array<bool, quantity_count> wanted = wanted_;

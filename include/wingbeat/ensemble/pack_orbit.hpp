@@ -8,7 +8,8 @@
 // a vehicle gets the same bits in any company.
 //
 // pack_start.hpp holds the way to the first trajectory, pack_newton.hpp Newton's method, pack_lag.hpp the current
-// behind a small inductance, pack_peaks.hpp the search for extremes, pack_multiplier.hpp the return map's derivative.
+// behind a small inductance, pack_peaks.hpp the search for extremes, pack_bends.hpp
+// coefficients that bend, pack_multiplier.hpp the return map's derivative.
 #pragma once
 
 #include <array>
@@ -42,7 +43,8 @@ struct ForceSwitches {
 template <class L>
 struct HalfMesh {
   std::array<L, max_half_segments + 1> u;
-  std::array<L, max_half_segments> force;  ///< sign of the rod force on each segment
+  std::array<L, max_half_segments> force;     ///< sign of the rod force on each segment
+  std::array<L, max_half_segments> pitching;  ///< HalfCycle::pitching there
 };
 
 /// Value and derivative by crank angle: |beta'| [rad/s], i [A], -omega and omega [rad/s], |F| [N], energy stored in
@@ -65,7 +67,7 @@ struct PeakBracket {
 /// The trajectory of the state over one segment, another one in every lane.
 template <class L, int N>
 struct SegmentTrajectory {
-  L half, u, length, force;
+  L half, u, length, force, pitching;
   std::array<std::array<L, N>, solver::CollocationRule::max_points + 1> legendre;  ///< coefficients of the state
   std::array<L, solver::CollocationRule::max_points + 1> drop;                     ///< and of HalfCycle::drop
 };
@@ -94,7 +96,8 @@ class PackOrbit {
     wanted_ = settings.wanted;
     for (const bool wanted : wanted_) reads_ = reads_ || wanted;
     geometry_ = geometry_of(vehicle.transmission.slider_crank);
-    added_mass_ = any<L>(vehicle.wings.added_inertia > L(0.0));
+    bends_ = bends_on_lanes(vehicle.wings);
+    every_law_ = bends_ || any<L>(vehicle.wings.added_inertia > L(0.0));
     lags_ = N == 1 && settings.current == PackCurrent::lagging;
     if (N == 2 || lags_) per_inductance_ = L(1.0) / vehicle.motor.armature_inductance;
   }
@@ -112,13 +115,13 @@ class PackOrbit {
   template <class Visit>
   void visit_start(const Visit& visit) {
     for (std::size_t n = 0; n < N; ++n) visit(y_[n], [n](auto& start) -> double& { return start.state[n]; });
-    for (std::size_t half = 0; half < 2; ++half) {
-      ForceSwitches<L>& s = switches_[half];
+    for (std::size_t list = 0; list < (bends_ ? 4 : 2); ++list) {
+      ForceSwitches<L>& s = list < 2 ? switches_[list] : bend_switches_[list - 2];
       for (std::size_t n = 0; n < max_force_switches; ++n) {
-        visit(s.at[n], [half, n](auto& start) -> double& { return start.switch_at[half][n]; });
+        visit(s.at[n], [list, n](auto& start) -> double& { return start.switch_at[list][n]; });
       }
-      visit(s.count, [half](auto& start) -> double& { return start.switch_count[half]; });
-      visit(s.first_sign, [half](auto& start) -> double& { return start.first_sign[half]; });
+      visit(s.count, [list](auto& start) -> double& { return start.switch_count[list]; });
+      visit(s.first_sign, [list](auto& start) -> double& { return start.first_sign[list]; });
     }
     for (std::size_t n = 0; n < N * N; ++n) {
       visit(monodromy_[n / N][n % N], [n](auto& start) -> double& { return start.monodromy[n]; });
@@ -127,7 +130,7 @@ class PackOrbit {
 
  private:
   System half_cycle(int half) const {
-    return {vehicle_, geometry_, per_inductance_, per_resistance_, L(half == 0 ? 1.0 : -1.0), added_mass_};
+    return {vehicle_, geometry_, per_inductance_, per_resistance_, L(half == 0 ? 1.0 : -1.0), every_law_};
   }
 
   [[gnu::noinline, gnu::flatten]] void tabulate();
@@ -138,8 +141,10 @@ class PackOrbit {
                                        L& force_in_middle, L& force_at_end) const;
   template <bool last>
   [[gnu::noinline, gnu::flatten]] void coarse_iterate();
-  [[gnu::noinline, gnu::flatten]] L find_switches(int half, const L* u, const L* force, int count);
+  [[gnu::noinline, gnu::flatten]] L find_switches(ForceSwitches<L>& known, const L* u, const L* force, int count);
   [[gnu::noinline, gnu::flatten]] void build_mesh(int half);
+  [[gnu::noinline]] void build_mesh_with_bends(int half);
+  [[gnu::noinline]] L overlooked_bend(int half) const;
   [[gnu::noinline]] void march();
   [[gnu::noinline, gnu::flatten]] void place_nodes();
   template <bool last>
@@ -155,10 +160,10 @@ class PackOrbit {
   L lag_left_out() const;
   L electrical_to_mechanical_time() const;
   void visit_node(const System& system, std::size_t node, const L& force, solver::Rates<System>& rates) {
-    if (added_mass_) return visit_node_of<true>(system, node, force, rates);
+    if (every_law_) return visit_node_of<true>(system, node, force, rates);
     visit_node_of<false>(system, node, force, rates);
   }
-  template <bool has_added_mass>
+  template <bool every_law>
   [[gnu::noinline, gnu::flatten]] void visit_node_of(const System& system, std::size_t node, const L& force,
                                                      solver::Rates<System>& rates);
   [[gnu::noinline, gnu::flatten]] void add_tails(const std::array<std::array<L, nodes_per_segment>, 4>& controlled,
@@ -231,8 +236,8 @@ class PackOrbit {
   L per_inductance_, per_resistance_, current_scale_, no_load_, floor_;
   Matrix monodromy_;  ///< of an iterate
   std::array<std::array<Configuration<L>, coarse_samples>, 2> table_;
-  State y_;  ///< where an iterate starts
-  bool added_mass_;
+  State y_;         ///< where an iterate starts
+  bool every_law_;  ///< HalfCycle::has_every_law
   Mask unresolved_, locked_;
   Mask lost_;  ///< the crank comes near standstill on the way to the orbit
   std::array<ForceSwitches<L>, 2> switches_{};
@@ -257,6 +262,10 @@ class PackOrbit {
   std::array<L, 5> high_, low_;  ///< sums of the last and last but two coefficients of what limits the error
   std::array<bool, quantity_count> wanted_;
   bool reads_ = false;  ///< anything
+  // Where the coefficients bend within a half: the switches of the pitch margin, as those of the rod force.
+  bool bends_;
+  std::array<ForceSwitches<L>, 2> bend_switches_{};
+  std::array<L, max_nodes> margin_;  ///< of the pitching at the nodes [rad]
   // The current behind the speed, where the inductance is small.
   bool lags_;
   std::array<L, max_nodes> drop_;  ///< HalfCycle::drop at the nodes
@@ -297,10 +306,10 @@ auto PackOrbit<L, N>::jacobian_at(const System& system, const Configuration<L>& 
   });
 }
 
-/// Sign changes of the rod force between the samples force[0..count] at u[0..count] of half an iterate, by parabolas.
-/// Returns the largest distance from the switches known before [rad].
+/// Sign changes of the rod force, or of the pitch margin, between the samples force[0..count] at u[0..count] of half an
+/// iterate, by parabolas. Returns the largest distance from the switches known before [rad].
 template <class L, int N>
-L PackOrbit<L, N>::find_switches(int half, const L* u, const L* force, int count) {
+L PackOrbit<L, N>::find_switches(ForceSwitches<L>& known, const L* u, const L* force, int count) {
   ForceSwitches<L> found;
   found.at.fill(L(quarter));
   found.count = L(0.0);
@@ -344,7 +353,6 @@ L PackOrbit<L, N>::find_switches(int half, const L* u, const L* force, int count
     found.count = select<L>(changes, found.count + L(1.0), found.count);
   }
   unresolved_ = unresolved_ || found.count > L(double(max_force_switches));
-  ForceSwitches<L>& known = switches_[std::size_t(half)];
   L offset(0.0);
   for (std::size_t n = 0; n < max_force_switches; ++n) offset = max(offset, abs(found.at[n] - known.at[n]));
   known = found;
@@ -354,6 +362,7 @@ L PackOrbit<L, N>::find_switches(int half, const L* u, const L* force, int count
 /// Segments of equal length between the switches, their number in proportion to the distance.
 template <class L, int N>
 void PackOrbit<L, N>::build_mesh(int half) {
+  if (bends_) return build_mesh_with_bends(half);
   const int steps = segments_;
   const ForceSwitches<L>& s = switches_[std::size_t(half)];
   HalfMesh<L>& mesh = mesh_[std::size_t(half)];

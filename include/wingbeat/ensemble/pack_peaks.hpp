@@ -24,6 +24,7 @@ void PackOrbit<L, N>::follow(const L& segment, SegmentTrajectory<L, N>& trajecto
       trajectory.u = select<L>(here, mesh.u[s], trajectory.u);
       trajectory.length = select<L>(here, mesh.u[s + 1] - mesh.u[s], trajectory.length);
       trajectory.force = select<L>(here, mesh.force[s], trajectory.force);
+      if (bends_) trajectory.pitching = select<L>(here, mesh.pitching[s], trajectory.pitching);
       for (std::size_t k = 0; lags_ && k <= intervals; ++k) {
         L sum(0.0);
         for (std::size_t j = 0; j <= intervals; ++j) sum = sum + L(rule_.legendre[k][j]) * drop_[base + j];
@@ -68,7 +69,8 @@ Observable<L> PackOrbit<L, N>::observable_inside(Quantity quantity, const Segmen
                                                  const L& x) const {
   std::array<bool, quantity_count> wanted{};
   wanted[std::size_t(quantity)] = true;
-  System system = {vehicle_, geometry_, per_inductance_, per_resistance_, trajectory.half, added_mass_};
+  System system = {vehicle_, geometry_, per_inductance_, per_resistance_, trajectory.half, every_law_};
+  if (bends_) system.pitching = trajectory.pitching;
   const L t = L(2.0) * x * inverse_of(max(trajectory.length, L(1e-12))) - L(1.0);
   State y;
   for (std::size_t n = 0; n < N; ++n) y[n] = trajectory.legendre[0][n] + t * trajectory.legendre[1][n];

@@ -224,7 +224,7 @@ void PackOrbit<L, N>::coarse_iterate() {
   for (int half = 0; half < 2; ++half) {
     const System system = half_cycle(half);
     const auto& table = table_[std::size_t(half)];
-    std::array<L, coarse_samples> force;
+    std::array<L, coarse_samples> force, margin;
     const auto moved = [](const State& from, const State& slope, double by) {
       State to;
       for (std::size_t n = 0; n < N; ++n) to[n] = from[n] + L(by) * slope[n];
@@ -234,6 +234,7 @@ void PackOrbit<L, N>::coarse_iterate() {
       const auto at = [&](std::size_t sample, const State& y) {
         const Motion<L> m = system.motion_on_its_branch(table[sample], y);
         force[sample] = m.force_switch;
+        if (bends_) margin[sample] = m.aero.pitch_margin;
         return system.template rates_of<false>(m, y, L(1.0)).dy;
       };
       const State k1 = at(k, y_);
@@ -248,7 +249,10 @@ void PackOrbit<L, N>::coarse_iterate() {
       y_ = next;
       slowest_ = min(slowest_, y_[0]);
     }
-    if constexpr (last) find_switches(half, angles.data(), force.data(), coarse_samples - 1);
+    if constexpr (last) {
+      find_switches(switches_[std::size_t(half)], angles.data(), force.data(), coarse_samples - 1);
+      if (bends_) find_switches(bend_switches_[std::size_t(half)], angles.data(), margin.data(), coarse_samples - 1);
+    }
   }
   lost_ = lost_ || !(slowest_ > floor_);
 }
@@ -258,10 +262,10 @@ template <class L, int N>
 void PackOrbit<L, N>::march() {
   solver::Rates<System> k1, k2, k3, k4;
   for (int half = 0; half < 2; ++half) {
-    const System system = half_cycle(half);
+    System system = half_cycle(half);
     build_mesh(half);
     const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
-    std::array<L, 2 * max_half_segments + 1> u, force;
+    std::array<L, 2 * max_half_segments + 1> u, force, margin;
     std::array<Configuration<L>, 3> places;
     places[2] = system.place(mesh.u[0]);
     const auto moved = [](const State& from, const State& slope, const L& by) {
@@ -272,6 +276,7 @@ void PackOrbit<L, N>::march() {
     for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
       Subinterval& subinterval = subintervals_[std::size_t(half * segments_) + s];
       const L sign = mesh.force[s], h = mesh.u[s + 1] - mesh.u[s], half_h = L(0.5) * h;
+      if (bends_) system.pitching = mesh.pitching[s];
       u[2 * s] = mesh.u[s];
       u[2 * s + 1] = mesh.u[s] + half_h;
       const Configuration<L>&start = places[s % 2 == 0 ? 2 : 0], &middle = places[1], &end = places[s % 2 == 0 ? 0 : 2];
@@ -279,6 +284,7 @@ void PackOrbit<L, N>::march() {
       find_configuration(system, mesh.u[s + 1], places[s % 2 == 0 ? 0 : 2]);
       evaluate<false>(system, start, y_, sign, k1);
       force[2 * s] = k1.switches[0];
+      if (bends_) margin[2 * s] = system.pitch_margin_at(start, y_);
       subinterval.y = y_;
       subinterval.rates = k1.dy;
       subinterval.jacobian[0] = jacobian_at(system, start, y_, k1.dy, sign);
@@ -286,6 +292,7 @@ void PackOrbit<L, N>::march() {
       const State inside = moved(y_, k2.dy, half_h);
       evaluate<false>(system, middle, inside, sign, k3);
       force[2 * s + 1] = k3.switches[0];
+      if (bends_) margin[2 * s + 1] = system.pitch_margin_at(middle, inside);
       subinterval.jacobian[1] = jacobian_at(system, middle, inside, k3.dy, sign);
       evaluate<false>(system, end, moved(y_, k3.dy, h), sign, k4);
       State next;
@@ -308,6 +315,7 @@ void PackOrbit<L, N>::march() {
         }
         evaluate<false>(system, middle, between, sign, rates);
         force[2 * s + 1] = select<L>(stiff, rates.switches[0], force[2 * s + 1]);
+        if (bends_) margin[2 * s + 1] = select<L>(stiff, system.pitch_margin_at(middle, between), margin[2 * s + 1]);
         const Matrix jacobian = jacobian_at(system, middle, between, rates.dy, sign);
         for (std::size_t row = 0; row < N; ++row) {
           for (std::size_t column = 0; column < N; ++column) {
@@ -323,7 +331,11 @@ void PackOrbit<L, N>::march() {
     force[2 * std::size_t(segments_)] = k4.switches[0];
     subintervals_[std::size_t((half + 1) * segments_)].y = y_;
     subintervals_[std::size_t((half + 1) * segments_)].rates = k4.dy;
-    find_switches(half, u.data(), force.data(), 2 * segments_);
+    find_switches(switches_[std::size_t(half)], u.data(), force.data(), 2 * segments_);
+    if (bends_) {
+      margin[2 * std::size_t(segments_)] = system.pitch_margin_at(places[segments_ % 2 == 0 ? 2 : 0], y_);
+      find_switches(bend_switches_[std::size_t(half)], u.data(), margin.data(), 2 * segments_);
+    }
   }
 }
 

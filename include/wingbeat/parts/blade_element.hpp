@@ -1,7 +1,9 @@
 // Quasi-steady blade-element aerodynamics of all wings together; model.md section 3, eqs (2-4, 12-14).
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <memory>
 #include <type_traits>
@@ -30,6 +32,35 @@ struct CoefficientWave {
   }
 };
 
+/// The polynomial pieces of a coefficient table and how to find the one that holds. Plain numbers: it stays with the
+/// table, and code built for a wide instruction set may read it.
+struct CoefficientLookup {
+  /// Of lift and drag a + b t + c t^2 + d t^3, t = alpha - x0 [rad].
+  struct Row {
+    double x0;
+    std::array<double, 4> lift, drag;
+  };
+  const double* knot;  ///< [rad], growing, after the last one not a number
+  const Row* row;      ///< [k]: where k knots lie at or below alpha
+  const int* first;    ///< [b]: knots before bucket b of [front, back]
+  int buckets;
+  int most;  ///< knots in one bucket
+  double front, back, buckets_per_angle;
+
+  /// How many knots lie at or below alpha.
+  [[gnu::always_inline]] int knots_up_to(double alpha) const {
+    const double at = (alpha - front) * buckets_per_angle, last = buckets - 1;
+    return knots_from(!(at > 0.0) ? 0.0 : at < last ? at : last, alpha);
+  }
+  /// The same from the bucket on that alpha is in.
+  [[gnu::always_inline]] int knots_from(double bucket, double alpha) const {
+    int k = first[int(bucket)];
+    k += alpha >= knot[k];
+    for (int n = 1; n < most; ++n) k += alpha >= knot[k];
+    return k;
+  }
+};
+
 /// Lift and drag coefficient against angle of attack as natural cubic splines through a table; the end values hold
 /// outside the table.
 class CoefficientTable {
@@ -41,24 +72,40 @@ class CoefficientTable {
     double x0, a, b, c, d;  ///< a + b t + c t^2 + d t^3, t = x - x0
   };
   /// The polynomial piece that holds at alpha; a constant outside the table.
-  Cubic lift_piece(double alpha) const { return piece(lift_, alpha); }
-  Cubic drag_piece(double alpha) const { return piece(drag_, alpha); }
+  [[gnu::pure]] Cubic lift_piece(double alpha) const;
+  [[gnu::pure]] Cubic drag_piece(double alpha) const;
 
   const std::vector<double>& alpha() const { return alpha_; }
   const std::vector<double>& lift() const { return lift_values_; }
   const std::vector<double>& drag() const { return drag_values_; }
+  /// Valid while the table lives.
+  CoefficientLookup lookup() const;
 
  private:
-  [[gnu::pure]] Cubic piece(const std::vector<Cubic>& pieces, double alpha) const;
-  std::vector<double> alpha_, lift_values_, drag_values_;
-  std::vector<Cubic> lift_, drag_;
+  std::vector<double> alpha_, lift_values_, drag_values_, knots_;
+  std::vector<CoefficientLookup::Row> rows_;
+  std::vector<int> first_;
+  int most_ = 0;
 };
 
-/// Translational force coefficients: two waves, or a table where one is given and the scalar can read it.
+/// What SIMD lanes, which read no tables by themselves, know of their designs' tables and of where the coefficients
+/// bend: at a stop of the pitching, or where a table begins, below which its end value holds. Either all lanes have a
+/// table or none, and either all bend or none.
+template <Scalar S>
+struct LaneTables {
+  CoefficientLookup of[std::size_t(ScalarTraits<S>::lanes)];
+  S front, buckets_per_angle, last_bucket;  ///< of them
+  S bend;                                   ///< angle of attack below which the coefficients are those there [rad]
+  bool from_tables = false, bends = false;
+
+  LaneTables(std::nullptr_t = nullptr) {}  // NOLINT: of lanes without
+};
+
+/// Translational force coefficients: two waves, or a table where one is given.
 template <Scalar S>
 struct ForceCoefficients {
   using Table =
-      std::conditional_t<ScalarTraits<S>::reads_tables, std::shared_ptr<const CoefficientTable>, std::nullptr_t>;
+      std::conditional_t<ScalarTraits<S>::reads_tables, std::shared_ptr<const CoefficientTable>, LaneTables<S>>;
 
   CoefficientWave<S> lift;
   CoefficientWave<S> drag;
@@ -110,6 +157,12 @@ inline constexpr ParameterKey angle_of_attack_min{"aerodynamics.angle_of_attack_
 
 void validate(const BladeElement<double>& wings);
 
+/// C_L and C_D [1].
+template <Scalar S>
+struct LiftAndDrag {
+  S lift, drag;
+};
+
 namespace detail {
 
 /// A table piece at alpha: the piece is chosen by value, the polynomial carries the derivatives.
@@ -118,6 +171,27 @@ S evaluate_table(const Choose& choose, const S& alpha) {
   const CoefficientTable::Cubic p = choose(value_of(alpha));
   const S t = alpha - S(p.x0);
   return S(p.a) + t * (S(p.b) + t * (S(p.c) + t * S(p.d)));
+}
+
+/// The coefficients of the lanes' tables, each on its own piece; above the first knot's piece none is a constant, so
+/// that it goes on smoothly below the table.
+template <Scalar S>
+[[gnu::always_inline]] inline LiftAndDrag<S> read_tables(const LaneTables<S>& tables, const S& alpha) {
+  constexpr int lanes = ScalarTraits<S>::lanes;
+  alignas(64) double at[std::size_t(lanes)], bucket[std::size_t(lanes)], lift[std::size_t(lanes)],
+      drag[std::size_t(lanes)];
+  alpha.store(at);
+  const S in_order = S((alpha - tables.front) * tables.buckets_per_angle);
+  min(select<S>(in_order > S(0.0), in_order, S(0.0)), tables.last_bucket).store(bucket);
+  for (int lane = 0; lane < lanes; ++lane) {
+    const CoefficientLookup& table = tables.of[lane];
+    const int k = table.knots_from(bucket[lane], at[lane]);
+    const CoefficientLookup::Row& r = table.row[k > 1 ? k : 1];
+    const double t = at[lane] - r.x0;
+    lift[lane] = r.lift[0] + t * (r.lift[1] + t * (r.lift[2] + t * r.lift[3]));
+    drag[lane] = r.drag[0] + t * (r.drag[1] + t * (r.drag[2] + t * r.drag[3]));
+  }
+  return {S::load(lift), S::load(drag)};
 }
 
 }  // namespace detail
@@ -142,17 +216,28 @@ S drag_coefficient(const ForceCoefficients<S>& c, const S& alpha) {
   return c.drag.offset + c.drag.amplitude * cos(c.drag.rate * alpha + c.drag.phase);
 }
 
+/// Both at once. Without `every_law` lanes have no tables.
+template <bool every_law, Scalar S>
+[[gnu::always_inline]] inline LiftAndDrag<S> force_coefficients(const ForceCoefficients<S>& c, const S& alpha) {
+  if constexpr (!ScalarTraits<S>::reads_tables && every_law) {
+    if (c.table.from_tables) return detail::read_tables(c.table, alpha);
+  }
+  return {lift_coefficient(c, alpha), drag_coefficient(c, alpha)};
+}
+
 template <Scalar S>
 bool has_pitch_stop(const BladeElement<S>& w) {
   return std::isfinite(value_of(w.angle_of_attack_min));
 }
 
 /// How far the passive pitching is from its stop at stroke speed |beta'| [rad/s]: alpha - alpha_min [rad], 1 where
-/// there is no stop. Its sign says which branch of aero_loads() holds.
+/// there is no stop. Its sign says which branch of aero_loads() holds. On lanes the start of a table counts as well.
 template <Scalar S>
 S pitch_margin(const BladeElement<S>& w, const S& stroke_speed) {
   if constexpr (ScalarTraits<S>::reads_tables) {
     if (has_pitch_stop(w)) return S(pi / 2.0) - w.pitch_coefficient * stroke_speed - w.angle_of_attack_min;
+  } else {
+    if (w.coefficients.table.bends) return S(pi / 2.0) - w.pitch_coefficient * stroke_speed - w.coefficients.table.bend;
   }
   return S(1.0);
 }
@@ -170,6 +255,13 @@ struct AeroLoads {
   S added_inertia;
 };
 
+/// Whether lanes have to know on which side of a bend their coefficients are.
+template <Scalar S>
+bool bends_on_lanes(const BladeElement<S>& w) {
+  if constexpr (ScalarTraits<S>::reads_tables) return false;
+  else return w.coefficients.table.bends;
+}
+
 /// added_inertia() where there is some, out of the way of vehicles without.
 template <Scalar S>
 [[gnu::noinline]] S added_inertia_at(const BladeElement<S>& w, const S& alpha, const S& pitching) {
@@ -177,7 +269,7 @@ template <Scalar S>
   using std::sin;
   const S s = sin(alpha), c = cos(alpha);
   S share = s * s - (S(0.5 * pi) - alpha) * s * c;
-  if constexpr (ScalarTraits<S>::reads_tables) share = select(pitching >= S(0.0), share, s * s);
+  if (ScalarTraits<S>::reads_tables || bends_on_lanes(w)) share = select<S>(pitching >= S(0.0), share, s * s);
   return w.added_inertia * share;
 }
 
@@ -197,24 +289,38 @@ S added_energy(const BladeElement<S>& w, const S& alpha, const S& stroke_velocit
 }
 
 /// The loads at stroke velocity beta' [rad/s] of the sign `stroke`. `pitching` is the branch of the passive pitching:
-/// +1 free, -1 at the stop; as with tables, batches do not know the stop. Always inlined, with all that returns it
-/// (motion_at and below): a right-hand side that reads the moment alone pays for nothing else.
-template <bool has_added_mass = true, Scalar S>
+/// +1 free, -1 at the stop. Without `every_law` lanes know waves alone: no table, no stop, no added mass. Always
+/// inlined, with all that returns it (motion_at and below): a right-hand side that reads the moment alone pays for
+/// nothing else.
+template <bool every_law = true, Scalar S>
 [[gnu::always_inline]] inline AeroLoads<S> aero_loads(const BladeElement<S>& w, const S& stroke_velocity,
                                                       const S& stroke, const S& pitching) {
   const S speed = stroke * stroke_velocity;
   AeroLoads<S> loads;
   S alpha = S(pi / 2.0) - w.pitch_coefficient * speed;
+  S at_stop = pitching;
   if constexpr (ScalarTraits<S>::reads_tables) alpha = select(pitching >= S(0.0), alpha, w.angle_of_attack_min);
-  const S C_L = lift_coefficient(w.coefficients, alpha);
-  const S C_D = drag_coefficient(w.coefficients, alpha);
+  S read_at = alpha;
+  if constexpr (!ScalarTraits<S>::reads_tables && every_law) {
+    if (bends_on_lanes(w)) {
+      // Below the start of a table the wing pitches on, up to its stop.
+      const S &bend = w.coefficients.table.bend, &stop = w.angle_of_attack_min;
+      using std::max;
+      const auto held = pitching < S(0.0), stops = bend == stop;
+      read_at = select<S>(held, bend, alpha);
+      alpha = select<S>(held, select<S>(stops, stop, max(alpha, stop)), alpha);
+      at_stop = select<S>(stops, pitching, S(1.0));
+    }
+  }
+  const auto [C_L, C_D] = force_coefficients<every_law>(w.coefficients, read_at);
   loads.angle_of_attack = alpha;
-  loads.pitch_margin = pitch_margin(w, speed);
+  loads.pitch_margin = S(1.0);
+  if constexpr (ScalarTraits<S>::reads_tables || every_law) loads.pitch_margin = pitch_margin(w, speed);
   loads.lift = S(0.5) * w.air_density * C_L * square(speed) * w.s2;
   loads.moment = stroke * (S(0.5) * w.air_density * C_D * square(speed) * w.s3);
   loads.power = loads.moment * stroke_velocity;
   loads.added_inertia = S(0.0);
-  if constexpr (has_added_mass) loads.added_inertia = added_inertia(w, alpha, pitching);
+  if constexpr (every_law) loads.added_inertia = added_inertia(w, alpha, at_stop);
   return loads;
 }
 

@@ -313,15 +313,15 @@ template <template <Scalar> class V, Scalar S>
 }
 
 /// The same of wings under the pitch law: `stroke` and `direction` are the signs of beta' and omega (model.md section
-/// 2), `pitching` and `gear` as in Branch. Without `has_added_mass` that of the air is left out.
-template <bool has_added_mass = true, template <Scalar> class V, Scalar S>
+/// 2), `pitching` and `gear` as in Branch, `every_law` as in aero_loads().
+template <bool every_law = true, template <Scalar> class V, Scalar S>
 [[gnu::always_inline]] inline Instant<S> instant_at(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta,
                                                     const S& omega, const S& i, const S& v_t, const S& stroke,
                                                     const S& direction, const S& pitching = S(1.0),
                                                     const S& gear = S(1.0)) {
-  const AeroLoads<S> aero = aero_loads<has_added_mass>(v.wings, S(k.stroke_slope * omega), stroke, pitching);
+  const AeroLoads<S> aero = aero_loads<every_law>(v.wings, S(k.stroke_slope * omega), stroke, pitching);
   S inertia = v.wing_count * v.wing_inertia;
-  if constexpr (has_added_mass) inertia = inertia + aero.added_inertia;
+  if constexpr (every_law) inertia = inertia + aero.added_inertia;
   return instant_under<V, S>(v, k, N_k_beta, omega, i, v_t, direction, gear, aero, inertia, aero.moment);
 }
 

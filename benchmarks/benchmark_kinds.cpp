@@ -1,0 +1,140 @@
+// The batched solver on boxes that differ from the reference box in one kind of part each: designs a second of
+// processor time on one core, the share left to the scalar solver, statuses and accuracy.
+//
+//   benchmark_kinds [SECONDS] [--box NAME] [--count N] [--checked N]
+//
+// SECONDS: measure each box for that long (default 1), in turns with the reference box, whose time is the unit of
+// "ratio". N of --count: designs of a box (8192); of --checked: so many of them are compared with the scalar solver at
+// 1e-10 (1024).
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <string>
+
+#include "ensemble_timing.hpp"
+#include "vehicle/kind_boxes.hpp"
+#include "wingbeat/study/run.hpp"
+
+namespace {
+
+using namespace wingbeat;
+
+constexpr double tolerance = 1e-6;
+
+struct Arguments {
+  double seconds = 1.0;
+  std::size_t count = 8192, checked = 1024;
+  std::string_view box;
+};
+
+Arguments read_arguments(int argc, char** argv) {
+  Arguments a;
+  for (int k = 1; k < argc; ++k) {
+    const std::string_view word = argv[k];
+    const char* value = k + 1 < argc ? argv[k + 1] : "";
+    if (word == "--box") a.box = value, ++k;
+    else if (word == "--count") a.count = std::size_t(std::atol(value)), ++k;
+    else if (word == "--checked") a.checked = std::size_t(std::atol(value)), ++k;
+    else a.seconds = std::atof(argv[k]);
+  }
+  return a;
+}
+
+std::vector<EnsembleMember> members_of(KindBox box, std::size_t count) {
+  std::mt19937_64 random(20225);
+  std::vector<EnsembleMember> members;
+  for (std::size_t n = 0; n < count; ++n) {
+    const Design<double> design = kind_design(box, random);
+    members.push_back({resolve(design), reporting_of(design)});
+  }
+  return members;
+}
+
+/// Of this thread: others may want the processor, too.
+double processor_time() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
+double seconds_to_solve(const std::vector<EnsembleMember>& members, const EnsembleOptions& options,
+                        const StartUp& start_up, std::vector<EnsembleOutcome>& outcomes) {
+  outcomes.resize(members.size());
+  const double start = processor_time();
+  solve_ensemble(members, options, start_up, outcomes);
+  return processor_time() - start;
+}
+
+void measure(KindBox box, const Arguments& arguments, const StartUp& start_up) {
+  const std::vector<EnsembleMember> members = members_of(box, arguments.count);
+  const std::vector<EnsembleMember> reference = members_of(KindBox::reference, arguments.count);
+  const std::vector<EnsembleMember> checked(
+      members.begin(), members.begin() + std::ptrdiff_t(std::min(arguments.checked, members.size())));
+  std::vector<EnsembleOutcome> outcomes, of_reference, expected, one_by_one;
+  EnsembleOptions exact;
+  exact.scalar_only = true;
+  exact.metrics = wanted_sets()[2].metrics;
+  exact.tolerance = 1e-10;
+  if (!checked.empty()) seconds_to_solve(checked, exact, start_up, expected);
+  exact.tolerance = tolerance;
+  const std::vector<EnsembleMember> some(members.begin(),
+                                         members.begin() + std::ptrdiff_t(std::min<std::size_t>(256, members.size())));
+  const double scalar = seconds_to_solve(some, exact, start_up, one_by_one) / double(some.size());
+
+  EnsembleOptions options;
+  options.tolerance = tolerance;
+  options.metrics = wanted_sets()[1].metrics;
+  double best = INFINITY, best_reference = INFINITY, spent = 0.0;
+  do {
+    const double time = seconds_to_solve(members, options, start_up, outcomes);
+    const double beside = seconds_to_solve(reference, options, start_up, of_reference);
+    best = std::min(best, time), best_reference = std::min(best_reference, beside);
+    spent += time + beside;
+  } while (spent < 2.0 * arguments.seconds);
+
+  options.metrics = exact.metrics;
+  seconds_to_solve(checked, options, start_up, one_by_one);
+  std::vector<double> lift, worst;
+  int other = 0, outside = 0;
+  for (std::size_t n = 0; n < checked.size(); ++n) {
+    other += one_by_one[n].status != expected[n].status;
+    if (one_by_one[n].status != FlappingStatus::flapping || expected[n].status != FlappingStatus::flapping) continue;
+    const Metrics<double>&got = one_by_one[n].metrics, &truth = expected[n].metrics;
+    lift.push_back(std::abs(got[Metric::lift_mean] - truth[Metric::lift_mean]) / error_scale(truth, Metric::lift_mean));
+    double largest = 0.0;
+    for (int m = 0; m < metric_count; ++m) {
+      const Metric which = Metric(m);
+      if (!exact.metrics[std::size_t(m)]) continue;
+      const double off = std::abs(got[which] - truth[which]), scale = error_scale(truth, which);
+      if (off > largest * scale) largest = off / scale;
+    }
+    outside += largest > tolerance;
+    worst.push_back(largest);
+  }
+  int recomputed = 0, no_flap = 0;
+  for (const EnsembleOutcome& out : outcomes) {
+    recomputed += out.scalar;
+    no_flap += out.status != FlappingStatus::flapping;
+  }
+  std::printf("%-18s %10.0f %6.2f %8.0f %10d %8d | %7zu %9d %8d  %.1e %.1e %.1e  %.1e\n",
+              std::string(kind_box_names[std::size_t(box)]).c_str(), double(members.size()) / best,
+              best / best_reference, 1.0 / scalar, recomputed, no_flap, checked.size(), other, outside,
+              quantile(lift, 0.5), quantile(lift, 0.99), quantile(worst, 0.99), quantile(worst, 1.0));
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Arguments arguments = read_arguments(argc, argv);
+  const StartUp start_up = start_up_in_time();
+  std::printf("boxes of %zu designs, tolerance %g, power and lift, one core; errors of all metrics but multipliers\n\n",
+              arguments.count, tolerance);
+  std::printf("%-18s %10s %6s %8s %10s %8s | %7s %9s %8s  %s\n", "box", "designs/s", "ratio", "scalar/s", "recomputed",
+              "no flap", "checked", "statuses", "outside", "lift 50 %, 99 %; worst metric 99 %, 100 %");
+  for (std::size_t b = 0; b < kind_box_names.size(); ++b) {
+    if (arguments.box.empty() || arguments.box == kind_box_names[b]) measure(KindBox(b), arguments, start_up);
+  }
+  return 0;
+}

@@ -1,0 +1,100 @@
+// Force coefficients that bend at an angle of attack, on SIMD lanes: at a stop of the passive pitching, and where a
+// coefficient table begins. The part of PackOrbit in which segments end there as well.
+#pragma once
+
+#include "wingbeat/ensemble/pack_orbit.hpp"
+
+namespace wingbeat {
+
+/// Segments of equal length between the sign changes of the rod force and of the pitch margin, their number in
+/// proportion to the distance.
+template <class L, int N>
+void PackOrbit<L, N>::build_mesh_with_bends(int half) {
+  constexpr std::size_t most = 2 * max_force_switches;
+  const int steps = segments_;
+  const ForceSwitches<L>&f = switches_[std::size_t(half)], &b = bend_switches_[std::size_t(half)];
+  HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+  const L all(steps), count = f.count + b.count;
+  unresolved_ = unresolved_ || count > all - L(1.0);
+  // Both lists are sorted; those beyond the counts go to the end.
+  std::array<L, most> place, bends;
+  for (std::size_t n = 0; n < max_force_switches; ++n) {
+    place[n] = select<L>(f.count > L(double(n)), f.at[n], L(1e3));
+    bends[n] = L(0.0);
+    const std::size_t m = most - 1 - n;
+    place[m] = select<L>(b.count > L(double(n)), b.at[n], L(1e3));
+    bends[m] = L(1.0);
+  }
+  for (std::size_t end = most; end > 1; --end) {
+    for (std::size_t n = 0; n + 1 < end; ++n) {
+      const Mask swap = place[n] > place[n + 1];
+      const L low = min(place[n], place[n + 1]), high = max(place[n], place[n + 1]);
+      const L first = select<L>(swap, bends[n + 1], bends[n]), second = select<L>(swap, bends[n], bends[n + 1]);
+      place[n] = low, place[n + 1] = high;
+      bends[n] = first, bends[n + 1] = second;
+    }
+  }
+  std::array<L, most + 2> node, at, per_step;
+  node[0] = L(0.0);
+  at[0] = L(-quarter);
+  for (std::size_t n = 0; n < most; ++n) {
+    const Mask used = count > L(double(n));
+    const L wanted = nearest_whole(L((place[n] + L(quarter)) * L(steps / pi)));
+    const L within = min(max(wanted, node[n] + L(1.0)), all - (count - L(double(n))));
+    node[n + 1] = select<L>(used, within, all);
+    at[n + 1] = select<L>(used, place[n], L(quarter));
+  }
+  node[most + 1] = all;
+  at[most + 1] = L(quarter);
+  for (std::size_t n = 0; n <= most; ++n) {
+    per_step[n] = (at[n + 1] - at[n]) * inverse_of(max(L(node[n + 1] - node[n]), L(0.5)));
+  }
+  for (int m = 0; m <= steps; ++m) {
+    const L here(m);
+    L u = at[0] + per_step[0] * here;
+    L force = f.first_sign, pitching = b.first_sign;
+    for (std::size_t n = 1; n <= most; ++n) {
+      const Mask beyond = here >= node[n] && node[n]<all, bend = bends[n - 1]> L(0.0);
+      u = select<L>(beyond, at[n] + per_step[n] * (here - node[n]), u);
+      force = select<L>(beyond && !bend, -force, force);
+      pitching = select<L>(beyond && bend, -pitching, pitching);
+    }
+    mesh.u[std::size_t(m)] = m == steps ? L(quarter) : u;
+    if (m == steps) break;
+    mesh.force[std::size_t(m)] = force;
+    mesh.pitching[std::size_t(m)] = pitching;
+  }
+}
+
+/// How far the pitch margin has the wrong sign inside the segments of half an iterate, as the nodes show it and the
+/// tops of the stroke speed between them [rad]. The slopes of the speed at the nodes are those of the last rates.
+template <class L, int N>
+L PackOrbit<L, N>::overlooked_bend(int half) const {
+  const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+  L depth(0.0);
+  for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
+    const std::size_t base = first_node(half, s);
+    const L h = mesh.u[s + 1] - mesh.u[s], pitching = mesh.pitching[s];
+    L slope_before(0.0);
+    for (std::size_t m = 0; m <= std::size_t(rule_.intervals); ++m) {
+      const std::size_t node = base + m;
+      const CrankKinematics<L>& k = configuration_of(node).kinematics;
+      // Of the margin by crank angle, from there where it is positive on.
+      const L slope = -(pitching * vehicle_.wings.pitch_coefficient * L(half == 0 ? 1.0 : -1.0) *
+                        (k.stroke_curve * trajectory_[node][0] + k.stroke_slope * rates_[node][0]));
+      const L margin = pitching * margin_[node];
+      if (m > 0 && m < std::size_t(rule_.intervals)) depth = max(depth, -margin);
+      if (m > 0) {
+        const L width = L(rule_.node[m] - rule_.node[m - 1]) * h;
+        const Mask turns = slope_before < L(0.0) && slope > L(0.0);
+        const L bend = select<L>(turns, slope - slope_before, L(1.0));
+        const L lowest = pitching * margin_[node - 1] - L(0.5) * square(slope_before) * width * inverse_of(bend);
+        depth = max(depth, select<L>(turns, -lowest, L(0.0)));
+      }
+      slope_before = slope;
+    }
+  }
+  return depth;
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,265 @@
+#include "explored.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+
+#include "wingbeat/cycle/energy_audit.hpp"
+#include "wingbeat/files/units.hpp"
+#include "wingbeat/files/waveform_file.hpp"
+#include "wingbeat/report/report.hpp"
+#include "wingbeat/vehicle/drive.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
+
+namespace wingbeat::web {
+namespace {
+
+Json number_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+
+Json text_or_null(std::string_view text) { return text.empty() ? Json(nullptr) : Json(std::string(text)); }
+
+Json described(std::string_view key, std::string_view unit, std::string_view meaning) {
+  return {{"key", std::string(key)}, {"unit", std::string(unit)}, {"meaning", std::string(meaning)}};
+}
+
+Json balance_of(const EnergyAudit& a) {
+  return {{"electrical", a.electrical}, {"copper", a.copper}, {"viscous", a.viscous},         {"gear", a.gear},
+          {"friction", a.friction},     {"hinge", a.hinge},   {"aerodynamic", a.aerodynamic}, {"residual", a.residual},
+          {"imbalance", a.imbalance}};
+}
+
+Json evidence_of(const StatusEvidence& e) {
+  Json json = {{"angle_rad", number_or_null(e.angle)},
+               {"torque_nm", number_or_null(e.torque)},
+               {"friction_torque_nm", number_or_null(e.friction_torque)},
+               {"torque_margin_nm", number_or_null(e.torque_margin)},
+               {"locks_rad", Json::array()}};
+  for (const LockInterval& lock : e.locks) json["locks_rad"].push_back({lock.from, lock.to});
+  return json;
+}
+
+void keep_columns(std::span<const WaveformRow> rows, Columns& columns) {
+  for (const WaveformColumn& column : waveform_columns(rows)) {
+    std::vector<double> numbers;
+    numbers.reserve(rows.size());
+    for (const WaveformRow& row : rows) numbers.push_back(row.*column.value);
+    columns.emplace_back(column.name, std::move(numbers));
+  }
+}
+
+}  // namespace
+
+Json tables_of_the_library() {
+  Json tables = {{"keys", Json::array()}, {"metrics", Json::array()}, {"waveforms", Json::array()}};
+  for (const Parameter<double>& key : parameter_table<double>()) {
+    tables["keys"].push_back({{"key", std::string(key.path)},
+                              {"unit", text_or_null(key.unit)},
+                              {"range", std::string(key.range.text)},
+                              {"lower", number_or_null(key.range.lower)},
+                              {"upper", number_or_null(key.range.upper)},
+                              {"above_lower", key.range.above_lower},
+                              {"below_upper", key.range.below_upper},
+                              {"whole", key.range.whole},
+                              {"default", default_text(key)},
+                              {"meaning", std::string(key.meaning)},
+                              {"only_with", text_or_null(key.only_with)},
+                              {"alternatives", alternatives_of(key)},
+                              {"example", text_or_null(key.example)},
+                              {"quantity", key.set ? Json(quantity_example(key.unit)) : Json(nullptr)},
+                              {"number", key.set != nullptr}});
+  }
+  for (const MetricInfo& metric : metric_table()) {
+    tables["metrics"].push_back(described(metric.key, metric.unit, metric.long_name));
+  }
+  for (const WaveformColumn& column : waveform_columns()) {
+    tables["waveforms"].push_back(described(column.name, column.unit, column.long_name));
+  }
+  return tables;
+}
+
+Json read_vehicle(const std::string& text, const std::string& name, const nlohmann::json& tables) {
+  bool loaded = false;
+  const Design<double> design = parse_design(text, name, {}, [&](const std::string& table) -> std::string {
+    loaded = true;
+    if (!tables.contains(table))
+      throw InputError(table, 0, 0, "", "no such file; drop it together with the vehicle file");
+    return tables[table];
+  });
+  return {{"toml", loaded ? write_design(design) : text}, {"name", design.name}};
+}
+
+const Design<double>& explored(const std::string& text, const std::vector<std::string>& assignments) {
+  struct Read {
+    std::string text;
+    Design<double> design;
+  };
+  static std::vector<Read> recent;  // most recent last
+  static Design<double> current;
+  constexpr std::size_t kept = 4;
+  const auto found = std::find_if(recent.begin(), recent.end(), [&](const Read& read) { return read.text == text; });
+  if (found != recent.end()) {
+    std::rotate(found, found + 1, recent.end());
+  } else {
+    Design<double> design = parse_design(text, "vehicle");
+    if (recent.size() == kept) recent.erase(recent.begin());
+    recent.push_back({text, std::move(design)});
+  }
+  const Design<double>& base = recent.back().design;
+  current = assignments.empty() ? base : design_with(assignments, &base);
+  return current;
+}
+
+Json values_of(const Design<double>& design) {
+  Json values = Json::object();
+  for (const Parameter<double>& key : parameter_table<double>()) {
+    const std::string path(key.path);
+    if (key.get) {
+      if (const std::optional<double> number = key.get(design)) values[path] = number_or_null(*number);
+      continue;
+    }
+    const std::string text = key.text ? key.text(design) : std::string();
+    if (!text.empty()) values[path] = key.range.text == "true or false" ? Json(text == "true") : Json(text);
+  }
+  return values;
+}
+
+RunOptions options_of(const nlohmann::json& options) {
+  RunOptions run;
+  const auto number = [&](const char* name) {
+    return options.contains(name) && options[name].is_number() ? std::optional<double>(options[name]) : std::nullopt;
+  };
+  const std::string condition = options.value("condition", "air"), method = options.value("method", "orbit");
+  run.condition = from_name<Condition>(condition).value_or(Condition::air);
+  run.method = from_name<Method>(method).value_or(Method::orbit);
+  run.tolerance = number("tolerance").value_or(run.tolerance);
+  run.frequency = number("frequency");
+  run.lift = number("lift");
+  run.allow_extrapolation = options.value("allow_extrapolation", false);
+  run.waveform_rows = options.value("rows", 0);
+  return run;
+}
+
+Json solved(const Design<double>& design, const RunOptions& options, Columns& columns) {
+  const RunResult result = solve(design, options);
+  keep_columns(result.cycle, columns);
+  return {{"report", Json::parse(json_report(result))},
+          {"balance", balance_of(energy_audit(result.metrics))},
+          {"evidence", evidence_of(result.evidence)},
+          {"supply_voltage", number_or_null(result.design.supply.voltage)}};
+}
+
+Json started(const Design<double>& design, const RunOptions& options, Columns& columns) {
+  TransientOptions transient;
+  transient.tolerance = options.tolerance;
+  transient.record = true;
+  transient.metrics = false;
+  const TransientResult result = simulate(design, transient, options.condition);
+  const auto keep = [&](const char* name, double TransientSample::* member) {
+    std::vector<double> numbers;
+    numbers.reserve(result.samples.size());
+    for (const TransientSample& sample : result.samples) numbers.push_back(sample.*member);
+    columns.emplace_back(name, std::move(numbers));
+  };
+  keep("time_s", &TransientSample::time);
+  keep("crank_angle_rad", &TransientSample::crank_angle);
+  keep("crank_speed_rad_per_s", &TransientSample::crank_speed);
+  keep("current_a", &TransientSample::current);
+  return {{"status", name_of(result.status)},
+          {"detail", describe(result.evidence)},
+          {"end_time", result.end_time},
+          {"evidence", evidence_of(result.evidence)}};
+}
+
+Json differentiated(const Design<double>& design, const std::vector<std::string>& keys, const RunOptions& options) {
+  DesignPointOptions point;
+  point.condition = options.condition;
+  point.frequency = options.frequency;
+  point.tolerance = options.tolerance;
+  const DesignPoint found = gradient(design, keys, point);
+  Json json = {{"status", name_of(found.status)}, {"detail", describe(found)}, {"gradients", Json::object()}};
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    Json slopes = Json::array();
+    for (int m = 0; m < metric_count; ++m) {
+      slopes.push_back(found.gradients.empty() ? Json(nullptr) : number_or_null(found.gradients[k][std::size_t(m)]));
+    }
+    json["gradients"][keys[k]] = std::move(slopes);
+  }
+  return json;
+}
+
+Json mechanism_of(const Design<double>& design, const std::vector<double>& angles, Columns& columns) {
+  const Vehicle<double> vehicle = resolve(design, Condition::air);
+  const AnyTransmission<double>& transmission = vehicle.transmission;
+  Json json = {{"type", name_of(transmission.type)},
+               {"rotates", drive_of(vehicle).rotates},
+               {"springs", vehicle.spring.stiffness > 0.0},
+               {"pitch_hinge", pitches(vehicle)},
+               {"wing_count", vehicle.wing_count}};
+  if (transmission.type == TransmissionType::slider_crank) {
+    const SliderCrank<double>& c = transmission.slider_crank;
+    json["crank_radius"] = c.crank_radius;
+    json["rod_length"] = c.rod_length;
+    json["hinge_offset"] = c.hinge_offset;
+    json["mid_stroke_height"] = c.mid_stroke_height;
+  } else if (transmission.type == TransmissionType::four_bar) {
+    const FourBar<double>& f = transmission.four_bar;
+    json["crank_radius"] = f.crank_radius;
+    json["coupler_length"] = f.coupler_length;
+    json["rocker_length"] = f.rocker_length;
+    json["ground_length"] = f.ground_length;
+    json["ground_angle"] = f.ground_angle;
+    json["stroke_ratio"] = f.stroke_ratio;
+  }
+  if (!drive_of(vehicle).rotates) return json;
+  std::vector<double> stroke, height;
+  for (const double theta : angles) {
+    const double s = std::sin(theta), c = std::cos(theta);
+    stroke.push_back(stroke_angle(crank_kinematics(transmission, s, c)));
+    if (transmission.type == TransmissionType::slider_crank) {
+      height.push_back(slider_height(transmission.slider_crank, s, c));
+    }
+  }
+  columns.emplace_back("stroke_angle_rad", std::move(stroke));
+  if (!height.empty()) columns.emplace_back("slider_height_m", std::move(height));
+  return json;
+}
+
+Json solved_together(const Design<double>& design, const std::vector<std::string>& keys,
+                     const std::vector<double>& values, const RunOptions& options, Columns& columns) {
+  std::vector<Design<double>> designs;
+  std::vector<std::size_t> rows;
+  const std::size_t count = keys.empty() ? 0 : values.size() / keys.size();
+  for (std::size_t row = 0; row < count; ++row) {
+    Design<double> one = design;
+    try {
+      for (std::size_t k = 0; k < keys.size(); ++k) set_parameter(one, keys[k], values[row * keys.size() + k]);
+      validate(one);
+    } catch (const ParameterError&) {
+      continue;  // the status invalid
+    }
+    designs.push_back(std::move(one));
+    rows.push_back(row);
+  }
+  EnsembleOptions ensemble;
+  ensemble.tolerance = options.tolerance;
+  const std::vector<EnsembleOutcome> outcomes = solve_ensemble(designs, ensemble, options.condition);
+
+  std::vector<double> status(count, double(SweepStatus::invalid)), domain(count, 0.0);
+  std::vector<std::vector<double>> metrics(std::size_t(metric_count), std::vector<double>(count, absent));
+  for (std::size_t n = 0; n < outcomes.size(); ++n) {
+    status[rows[n]] = double(sweep_status(outcomes[n].status));
+    domain[rows[n]] = outcomes[n].domain.any() ? 1.0 : 0.0;
+    for (std::size_t m = 0; m < metrics.size(); ++m) metrics[m][rows[n]] = outcomes[n].metrics.values[m];
+  }
+  columns.emplace_back("status", std::move(status));
+  columns.emplace_back("domain", std::move(domain));
+  for (std::size_t m = 0; m < metrics.size(); ++m) {
+    columns.emplace_back(metric_table()[m].key, std::move(metrics[m]));
+  }
+  Json names = Json::array();
+  for (int s = 0; s < sweep_status_count; ++s) names.push_back(name_of(SweepStatus(s)));
+  return {{"statuses", std::move(names)}};
+}
+
+}  // namespace wingbeat::web

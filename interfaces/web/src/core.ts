@@ -1,0 +1,200 @@
+// The library, compiled to WebAssembly, with types. All numbers are SI.
+import createCore from '#core/wingbeat-core.mjs';
+import wasmUrl from '#core/wingbeat-core.wasm?url';
+
+export interface Key {
+  key: string;
+  unit: string | null;
+  range: string;
+  lower: number | null;
+  upper: number | null;
+  whole: boolean;
+  default: string;
+  meaning: string;
+  only_with: string | null;
+  alternatives: string[];
+  example: string | null;
+  quantity: string | null;
+  number: boolean;
+}
+export interface Quantity {
+  key: string;
+  unit: string;
+  meaning: string;
+}
+export interface Tables {
+  keys: Key[];
+  metrics: Quantity[];
+  waveforms: Quantity[];
+}
+export interface Problem {
+  message: string;
+  key?: string;
+  line?: number;
+  column?: number;
+}
+export type Columns = Record<string, Float64Array>;
+export type Values = Record<string, number | string | boolean | null>;
+export type Report = Record<string, number | string | string[] | null> & {status: string | null; status_detail: string};
+export interface Balance {
+  electrical: number;
+  copper: number;
+  viscous: number;
+  gear: number;
+  friction: number;
+  hinge: number;
+  aerodynamic: number;
+  residual: number;
+  imbalance: number;
+}
+export interface Evidence {
+  angle_rad: number | null;
+  torque_margin_nm: number | null;
+  locks_rad: [number, number][];
+}
+export interface Solved {
+  report: Report;
+  balance: Balance;
+  evidence: Evidence;
+  supply_voltage: number | null;
+  columns: Columns;
+}
+export interface StartUp {
+  status: string;
+  detail: string;
+  end_time: number;
+  evidence: Evidence;
+  columns: Columns;
+}
+export interface Mechanism {
+  type: 'slider-crank' | 'four-bar' | 'tabulated' | 'direct';
+  rotates: boolean;
+  springs: boolean;
+  pitch_hinge: boolean;
+  crank_radius: number;
+  rod_length: number;
+  hinge_offset: number;
+  mid_stroke_height: number;
+  coupler_length: number;
+  rocker_length: number;
+  ground_length: number;
+  ground_angle: number;
+  stroke_ratio: number;
+  columns: Columns;
+}
+export interface RunOptions {
+  condition?: string;
+  tolerance?: number;
+  frequency?: number;
+  lift?: number;
+  allow_extrapolation?: boolean;
+  rows?: number;
+}
+export interface Motor {
+  model: string;
+  refused: string | null;
+  values: Record<string, number>;
+}
+/** A vehicle file and values of keys on top of it, as `--set` takes them. */
+export interface Stated {
+  text: string;
+  changes: Record<string, string>;
+}
+
+/** What the library refuses, in its own sentences. */
+export class Refused extends Error {
+  constructor(readonly problems: Problem[]) {
+    super(problems.map((p) => p.message).join('\n'));
+  }
+}
+
+interface Answer {
+  json: string;
+  columns?: Columns;
+}
+interface Module {
+  tables(): string;
+  read(text: string, name: string, tables: string): Answer;
+  values(text: string, changes: string): Answer;
+  edited(text: string, changes: string): Answer;
+  solve(text: string, changes: string, options: string): Answer;
+  startUp(text: string, changes: string, options: string): Answer;
+  gradients(text: string, changes: string, keys: string, options: string): Answer;
+  mechanism(text: string, changes: string, angles: Float64Array): Answer;
+  ensemble(text: string, changes: string, keys: string, values: Float64Array, options: string): Answer;
+  motors(text: string, changes: string, catalogue: string, gear: number): Answer;
+}
+
+/** `--set` assignments. */
+export const assignments = (changes: Record<string, string>) => Object.entries(changes).map(([k, v]) => `${k}=${v}`);
+
+export class Core {
+  readonly tables: Tables;
+  constructor(private readonly module: Module) {
+    this.tables = JSON.parse(module.tables());
+  }
+
+  read(text: string, name: string, tables: Record<string, string> = {}): {toml: string; name: string} {
+    return unpacked(this.module.read(text, name, JSON.stringify(tables)));
+  }
+  values(s: Stated): Values {
+    return unpacked(this.module.values(s.text, list(s)));
+  }
+  /** The vehicle file with the changes in it, comments kept. */
+  edited(s: Stated): string {
+    return unpacked<{toml: string}>(this.module.edited(s.text, list(s))).toml;
+  }
+  solve(s: Stated, options: RunOptions): Solved {
+    return unpacked(this.module.solve(s.text, list(s), pack(options)));
+  }
+  startUp(s: Stated, options: RunOptions): StartUp {
+    return unpacked(this.module.startUp(s.text, list(s), pack(options)));
+  }
+  gradients(s: Stated, keys: string[], options: RunOptions): Record<string, (number | null)[]> {
+    const found = unpacked<{gradients: Record<string, (number | null)[]>}>(
+      this.module.gradients(s.text, list(s), JSON.stringify(keys), pack(options)),
+    );
+    return found.gradients;
+  }
+  mechanism(s: Stated, angles: Float64Array): Mechanism {
+    return unpacked(this.module.mechanism(s.text, list(s), angles));
+  }
+  ensemble(
+    s: Stated,
+    keys: string[],
+    values: Float64Array,
+    options: RunOptions,
+  ): {statuses: string[]; columns: Columns} {
+    return unpacked(this.module.ensemble(s.text, list(s), JSON.stringify(keys), values, pack(options)));
+  }
+  motors(s: Stated, catalogue: string, gear: number): Motor[] {
+    return unpacked<{motors: Motor[]}>(this.module.motors(s.text, list(s), catalogue, gear)).motors;
+  }
+}
+
+const list = (s: Stated) => JSON.stringify(assignments(s.changes));
+const pack = (options: RunOptions) => JSON.stringify(options);
+
+function unpacked<T>(answer: Answer): T {
+  const found = JSON.parse(answer.json);
+  if (found.errors) throw new Refused(found.errors);
+  if (answer.columns) found.columns = answer.columns;
+  return found;
+}
+
+/** The compiled code, from the page itself where it stands in it, else from beside it. */
+export async function compiledCore(): Promise<WebAssembly.Module> {
+  const embedded = document.getElementById('wingbeat-core')?.textContent;
+  if (!embedded) return WebAssembly.compileStreaming(fetch(wasmUrl));
+  const packed = Uint8Array.from(atob(embedded), (c) => c.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
+  return WebAssembly.compile(await new Response(stream).arrayBuffer());
+}
+
+export async function startCore(compiled: WebAssembly.Module): Promise<Core> {
+  const instantiateWasm = (imports: WebAssembly.Imports, done: (instance: WebAssembly.Instance) => void) => {
+    WebAssembly.instantiate(compiled, imports).then(done);
+    return {};
+  };
+  return new Core((await createCore({instantiateWasm})) as Module);
+}

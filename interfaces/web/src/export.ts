@@ -1,0 +1,67 @@
+// Pictures and numbers as files.
+import type {Columns} from './core';
+
+export function download(name: string, content: BlobPart, type: string) {
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(new Blob([content], {type}));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+
+const drawn = [
+  'fill',
+  'stroke',
+  'stroke-width',
+  'stroke-dasharray',
+  'stroke-linecap',
+  'opacity',
+  'font-size',
+  'font-family',
+  'font-weight',
+];
+
+/** The picture as a file of its own: what the page's style gives each element becomes an attribute. */
+export function standalone(picture: SVGSVGElement): string {
+  const copy = picture.cloneNode(true) as SVGSVGElement;
+  const [, , width, height] = (picture.getAttribute('viewBox') ?? '0 0 400 300').split(' ').map(Number);
+  const originals = picture.querySelectorAll('*');
+  copy.querySelectorAll('*').forEach((element, n) => {
+    const style = getComputedStyle(originals[n]);
+    for (const name of drawn) element.setAttribute(name, style.getPropertyValue(name));
+    element.removeAttribute('class');
+  });
+  const paper = document.createElementNS('http://www.w3.org/2000/svg', 'rect');
+  for (const [name, value] of Object.entries({width, height, fill: getComputedStyle(document.body).backgroundColor})) {
+    paper.setAttribute(name, String(value));
+  }
+  copy.prepend(paper);
+  for (const [name, value] of Object.entries({xmlns: 'http://www.w3.org/2000/svg', width, height}))
+    copy.setAttribute(name, String(value));
+  return new XMLSerializer().serializeToString(copy);
+}
+
+export const saveSvg = (name: string, picture: SVGSVGElement) =>
+  download(`${name}.svg`, standalone(picture), 'image/svg+xml');
+
+export async function savePng(name: string, picture: SVGSVGElement, scale = 2) {
+  const image = new Image();
+  image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(standalone(picture))}`;
+  await image.decode();
+  const canvas = document.createElement('canvas');
+  canvas.width = image.width * scale;
+  canvas.height = image.height * scale;
+  canvas.getContext('2d')?.drawImage(image, 0, 0, canvas.width, canvas.height);
+  const blob = await new Promise<Blob | null>((done) => canvas.toBlob(done, 'image/png'));
+  if (blob) download(`${name}.png`, blob, 'image/png');
+}
+
+/** The cycle as `wingbeat run --waveforms` writes it. */
+export function cycleCsv(columns: Columns): string {
+  const names = Object.keys(columns);
+  const rows = [names.join(',')];
+  for (let row = 0; row < columns[names[0]].length; ++row) {
+    rows.push(names.map((name) => (Number.isFinite(columns[name][row]) ? String(columns[name][row]) : '')).join(','));
+  }
+  return rows.join('\n') + '\n';
+}

@@ -1,0 +1,216 @@
+// One cycle in panels, one below the other, with one cursor through all of them.
+import {scaleLinear} from 'd3-scale';
+import {line} from 'd3-shape';
+import type {Columns} from '../core';
+import {html, set, svg} from '../dom';
+import {digits, scaleFor, shownUnit, tickText} from '../quantities';
+
+interface Panel {
+  id: string;
+  title: string;
+  unit: string;
+  columns: [string, string][];
+} // column, label
+
+const panels: Panel[] = [
+  {
+    id: 'stroke',
+    title: 'stroke angle',
+    unit: 'rad',
+    columns: [
+      ['stroke_angle_rad', 'stroke'],
+      ['pitch_angle_rad', 'pitch'],
+    ],
+  },
+  {id: 'velocity', title: 'flapping velocity', unit: 'rad/s', columns: [['flapping_velocity_rad_per_s', 'velocity']]},
+  {id: 'lift', title: 'lift, all wings', unit: 'N', columns: [['lift_n', 'lift']]},
+  {id: 'force', title: 'rod force', unit: 'N', columns: [['rod_force_n', 'rod force']]},
+  {id: 'current', title: 'current', unit: 'A', columns: [['current_a', 'current']]},
+  {
+    id: 'power',
+    title: 'power',
+    unit: 'W',
+    columns: [
+      ['power_electrical_w', 'electrical'],
+      ['power_motor_w', 'motor output'],
+      ['power_friction_w', 'friction'],
+      ['power_aerodynamic_w', 'aerodynamic'],
+    ],
+  },
+];
+
+export type Abscissa = 'time' | 'crank angle';
+const width = 420,
+  height = 150,
+  left = 52,
+  right = 8,
+  top = 22,
+  bottom = 32;
+
+interface Drawn {
+  panel: Panel;
+  figure: HTMLElement;
+  picture: SVGSVGElement;
+  axes: SVGGElement;
+  curves: SVGGElement;
+  cursor: SVGLineElement;
+  readout: SVGTextElement;
+}
+
+const finite = (numbers: Float64Array | undefined): numbers is Float64Array => !!numbers && Number.isFinite(numbers[0]);
+
+export class CyclePlots {
+  private readonly drawn: Drawn[];
+  private columns: Columns | null = null;
+  private abscissa: Abscissa = 'time';
+  private place = 0;
+
+  /** `scrub` is told the share of the cycle that the user points at. */
+  constructor(parent: HTMLElement, scrub: (share: number) => void) {
+    this.drawn = panels.map((panel) => {
+      const axes = svg('g'),
+        curves = svg('g');
+      const cursor = svg('line', {class: 'cursor', y1: top, y2: height - bottom, x1: left, x2: left});
+      const readout = svg('text', {class: 'readout', x: width - right, y: 14, 'text-anchor': 'end'});
+      const picture = svg(
+        'svg',
+        {
+          viewBox: `0 0 ${width} ${height}`,
+          role: 'img',
+          'aria-label': `${panel.title} over one cycle`,
+          id: `plot-${panel.id}`,
+        },
+        axes,
+        curves,
+        cursor,
+        readout,
+      );
+      const figure = html('figure', {class: 'plot', 'data-picture': panel.id}, picture);
+      const point = (event: PointerEvent) => {
+        const box = picture.getBoundingClientRect();
+        const x = ((event.clientX - box.left) / box.width) * width;
+        scrub(this.shareAt(Math.min(1, Math.max(0, (x - left) / (width - left - right)))));
+      };
+      picture.addEventListener('pointermove', (e) => point(e as PointerEvent));
+      picture.addEventListener('pointerdown', (e) => {
+        picture.setPointerCapture(e.pointerId);
+        point(e as PointerEvent);
+      });
+      parent.append(figure);
+      return {panel, figure, picture, axes, curves, cursor, readout};
+    });
+  }
+
+  pictures(): [string, SVGSVGElement][] {
+    return this.drawn.map((d) => [d.panel.id, d.picture]);
+  }
+
+  draw(columns: Columns | null, ghost: Columns | null, abscissa: Abscissa, forceName: string) {
+    this.columns = columns;
+    this.abscissa = abscissa;
+    for (const d of this.drawn) {
+      const shown = d.panel.columns.filter(([name]) => columns && finite(columns[name]));
+      d.figure.hidden = columns !== null && shown.length === 0;
+      d.axes.replaceChildren();
+      d.curves.replaceChildren();
+      if (!columns || shown.length === 0) {
+        d.curves.append(
+          svg('text', {x: width / 2, y: height / 2, class: 'nothing', 'text-anchor': 'middle'}, 'no steady cycle'),
+        );
+        d.readout.textContent = d.panel.title;
+        continue;
+      }
+      this.drawPanel(d, columns, ghost, shown, d.panel.id === 'force' ? forceName : d.panel.title);
+    }
+    this.moveCursor(this.place);
+  }
+
+  private drawPanel(d: Drawn, columns: Columns, ghost: Columns | null, shown: [string, string][], title: string) {
+    const all = shown.flatMap(([name]) => [columns[name], ...(ghost && finite(ghost[name]) ? [ghost[name]] : [])]);
+    let low = Infinity,
+      high = -Infinity;
+    for (const numbers of all)
+      for (const x of numbers) {
+        low = Math.min(low, x);
+        high = Math.max(high, x);
+      }
+    const scale = scaleFor(Math.max(Math.abs(low), Math.abs(high)), d.panel.unit);
+    const y = scaleLinear(
+      [Math.min(0, low) * scale.factor, Math.max(0, high) * scale.factor],
+      [height - bottom, top],
+    ).nice(4);
+    const along = this.abscissaOf(columns);
+    const x = scaleLinear([0, along.end], [left, width - right]);
+    for (const tick of y.ticks(4)) {
+      d.axes.append(
+        svg('line', {class: 'grid', x1: left, x2: width - right, y1: y(tick), y2: y(tick)}),
+        svg('text', {x: left - 5, y: y(tick) + 3.5, 'text-anchor': 'end'}, tickText(tick)),
+      );
+    }
+    const ticks = this.abscissa === 'time' ? x.ticks(5) : [0, 90, 180, 270, 360];
+    for (const tick of ticks) {
+      d.axes.append(svg('text', {x: x(tick), y: height - bottom + 12, 'text-anchor': 'middle'}, tickText(tick)));
+    }
+    d.axes.append(
+      svg('text', {x: left, y: 14, class: 'title'}, `${title}, ${shownUnit(scale.unit)}`),
+      svg('text', {x: width - right, y: height - 2, 'text-anchor': 'end'}, along.name),
+    );
+    shown.forEach(([name], n) => {
+      const path = (from: Columns, axis: Float64Array) =>
+        line<number>(
+          (_, i) => x(axis[i]),
+          (v) => y(v * scale.factor),
+        )(Array.from(from[name])) ?? '';
+      if (ghost && finite(ghost[name])) {
+        const axis = this.abscissaOf(ghost);
+        const stretched = axis.numbers.map((t) => (t * along.end) / axis.end);
+        d.curves.append(svg('path', {class: `curve ghost series-${n}`, d: path(ghost, stretched)}));
+      }
+      d.curves.append(svg('path', {class: `curve series-${n}`, d: path(columns, along.numbers)}));
+    });
+  }
+
+  private abscissaOf(columns: Columns) {
+    const time = this.abscissa === 'time';
+    const factor = time ? 1e3 : 180 / Math.PI;
+    const numbers = columns[time ? 'time_s' : 'crank_angle_rad'].map((t) => t * factor);
+    return {numbers, end: time ? numbers[numbers.length - 1] : 360, name: time ? 'time, ms' : 'crank angle, °'};
+  }
+
+  /** The share of the cycle in time at a share of the horizontal axis. */
+  private shareAt(along: number): number {
+    if (!this.columns || this.abscissa === 'time') return along;
+    const angles = this.columns.crank_angle_rad;
+    let row = 0;
+    while (row < angles.length - 1 && angles[row] < along * 2 * Math.PI) ++row;
+    return row / (angles.length - 1);
+  }
+
+  /** Shows the values at a share of the cycle. */
+  moveCursor(share: number) {
+    this.place = share;
+    const columns = this.columns;
+    if (!columns) return;
+    const row = Math.round(share * (columns.time_s.length - 1));
+    const along = this.abscissaOf(columns);
+    const x = left + ((width - left - right) * along.numbers[row]) / along.end;
+    for (const d of this.drawn) {
+      if (d.figure.hidden) continue;
+      set(d.cursor, {x1: x, x2: x});
+      const parts = d.panel.columns
+        .filter(([name]) => finite(columns[name]))
+        .map(([name], n) => {
+          const scale = scaleFor(columns[name][row], d.panel.unit);
+          return svg(
+            'tspan',
+            {class: `label-${n}`, dx: n ? 6 : 0},
+            `${digits(columns[name][row] * scale.factor, 3)} ${shownUnit(scale.unit)}`,
+          );
+        });
+      d.readout.replaceChildren(...parts);
+    }
+  }
+}
+
+/** What the colours of the panel of powers mean. */
+export const powerSeries = panels[panels.length - 1].columns.map(([, label]) => label);

@@ -1,0 +1,111 @@
+// Where the power goes: from the supply through motor and mechanism to the air, mean powers of a cycle.
+import {sankey, sankeyLinkHorizontal} from 'd3-sankey';
+import type {Balance} from '../core';
+import {svg} from '../dom';
+import {digits, readable} from '../quantities';
+
+interface Place {
+  name: string;
+  kind: string;
+}
+interface Flow {
+  source: number;
+  target: number;
+  value: number;
+  kind: string;
+}
+
+const height = 270;
+
+/** Stations and flows of a balance [W]. A flow below a thousandth of the input is left to the table; a residual that
+ * brings power in enters at the mechanism. */
+function network(b: Balance): {nodes: Place[]; links: Flow[]} {
+  const nodes: Place[] = [],
+    links: Flow[] = [];
+  const least = 1e-3 * b.electrical;
+  const add = (name: string, kind: string) => nodes.push({name, kind}) - 1;
+  const flow = (source: number, target: number, value: number, kind: string) =>
+    links.push({source, target, value, kind});
+  const supply = add('supply', 'input'),
+    motor = add('motor', 'station');
+  flow(supply, motor, b.electrical, 'useful');
+  if (b.copper > least) flow(motor, add('copper loss', 'loss'), b.copper, 'copper');
+  if (b.viscous > least) flow(motor, add('motor viscous loss', 'loss'), b.viscous, 'viscous');
+  const onward = b.electrical - Math.max(b.copper, 0) - Math.max(b.viscous, 0);
+  if (!(onward > least)) return {nodes, links};
+  const mechanism = add('mechanism', 'station');
+  flow(motor, mechanism, onward, 'useful');
+  if (b.gear > least) flow(mechanism, add('gear loss', 'loss'), b.gear, 'gear');
+  if (b.friction > least) flow(mechanism, add('friction', 'loss'), b.friction, 'friction');
+  if (b.hinge > least) flow(mechanism, add('pitch hinges', 'loss'), b.hinge, 'hinge');
+  if (b.residual > least) flow(mechanism, add('formulation residual', 'loss'), b.residual, 'residual');
+  if (b.residual < -least) flow(add('formulation residual', 'input'), mechanism, -b.residual, 'residual');
+  if (b.aerodynamic > least) flow(mechanism, add('air', 'useful'), b.aerodynamic, 'aerodynamic');
+  return {nodes, links};
+}
+
+export function drawSankey(picture: SVGSVGElement, balance: Balance | null) {
+  const width = Math.max(330, Math.min(720, picture.clientWidth || 640)); // letters keep their size
+  picture.setAttribute('viewBox', `0 0 ${width} ${height}`);
+  picture.replaceChildren();
+  if (!balance || !(balance.electrical > 0)) {
+    picture.append(
+      svg('text', {x: width / 2, y: height / 2, 'text-anchor': 'middle', class: 'nothing'}, 'no steady cycle'),
+    );
+    return;
+  }
+  const layout = sankey<Place, Flow>()
+    .nodeWidth(10)
+    .nodePadding(22)
+    .extent([
+      [4, 22],
+      [width - (width < 500 ? 160 : 275), height - 24],
+    ]);
+  const {nodes, links} = layout(network(balance));
+  for (const link of links) {
+    picture.append(
+      svg(
+        'path',
+        {
+          class: `flow flow-${link.kind}`,
+          d: sankeyLinkHorizontal()(link) ?? '',
+          'stroke-width': Math.max(1, link.width ?? 0),
+        },
+        svg('title', {}, `${readable(link.value, 'W')}`),
+      ),
+    );
+  }
+  for (const node of nodes) {
+    const x0 = node.x0 ?? 0,
+      x1 = node.x1 ?? 0,
+      y0 = node.y0 ?? 0,
+      y1 = node.y1 ?? 0;
+    picture.append(
+      svg('rect', {class: `node node-${node.kind}`, x: x0, y: y0, width: x1 - x0, height: Math.max(1, y1 - y0)}),
+    );
+    const share = `${digits((100 * (node.value ?? 0)) / balance.electrical, 3)} %`;
+    const label = width < 500 ? `${node.name} ${share}` : `${node.name} ${readable(node.value, 'W')} (${share})`;
+    const above = node.kind === 'station' || node.kind === 'input';
+    picture.append(
+      above ? svg('text', {x: x0, y: y1 + 14}, node.name) : svg('text', {x: x1 + 6, y: (y0 + y1) / 2 + 4}, label),
+    );
+  }
+}
+
+/** The balance as rows of a table: name, power [W], share of the input. */
+export function balanceRows(b: Balance): [string, number, number][] {
+  const rows: [string, number][] = [
+    ['electrical input', b.electrical],
+    ['copper loss', b.copper],
+    ['motor viscous loss', b.viscous],
+    ['gear loss', b.gear],
+    ['friction', b.friction],
+    ['pitch hinges', b.hinge],
+    ['aerodynamic', b.aerodynamic],
+    ['formulation residual', b.residual],
+    ['energy-balance error', b.imbalance],
+  ];
+  return rows
+    .filter(([name, value]) => value !== 0 || name === 'energy-balance error')
+    .map(([name, value]) => [name, value, value / b.electrical]);
+}

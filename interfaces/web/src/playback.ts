@@ -1,0 +1,34 @@
+// Time in slow motion: which share of the cycle is shown.
+export class Playback {
+  share = 0;
+  playing = true;
+  slowness = 100;
+  private last = 0;
+
+  /** `period` [s] of what is shown; `draw` is called once a frame while it moves. */
+  constructor(
+    private readonly period: () => number,
+    private readonly draw: (share: number) => void,
+    private readonly repeats: () => boolean,
+  ) {
+    this.playing = !matchMedia('(prefers-reduced-motion: reduce)').matches;
+    requestAnimationFrame((now) => this.frame(now));
+  }
+
+  show(share: number) {
+    this.share = share;
+    this.draw(share);
+  }
+
+  private frame(now: number) {
+    const elapsed = Math.min(0.1, (now - this.last) / 1000);
+    this.last = now;
+    const period = this.period();
+    if (this.playing && period > 0 && !document.hidden) {
+      const next = this.share + elapsed / (this.slowness * period);
+      const share = this.repeats() ? next % 1 : Math.min(1, next);
+      if (share !== this.share) this.show(share);
+    }
+    requestAnimationFrame((time) => this.frame(time));
+  }
+}

@@ -1,0 +1,72 @@
+// What the page costs: scripts/test-explorer --measure.
+import {gzipSync} from 'node:zlib';
+import {readFileSync, readdirSync} from 'node:fs';
+import {join} from 'node:path';
+import {launch, open, root, serve, singleFile} from './browser.mjs';
+
+const server = await serve(),
+  browser = await launch();
+const {page, context} = await open(browser, server.url);
+const assets = readdirSync(join(root, 'build/explorer/site/assets')).length;
+console.log(`first load: ${server.sent()} bytes compressed (${assets} assets)`);
+const file = readFileSync(singleFile.replace('file://', ''));
+console.log(`single file: ${file.length} bytes, ${gzipSync(file).length} compressed`);
+
+const updates = await page.evaluate(async () => {
+  const slider = document.querySelector('[aria-label="supply.voltage, slider"]');
+  const times = [];
+  for (let n = 0; n < 200; ++n) {
+    await new Promise(requestAnimationFrame);
+    const begun = performance.now();
+    slider.value = String(400 + ((n * 7) % 400));
+    slider.dispatchEvent(new Event('input'));
+    document.body.getBoundingClientRect(); // style and layout included
+    times.push(performance.now() - begun);
+  }
+  times.sort((a, b) => a - b);
+  return {median: times[100], late: times[190]};
+});
+console.log(`slider to picture: median ${updates.median.toFixed(1)} ms, 95 % within ${updates.late.toFixed(1)} ms`);
+
+const memory = async () => {
+  const client = await context.newCDPSession(page);
+  await client.send('HeapProfiler.collectGarbage');
+  await client.detach();
+  return page.evaluate(() => [performance.memory.usedJSHeapSize, document.querySelectorAll('*').length]);
+};
+const many = (count) =>
+  page.evaluate(async (updates) => {
+    for (let n = 0; n < updates; ++n) {
+      window.explorer.change({'supply.voltage': String(2.5 + (n % 200) / 200)}, false);
+      if (n % 50 === 0) await new Promise((resume) => setTimeout(resume));
+    }
+  }, count);
+await many(500);
+const before = await memory();
+await many(10000);
+await page.waitForTimeout(500);
+const after = await memory();
+console.log(
+  `memory: ${(before[0] / 1e6).toFixed(2)} MB and ${before[1]} elements, after 10,000 updates ${(
+    after[0] / 1e6
+  ).toFixed(2)} MB and ${after[1]} elements`,
+);
+
+await page.click('#restore');
+await page.click('#study');
+await page.waitForSelector('body[data-study^="200 "]');
+console.log(`trend of 200 designs: ${(await page.evaluate(() => document.body.dataset.study)).split(' ')[1]} ms`);
+await page.selectOption('#up', 'transmission.crank_radius');
+await page.click('#study');
+await page.waitForSelector('body[data-study^="1600 "]', {timeout: 120000});
+console.log(`map of 1600 designs: ${(await page.evaluate(() => document.body.dataset.study)).split(' ')[1]} ms`);
+
+const begun = [];
+for (let n = 0; n < 5; ++n) {
+  const other = await open(browser, server.url);
+  begun.push(await other.page.evaluate(() => window.firstNumber));
+  await other.context.close();
+}
+console.log(`first number: ${begun.map((t) => Math.round(t)).join(', ')} ms after the navigation began`);
+await browser.close();
+server.close();

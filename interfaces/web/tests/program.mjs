@@ -1,0 +1,25 @@
+// The program, whose answers the page must give: WINGBEAT_PROGRAM, build/ci's unless given.
+import {execFile} from 'node:child_process';
+import {join} from 'node:path';
+import {promisify} from 'node:util';
+import {root} from './browser.mjs';
+
+const program = process.env.WINGBEAT_PROGRAM ?? join(root, 'build/ci/wingbeat');
+const execute = promisify(execFile);
+
+export async function run(...options) {
+  try {
+    const {stdout, stderr} = await execute(program, ['run', ...options], {cwd: root});
+    return {code: 0, stdout, stderr};
+  } catch (error) {
+    if (typeof error.code !== 'number') throw error;
+    return {code: error.code, stdout: error.stdout, stderr: error.stderr};
+  }
+}
+
+/** The object of --json, or the sentences of what is refused. */
+export async function answer(vehicle, changes, condition) {
+  const sets = Object.entries(changes).flatMap(([key, value]) => ['--set', `${key}=${value}`]);
+  const {code, stdout, stderr} = await run(`data/designs/${vehicle}.toml`, '--json', '--condition', condition, ...sets);
+  return code === 2 ? {refused: stderr} : {report: JSON.parse(stdout)};
+}
