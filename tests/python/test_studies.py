@@ -41,7 +41,7 @@ class Studies(unittest.TestCase):
         import numpy as np
         from scipy import signal
 
-        _, response = signal.dlsim(system, np.tile([1.0, 0.0], (20, 1)))
+        _, response, _ = signal.dlsim(system, np.tile([1.0, 0.0], (20, 1)))
         steps = models["model"]["step_responses"]["voltage"]
         for column, name in enumerate(model.outputs):
             np.testing.assert_allclose(response[:, column], steps[name][:20], rtol=1e-9, atol=1e-12)
