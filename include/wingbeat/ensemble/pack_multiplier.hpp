@@ -91,7 +91,6 @@ auto PackOrbit<L, N>::jacobian_at_node(System system, std::size_t node, const L&
 /// The largest modulus of the eigenvalues of the return map's derivative, by collocation of the variational equation.
 template <class L, int N>
 L PackOrbit<L, N>::floquet_multiplier() {
-  constexpr int repeats = 3;  // each gains about two digits
   const std::size_t intervals = std::size_t(rule_.intervals);
   Matrix M;
   for (std::size_t row = 0; row < N; ++row) {
@@ -128,7 +127,7 @@ L PackOrbit<L, N>::floquet_multiplier() {
         path[m] = path[m - 1];
         append(step_[base + m], path[m]);
       }
-      for (int repeat = 0; repeat < repeats; ++repeat) {
+      for (int repeat = 0; repeat < settings_.newton_iterations + 2; ++repeat) {
         std::array<Matrix, nodes_per_segment> rates;
         for (std::size_t m = 0; m <= intervals; ++m) {
           rates[m] = path[m];

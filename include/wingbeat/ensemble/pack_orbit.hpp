@@ -287,7 +287,7 @@ auto PackOrbit<L, N>::derivatives(const State& y, const State& rates, const Rate
   Matrix jacobian;
   for (std::size_t n = 0; n < N; ++n) {
     State moved = y;
-    const L by = n == 0 ? L(1e-6) * y[0] : L(1e-6) * current_scale_;
+    const L by = n == 0 ? L(1e-7) * y[0] : L(1e-7) * current_scale_;
     moved[n] = moved[n] + by;
     const State there = rates_at(moved);
     const L per_move = inverse_of(by);
