@@ -35,34 +35,6 @@ std::vector<EnsembleMember> reference_box() {
   return members;
 }
 
-/// Relative errors of the checked designs that flap.
-struct Errors {
-  std::vector<double> lift, worst;
-};
-
-/// `expected` holds every checked_every-th design.
-Errors errors_of(const std::vector<EnsembleOutcome>& outcomes, const std::vector<EnsembleOutcome>& expected,
-                 const MetricSet& metrics) {
-  Errors errors;
-  for (std::size_t n = 0; n < expected.size(); ++n) {
-    const EnsembleOutcome& got = outcomes[n * checked_every];
-    if (got.status != FlappingStatus::flapping || expected[n].status != FlappingStatus::flapping) continue;
-    errors.lift.push_back(std::abs(got.metrics[Metric::lift_mean] / expected[n].metrics[Metric::lift_mean] - 1.0));
-    double largest = 0.0;
-    for (std::size_t m = 0; m < std::size_t(metric_count); ++m) {
-      // A residual power of zero, and an angle near zero, have no relative error.
-      if (!metrics[m] || m == std::size_t(Metric::floquet_multiplier_max) || m == std::size_t(Metric::power_residual) ||
-          m == std::size_t(Metric::angle_of_attack_min)) {
-        continue;
-      }
-      const double e = std::abs(got.metrics.values[m] / expected[n].metrics.values[m] - 1.0);
-      if (e > largest) largest = e;
-    }
-    errors.worst.push_back(largest);
-  }
-  return errors;
-}
-
 /// Direct drives without constant friction and pitch stop, whose equations are smooth between two reversals.
 void measure_direct_drives(const StartUp& start_up, double seconds) {
   constexpr std::size_t sample_every = 32;
@@ -97,28 +69,13 @@ void measure_direct_drives(const StartUp& start_up, double seconds) {
       options.isa = isa;
       options.metrics = wanted.metrics;
       const double time = best_time([&] { solve_ensemble(members, options, start_up, outcomes); }, seconds);
-      std::vector<double> lift, worst;
-      int other = 0;
-      for (std::size_t n = 0; n < sample.size(); ++n) {
-        const EnsembleOutcome& got = outcomes[n * sample_every];
-        other += got.status != expected[n].status;
-        if (got.status != FlappingStatus::flapping || expected[n].status != FlappingStatus::flapping) continue;
-        const Metrics<double>& exact = expected[n].metrics;
-        lift.push_back(std::abs(got.metrics[Metric::lift_mean] / exact[Metric::lift_mean] - 1.0));
-        double largest = 0.0;
-        for (int m = 0; m < metric_count; ++m) {
-          const Metric which = Metric(m);
-          if (!wanted.metrics[std::size_t(m)] || which == Metric::floquet_multiplier_max) continue;
-          const double off = std::abs(got.metrics[which] - exact[which]);
-          if (off > largest * error_scale(exact, which)) largest = off / error_scale(exact, which);
-        }
-        worst.push_back(largest);
-      }
+      const Errors errors = errors_of(outcomes, expected, sample_every, wanted.metrics);
       const auto recomputed =
           std::count_if(outcomes.begin(), outcomes.end(), [](const EnsembleOutcome& out) { return out.scalar; });
       std::printf("%-8s %-20s %10.0f %8.1f %10td %9d   %.1e %.1e %.1e; %.1e\n", std::string(name).c_str(), wanted.name,
-                  double(design_count) / time, scalar_time * double(design_count) / time, recomputed, other,
-                  quantile(lift, 0.5), quantile(lift, 0.99), quantile(lift, 0.999), quantile(worst, 0.999));
+                  double(design_count) / time, scalar_time * double(design_count) / time, recomputed, errors.other,
+                  quantile(errors.lift, 0.5), quantile(errors.lift, 0.99), quantile(errors.lift, 0.999),
+                  quantile(errors.worst, 0.999));
     }
   }
 }
@@ -161,7 +118,7 @@ int main(int argc, char** argv) {
       options.isa = isa;
       options.metrics = wanted.metrics;
       const double time = best_time([&] { solve_ensemble(members, options, start_up, outcomes); }, seconds);
-      const Errors errors = errors_of(outcomes, expected, wanted.metrics);
+      const Errors errors = errors_of(outcomes, expected, checked_every, wanted.metrics);
       int recomputed = 0, still = 0;
       for (const EnsembleOutcome& out : outcomes) {
         recomputed += out.scalar;
@@ -183,7 +140,7 @@ int main(int argc, char** argv) {
     options.tolerance = by_tolerance;
     options.metrics = wanted_sets()[1].metrics;
     const double time = best_time([&] { solve_ensemble(members, options, start_up, outcomes); }, seconds);
-    const Errors errors = errors_of(outcomes, expected, options.metrics);
+    const Errors errors = errors_of(outcomes, expected, checked_every, options.metrics);
     const auto beyond = [&](double limit) {
       return std::count_if(errors.worst.begin(), errors.worst.end(), [&](double e) { return e > limit; });
     };

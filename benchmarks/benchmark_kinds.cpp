@@ -95,32 +95,19 @@ void measure(KindBox box, const Arguments& arguments, const StartUp& start_up) {
 
   options.metrics = exact.metrics;
   seconds_to_solve(checked, options, start_up, one_by_one);
-  std::vector<double> lift, worst;
-  int other = 0, outside = 0;
-  for (std::size_t n = 0; n < checked.size(); ++n) {
-    other += one_by_one[n].status != expected[n].status;
-    if (one_by_one[n].status != FlappingStatus::flapping || expected[n].status != FlappingStatus::flapping) continue;
-    const Metrics<double>&got = one_by_one[n].metrics, &truth = expected[n].metrics;
-    lift.push_back(std::abs(got[Metric::lift_mean] - truth[Metric::lift_mean]) / error_scale(truth, Metric::lift_mean));
-    double largest = 0.0;
-    for (int m = 0; m < metric_count; ++m) {
-      const Metric which = Metric(m);
-      if (!exact.metrics[std::size_t(m)]) continue;
-      const double off = std::abs(got[which] - truth[which]), scale = error_scale(truth, which);
-      if (off > largest * scale) largest = off / scale;
-    }
-    outside += largest > tolerance;
-    worst.push_back(largest);
-  }
+  const Errors errors = errors_of(one_by_one, expected, 1, exact.metrics);
+  const auto outside =
+      std::count_if(errors.worst.begin(), errors.worst.end(), [](double error) { return error > tolerance; });
   int recomputed = 0, no_flap = 0;
   for (const EnsembleOutcome& out : outcomes) {
     recomputed += out.scalar;
     no_flap += out.status != FlappingStatus::flapping;
   }
-  std::printf("%-18s %10.0f %6.2f %8.0f %10d %8d | %7zu %9d %8d  %.1e %.1e %.1e  %.1e\n",
+  std::printf("%-18s %10.0f %6.2f %8.0f %10d %8d | %7zu %9d %8td  %.1e %.1e %.1e  %.1e\n",
               std::string(kind_box_names[std::size_t(box)]).c_str(), double(members.size()) / best,
-              best / best_reference, 1.0 / scalar, recomputed, no_flap, checked.size(), other, outside,
-              quantile(lift, 0.5), quantile(lift, 0.99), quantile(worst, 0.99), quantile(worst, 1.0));
+              best / best_reference, 1.0 / scalar, recomputed, no_flap, checked.size(), errors.other, outside,
+              quantile(errors.lift, 0.5), quantile(errors.lift, 0.99), quantile(errors.worst, 0.99),
+              quantile(errors.worst, 1.0));
   std::fflush(stdout);
 }
 

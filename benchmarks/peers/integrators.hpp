@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cvode/cvode.h>
-#include <nvector/nvector_serial.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 #include <algorithm>
 #include <array>
@@ -10,7 +9,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "peers/equations.hpp"
+#include "peers/sundials.hpp"
 
 namespace wingbeat::peers {
 
@@ -74,27 +73,23 @@ Steady by_odeint(const Peer& peer, double tolerance, std::array<double, 2>* star
 
 // CVODE: Adams with functional iteration.
 template <std::size_t N>
-class Adams {
+class Adams : SundialsStates<N> {
+  using States = SundialsStates<N>;
+  using States::context_, States::peer_, States::y_;
+
  public:
   Adams() {
-    SUNContext_Create(nullptr, &context_);
-    y_ = N_VNew_Serial(sunindextype(N), context_);
-    N_VConst(1.0, y_);
     memory_ = CVodeCreate(CV_ADAMS, context_);
     nonlinear_ = SUNNonlinSol_FixedPoint(y_, 0, context_);
-    CVodeInit(memory_, &rates, 0.0, y_);
+    CVodeInit(memory_, &States::rates, 0.0, y_);
     CVodeSetNonlinearSolver(memory_, nonlinear_);
-    CVodeSetUserData(memory_, this);
-    CVodeSetErrHandlerFn(memory_, [](int, const char*, const char*, char*, void*) {}, nullptr);
+    CVodeSetUserData(memory_, static_cast<States*>(this));
+    CVodeSetErrHandlerFn(memory_, &States::say_nothing, nullptr);
     CVodeSetMaxNumSteps(memory_, 100000);
   }
-  Adams(const Adams&) = delete;
-  Adams& operator=(const Adams&) = delete;
   ~Adams() {
     CVodeFree(&memory_);
     SUNNonlinSolFree(nonlinear_);
-    N_VDestroy(y_);
-    SUNContext_Free(&context_);
   }
 
   void begin(const Peer& peer, const double* u, double tolerance) {
@@ -120,16 +115,6 @@ class Adams {
   }
 
  private:
-  static int rates(realtype theta, N_Vector y, N_Vector dy, void* self) {
-    const double* u = N_VGetArrayPointer(y);
-    if (!(u[0] > 0.0)) return 1;
-    static_cast<Adams*>(self)->peer_->template rates<N>(theta, u, N_VGetArrayPointer(dy));
-    return 0;
-  }
-
-  const Peer* peer_ = nullptr;
-  SUNContext context_ = nullptr;
-  N_Vector y_ = nullptr;
   void* memory_ = nullptr;
   SUNNonlinearSolver nonlinear_ = nullptr;
   double begun_ = 0.0, theta_ = 0.0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <vector>
 
 #include "wingbeat/cycle/static_balance.hpp"
@@ -135,6 +136,49 @@ void keep_wanted(const MetricSet& wanted, Metrics<double>& metrics) {
   }
 }
 
+enum class Coefficients { waves, with_stop, table };
+
+/// What the cranks of a block have in common.
+struct PackKind {
+  bool stiff;
+  Coefficients coefficients;
+  bool added_mass, virtual_work, springs;
+  PackCurrent current;
+
+  auto operator<=>(const PackKind&) const = default;
+};
+
+/// Whether current or speed settle within a part of a coarse step at the speed without load, so that explicit steps
+/// there would be unstable.
+bool is_stiff(const Vehicle<double>& v, PackCurrent current) {
+  constexpr double coarse_step = pi / 8.0, stable = 1.0;
+  const double R = circuit_resistance(v), K = v.motor.torque_constant, no_load = no_load_speed(v);
+  const double inertia = v.motor.inertia + 0.5 * v.wing_count * v.wing_inertia;
+  const double braking = (K * K / R + v.motor.viscous_damping) / inertia;
+  return (current == PackCurrent::state && R * coarse_step > stable * v.motor.armature_inductance * no_load) ||
+         braking * coarse_step > stable * no_load;
+}
+
+/// The settings of an attempt for a kind. Stiff designs take at once what others take after a start from rest. Where
+/// coefficients bend, segments have more places to end at; with the knots of a table, means converge with the fourth
+/// power of the nodes only.
+PackSettings settings_for(const PackKind& kind, PackSettings settings) {
+  settings.current = kind.current;
+  if (kind.stiff && settings.approach == PackApproach::guess) {
+    settings.implicit = true;
+    settings.newton_iterations += 1;
+    settings.segments = max_half_segments;
+  }
+  if (kind.coefficients == Coefficients::with_stop) {
+    settings.segments = std::min(settings.segments + 2, max_half_segments);
+  } else if (kind.coefficients == Coefficients::table) {
+    const int more = settings.approach == PackApproach::resume ? 4 : 2;
+    settings.segments = max_half_segments;
+    settings.intervals = std::min(settings.intervals + more, solver::max_collocation_intervals);
+  }
+  return settings;
+}
+
 /// One run of members through the solvers.
 class EnsembleRun {
  public:
@@ -153,7 +197,7 @@ class EnsembleRun {
   /// Solves the members that `takes(vehicle)` says are to be, their motors as they are.
   template <class Takes>
   void solve(const Takes& takes) {
-    std::array<std::vector<std::size_t>, kinds> by_kind;
+    std::map<PackKind, std::vector<std::size_t>> by_kind;
     std::array<std::vector<std::size_t>, direct_kinds> direct_by_kind;
     for (std::size_t n = 0; n < members_.size(); ++n) {
       const Vehicle<double>& v = members_[n].vehicle;
@@ -168,17 +212,21 @@ class EnsembleRun {
         by_kind[kind_of(v)].push_back(n);
       }
     }
-    for (const std::vector<std::size_t>& alike : by_kind) solve_alike(alike);
+    for (const auto& [kind, alike] : by_kind) solve_alike(kind, alike);
     for (const std::vector<std::size_t>& alike : direct_by_kind) solve_direct(alike);
   }
 
  private:
-  static constexpr std::size_t kinds = 144;
-  std::size_t kind_of(const Vehicle<double>& v) const {
-    const std::size_t coefficients = v.wings.coefficients.table ? 2 : has_pitch_stop(v.wings) ? 1 : 0;
-    return (is_stiff(v) ? 72 : 0) + 24 * coefficients + (v.wings.added_inertia > 0.0 ? 12 : 0) +
-           (v.transmission.slider_crank.formulation == Formulation::virtual_work ? 6 : 0) +
-           (v.spring.stiffness > 0.0 ? 3 : 0) + std::size_t(current_of(v));
+  PackKind kind_of(const Vehicle<double>& v) const {
+    const PackCurrent current = current_of(v);
+    return {.stiff = is_stiff(v, current),
+            .coefficients = v.wings.coefficients.table ? Coefficients::table
+                            : has_pitch_stop(v.wings)  ? Coefficients::with_stop
+                                                       : Coefficients::waves,
+            .added_mass = v.wings.added_inertia > 0.0,
+            .virtual_work = v.transmission.slider_crank.formulation == Formulation::virtual_work,
+            .springs = v.spring.stiffness > 0.0,
+            .current = current};
   }
 
   static constexpr std::size_t direct_kinds = 4;
@@ -192,26 +240,15 @@ class EnsembleRun {
     return lag < max_lag(options_.tolerance) ? PackCurrent::lagging : PackCurrent::state;
   }
 
-  /// Whether current or speed settle within a part of a coarse step at the speed without load, so that explicit steps
-  /// there would be unstable.
-  bool is_stiff(const Vehicle<double>& v) const {
-    constexpr double coarse_step = pi / 8.0, stable = 1.0;
-    const double R = circuit_resistance(v), K = v.motor.torque_constant, no_load = no_load_speed(v);
-    const double inertia = v.motor.inertia + 0.5 * v.wing_count * v.wing_inertia;
-    const double braking = (K * K / R + v.motor.viscous_damping) / inertia;
-    return (current_of(v) == PackCurrent::state && R * coarse_step > stable * v.motor.armature_inductance * no_load) ||
-           braking * coarse_step > stable * no_load;
-  }
-
   /// Few need more than the first attempt: all of a kind together fill the lanes of the others.
-  void solve_alike(const std::vector<std::size_t>& all) {
+  void solve_alike(const PackKind& kind, const std::vector<std::size_t>& all) {
     std::vector<std::size_t> unresolved, still_unresolved, inexact, left;
-    run(all, plan_.first, unresolved, inexact);
-    run(unresolved, plan_.from_rest, still_unresolved, inexact);
-    run(still_unresolved, plan_.from_rest_finely, left, inexact);
+    run(all, settings_for(kind, plan_.first), unresolved, inexact);
+    run(unresolved, settings_for(kind, plan_.from_rest), still_unresolved, inexact);
+    run(still_unresolved, settings_for(kind, plan_.from_rest_finely), left, inexact);
     for (const PackSettings& finer : plan_.again) {
       std::vector<std::size_t> still_inexact;
-      run(inexact, finer, left, still_inexact);
+      run(inexact, settings_for(kind, finer), left, still_inexact);
       inexact.swap(still_inexact);
     }
     left.insert(left.end(), inexact.begin(), inexact.end());
@@ -255,16 +292,8 @@ class EnsembleRun {
   }
 
   /// Solves those members; settles the outcomes of the exact ones, and lists the others.
-  void run(const std::vector<std::size_t>& which, PackSettings settings, std::vector<std::size_t>& unresolved,
+  void run(const std::vector<std::size_t>& which, const PackSettings& settings, std::vector<std::size_t>& unresolved,
            std::vector<std::size_t>& inexact) {
-    if (which.empty()) return;
-    settings.current = current_of(members_[which.front()].vehicle);
-    if (!settings.implicit && is_stiff(members_[which.front()].vehicle)) {
-      settings.implicit = true;
-      settings.newton_iterations += 1;
-      settings.segments = max_half_segments;  // as after a start from rest
-    }
-    refine_for(members_[which.front()].vehicle, settings);
     run_blocks(which, settings, solver_.solve, results_);
     for (const std::size_t n : which) {
       const PackResult& r = results_[n];
@@ -278,18 +307,6 @@ class EnsembleRun {
       } else {
         accept(n, r.metrics, r.error_estimate);
       }
-    }
-  }
-
-  /// Where coefficients bend, segments have more places to end at; with the knots of a table, means converge with the
-  /// fourth power of the nodes only.
-  static void refine_for(const Vehicle<double>& v, PackSettings& settings) {
-    const bool table = bool(v.wings.coefficients.table);
-    if (!table && !has_pitch_stop(v.wings)) return;
-    settings.segments = table ? max_half_segments : std::min(settings.segments + 2, max_half_segments);
-    if (table) {
-      const int more = settings.approach == PackApproach::resume ? 4 : 2;
-      settings.intervals = std::min(settings.intervals + more, solver::max_collocation_intervals);
     }
   }
 

@@ -145,8 +145,13 @@ CoefficientTable::CoefficientTable(std::vector<double> alpha, std::vector<double
 }
 
 CoefficientLookup CoefficientTable::lookup() const {
-  return {knots_.data(), rows_.data(),   first_.data(), int(first_.size()),
-          most_,         alpha_.front(), alpha_.back(), double(first_.size()) / (alpha_.back() - alpha_.front())};
+  return {knots_.data(),
+          rows_.data(),
+          first_.data(),
+          int(first_.size()),
+          most_,
+          alpha_.front(),
+          double(first_.size()) / (alpha_.back() - alpha_.front())};
 }
 
 CoefficientTable::Cubic CoefficientTable::lift_piece(double alpha) const {

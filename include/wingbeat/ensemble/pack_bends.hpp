@@ -6,16 +6,14 @@
 
 namespace wingbeat {
 
-/// Segments of equal length between the sign changes of the rod force and of the pitch margin, their number in
-/// proportion to the distance.
+/// The same where segments end at the sign changes of the pitch margin, too.
 template <class L, int N>
 void PackOrbit<L, N>::build_mesh_with_bends(int half) {
   constexpr std::size_t most = 2 * max_force_switches;
-  const int steps = segments_;
   const ForceSwitches<L>&f = switches_[std::size_t(half)], &b = bend_switches_[std::size_t(half)];
   HalfMesh<L>& mesh = mesh_[std::size_t(half)];
-  const L all(steps), count = f.count + b.count;
-  unresolved_ = unresolved_ || count > all - L(1.0);
+  const L count = f.count + b.count;
+  unresolved_ = unresolved_ || count > L(double(segments_ - 1));
   // Both lists are sorted; those beyond the counts go to the end.
   std::array<L, most> place, bends;
   for (std::size_t n = 0; n < max_force_switches; ++n) {
@@ -34,36 +32,13 @@ void PackOrbit<L, N>::build_mesh_with_bends(int half) {
       bends[n] = first, bends[n + 1] = second;
     }
   }
-  std::array<L, most + 2> node, at, per_step;
-  node[0] = L(0.0);
-  at[0] = L(-quarter);
-  for (std::size_t n = 0; n < most; ++n) {
-    const Mask used = count > L(double(n));
-    const L wanted = nearest_whole(L((place[n] + L(quarter)) * L(steps / pi)));
-    const L within = min(max(wanted, node[n] + L(1.0)), all - (count - L(double(n))));
-    node[n + 1] = select<L>(used, within, all);
-    at[n + 1] = select<L>(used, place[n], L(quarter));
-  }
-  node[most + 1] = all;
-  at[most + 1] = L(quarter);
-  for (std::size_t n = 0; n <= most; ++n) {
-    per_step[n] = (at[n + 1] - at[n]) * inverse_of(max(L(node[n + 1] - node[n]), L(0.5)));
-  }
-  for (int m = 0; m <= steps; ++m) {
-    const L here(m);
-    L u = at[0] + per_step[0] * here;
-    L force = f.first_sign, pitching = b.first_sign;
-    for (std::size_t n = 1; n <= most; ++n) {
-      const Mask beyond = here >= node[n] && node[n]<all, bend = bends[n - 1]> L(0.0);
-      u = select<L>(beyond, at[n] + per_step[n] * (here - node[n]), u);
-      force = select<L>(beyond && !bend, -force, force);
-      pitching = select<L>(beyond && bend, -pitching, pitching);
-    }
-    mesh.u[std::size_t(m)] = m == steps ? L(quarter) : u;
-    if (m == steps) break;
-    mesh.force[std::size_t(m)] = force;
-    mesh.pitching[std::size_t(m)] = pitching;
-  }
+  mesh.force.fill(f.first_sign);
+  mesh.pitching.fill(b.first_sign);
+  lay_segments(place, count, mesh, [&](std::size_t m, std::size_t n, const Mask& beyond) {
+    const Mask bend = bends[n] > L(0.0);
+    mesh.force[m] = select<L>(beyond && !bend, -mesh.force[m], mesh.force[m]);
+    mesh.pitching[m] = select<L>(beyond && bend, -mesh.pitching[m], mesh.pitching[m]);
+  });
 }
 
 /// How far the pitch margin has the wrong sign inside the segments of half an iterate, as the nodes show it and the

@@ -64,7 +64,7 @@ struct PackSettings {
   int segments = 6;   ///< of half an iterate
   int intervals = 6;  ///< between the nodes of a segment, even
   int newton_iterations = 2;     ///< before the last
-  bool follow_switches = false;  ///< the segments' ends move onto the rod force's sign changes after the second one
+  bool follow_switches = false;  ///< the segments' ends move onto the sign changes after the second one
   double peak_tolerance = 5e-7;  ///< a peak is settled when the cubic at its top promises less, relative
   std::array<bool, quantity_count> wanted{};
   bool velocity_aside = false;  ///< the peak velocity is wanted for the domain alone: no metric, no part in the error

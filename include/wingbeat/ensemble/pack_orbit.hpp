@@ -143,6 +143,8 @@ class PackOrbit {
   [[gnu::noinline, gnu::flatten]] void coarse_iterate();
   [[gnu::noinline, gnu::flatten]] L find_switches(ForceSwitches<L>& known, const L* u, const L* force, int count);
   [[gnu::noinline, gnu::flatten]] void build_mesh(int half);
+  template <std::size_t most, class Pass>
+  void lay_segments(const std::array<L, most>& place, const L& count, HalfMesh<L>& mesh, const Pass& pass) const;
   [[gnu::noinline]] void build_mesh_with_bends(int half);
   [[gnu::noinline]] L overlooked_bend(int half) const;
   [[gnu::noinline]] void march();
@@ -359,41 +361,52 @@ L PackOrbit<L, N>::find_switches(ForceSwitches<L>& known, const L* u, const L* f
   return offset;
 }
 
-/// Segments of equal length between the switches, their number in proportion to the distance.
+/// Segments between places, growing, of which lanes have `count`: of equal length between two of them, their number in
+/// proportion to the distance. pass(m, n, where) is called for segment m where it lies beyond place n.
+template <class L, int N>
+template <std::size_t most, class Pass>
+void PackOrbit<L, N>::lay_segments(const std::array<L, most>& place, const L& count, HalfMesh<L>& mesh,
+                                   const Pass& pass) const {
+  const int steps = segments_;
+  const L all(steps);
+  std::array<L, most + 2> node, at, per_step;
+  node[0] = L(0.0);
+  at[0] = L(-quarter);
+  for (std::size_t n = 0; n < most; ++n) {
+    const Mask used = count > L(double(n));
+    const L wanted = nearest_whole(L((place[n] + L(quarter)) * L(steps / pi)));
+    const L within = min(max(wanted, node[n] + L(1.0)), all - (count - L(double(n))));
+    node[n + 1] = select<L>(used, within, all);
+    at[n + 1] = select<L>(used, place[n], L(quarter));
+  }
+  node[most + 1] = all;
+  at[most + 1] = L(quarter);
+  for (std::size_t n = 0; n <= most; ++n) {
+    per_step[n] = (at[n + 1] - at[n]) * inverse_of(max(L(node[n + 1] - node[n]), L(0.5)));
+  }
+  for (int m = 0; m < steps; ++m) {
+    const L here(m);
+    L u = at[0] + per_step[0] * here;
+    for (std::size_t n = 1; n <= most; ++n) {
+      const Mask beyond = here >= node[n] && node[n] < all;
+      u = select<L>(beyond, at[n] + per_step[n] * (here - node[n]), u);
+      pass(std::size_t(m), n - 1, beyond);
+    }
+    mesh.u[std::size_t(m)] = u;
+  }
+  mesh.u[std::size_t(steps)] = L(quarter);
+}
+
+/// The segments of half an iterate, which end at the sign changes of the rod force.
 template <class L, int N>
 void PackOrbit<L, N>::build_mesh(int half) {
   if (bends_) return build_mesh_with_bends(half);
-  const int steps = segments_;
   const ForceSwitches<L>& s = switches_[std::size_t(half)];
   HalfMesh<L>& mesh = mesh_[std::size_t(half)];
-  const L all(steps);
-  std::array<L, max_force_switches + 2> node, at, per_step;
-  node[0] = L(0.0);
-  at[0] = L(-quarter);
-  for (std::size_t n = 0; n < max_force_switches; ++n) {
-    const Mask used = s.count > L(double(n));
-    const L wanted = nearest_whole(L((s.at[n] + L(quarter)) * L(steps / pi)));
-    const L within = min(max(wanted, node[n] + L(1.0)), all - (s.count - L(double(n))));
-    node[n + 1] = select<L>(used, within, all);
-    at[n + 1] = select<L>(used, s.at[n], L(quarter));
-  }
-  node[max_force_switches + 1] = all;
-  at[max_force_switches + 1] = L(quarter);
-  for (std::size_t n = 0; n <= max_force_switches; ++n) {
-    per_step[n] = (at[n + 1] - at[n]) * inverse_of(max(L(node[n + 1] - node[n]), L(0.5)));
-  }
-  for (int m = 0; m <= steps; ++m) {
-    const L here(m);
-    L u = at[0] + per_step[0] * here;
-    L force = s.first_sign;
-    for (std::size_t n = 1; n <= max_force_switches; ++n) {
-      const Mask beyond = here >= node[n] && node[n] < all;
-      u = select<L>(beyond, at[n] + per_step[n] * (here - node[n]), u);
-      force = select<L>(beyond, -force, force);
-    }
-    mesh.u[std::size_t(m)] = m == steps ? L(quarter) : u;
-    if (m < steps) mesh.force[std::size_t(m)] = force;
-  }
+  mesh.force.fill(s.first_sign);
+  lay_segments(s.at, s.count, mesh, [&](std::size_t m, std::size_t, const Mask& beyond) {
+    mesh.force[m] = select<L>(beyond, -mesh.force[m], mesh.force[m]);
+  });
 }
 
 template <class L, int N>

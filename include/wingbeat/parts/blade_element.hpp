@@ -42,10 +42,11 @@ struct CoefficientLookup {
   };
   const double* knot;  ///< [rad], growing, after the last one not a number
   const Row* row;      ///< [k]: where k knots lie at or below alpha
-  const int* first;    ///< [b]: knots before bucket b of [front, back]
+  const int* first;    ///< [b]: knots before bucket b of the table's angles
   int buckets;
-  int most;  ///< knots in one bucket
-  double front, back, buckets_per_angle;
+  int most;      ///< knots in one bucket
+  double front;  ///< first angle of the table [rad]
+  double buckets_per_angle;
 
   /// How many knots lie at or below alpha.
   [[gnu::always_inline]] int knots_up_to(double alpha) const {

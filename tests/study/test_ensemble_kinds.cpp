@@ -1,0 +1,93 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "study/ensemble_comparison.hpp"
+#include "vehicle/kind_boxes.hpp"
+#include "vehicle/random_vehicle.hpp"
+#include "vehicle/reference_vehicle.hpp"
+
+namespace wingbeat {
+namespace {
+
+/// Boxes of one kind of part each: how many of those that flap go to the scalar solver at most, in a hundred.
+TEST(EnsembleKinds, EveryOneAgreesWithTheScalarSolver) {
+  for (const auto& [box, scalars] : {std::pair{KindBox::tables, 3},
+                                     {KindBox::pitch_stop, 4},
+                                     {KindBox::small_inductance, 3},
+                                     {KindBox::battery, 3}}) {
+    const StartUp start_up = remembered_start_up();
+    std::mt19937_64 random(41);
+    std::vector<EnsembleMember> members;
+    for (int n = 0; n < many_members / 80; ++n) members.push_back(member_of(kind_design(box, random)));
+    EnsembleOptions exact;
+    exact.scalar_only = true;
+    exact.tolerance = 1e-9;
+    const auto expected = solve(members, exact, start_up);
+    const auto got = solve(members, {}, start_up);
+    const auto [flapping, by_packs, outside] = agreement(got, expected, 1e-6, 10.0, true);
+    const std::string_view name = kind_box_names[std::size_t(box)];
+    EXPECT_GT(flapping, many_members / 100) << name;
+    EXPECT_GE(by_packs, flapping * (100 - scalars) / 100) << name;
+    EXPECT_LE(outside, flapping / 100) << name;
+  }
+}
+
+/// Stops that wings just reach, stops beside tables, and added mass beside tables.
+TEST(EnsembleKinds, BendsAgreeWithTheScalarSolver) {
+  std::mt19937_64 random(43);
+  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  std::vector<EnsembleMember> free, members;
+  for (int n = 0; n < 160; ++n) free.push_back(member_of(box_design(random)));
+  const auto reached = solve(free, {});
+  const auto table = random_table(random);
+  for (std::size_t n = 0; n < free.size(); ++n) {
+    if (reached[n].status != FlappingStatus::flapping) continue;
+    EnsembleMember m = free[n];
+    const double lowest = reached[n].metrics[Metric::angle_of_attack_min] / degrees_per_radian;
+    m.vehicle.wings.angle_of_attack_min = std::clamp(lowest + (n % 2 ? 0.3 : 1e-3) * uniform(-1.0, 1.0), 0.0, 1.5);
+    if (n % 4 == 1) m.vehicle.wings.coefficients.table = table;
+    if (n % 4 == 3) {  // added mass knows no stop
+      m.vehicle.wings.angle_of_attack_min = -infinity;
+      m.vehicle.wings.coefficients.table = random_table(random);
+      m.vehicle.wings.added_inertia = 0.3 * m.vehicle.wing_count * m.vehicle.wing_inertia;
+    }
+    members.push_back(m);
+  }
+  EnsembleOptions exact;
+  exact.scalar_only = true;
+  exact.tolerance = 1e-10;
+  const auto expected = solve(members, exact);
+  for (const InstructionSet isa : available()) {
+    EnsembleOptions options;
+    options.isa = isa;
+    const auto [flapping, by_packs, outside] = agreement(solve(members, options), expected, 1e-6, 10.0);
+    EXPECT_GT(by_packs, flapping * 3 / 5);
+    EXPECT_LE(outside, flapping / 50);
+  }
+}
+
+/// What lanes do not know of tables: an end below the angle of attack at the reversals.
+TEST(EnsembleKinds, ShortTablesAreLeftToTheScalarSolver) {
+  EnsembleMember m = member_of(reference_design());
+  m.vehicle.wings.coefficients.table = std::make_shared<const CoefficientTable>(
+      std::vector{0.0, 0.7, 1.4}, std::vector{0.2, 1.7, 0.4}, std::vector{0.4, 1.8, 3.4});
+  EXPECT_TRUE(solve({m}, {})[0].scalar);
+}
+
+TEST(EnsembleKinds, OutcomeDependsNeitherOnPlaceNorOnCompany) {
+  std::mt19937_64 random(47);
+  std::vector<EnsembleMember> members;
+  for (int n = 0; n < 240; ++n) {
+    members.push_back(member_of(kind_design(KindBox(std::size_t(n) % (kind_box_names.size() - 1)), random)));
+  }
+  for (const InstructionSet isa : available()) {
+    EnsembleOptions options;
+    options.isa = isa;
+    expect_no_company(members, options);
+  }
+}
+
+}  // namespace
+}  // namespace wingbeat
