@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 struct ExportArguments {
   std::string vehicle, output, version = "2", kind = "both";
   std::vector<std::string> overrides;
-  bool force = false;
+  bool sources = false, force = false;
 };
 
 std::string bytes_of(const fs::path& file) {
@@ -53,6 +53,7 @@ int run(const ExportArguments& arguments) {
   options.version = choice_of<fmu::FmiVersion>("--fmi", arguments.version);
   options.kind = choice_of<fmu::FmuKind>("--kind", arguments.kind);
   options.program_version = version;
+  options.sources = arguments.sources;
   options.identifier = fmu::identifier_of(fs::path(arguments.output).stem().string());
   const Design<double> design = read_design(arguments.vehicle, arguments.overrides);
   OutputFile output("-o", arguments.output, OutputRules{".fmu", arguments.force});
@@ -72,13 +73,20 @@ int run(const ExportArguments& arguments) {
   if (std::string icon = icon_of(design); !icon.empty()) {
     files.emplace_back(second ? "model.png" : "terminalsAndIcons/icon.png", std::move(icon));
   }
+  if (arguments.sources) {
+    const fs::path bundle = module_file("wingbeat-fmu-sources.zip");
+    if (bundle.empty()) throw std::runtime_error("wingbeat-fmu-sources.zip, the sources of FMUs, is not installed");
+    for (auto& [name, bytes] : read_zip(bundle)) files.emplace_back("sources/" + name, std::move(bytes));
+    files.emplace_back("sources/fmu.cpp", content.source);
+    if (!second) files.emplace_back("sources/buildDescription.xml", content.build_description);
+  }
   write_zip(output.temporary(), files);
   output.commit();
-  print(fmt::format("{}: FMI {}, {}, {}\n", arguments.output, second ? "2.0" : "3.0",
+  print(fmt::format("{}: FMI {}, {}, {}{}\n", arguments.output, second ? "2.0" : "3.0",
                     options.kind == fmu::FmuKind::both             ? "model exchange and co-simulation"
                     : options.kind == fmu::FmuKind::model_exchange ? "model exchange"
                                                                    : "co-simulation",
-                    windows_binary.empty() ? "Linux" : "Linux and Windows"));
+                    windows_binary.empty() ? "Linux" : "Linux and Windows", arguments.sources ? ", sources" : ""));
   return done;
 }
 
@@ -93,6 +101,7 @@ void add_export_fmu(CLI::App& program, Action& action) {
   add_choice<fmu::FmiVersion>(command, "--fmi", a->version, "Version of the standard: 2 (default) or 3", "VERSION");
   add_choice<fmu::FmuKind>(command, "--kind", a->kind, "me (model exchange), cs (co-simulation) or both (default)",
                            "KIND");
+  command->add_flag("--sources", a->sources, "The sources too, which gcc compiles by itself");
   add_force(*command, a->force);
   command->footer(
       "Example:\n  wingbeat export-fmu friction2022 -o flapper.fmu --fmi 3\n\n"

@@ -13,6 +13,7 @@
 #include "wingbeat/files/file_record.hpp"
 #include "wingbeat/files/netcdf.hpp"
 #include "wingbeat/files/waveform_file.hpp"
+#include "wingbeat/files/zip_file.hpp"
 
 namespace wingbeat {
 namespace fs = std::filesystem;
@@ -72,6 +73,18 @@ bool data_set_is_own(const fs::path& file) {
   }
 }
 
+/// An FMU by the head of the vehicle in it.
+bool archive_is_own(const fs::path& file) {
+  try {
+    const auto files = read_zip(file);
+    return std::any_of(files.begin(), files.end(), [](const auto& entry) {
+      return entry.first == "resources/vehicle.bin" && entry.second.starts_with("wingbeat FMU vehicle ");
+    });
+  } catch (const std::runtime_error&) {
+    return false;
+  }
+}
+
 std::string big_endian(std::uint32_t x) {
   return {char(x >> 24 & 0xFF), char(x >> 16 & 0xFF), char(x >> 8 & 0xFF), char(x & 0xFF)};
 }
@@ -123,6 +136,7 @@ bool written_by_wingbeat(const fs::path& file) {
   head.resize(std::size_t(in.gcount()));
   if (head.empty()) return true;
   if (head.starts_with("\x89HDF") || head.starts_with("CDF")) return data_set_is_own(file);
+  if (head.starts_with("PK\x03\x04")) return archive_is_own(file);
   if (head.starts_with(png_signature)) {
     return head.find(std::string("Software\0", 9) + std::string(drawn)) != std::string::npos;
   }

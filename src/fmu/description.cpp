@@ -128,6 +128,8 @@ class Writer {
   }
 
   bool is3() const { return options_.version == FmiVersion::fmi3; }
+  /// FMI 3 lists them in a file of their own.
+  bool has_source_files() const { return options_.sources && !is3(); }
   bool has_model_exchange() const { return options_.kind != FmuKind::co_simulation; }
   bool has_co_simulation() const { return options_.kind != FmuKind::model_exchange; }
 
@@ -150,12 +152,18 @@ class Writer {
     const std::string state =
         is3() ? " canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\" providesDirectionalDerivatives=\"true\""
               : " canGetAndSetFMUstate=\"true\" canSerializeFMUstate=\"true\" providesDirectionalDerivative=\"true\"";
+    const auto kind = [&](const std::string& element, const std::string& attributes) {
+      line(1, "<" + element + attributes + (has_source_files() ? ">" : "/>"));
+      if (!has_source_files()) return;
+      line(2, "<SourceFiles>");
+      line(3, "<File name=\"fmu.cpp\"/>");
+      line(2, "</SourceFiles>");
+      line(1, "</" + element + ">");
+    };
     if (has_model_exchange()) {
-      line(1, "<ModelExchange" + name + state + (is3() ? "" : " completedIntegratorStepNotNeeded=\"true\"") + "/>");
+      kind("ModelExchange", name + state + (is3() ? "" : " completedIntegratorStepNotNeeded=\"true\""));
     }
-    if (has_co_simulation()) {
-      line(1, "<CoSimulation" + name + state + " canHandleVariableCommunicationStepSize=\"true\"/>");
-    }
+    if (has_co_simulation()) kind("CoSimulation", name + state + " canHandleVariableCommunicationStepSize=\"true\"");
   }
 
   void units() {

@@ -2,6 +2,8 @@
 
 #include <cctype>
 
+#include "fmu/binary/fmi2_functions.h"
+#include "fmu/binary/fmi3_functions.h"
 #include "fmu/description.hpp"
 #include "fmu/package.hpp"
 #include "fmu/variables.hpp"
@@ -30,6 +32,35 @@ std::string documentation_of(const Design<double>& design, const FmuOptions& opt
   return page + "</table>\n</body></html>\n";
 }
 
+/// The translation unit of the sources: linked statically the functions have the identifier before their names.
+std::string source_of(const FmuOptions& options) {
+  const bool second = options.version == FmiVersion::fmi2;
+  std::string text = "#ifndef " + std::string(second ? "FMI2" : "FMI3") + "_OVERRIDE_FUNCTION_PREFIX\n";
+  const auto rename = [&](const char* name) {
+    text += std::string("#define ") + name + " " + options.identifier + "_" + name + "\n";
+  };
+#define WINGBEAT_RENAME(result, name, parameters) rename(#name);
+  if (second) {
+    FMI2_FUNCTIONS(WINGBEAT_RENAME)
+  } else {
+    FMI3_FUNCTIONS(WINGBEAT_RENAME)
+  }
+#undef WINGBEAT_RENAME
+  return text + "#endif\n#include \"all.cpp\"\n";
+}
+
+std::string build_description_of(const FmuOptions& options) {
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiBuildDescription fmiVersion=\"3.0\">\n"
+         "  <BuildConfiguration modelIdentifier=\"" +
+         options.identifier +
+         "\" description=\"One C++ file with all others\">\n"
+         "    <SourceFileSet language=\"C++20\" compiler=\"gcc\" compilerOptions=\"-std=c++20 -O2 -fPIC\">\n"
+         "      <SourceFile name=\"fmu.cpp\"/>\n"
+         "      <IncludeDirectory name=\".\"/>\n"
+         "    </SourceFileSet>\n"
+         "  </BuildConfiguration>\n</fmiBuildDescription>\n";
+}
+
 }  // namespace
 
 FmuContent fmu_content(const Design<double>& design, const FmuOptions& options) {
@@ -40,6 +71,8 @@ FmuContent fmu_content(const Design<double>& design, const FmuOptions& options) 
   const bool second = options.version == FmiVersion::fmi2;
   content.linux_folder = second ? "binaries/linux64" : "binaries/x86_64-linux";
   content.windows_folder = second ? "binaries/win64" : "binaries/x86_64-windows";
+  if (options.sources) content.source = source_of(options);
+  if (options.sources && !second) content.build_description = build_description_of(options);
   return content;
 }
 

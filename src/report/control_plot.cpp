@@ -24,6 +24,12 @@ std::vector<std::size_t> drawn_outputs(const CycleMap& map) {
   return places;
 }
 
+/// Whether every drawn output changes for good after a step of that input.
+bool changes_steadily(const LinearModel& model, std::size_t input, const std::vector<std::size_t>& outputs) {
+  return std::all_of(outputs.begin(), outputs.end(),
+                     [&](std::size_t k) { return model.steady_gain(Eigen::Index(k), Eigen::Index(input)) != 0.0; });
+}
+
 std::string in_words(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;
@@ -45,8 +51,11 @@ void plot_step_responses(const ControlModels& models, PlotFormat format, const s
       // Drawn as the means are: constant over their cycle.
       figure.add("{}", double(cycle) * map.period * 1e3);
       for (const std::size_t k : outputs) {
-        const double steady = model.steady_gain(Eigen::Index(k), Eigen::Index(input));
-        figure.add(" {}", response(cycle, Eigen::Index(k)) / (steady == 0.0 ? 1.0 : steady));
+        const auto column = response.col(Eigen::Index(k));
+        const double scale = changes_steadily(model, input, outputs)
+                                 ? model.steady_gain(Eigen::Index(k), Eigen::Index(input))
+                                 : column.lpNorm<Eigen::Infinity>();
+        figure.add(" {}", column[cycle] / (scale == 0.0 ? 1.0 : scale));
       }
       figure.add("\n");
     }
@@ -58,7 +67,8 @@ void plot_step_responses(const ControlModels& models, PlotFormat format, const s
     if (input > 0) figure.next_panel();
     const double top = 1.0 - (head + gap + (each + gap) * double(input)) / inches;
     figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", top, top - each / inches);
-    figure.text(fmt::format("step of {}", in_words(map.inputs[input].name)), 7.5,
+    const char* const scale = changes_steadily(model, input, outputs) ? "" : ", as parts of their largest change";
+    figure.text(fmt::format("step of {}{}", in_words(map.inputs[input].name), scale), 7.5,
                 fmt::format("screen {},{} left", left, top + 0.09 / inches));
     if (input == 0) {
       figure.text("Means of a cycle after a step, as parts of their steady change", 8.0,

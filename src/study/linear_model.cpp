@@ -95,7 +95,11 @@ LinearModel linear_model_of(const CycleMap& map, int cycles) {
             [](const auto& a, const auto& b) { return std::abs(a.multiplier) > std::abs(b.multiplier); });
   const Index states = map.a.rows();
   const Eigen::MatrixXd closed = Eigen::MatrixXd::Identity(states, states) - map.a;
-  model.steady_gain = map.c * closed.fullPivLu().solve(map.b) + map.d;
+  // Where the two parts cancel - a load on a symmetrical direct drive leaves its mean lift as it is - nothing is left.
+  const Eigen::MatrixXd later = map.c * closed.fullPivLu().solve(map.b);
+  model.steady_gain = later + map.d;
+  const auto size = later.cwiseAbs() + map.d.cwiseAbs();
+  model.steady_gain = (model.steady_gain.cwiseAbs().array() < 1e-12 * size.array()).select(0.0, model.steady_gain);
   model.continuous = continuous_of(map);
   if (cycles == 0) {
     const double slowest = model.modes.front().time_constant / map.period;

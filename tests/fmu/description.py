@@ -1,5 +1,7 @@
 """The rules of the standard that a model description of FMI 2.0 or 3.0 must keep, written down."""
 
+from xml.etree import ElementTree
+
 NAMES2 = ["UnitDefinitions", "TypeDefinitions", "LogCategories", "DefaultExperiment", "VendorAnnotations"]
 ORDER = {
     2: ["ModelExchange", "CoSimulation", *NAMES2, "ModelVariables", "ModelStructure"],
@@ -50,6 +52,33 @@ def typed(variable, version):
     return variable if version == 3 else variable[0]
 
 
+def problems_of_build(package):
+    """Of buildDescription.xml."""
+    root = ElementTree.parse(package.root / "sources/buildDescription.xml").getroot()
+    problems = []
+    if root.tag != "fmiBuildDescription" or root.get("fmiVersion") != "3.0":
+        problems.append("fmiBuildDescription of FMI 3.0")
+    configurations = root.findall("BuildConfiguration")
+    if [c.get("modelIdentifier") for c in configurations] != [package.identifier]:
+        problems.append("one build configuration, of the model identifier")
+    for configuration in configurations:
+        if not set(configuration.keys()) <= {"modelIdentifier", "platform", "description"}:
+            problems.append("attributes of BuildConfiguration")
+        for files in configuration:
+            if files.tag != "SourceFileSet" or not set(files.keys()) <= {
+                "name", "language", "compiler", "compilerOptions"
+            }:  # fmt: skip
+                problems.append("attributes of SourceFileSet")
+            tags = [e.tag for e in files]
+            order = ["SourceFile", "PreprocessorDefinition", "IncludeDirectory"]
+            if not set(tags) <= set(order) or tags != sorted(tags, key=order.index):
+                problems.append("elements of SourceFileSet")
+            for file in files.findall("SourceFile"):
+                if f"sources/{file.get('name')}" not in package.names:
+                    problems.append(f"no source file {file.get('name')}")
+    return problems
+
+
 def problems_of(package):
     """One sentence for each rule that is broken."""
     xml, version = package.xml, package.version
@@ -73,6 +102,15 @@ def problems_of(package):
         unknown = set(kind.keys()) - ATTRIBUTES[version][kind.tag]
         rule(not unknown, f"{kind.tag}: {unknown}")
         rule(kind.get("modelIdentifier", "").isidentifier(), f"{kind.tag}: modelIdentifier is a C identifier")
+        rule([e.tag for e in kind] in ([], ["SourceFiles"]), f"{kind.tag}: SourceFiles alone is in it")
+        rule(version == 2 or len(kind) == 0, f"{kind.tag}: FMI 3 lists sources elsewhere")
+        for file in kind.iter("File"):
+            rule(f"sources/{file.get('name')}" in package.names, f"no source file {file.get('name')}")
+    has_sources = any(name.startswith("sources/") for name in package.names)
+    if version == 2:
+        rule(has_sources == bool(list(xml.iter("SourceFiles"))), "sources are listed")
+    elif has_sources:
+        problems += problems_of_build(package)
     platform = "linux64" if version == 2 else "x86_64-linux"
     rule(f"binaries/{platform}/{package.identifier}.so" in package.names, "a binary for Linux")
     rule("resources/vehicle.bin" in package.names, "resources")

@@ -29,7 +29,7 @@ Design<double> with_outline(Design<double> design) {
 /// moments.
 Loads mean_loads(const Design<double>& design, const Vehicle<double>& vehicle, const std::vector<WaveformRow>& rows,
                  double hinge_offset, const Loads& motion) {
-  constexpr int strips = 400;
+  constexpr int strips = 200;
   const Planform<double>& p = design.wing.planform;
   const Vector3d velocity = motion.head<3>(), rate = motion.tail<3>();
   Loads mean = Loads::Zero();

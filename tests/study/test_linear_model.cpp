@@ -253,6 +253,15 @@ TEST(LinearModel, LeavesWhatSettlesWithinACycleOut) {
   }
 }
 
+TEST(LinearModel, ALoadLeavesTheMeansOfASymmetricalDrive) {
+  const Linearisation at = linearise(direct_design());
+  ASSERT_TRUE(at.model);
+  ASSERT_EQ(at.model->map.inputs[1].name, "load_torque");
+  EXPECT_EQ(at.model->steady_gain(0, 1), 0.0);  // lift
+  EXPECT_NE(at.model->map.d(0, 1), 0.0);        // of its first cycle
+  EXPECT_GT(at.model->steady_gain(0, 0), 0.0);
+}
+
 TEST(LinearModel, IsNoneWhereNothingFlaps) {
   Design<double> design = reference_design();
   design.supply.voltage = 0.0;

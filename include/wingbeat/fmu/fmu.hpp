@@ -18,6 +18,7 @@ struct FmuOptions {
   FmuKind kind = FmuKind::both;
   std::string identifier = "wingbeat";  ///< of the model, and the file name of its binaries
   std::string program_version;
+  bool sources = false;  ///< the sources of the binaries, too
 };
 
 /// Files of the FMU, without its binaries.
@@ -26,6 +27,8 @@ struct FmuContent {
   std::string resource;                      ///< resources/vehicle.bin
   std::string documentation;                 ///< documentation/index.html
   std::string linux_folder, windows_folder;  ///< of the binaries, "binaries/linux64"
+  std::string source;                        ///< sources/fmu.cpp, which includes all.cpp; empty without sources
+  std::string build_description;             ///< sources/buildDescription.xml; of FMI 3 with sources alone
 };
 
 /// Throws ParameterError for a design out of range.

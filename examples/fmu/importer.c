@@ -2,61 +2,9 @@
  *   importer BINARY RESOURCES TOKEN 2|3 END STEP REFERENCE...
  * Prints the values of the references [SI] at the end, one a line, to the last digit. The same source for Linux and, by
  * MinGW-w64, Windows. */
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#ifdef _WIN32
-#include <windows.h>
-#else
-#include <dlfcn.h>
-#endif
-
-#include "fmu/binary/fmi2_functions.h"
-#include "fmu/binary/fmi3_functions.h"
+#include "importer.h"
 
 #define MOST 64
-
-static void* library;
-
-static void* function(const char* name) {
-#ifdef _WIN32
-  void* found = (void*)GetProcAddress((HMODULE)library, name);
-#else
-  void* found = dlsym(library, name);
-#endif
-  if (!found) {
-    fprintf(stderr, "importer: no function %s\n", name);
-    exit(1);
-  }
-  return found;
-}
-
-/* A pointer of the type of a declared function, to that of the binary. */
-#define LOOK_UP(name) __typeof__(&name) p_##name = (__typeof__(&name))function(#name)
-
-static void check(int status, const char* what) {
-  if (status <= 1) return;
-  fprintf(stderr, "importer: %s: status %d\n", what, status);
-  exit(1);
-}
-
-static void logger2(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status, fmi2String category,
-                 fmi2String message, ...) {
-  va_list arguments;
-  (void)environment, (void)status;
-  va_start(arguments, message);
-  fprintf(stderr, "%s: %s: ", name, category);
-  vfprintf(stderr, message, arguments);
-  fprintf(stderr, "\n");
-  va_end(arguments);
-}
-
-static void logger3(fmi3InstanceEnvironment environment, fmi3Status status, fmi3String category, fmi3String message) {
-  (void)environment, (void)status;
-  fprintf(stderr, "%s: %s\n", category, message);
-}
 
 static void run2(const char* resources, const char* token, double end, double step, const unsigned* references,
                  int count, double* values) {
@@ -72,7 +20,7 @@ static void run2(const char* resources, const char* token, double end, double st
   char uri[4096];
   long k, steps = (long)(end / step + 0.5);
   fmi2Component one;
-  snprintf(uri, sizeof uri, "file://%s%s", resources[0] == '/' ? "" : "/", resources);
+  uri_of(resources, uri, sizeof uri);
   one = p_fmi2Instantiate("one", fmi2CoSimulation, token, uri, &callbacks, 0, 1);
   if (!one) exit(1);
   check(p_fmi2SetupExperiment(one, 0, 0.0, 0.0, 1, end), "fmi2SetupExperiment");
@@ -119,15 +67,7 @@ int main(int argc, char** argv) {
   double values[MOST];
   int n, count = argc - 7;
   if (count < 1 || count > MOST) return 2;
-#ifdef _WIN32
-  library = (void*)LoadLibraryA(argv[1]);
-#else
-  library = dlopen(argv[1], RTLD_NOW | RTLD_LOCAL);
-#endif
-  if (!library) {
-    fprintf(stderr, "importer: cannot load %s\n", argv[1]);
-    return 1;
-  }
+  load(argv[1]);
   FMI2_FUNCTIONS(LOOK_FOR)
   FMI3_FUNCTIONS(LOOK_FOR)
   for (n = 0; n < count; ++n) references[n] = (unsigned)strtoul(argv[7 + n], NULL, 10);
