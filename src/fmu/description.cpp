@@ -204,6 +204,13 @@ class Writer {
     return text;
   }
 
+  /// Nominal value, and whether events may set it anew: the motion at stops and standstill, not the sums.
+  std::string of_state(const Variable& v) const {
+    const bool moves = v.number + exposed_sum_count < instance_.state_count();
+    return attribute("nominal", number(instance_.nominals()[v.number])) +
+           (moves && has_model_exchange() ? attribute("reinit", "true") : std::string());
+  }
+
   /// Value references of the state behind a derivative.
   static std::size_t state_behind(const Variable& v) { return reference_of(VariableKind::state, v.number); }
 
@@ -216,7 +223,7 @@ class Writer {
     std::string type = is_text(v) ? "<String" : is_whole(v) ? "<Integer" : "<Real";
     if (!is_text(v) && !is_whole(v) && !v.unit.empty()) type += attribute("unit", v.unit);
     if (!is_text(v)) type += bounds(v);
-    if (v.kind == VariableKind::state) type += attribute("nominal", number(instance_.nominals()[v.number]));
+    if (v.kind == VariableKind::state) type += of_state(v);
     if (has_start(v)) type += attribute("start", start_of(v));
     if (v.kind == VariableKind::derivative) {
       type += attribute("derivative", std::to_string(place_of(state_behind(v))));
@@ -233,7 +240,7 @@ class Writer {
     if (!v.initial.empty() && v.causality != "independent") text += attribute("initial", v.initial);
     if (!is_text(v) && !is_whole(v) && !v.unit.empty()) text += attribute("unit", v.unit);
     if (!is_text(v)) text += bounds(v);
-    if (v.kind == VariableKind::state) text += attribute("nominal", number(instance_.nominals()[v.number]));
+    if (v.kind == VariableKind::state) text += of_state(v);
     if (v.kind == VariableKind::derivative) text += attribute("derivative", std::to_string(state_behind(v)));
     if (is_text(v)) {
       line(2, text + ">");

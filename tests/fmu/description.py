@@ -174,6 +174,11 @@ def problems_of(package):
     states = [by[typed(v, version).get("derivative")] for v in derivatives]
     for state in states:
         rule(state.get("variability") == "continuous", f"{state.get('name')}: states are continuous")
+        summed = state.get("name").startswith("sum_")
+        jumps = xml.find("ModelExchange") is not None and not summed
+        rule(typed(state, version).get("reinit") == ("true" if jumps else None), f"{state.get('name')}: reinit")
+    for v in variables:
+        rule(not typed(v, version).get("reinit") or v in states, f"{v.get('name')}: states alone are set anew")
     initial = {
         id(v) for v in variables
         if v.get("causality") == "output" and (v.get("initial") or "calculated") != "exact"
