@@ -38,7 +38,8 @@ double max_lag(double tolerance) { return 0.007 * std::min(std::sqrt(tolerance /
 
 /// How a tolerance is met.
 struct Plan {
-  PackSettings first, from_rest, from_rest_finely;
+  PackSettings first;
+  std::array<PackSettings, 3> from_rest;  ///< more and more finely
   std::array<PackSettings, 3> again;
   std::vector<DirectPackSettings> direct;  ///< one after the other, until a design is exact enough
 };
@@ -119,13 +120,16 @@ Plan plan_for(const EnsembleOptions& options) {
     again = finer;
     finer.intervals = std::min(finer.intervals + 2, solver::max_collocation_intervals);
   }
-  plan.from_rest = s;
-  plan.from_rest.approach = PackApproach::from_rest;
-  plan.from_rest.newton_iterations += 1;
-  plan.from_rest.segments = max_half_segments;
-  plan.from_rest.implicit = true;
-  plan.from_rest_finely = plan.from_rest;
-  plan.from_rest_finely.start_up_steps = 16 * plan.from_rest.start_up_steps;
+  PackSettings from_rest = s;
+  from_rest.approach = PackApproach::from_rest;
+  from_rest.newton_iterations += 1;
+  from_rest.segments = max_half_segments;
+  from_rest.implicit = true;
+  plan.from_rest = {from_rest, from_rest, from_rest};
+  // Cranks near stall take a hundred times as long as one without load.
+  plan.from_rest[1].start_up_steps = 192;
+  plan.from_rest[1].start_up_cycles = 100;
+  plan.from_rest[2].start_up_steps = 768;
   plan.direct = direct_plan_for(options);
   return plan;
 }
@@ -159,16 +163,21 @@ bool is_stiff(const Vehicle<double>& v, PackCurrent current) {
          braking * coarse_step > stable * no_load;
 }
 
-/// The settings of an attempt for a kind. Stiff designs take at once what others take after a start from rest. Where
-/// coefficients bend, segments have more places to end at; with the knots of a table, means converge with the fourth
-/// power of the nodes only.
+/// The settings of an attempt for a kind. Stiff designs take at once what others take after a start from rest, and
+/// begin again with more points. Where coefficients bend, segments have more places to end at, and the rod force may
+/// peak at a bend; with the knots of a table, means converge with the fourth power of the nodes only.
 PackSettings settings_for(const PackKind& kind, PackSettings settings) {
   settings.current = kind.current;
   if (kind.stiff && settings.approach == PackApproach::guess) {
     settings.implicit = true;
     settings.newton_iterations += 1;
     settings.segments = max_half_segments;
+  } else if (kind.stiff && settings.approach == PackApproach::resume) {
+    settings.segments = max_half_segments;
+    settings.intervals = std::min(settings.intervals + 2, solver::max_collocation_intervals);
   }
+  settings.follow_switches = settings.follow_switches || (kind.coefficients != Coefficients::waves &&
+                                                          settings.wanted[std::size_t(Quantity::force)]);
   if (kind.coefficients == Coefficients::with_stop) {
     settings.segments = std::min(settings.segments + 2, max_half_segments);
   } else if (kind.coefficients == Coefficients::table) {
@@ -242,10 +251,15 @@ class EnsembleRun {
 
   /// Few need more than the first attempt: all of a kind together fill the lanes of the others.
   void solve_alike(const PackKind& kind, const std::vector<std::size_t>& all) {
-    std::vector<std::size_t> unresolved, still_unresolved, inexact, left;
+    std::vector<std::size_t> unresolved, inexact;
     run(all, settings_for(kind, plan_.first), unresolved, inexact);
-    run(unresolved, settings_for(kind, plan_.from_rest), still_unresolved, inexact);
-    run(still_unresolved, settings_for(kind, plan_.from_rest_finely), left, inexact);
+    // Without springs the third start tells no more than the second.
+    for (std::size_t n = 0; n < (kind.springs ? 3 : 2); ++n) {
+      std::vector<std::size_t> still_unresolved;
+      run(unresolved, settings_for(kind, plan_.from_rest[n]), still_unresolved, inexact);
+      unresolved.swap(still_unresolved);
+    }
+    std::vector<std::size_t> left = std::move(unresolved);
     for (const PackSettings& finer : plan_.again) {
       std::vector<std::size_t> still_inexact;
       run(inexact, settings_for(kind, finer), left, still_inexact);

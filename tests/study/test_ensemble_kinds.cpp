@@ -68,6 +68,27 @@ TEST(EnsembleKinds, BendsAgreeWithTheScalarSolver) {
   }
 }
 
+/// Two of the benchmark's designs whose rod force has its peak where the wings reach their stop.
+TEST(EnsembleKinds, PeaksOnBendsAgreeWithTheScalarSolver) {
+  std::mt19937_64 random(20225);
+  std::vector<EnsembleMember> members;
+  for (int n = 0; n <= 7148; ++n) {
+    const Design<double> design = kind_design(KindBox::pitch_stop, random);
+    if (n == 2495 || n == 7148) members.push_back(member_of(design));
+  }
+  EnsembleOptions exact;
+  exact.scalar_only = true;
+  exact.tolerance = 1e-10;
+  const auto expected = solve(members, exact);
+  for (const InstructionSet isa : available()) {
+    EnsembleOptions options;
+    options.isa = isa;
+    const auto [flapping, by_packs, outside] = agreement(solve(members, options), expected, 1e-6, 1.0);
+    EXPECT_EQ(by_packs, 2);
+    EXPECT_EQ(outside, 0);
+  }
+}
+
 /// What lanes do not know of tables: an end below the angle of attack at the reversals.
 TEST(EnsembleKinds, ShortTablesAreLeftToTheScalarSolver) {
   EnsembleMember m = member_of(reference_design());

@@ -72,4 +72,21 @@ L PackOrbit<L, N>::overlooked_bend(int half) const {
   return depth;
 }
 
+/// Relative error of the rod force's peak where it stands on a bend, which the segment's end misses by a little.
+template <class L, int N>
+L PackOrbit<L, N>::error_of_peak_on_bend(const L& peak) const {
+  const auto& force = observables_[std::size_t(Quantity::force)];
+  L error(0.0);
+  for (int half = 0; half < 2; ++half) {
+    for (std::size_t s = 1; s < std::size_t(segments_); ++s) {
+      const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+      const Observable<L>&before = force[first_node(half, s) - 1], &after = force[first_node(half, s)];
+      const Mask here = mesh.pitching[s - 1] * mesh.pitching[s] < L(0.0) && after.value > L(0.99) * peak;
+      const L missed = abs(off_[std::size_t(half * segments_) + s]) * max(abs(before.slope), abs(after.slope));
+      error = max(error, select<L>(here, missed, L(0.0)));
+    }
+  }
+  return error * inverse_of(max(peak, L(1e-300)));
+}
+
 }  // namespace wingbeat

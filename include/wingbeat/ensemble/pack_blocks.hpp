@@ -56,7 +56,8 @@ enum class PackCurrent {
 
 struct PackSettings {
   PackApproach approach = PackApproach::guess;
-  int start_up_steps = 48;  ///< from rest: of a turn at the speed without load
+  int start_up_steps = 48;   ///< from rest: of a turn at the speed without load
+  int start_up_cycles = 24;  ///< at most, at that speed
   PackCurrent current = PackCurrent::state;
   int coarse_iterates = 2;
   bool implicit =

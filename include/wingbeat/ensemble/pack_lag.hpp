@@ -1,10 +1,37 @@
-// The current behind a small inductance on SIMD lanes: the part of PackOrbit in which it is no state, but lags behind
-// the speed. To first order i = (v - K omega - L_a di/dt) / R, di/dt being that of the trajectory found before.
+// The current behind an inductance on SIMD lanes: the part of PackOrbit in which it relaxes, as a state, behind the
+// sign changes of the rod force, or, where the inductance is small, is no state, but lags behind the speed. Then to
+// first order i = (v - K omega - L_a di/dt) / R, di/dt being that of the trajectory found before.
 #pragma once
 
 #include "wingbeat/ensemble/pack_orbit.hpp"
 
 namespace wingbeat {
+
+/// The segments of half an iterate where the current is a state. Where it relaxes within less than a segment, each sign
+/// change of the rod force has a segment of its own behind it, in which it does.
+template <class L, int N>
+void PackOrbit<L, N>::build_mesh_with_layers(int half) {
+  constexpr double relaxation_times = 12.0;
+  const ForceSwitches<L>& s = switches_[std::size_t(half)];
+  HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+  const L width = L(relaxation_times) * vehicle_.motor.armature_inductance * per_resistance_ * y_[0];
+  const Mask relaxes = width < L(0.75 * pi / segments_);
+  std::array<L, 2 * max_force_switches> place;
+  place.fill(L(quarter));
+  for (std::size_t n = 0; n < max_force_switches; ++n) {
+    const L next = n + 1 < max_force_switches ? s.at[n + 1] : L(quarter);
+    place[n] = select<L>(relaxes, place[n], s.at[n]);
+    place[2 * n] = select<L>(relaxes, s.at[n], place[2 * n]);
+    place[2 * n + 1] = select<L>(relaxes, min(s.at[n] + width, L(0.5) * (s.at[n] + next)), place[2 * n + 1]);
+  }
+  const L count = select<L>(relaxes, L(2.0) * s.count, s.count);
+  unresolved_ = unresolved_ || count > L(double(segments_ - 1));
+  mesh.force.fill(s.first_sign);
+  lay_segments(place, count, mesh, [&](std::size_t m, std::size_t n, const Mask& beyond) {
+    const Mask changes = n % 2 == 0 ? beyond : beyond && !relaxes;
+    mesh.force[m] = select<L>(changes, -mesh.force[m], mesh.force[m]);
+  });
+}
 
 /// The inductance's voltage at the nodes from the trajectory of the current that it leaves, twice: an iteration gains
 /// the ratio of its time constant to that of the trajectory.

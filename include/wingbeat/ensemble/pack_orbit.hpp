@@ -8,7 +8,7 @@
 // a vehicle gets the same bits in any company.
 //
 // pack_start.hpp holds the way to the first trajectory, pack_newton.hpp Newton's method, pack_lag.hpp the current
-// behind a small inductance, pack_peaks.hpp the search for extremes, pack_bends.hpp
+// behind an inductance, pack_peaks.hpp the search for extremes, pack_bends.hpp
 // coefficients that bend, pack_multiplier.hpp the return map's derivative.
 #pragma once
 
@@ -146,7 +146,9 @@ class PackOrbit {
   template <std::size_t most, class Pass>
   void lay_segments(const std::array<L, most>& place, const L& count, HalfMesh<L>& mesh, const Pass& pass) const;
   [[gnu::noinline]] void build_mesh_with_bends(int half);
+  [[gnu::noinline]] void build_mesh_with_layers(int half);
   [[gnu::noinline]] L overlooked_bend(int half) const;
+  [[gnu::noinline]] L error_of_peak_on_bend(const L& peak) const;
   [[gnu::noinline]] void march();
   [[gnu::noinline, gnu::flatten]] void place_nodes();
   template <bool last>
@@ -401,6 +403,7 @@ void PackOrbit<L, N>::lay_segments(const std::array<L, most>& place, const L& co
 template <class L, int N>
 void PackOrbit<L, N>::build_mesh(int half) {
   if (bends_) return build_mesh_with_bends(half);
+  if constexpr (N == 2) return build_mesh_with_layers(half);
   const ForceSwitches<L>& s = switches_[std::size_t(half)];
   HalfMesh<L>& mesh = mesh_[std::size_t(half)];
   mesh.force.fill(s.first_sign);
@@ -463,6 +466,9 @@ Metrics<L> PackOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   if (is_wanted(Quantity::energy)) total(Integral::reactive_work) = exchanged_energy();
   seek(Quantity::current, Extreme::current);
   seek(Quantity::force, Extreme::rod_force);
+  if (bends_ && is_wanted(Quantity::force)) {
+    peak_error_ = max(peak_error_, error_of_peak_on_bend(extremes[std::size_t(Extreme::rod_force)]));
+  }
   seek(Quantity::negated_speed, Extreme::crank_speed_min);
   seek(Quantity::speed, Extreme::crank_speed_max);
   const L multiplier = settings_.multipliers ? floquet_multiplier() : L(0.0);

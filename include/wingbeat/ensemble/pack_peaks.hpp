@@ -113,7 +113,7 @@ void PackOrbit<L, N>::for_each_subinterval(int half, Quantity quantity, const L&
     const std::size_t base = first_node(half, s);
     const L h = mesh.u[s + 1] - mesh.u[s];
     for (std::size_t m = 1; m <= std::size_t(rule_.intervals); ++m) {
-      const Observable<L>& from = observables[m == 1 && s > 0 ? base - 1 : base + m - 1];
+      const Observable<L>& from = observables[base + m - 1];
       const Observable<L>& to = observables[base + m];
       const L x0 = L(rule_.node[m - 1]) * h, x1 = L(rule_.node[m]) * h, width = x1 - x0;
       const Mask may_rise = max(from.value, to.value) + L(0.3) * width * (abs(from.slope) + abs(to.slope)) > floor;

@@ -63,21 +63,22 @@ template <class L, int N>
 void PackOrbit<L, N>::start_from_rest() {
   using Moving = std::array<L, N + 1>;  // crank angle, state
   const int steps_per_cycle = settings_.start_up_steps;
-  constexpr int max_cycles = 24;
   // The kinks leave an error of the second order, which counts most where the crank almost stands still.
   L slow_limit = L(1.92 / steps_per_cycle) * no_load_;
-  // An inductance that is left out here changes the speed by less than its share of the motor's time constant.
-  if (lags_) slow_limit = slow_limit + L(2.0) * electrical_to_mechanical_time() * no_load_;
   constexpr double end = 4.0 * pi - quarter;
   const L dt = L(two_pi / double(steps_per_cycle)) * inverse_of(no_load_);
-  if constexpr (N == 2) {  // beyond the method's stability
-    unresolved_ = unresolved_ || dt * circuit_resistance(vehicle_) * per_inductance_ > L(2.0);
-  }
+  // A current that settles faster than the method is stable follows the speed. The inductance left out changes the
+  // speed by less than its share of the motor's time constant.
+  Mask at_once = L(lags_ ? 1.0 : 0.0) > L(0.0);
+  if constexpr (N == 2) at_once = dt * circuit_resistance(vehicle_) * per_inductance_ > L(2.0);
+  slow_limit = slow_limit + select<L>(at_once, L(2.0) * electrical_to_mechanical_time() * no_load_, L(0.0));
+  const L start_limit = min(L(1.3) * slow_limit, L(0.05) * no_load_);
   const auto rates = [&](const Moving& x) {
     const L sine = sin(x[0]), cosine = cos(x[0]);
     System system = half_cycle(0);
     State y;
     for (std::size_t n = 0; n < N; ++n) y[n] = x[n + 1];
+    if constexpr (N == 2) y[1] = select<L>(at_once, algebraic_current(vehicle_, vehicle_.voltage, y[0]), y[1]);
     const CrankKinematics<L> k = crank_kinematics(geometry_, sine, cosine);
     system.half = sign_of(k.stroke_slope);
     const Motion<L> m = system.motion_on_its_branch(system.configuration_of(k), y);
@@ -85,7 +86,8 @@ void PackOrbit<L, N>::start_from_rest() {
     r[0] = y[0];
     r[1] = m.crank_acceleration;
     if constexpr (N == 2) {
-      r[2] = motor_loads(vehicle_.motor, m.voltage, y[1], y[0]).inductive_voltage * per_inductance_;
+      const L rise = motor_loads(vehicle_.motor, m.voltage, y[1], y[0]).inductive_voltage * per_inductance_;
+      r[2] = select<L>(at_once, L(0.0), rise);
     }
     return r;
   };
@@ -99,7 +101,7 @@ void PackOrbit<L, N>::start_from_rest() {
   y_.fill(L(0.0));
   Mask done = L(1.0) < L(0.0), started = done, slow = done, stopped = done;
   L waited(0.0);  // steps at rest, or since the crank was slow: after a few cycles' worth others must decide
-  for (int n = 0; n < steps_per_cycle * max_cycles; ++n) {
+  for (int n = 0; n < steps_per_cycle * settings_.start_up_cycles; ++n) {
     if (all<L>(done || stopped || waited > L(2.0 * steps_per_cycle))) break;
     const Moving k1 = rates(x);
     const Moving k2 = rates(moved(x, k1, L(0.5) * dt));
@@ -113,7 +115,7 @@ void PackOrbit<L, N>::start_from_rest() {
     const Mask held = !started && !(next[1] > L(0.0));
     next[0] = select<L>(held, x[0], next[0]);
     next[1] = select<L>(held, L(0.0), next[1]);
-    started = started || next[1] > L(0.05) * no_load_;
+    started = started || next[1] > start_limit;
     slow = slow || (started && !done && !(next[1] > slow_limit));
     waited = select<L>(slow || !started, waited + L(1.0), waited);
     const Mask stops = started && !done && !stopped && !(next[1] > L(0.0));
@@ -124,9 +126,13 @@ void PackOrbit<L, N>::start_from_rest() {
     stopped = stopped || stops;
     for (std::size_t j = 0; j <= N; ++j) x[j] = select<L>(stopped && !stops, x[j], next[j]);
   }
+  const L stall = stall_torque(vehicle_);
+  if constexpr (N == 2) {
+    y_[1] = select<L>(at_once, algebraic_current(vehicle_, vehicle_.voltage, y_[0]), y_[1]);
+    x[2] = select<L>(at_once, stall * inverse_of(vehicle_.motor.torque_constant), x[2]);
+  }
   // A crank that has come to rest where friction outweighs the drive, at the present current and at the one that it
   // settles to, stays.
-  const L stall = stall_torque(vehicle_);
   const L sine = sin(x[0]), cosine = cos(x[0]);
   const CrankKinematics<L> k = crank_kinematics(geometry_, sine, cosine);
   const L N_k_beta = spring_moment(vehicle_, k);
@@ -134,7 +140,8 @@ void PackOrbit<L, N>::start_from_rest() {
   if constexpr (N == 2) {
     margin = min(margin, lock_margin(vehicle_, k, N_k_beta, L(vehicle_.motor.torque_constant * x[2])));
   }
-  locked_ = stopped && !unresolved_ && margin > L(0.05) * stall;
+  const Mask rests = stopped || (!started && !(x[1] > L(0.0)));
+  locked_ = rests && !unresolved_ && margin > L(2.4 / steps_per_cycle) * stall;
   unresolved_ = unresolved_ || slow || !done;
 }
 
