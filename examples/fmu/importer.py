@@ -319,6 +319,8 @@ def integrate(instance, until, tolerance=1e-9, sample=None, command=None):
 
 def main(file):
     package = Package(file)
+    if package.xml.find("CoSimulation") is None:
+        sys.exit(f"{file} is for model exchange alone")
     flapper = Instance(package, True, 0.0)
     names = ("frequency_mean", "lift_mean", "current_mean", "power_electrical_mean")
     print("time s  ", *(f"{name:>22}" for name in names))

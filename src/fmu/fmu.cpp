@@ -17,12 +17,23 @@ std::string html(const std::string& text) {
   return out;
 }
 
+/// Binaries run where the C library is no older than that of the build.
+std::string oldest_libc() {
+#ifdef __GLIBC__
+  return ", on Linux glibc " + std::to_string(__GLIBC__) + "." + std::to_string(__GLIBC_MINOR__) + " or newer";
+#else
+  return {};
+#endif
+}
+
 std::string documentation_of(const Design<double>& design, const FmuOptions& options) {
   std::string page = "<!DOCTYPE html>\n<html><head><meta charset=\"utf-8\"><title>" + html(design.name) +
                      "</title></head>\n<body>\n<h1>" + html(design.name.empty() ? "wingbeat" : design.name) +
                      "</h1>\n<p>A flapping-wing drive as computed by wingbeat " + options.program_version +
                      ": motor, transmission, springs and wings in blade-element air. All variables are SI and radians. "
-                     "The air meets wings of a body at rest. The binaries need libc and libm alone.</p>\n"
+                     "The air meets wings of a body at rest. The binaries need libc and libm alone" +
+                     oldest_libc() +
+                     ".</p>\n"
                      "<table>\n<tr><th>variable</th><th>unit</th><th>causality</th><th>variability</th>"
                      "<th>meaning</th></tr>\n";
   for (const Variable& v : variables_of(design)) {

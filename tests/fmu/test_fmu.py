@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import re
 import subprocess
 import tempfile
 import threading
@@ -328,6 +329,11 @@ class Functions(unittest.TestCase):
                               capture_output=True, text=True, check=True).stdout  # fmt: skip
         needed = {line.split()[0].split("/")[-1].split(".so")[0] for line in said.splitlines()}
         self.assertLessEqual(needed, {"linux-vdso", "libm", "libc", "ld-linux-x86-64"})
+        said = subprocess.run(["objdump", "-T", package.binary()], capture_output=True, text=True, check=True).stdout
+        newest = max(tuple(map(int, v.split("."))) for v in re.findall(r"GLIBC_([0-9.]+)", said))
+        page = (package.root / "documentation/index.html").read_text()
+        stated = re.search(r"glibc ([0-9.]+) or newer", page).group(1)
+        self.assertLessEqual(newest, tuple(map(int, stated.split("."))))
 
 
 class Sources(unittest.TestCase):
