@@ -31,6 +31,8 @@ bool solve_linear(int n, double* matrix, int count, double* right_hand_sides) {
 
 namespace {
 
+constexpr int max_factorised = 64;
+
 /// The inverse of a small matrix, its size known at compile time, by Gauss and Jordan's elimination. Rows are scaled
 /// first, so that stiff ones among others do no harm.
 template <int n>
@@ -76,14 +78,49 @@ bool invert_fixed(double* a) {
   return true;
 }
 
+template <int size>
+bool factorise_sized(int any_size, double* a, int* pivots) {
+  constexpr int most = size > 0 ? size : max_factorised;
+  const int n = size > 0 ? size : any_size;
+  double scale[most];
+  for (int row = 0; row < n; ++row) {
+    double largest = 0.0;
+    for (int k = 0; k < n; ++k) largest = std::max(largest, std::abs(a[k * n + row]));
+    if (!(largest > 0.0 && largest < HUGE_VAL)) return false;
+    scale[row] = 1.0 / largest;
+  }
+  for (int k = 0; k < n; ++k) {
+    double* column = a + k * n;
+    int pivot = k;
+    double largest = std::abs(column[k]) * scale[k];
+    for (int row = k + 1; row < n; ++row) {
+      const double here = std::abs(column[row]) * scale[row];
+      if (here > largest) pivot = row, largest = here;
+    }
+    if (!(largest > 1e-15)) return false;
+    pivots[k] = pivot;
+    if (pivot != k) {
+      std::swap(scale[k], scale[pivot]);
+      for (int j = 0; j < n; ++j) std::swap(a[j * n + k], a[j * n + pivot]);
+    }
+    const double inverse = 1.0 / column[k];
+    double factors[most] = {};  // of all rows, so that loops have the same length for all k
+    for (int row = k + 1; row < n; ++row) factors[row] = column[row] *= inverse;
+    for (int j = k + 1; j < n; ++j) {
+      double* next = a + j * n;
+      const double by = next[k];
+      for (int row = 0; row < n; ++row) next[row] -= by * factors[row];
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 bool invert(int n, double* matrix) {
   switch (n) {
     case 1: return invert_fixed<1>(matrix);
     case 2: return invert_fixed<2>(matrix);
-    case 5: return invert_fixed<5>(matrix);
-    case 10: return invert_fixed<10>(matrix);
     default: break;
   }
   Eigen::Map<RowMajor> A(matrix, n, n);
@@ -91,6 +128,14 @@ bool invert(int n, double* matrix) {
   if (!(lu.rcond() > 1e-15)) return false;
   A = lu.inverse().eval();
   return A.allFinite();
+}
+
+bool factorise(int n, double* matrix, int* pivots) {
+  switch (n) {
+    case 5: return factorise_sized<5>(n, matrix, pivots);
+    case 10: return factorise_sized<10>(n, matrix, pivots);
+    default: return n <= max_factorised && factorise_sized<0>(n, matrix, pivots);
+  }
 }
 
 double determinant(int n, const double* matrix) {

@@ -56,6 +56,39 @@ TEST(Linear, RandomSystemsAreSolvedAndInverted) {
   }
 }
 
+TEST(Linear, FactorsMultiplyToTheMatrix) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  for (const int n : {1, 3, 5, 10, 20}) {
+    std::vector<double> matrix(std::size_t(n * n));
+    for (double& value : matrix) value = normal(random);
+    for (int column = 0; column < n; ++column) matrix[std::size_t(column * n)] *= 1e6;  // a stiff row
+    std::vector<double> factors = matrix;
+    std::vector<int> pivots(std::size_t(n), 0);
+    ASSERT_TRUE(factorise(n, factors.data(), pivots.data()));
+    for (int k = 0; k < n; ++k) {
+      for (int column = 0; column < n; ++column) {
+        std::swap(matrix[std::size_t(column * n + k)], matrix[std::size_t(column * n + pivots[std::size_t(k)])]);
+      }
+    }
+    for (int row = 0; row < n; ++row) {
+      for (int column = 0; column < n; ++column) {
+        double product = 0.0, size = 0.0;
+        for (int k = 0; k <= std::min(row, column); ++k) {
+          const double lower = k == row ? 1.0 : factors[std::size_t(k * n + row)];
+          const double term = lower * factors[std::size_t(column * n + k)];
+          product += term;
+          size += std::abs(term);
+        }
+        EXPECT_NEAR(product, matrix[std::size_t(column * n + row)], 1e-14 * size) << n;
+      }
+    }
+  }
+  double singular[] = {1.0, 2.0, 2.0, 4.0};
+  int pivots[2];
+  EXPECT_FALSE(factorise(2, singular, pivots));
+}
+
 TEST(Linear, SingularMatricesAreRefused) {
   double a[] = {1.0, 2.0, 2.0, 4.0}, b[] = {1.0, 1.0};
   EXPECT_FALSE(solve_linear(2, a, b));

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "wingbeat/core/jet.hpp"
 #include "wingbeat/core/scalar.hpp"
@@ -77,7 +78,7 @@ StateJacobian<System> jacobian_by_differences(const System& system, const Place&
   return jacobian;
 }
 
-/// I - h A x J of the stage equations, J that of each stage, and its inverse; stage by stage, state by state.
+/// I - h A x J of the stage equations, J that of each stage; stage by stage, state by state.
 template <std::size_t states>
 class StageMatrix {
  public:
@@ -91,24 +92,40 @@ class StageMatrix {
         const double by = -h * tableau.a[i][j];
         for (std::size_t k = 0; k < states * states; ++k) {
           const std::size_t row = i * states + k / states, column = j * states + k % states;
-          inverse_[column * unknowns + row] = by * jacobians[j][k] + (row == column ? 1.0 : 0.0);
+          factors_[column * unknowns + row] = by * jacobians[j][k] + (row == column ? 1.0 : 0.0);
         }
       }
     }
-    return invert(int(unknowns), inverse_);
+    if (!factorise(int(unknowns), factors_, pivots_)) return false;
+    for (std::size_t k = 0; k < unknowns; ++k) per_diagonal_[k] = 1.0 / factors_[k * unknowns + k];
+    return true;
   }
-  double inverse(std::size_t row, std::size_t column) const { return inverse_[column * unknowns + row]; }
 
-  std::array<double, unknowns> solve(const std::array<double, unknowns>& right) const {
-    std::array<double, unknowns> solution{};
-    for (std::size_t column = 0; column < unknowns; ++column) {
-      for (std::size_t row = 0; row < unknowns; ++row) solution[row] += inverse(row, column) * right[column];
+  /// Solves for a right-hand side of numbers or of vectors.
+  template <class T>
+  void solve(std::array<T, unknowns>& x) const {
+    for (std::size_t k = 0; k < unknowns; ++k) {
+      if (std::size_t(pivots_[k]) != k) std::swap(x[k], x[std::size_t(pivots_[k])]);
     }
-    return solution;
+    // Unrolled: loops this short cost more than what they do.
+#pragma GCC unroll 10
+    for (std::size_t k = 0; k < unknowns; ++k) {
+#pragma GCC unroll 10
+      for (std::size_t row = k + 1; row < unknowns; ++row) x[row] -= factors_[k * unknowns + row] * x[k];
+    }
+#pragma GCC unroll 10
+    for (std::size_t n = 0; n < unknowns; ++n) {
+      const std::size_t k = unknowns - 1 - n;
+      x[k] *= per_diagonal_[k];
+#pragma GCC unroll 10
+      for (std::size_t row = 0; row < k; ++row) x[row] -= factors_[k * unknowns + row] * x[k];
+    }
   }
 
  private:
-  double inverse_[unknowns * unknowns];  ///< column by column
+  double factors_[unknowns * unknowns];  ///< as factorise() leaves them
+  double per_diagonal_[unknowns];
+  int pivots_[unknowns];
 };
 
 /// What the states at the stages miss the stage equations by, for the rates dy there.
@@ -176,7 +193,9 @@ bool solve_stages(const System& system, double x, const Places& places, const ty
       }
       if (!matrix.set(h, jacobians)) return false;
     }
-    const double change = move_stages(matrix.solve(stage_residuals(y, h, stage, slope)), scale, stage);
+    auto update = stage_residuals(y, h, stage, slope);
+    matrix.solve(update);
+    const double change = move_stages(update, scale, stage);
     if (!std::isfinite(change)) return false;
     rate = iteration > 0 ? change / before : 1.0;
     // What is left is the next change.
@@ -332,7 +351,9 @@ StepResult<Jets> implicit_step(const Jets& jets, const System& system, const typ
       }
     }
     if (!matrix.set(h.a, jacobians)) return result;
-    change = detail::move_stages(matrix.solve(detail::stage_residuals(start, h.a, stage, slope)), scale, stage);
+    auto update = detail::stage_residuals(start, h.a, stage, slope);
+    matrix.solve(update);
+    change = detail::move_stages(update, scale, stage);
   }
   if (!(change <= 1e-13)) return result;
 
@@ -343,21 +364,16 @@ StepResult<Jets> implicit_step(const Jets& jets, const System& system, const typ
     for (std::size_t n = 0; n < states; ++n) given[n] = Real(stage[i][n]);
     rates[i] = jets.template rates<quadratures>(x + tableau.c[i] * h, given, branch);
   }
-  // Right-hand side: how the stages would move if the rates did not follow them.
-  std::array<Eigen::Matrix<double, slots, 1>, unknowns> given, moved;
+  // How the stages would move if the rates did not follow them, and how they do.
+  std::array<Eigen::Matrix<double, slots, 1>, unknowns> moved;
   for (std::size_t i = 0; i < stages; ++i) {
     for (std::size_t n = 0; n < states; ++n) {
       Real sum = tableau.a[i][0] * rates[0].dy[n];
       for (std::size_t j = 1; j < stages; ++j) sum += tableau.a[i][j] * rates[j].dy[n];
-      given[i * states + n] = (y[n] + h * sum).v;
+      moved[i * states + n] = (y[n] + h * sum).v;
     }
   }
-  for (std::size_t row = 0; row < unknowns; ++row) {
-    moved[row].setZero();
-    for (std::size_t column = 0; column < unknowns; ++column) {
-      moved[row] += matrix.inverse(row, column) * given[column];
-    }
-  }
+  matrix.solve(moved);
   const auto follow = [&](std::size_t i, Real& of, const typename ByState::Real& slope) {
     for (std::size_t n = 0; n < states; ++n) of.v += slope.v[Eigen::Index(n)] * moved[i * states + n];
   };
