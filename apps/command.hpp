@@ -30,6 +30,8 @@ void add_fit(CLI::App& program, Action& action);
 void add_tolerance(CLI::App& program, Action& action);
 void add_optimise(CLI::App& program, Action& action);
 void add_endurance(CLI::App& program, Action& action);
+void add_export_fmu(CLI::App& program, Action& action);
+void add_linearise(CLI::App& program, Action& action);
 void add_reproduce(CLI::App& program, Action& action);
 void add_new(CLI::App& program, Action& action);
 void add_keys(CLI::App& program, Action& action);

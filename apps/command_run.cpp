@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "command.hpp"
+#include "operating_point.hpp"
 #include "options.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/output_file.hpp"
@@ -25,32 +26,12 @@ namespace {
 constexpr int waveform_rows = 361;
 
 struct RunArguments {
-  std::string vehicle;
-  std::vector<std::string> overrides;
-  std::string voltage, frequency, lift, lift_to_weight;
-  std::string condition = "air";
+  OperatingPointArguments at;
   std::string method = "orbit";
   std::string tolerance = "1e-6";
   bool json = false, force = false;
-  bool allow_extrapolation = false;
   std::string waveforms, plot, plot_power;
 };
-
-double quantity(const char* option, const std::string& text, const char* unit) {
-  try {
-    const double x = parse_quantity(text, unit);
-    if (!std::isfinite(x)) throw InputError(option, 0, 0, "", "must be finite");
-    return x;
-  } catch (const UnitError& error) {
-    throw InputError(option, 0, 0, "", error.what());
-  }
-}
-
-template <NamedEnum E>
-E choice(const char* option, const std::string& text) {
-  if (const auto value = from_name<E>(text)) return *value;
-  throw InputError(option, 0, 0, "", fmt::format("must be {}, got {}", listed_names<E>(), in_quotes(text)));
-}
 
 /// A file to be written, its place reserved before anything is computed.
 std::optional<OutputFile> reserved(const char* option, const std::string& path, const OutputRules& rules) {
@@ -75,42 +56,17 @@ std::string case_title(const Design<double>& design, const RunResult& result, Co
   return title;
 }
 
-void apply_voltage(Supply<double>& supply, const std::string& text) {
-  if (is_sine(supply.type)) {
-    throw InputError("--voltage", 0, 0, "", "the supply is a sine; use --set supply.amplitude=\"3 V\"");
-  }
-  if (supply.type == SupplyType::battery) {
-    throw InputError("--voltage", 0, 0, "",
-                     "the supply is a battery, whose charge gives its voltage; use --set "
-                     "supply.charge=0.5, or --set supply.cell_voltage=\"3.7 V\"");
-  }
-  supply.voltage = quantity("--voltage", text, "V");
-  if (supply.voltage < 0.0) throw InputError("--voltage", 0, 0, "", "must be >= 0 V");
-}
-
 int run(const RunArguments& arguments) {
   RunOptions options;
-  options.allow_extrapolation = arguments.allow_extrapolation;
-  options.condition = choice<Condition>("--condition", arguments.condition);
-  options.method = choice<Method>("--method", arguments.method);
+  options.method = choice_of<Method>("--method", arguments.method);
   try {
-    options.tolerance = quantity("--tolerance", arguments.tolerance, "1");
+    options.tolerance = quantity_of("--tolerance", arguments.tolerance, "1");
   } catch (const InputError&) {
     options.tolerance = absent;
   }
   if (!(options.tolerance >= 1e-12 && options.tolerance <= 1e-2)) {
     throw InputError("--tolerance " + arguments.tolerance, 0, 0, "", "must be a number between 1e-12 and 1e-2");
   }
-  if (!arguments.frequency.empty()) {
-    options.frequency = quantity("--frequency", arguments.frequency, "Hz");
-    if (!(*options.frequency > 0.0)) throw InputError("--frequency", 0, 0, "", "must be > 0 Hz");
-  }
-
-  if (!arguments.lift.empty()) {
-    options.lift = quantity("--lift", arguments.lift, "N");
-    if (!(*options.lift > 0.0)) throw InputError("--lift", 0, 0, "", "must be > 0 N");
-  }
-
   bool waveforms_csv_wanted = false;
   if (!arguments.waveforms.empty()) {
     const std::string extension = std::filesystem::path(arguments.waveforms).extension().string();
@@ -122,15 +78,7 @@ int run(const RunArguments& arguments) {
   const auto cycle_format = checked_plot_format("--plot", arguments.plot);
   const auto power_format = checked_plot_format("--plot-power", arguments.plot_power);
 
-  Design<double> design = read_design(arguments.vehicle, arguments.overrides);
-  if (!arguments.lift_to_weight.empty()) {
-    const double ratio = quantity("--lift-to-weight", arguments.lift_to_weight, "1");
-    if (!(ratio > 0.0)) throw InputError("--lift-to-weight", 0, 0, "", "must be > 0");
-    const std::optional<double> mass = total_mass(design);
-    if (!mass) throw InputError("--lift-to-weight", 0, 0, "", "needs vehicle.mass, which the vehicle does not give");
-    options.lift = ratio * *mass * standard_gravity;
-  }
-  if (!arguments.voltage.empty()) apply_voltage(design.supply, arguments.voltage);
+  const Design<double> design = read_operating_point(arguments.at, options);
   const OutputRules drawing{plot_extensions, arguments.force};
   auto waveforms = reserved("--waveforms", arguments.waveforms, {".csv .nc", arguments.force});
   auto cycle_plot = reserved("--plot", arguments.plot, drawing);
@@ -139,16 +87,7 @@ int run(const RunArguments& arguments) {
 
   options.endurance = arguments.json;
   const RunResult result = run_design(design, options);
-  if (result.search && result.search->outcome != FrequencyOutcome::reached &&
-      result.status == FlappingStatus::flapping) {
-    // It flaps, only not so: no design that fails, but a request that cannot be met.
-    const std::string asked = !arguments.frequency.empty() ? "--frequency " + arguments.frequency
-                              : !arguments.lift.empty()    ? "--lift " + arguments.lift
-                                                           : "--lift-to-weight " + arguments.lift_to_weight;
-    const bool leaves = result.search->finding.inside_domain_only();
-    throw InputError(asked, 0, 0, "",
-                     describe(result.search->finding) + (leaves ? "; --allow-extrapolation searches beyond" : ""));
-  }
+  require_reached(arguments.at, result);
   const bool flaps = result.status == FlappingStatus::flapping;
   const bool has_metrics = std::isfinite(result.metrics[Metric::frequency]);
 
@@ -161,7 +100,7 @@ int run(const RunArguments& arguments) {
       } else {
         write_waveforms_netcdf(
             waveforms->temporary(), result.cycle,
-            {.title = fmt::format("One flapping cycle of {}", design.name.empty() ? arguments.vehicle : design.name),
+            {.title = fmt::format("One flapping cycle of {}", design.name.empty() ? arguments.at.vehicle : design.name),
              .command = "run",
              .version = version,
              .vehicle = write_design(result.design),
@@ -198,27 +137,11 @@ int run(const RunArguments& arguments) {
 void add_run(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("run", "Find the steady flapping of one vehicle and report its metrics");
   const auto a = std::make_shared<RunArguments>();
-  add_input(command, a->vehicle, InputKind::vehicle, "vehicle", "Vehicle file (TOML)", "VEHICLE");
-  add_set(command, a->overrides);
-  CLI::Option* voltage =
-      command->add_option("--voltage", a->voltage, "Supply voltage (pwm: while switched on), as \"3 V\"")
-          ->type_name("QUANTITY");
-  CLI::Option* frequency = command->add_option("--frequency", a->frequency,
-                                               "Find the voltage that gives this flapping frequency, as \"22 Hz\"");
-  frequency->type_name("QUANTITY")->excludes(voltage);
-  CLI::Option* lift = command->add_option("--lift", a->lift,
-                                          "Find the voltage (pwm: the duty) that gives this mean lift, as \"20 mN\"");
-  lift->type_name("QUANTITY")->excludes(voltage)->excludes(frequency);
-  command->add_option("--lift-to-weight", a->lift_to_weight, "The same for lift over weight; 1: hover")
-      ->type_name("NUMBER")
-      ->excludes(voltage)
-      ->excludes(frequency)
-      ->excludes(lift);
-  add_choice<Condition>(command, "--condition", a->condition, "air (default), vacuum or wingless", "CONDITION");
+  add_operating_point(command, a->at);
   add_choice<Method>(command, "--method", a->method, "orbit (default), or transient: simulated from rest", "METHOD");
   command->add_option("--tolerance", a->tolerance, "Relative accuracy of every metric, 1e-12 to 1e-2 (default 1e-6)")
       ->type_name("NUMBER");
-  command->add_flag("--allow-extrapolation", a->allow_extrapolation,
+  command->add_flag("--allow-extrapolation", a->at.allow_extrapolation,
                     "Search for a frequency or a lift outside the model's domain too (docs/targets.md)");
   add_json(command, a->json);
   add_file(command, "--waveforms", a->waveforms, ".csv .nc", "Write one cycle to FILE.csv or FILE.nc");
@@ -239,7 +162,7 @@ void add_run(CLI::App& program, Action& action) {
       "Exit status: 0 steady flapping, 2 bad input or usage, 3 the vehicle does not flap, 1 anything else.");
   command->callback([a, &action] {
     action = [a] {
-      a->vehicle = find_input(a->vehicle, InputKind::vehicle).string();
+      a->at.vehicle = find_input(a->at.vehicle, InputKind::vehicle).string();
       return run(*a);
     };
   });

@@ -42,6 +42,8 @@ std::unique_ptr<CLI::App> command_tree(Action& action) {
   add_tolerance(*program, action);
   add_optimise(*program, action);
   add_endurance(*program, action);
+  add_linearise(*program, action);
+  add_export_fmu(*program, action);
   add_reproduce(*program, action);
   add_new(*program, action);
   add_keys(*program, action);

@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "wingbeat/core/names.hpp"
+#include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/input_file.hpp"
+#include "wingbeat/files/units.hpp"
 
 namespace wingbeat::app {
 
@@ -51,6 +53,12 @@ CLI::Option* add_choice(CLI::App* command, const char* names, std::string& choic
   for (const auto& [name, value] : names_of<E>) values.choices.push_back({name});
   takes(option, std::move(values));
   return option;
+}
+/// What was chosen of them. Throws InputError.
+template <NamedEnum E>
+E choice_of(const char* option, const std::string& text) {
+  if (const auto value = from_name<E>(text)) return *value;
+  throw InputError(option, 0, 0, "", "must be " + std::string(listed_names<E>()) + ", got " + in_quotes(text));
 }
 void add_set(CLI::App* command, std::vector<std::string>& overrides);
 void add_json(CLI::App* command, bool& json);

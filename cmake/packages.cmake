@@ -74,7 +74,8 @@ This package holds the static libraries, the headers and the files by which
 CMake finds them: find_package(wingbeat).")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
   "libeigen3-dev, libceres-dev, libxsimd-dev, libsundials-dev, libboost-dev, libnlopt-dev, libnlopt-cxx-dev,\
- libfmt-dev, libtomlplusplus-dev, nlohmann-json3-dev, libtbb-dev, libnetcdf-dev, libhdf5-dev, libudunits2-dev")
+ libfmt-dev, libtomlplusplus-dev, nlohmann-json3-dev, libtbb-dev, libnetcdf-dev, libhdf5-dev, libmatio-dev, libzip-dev,\
+ libudunits2-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS wingbeat-doc)
 
 if(TARGET wingbeat_python)

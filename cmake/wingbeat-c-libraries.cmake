@@ -1,5 +1,6 @@
-# netCDF, HDF5 and UDUNITS-2 as imported targets, here and in projects that link wingbeat's archives: libraries and headers
-# alone. Their own CMake packages name curl, crypto and whatever else they were built with, by absolute paths.
+# netCDF, HDF5, matio, libzip and UDUNITS-2 as imported targets, here and in projects that link wingbeat's archives:
+# libraries and headers alone. Their own CMake packages name curl, crypto and whatever else they were built with, by
+# absolute paths.
 function(wingbeat_c_library name header)
   cmake_parse_arguments(OF "" "" "NAMES;FOLDERS" ${ARGN})
   if(TARGET wingbeat::${name})
@@ -17,4 +18,6 @@ function(wingbeat_c_library name header)
 endfunction()
 wingbeat_c_library(netcdf netcdf.h NAMES netcdf)
 wingbeat_c_library(hdf5 hdf5.h NAMES hdf5_serial hdf5 FOLDERS hdf5/serial)
+wingbeat_c_library(matio matio.h NAMES matio)
+wingbeat_c_library(zip zip.h NAMES zip)
 wingbeat_c_library(udunits udunits2.h NAMES udunits2 FOLDERS udunits2)

@@ -10,6 +10,7 @@
 #include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/files/netcdf.hpp"
 #include "wingbeat/files/tolerance_file.hpp"
+#include "wingbeat/report/control_report.hpp"
 #include "wingbeat/report/endurance_report.hpp"
 #include "wingbeat/report/fit_report.hpp"
 #include "wingbeat/report/identification_report.hpp"
@@ -160,6 +161,20 @@ py::dict tolerance(const std::string& file, const std::vector<std::string>& over
   return told(json_tolerance(study, found), text_tolerance(study, found));
 }
 
+py::dict linearise(const Design<double>& design, const std::string& condition, std::optional<double> frequency,
+                   std::optional<double> lift, bool allow_extrapolation, int cycles, double hinge_offset, bool maps) {
+  ControlOptions options;
+  options.at.condition = choice<Condition>("condition", condition);
+  options.at.frequency = frequency;
+  options.at.lift = lift;
+  options.at.allow_extrapolation = allow_extrapolation;
+  options.step_cycles = cycles;
+  options.hinge_offset = hinge_offset;
+  options.allocation_maps = maps;
+  const ControlModels found = watched(py::none(), [&](const Watch&) { return control_models(design, options); });
+  return told(json_control(found, WINGBEAT_VERSION), text_control(found));
+}
+
 }  // namespace
 
 void add_studies(py::module_& m) {
@@ -169,6 +184,7 @@ void add_studies(py::module_& m) {
   m.def("identify_motor", &identify);
   m.def("fit", &fit);
   m.def("tolerance", &tolerance);
+  m.def("linearise", &linearise);
 }
 
 }  // namespace wingbeat::python

@@ -46,7 +46,7 @@ struct Plan {
 
 /// Whether the batched solver knows all of a vehicle.
 bool suits_packs(const Vehicle<double>& v) {
-  if (has_gear_loss(v.motor) || pitches(v)) return false;
+  if (has_gear_loss(v.motor) || pitches(v) || v.load_torque != 0.0) return false;
   if (v.transmission.type == TransmissionType::slider_crank) return lanes_know_coefficients(v);
   // Where constant friction holds a shaft that swings, the equations jump; where coefficients bend, so do their slopes.
   return v.transmission.type == TransmissionType::direct && breakaway_torque(v) == 0.0 && !v.wings.coefficients.table &&

@@ -13,6 +13,7 @@
 #include "wingbeat/files/file_record.hpp"
 #include "wingbeat/files/netcdf.hpp"
 #include "wingbeat/files/waveform_file.hpp"
+#include "wingbeat/files/zip_file.hpp"
 
 namespace wingbeat {
 namespace fs = std::filesystem;
@@ -45,6 +46,7 @@ bool says_so(std::string_view comment) {
 }
 
 bool text_is_own(std::string_view head) {
+  if (head.starts_with("{") || head.starts_with("MATLAB 5.0")) return says_so(head.substr(0, 400));
   if (head.starts_with("<")) return head.find(fmt::format("<!-- {} -->", drawn)) != std::string_view::npos;
   for (int line = 0; line < 3; ++line) {
     const std::string_view content = head.substr(0, head.find_first_of("\r\n"));
@@ -67,6 +69,18 @@ bool data_set_is_own(const fs::path& file) {
     const auto source = data.attribute("source");
     return source && source->starts_with("wingbeat ");
   } catch (const NetcdfError&) {
+    return false;
+  }
+}
+
+/// An FMU by the head of the vehicle in it.
+bool archive_is_own(const fs::path& file) {
+  try {
+    const auto files = read_zip(file);
+    return std::any_of(files.begin(), files.end(), [](const auto& entry) {
+      return entry.first == "resources/vehicle.bin" && entry.second.starts_with("wingbeat FMU vehicle ");
+    });
+  } catch (const std::runtime_error&) {
     return false;
   }
 }
@@ -122,6 +136,7 @@ bool written_by_wingbeat(const fs::path& file) {
   head.resize(std::size_t(in.gcount()));
   if (head.empty()) return true;
   if (head.starts_with("\x89HDF") || head.starts_with("CDF")) return data_set_is_own(file);
+  if (head.starts_with("PK\x03\x04")) return archive_is_own(file);
   if (head.starts_with(png_signature)) {
     return head.find(std::string("Software\0", 9) + std::string(drawn)) != std::string::npos;
   }

@@ -14,7 +14,7 @@ constexpr int max_rounds = 25;
 constexpr int max_still = 3;
 
 /// The search for one member's voltage.
-struct Search {
+struct EnsembleSearch {
   std::size_t member = 0;
   double target = 0.0;             ///< [Hz]
   double low = 0.0;                ///< voltage known to be too low, or 0
@@ -26,9 +26,9 @@ struct Search {
   int still = 0;                   ///< trials that did not flap
 };
 
-Search begin(const Vehicle<double>& v, std::size_t member, double frequency) {
+EnsembleSearch begin(const Vehicle<double>& v, std::size_t member, double frequency) {
   const double unloaded = detail::unloaded_voltage(v, two_pi * frequency, v.motor.friction_torque);
-  Search s;
+  EnsembleSearch s;
   s.member = member;
   s.target = frequency;
   s.next = 1.3 * unloaded;  // between unloaded and the load of most efficient working
@@ -37,7 +37,7 @@ Search begin(const Vehicle<double>& v, std::size_t member, double frequency) {
 }
 
 /// Notes what the trial gave and chooses the next voltage. True when the voltage just tried is the answer.
-bool advance(Search& s, bool flaps, double frequency, double closeness) {
+bool advance(EnsembleSearch& s, bool flaps, double frequency, double closeness) {
   const double tried = s.next;
   if (!flaps) ++s.still;
   if (flaps && std::abs(frequency - s.target) <= closeness * s.target) return true;
@@ -88,7 +88,7 @@ void solve_ensemble_at_frequency(std::span<EnsembleMember> members, std::span<co
     outcomes[n].scalar = true;
     outcomes[n].metrics.values.fill(absent);
   };
-  std::vector<Search> searches;
+  std::vector<EnsembleSearch> searches;
   std::vector<std::size_t> settled, left;
   for (std::size_t n = 0; n < members.size(); ++n) {
     Vehicle<double>& vehicle = members[n].vehicle;
@@ -114,7 +114,7 @@ void solve_ensemble_at_frequency(std::span<EnsembleMember> members, std::span<co
     solve_ensemble({trials.data(), active}, trial_options, start_up, {results.data(), active});
     std::size_t kept = 0;
     for (std::size_t k = 0; k < active; ++k) {
-      Search& s = searches[k];
+      EnsembleSearch& s = searches[k];
       const double tried = s.next;
       const bool flaps = results[k].status == FlappingStatus::flapping;
       if (advance(s, flaps, results[k].metrics[Metric::frequency], closeness)) {
@@ -128,7 +128,7 @@ void solve_ensemble_at_frequency(std::span<EnsembleMember> members, std::span<co
     }
     searches.resize(kept);
   }
-  for (const Search& s : searches) left.push_back(s.member);
+  for (const EnsembleSearch& s : searches) left.push_back(s.member);
 
   std::vector<std::size_t> searched_singly;
   for (const std::size_t n : left) {

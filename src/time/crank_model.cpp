@@ -124,7 +124,7 @@ Motion<double> CrankModel::motion_now() const {
   }
   m.rod_force = wingless ? 0.0 : moment / m.kinematics.wing_lever;
   m.motor_torque = vehicle.motor.torque_constant * m.current;
-  m.friction_torque = m.motor_torque - m.rod_force * m.kinematics.crank_lever;
+  m.friction_torque = m.motor_torque - m.rod_force * m.kinematics.crank_lever - vehicle.load_torque;
   return m;
 }
 
@@ -176,15 +176,15 @@ double CrankModel::static_force(const CrankKinematics<double>& k) const {
   return wingbeat::static_rod_force(k, spring_moment(vehicle, k));
 }
 
-/// K i - F_s h [N m]: what would turn the crank at rest. Behind a gearbox that loses torque, from the middle of the
-/// standing torques.
+/// K i - F_s h - T_x [N m]: what would turn the crank at rest. Behind a gearbox that loses torque, from the middle of
+/// the standing torques.
 double CrankModel::net_static_torque(double theta, double i) const {
   if (has_gear_loss(vehicle.motor)) {
     const StandingTorques<double> at = standing_torques(theta);
     return vehicle.motor.torque_constant * i - 0.5 * (at.low + at.high);
   }
   const CrankKinematics<double> k = kinematics(theta);
-  return vehicle.motor.torque_constant * i - static_force(k) * k.crank_lever;
+  return vehicle.motor.torque_constant * i - static_force(k) * k.crank_lever - vehicle.load_torque;
 }
 
 /// mu r_e |F_s| + T_c [N m]: what friction, and the gearbox with it, can hold at rest.

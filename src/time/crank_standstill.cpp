@@ -19,7 +19,7 @@ void CrankStartUp::stand() {
     hold = 0.5 * (at.high - at.low);
   } else {
     const CrankKinematics<double> k = model_.kinematics(now_.theta);
-    load = model_.static_force(k) * k.crank_lever;
+    load = model_.static_force(k) * k.crank_lever + model_.vehicle.load_torque;
     hold = model_.vehicle.friction.radius * std::abs(model_.static_force(k)) + model_.constant_friction;
   }
   const double K = model_.vehicle.motor.torque_constant;

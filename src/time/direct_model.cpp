@@ -55,7 +55,7 @@ Motion<double> DirectModel::motion(double t, const double* y) const {
     m.crank_acceleration = m.stroke_acceleration = 0.0;
     m.rod_force = m.stored_moment = springs;
     m.motor_torque = at.motor.torque;
-    m.friction_torque = at.motor.torque - springs;
+    m.friction_torque = at.motor.torque - springs - vehicle.load_torque;
   }
   return m;
 }

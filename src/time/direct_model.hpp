@@ -68,10 +68,10 @@ class DirectModel : public DrivenShaft {
   double current_of(double t, const double* y) const {
     return inductive ? y[2] : algebraic_current(vehicle, voltage(t), y[1]);
   }
-  /// K i - N_w k beta [N m] at rest.
+  /// K i - T_x - N_w k beta [N m] at rest.
   double net_torque(double t, const double* y) const {
     const double i = inductive ? y[2] : algebraic_current(vehicle, voltage(t), 0.0);
-    return vehicle.motor.torque_constant * i - springs_of(y[0]);
+    return vehicle.motor.torque_constant * i - vehicle.load_torque - springs_of(y[0]);
   }
   Branch<double> branch_at(const double* y) const;
   Motion<double> motion(double t, const double* y) const;

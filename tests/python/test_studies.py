@@ -32,6 +32,24 @@ class Studies(unittest.TestCase):
             reference().endurance()
 
     @unittest.skipUnless(PROGRAM, "needs the program")
+    def test_control_models_are_the_programs(self):
+        models = reference().linearise(maps=False)
+        self.assertEqual(dict(models), told("linearise", "friction2022", "--no-maps"))
+        model = models.discrete
+        system = model.to_scipy()
+        self.assertEqual(system.dt, models["model"]["period_s"])
+        import numpy as np
+        from scipy import signal
+
+        steps = models["model"]["step_responses"]["voltage"]
+        _, response, _ = signal.dlsim(system, np.tile([1.0, 0.0], (len(steps[model.outputs[0]]), 1)))
+        for column, name in enumerate(model.outputs):
+            np.testing.assert_allclose(response[:, column], steps[name], rtol=1e-9, atol=1e-12)
+        self.assertEqual(models.continuous.states, [])  # all settles within a cycle
+        with self.assertRaisesRegex(ValueError, "^no linear model: "):
+            reference().replace({"supply.voltage": 0.0}).linearise().discrete
+
+    @unittest.skipUnless(PROGRAM, "needs the program")
     def test_a_motor_is_the_programs(self):
         for file in sorted((DATA / "motors").glob("*.toml")):
             sized = "rotor_diameter" in file.read_text()

@@ -94,6 +94,7 @@ class CycleGradient {
         begins_.push_back(totals_[time] - result.dq[time]);
       }
     }
+    end_ = y;
     // (I - M) dy/dp = dP/dp, one right-hand side per slot behind the states.
     for (int k = N; k < slots; ++k) {
       double matrix[N * N], change[N];
@@ -108,6 +109,11 @@ class CycleGradient {
     }
     return true;
   }
+
+  /// The state behind the cycle and the integrals over it, after run(): functions of the state at its start, in the
+  /// first slots, and of what `vehicle` was built from, in those behind.
+  const JetState& end() const { return end_; }
+  const typename Jets::Quadrature& totals() const { return totals_; }
 
   /// The total derivative: that of the start added, the slots of the states emptied.
   J total(W x) const {
@@ -449,6 +455,7 @@ class CycleGradient {
   J motors_;
   Along along_ = system_.template cast<Jet<1>>();
   typename Jets::Quadrature totals_;
+  JetState end_;
   std::vector<JetState> starts_;
   std::vector<JetState> ends_;  ///< of the steps, of wings that pitch
   std::vector<W> begins_;       ///< time from the cycle's start at which each step begins, of wings that pitch [s]

@@ -145,7 +145,7 @@ struct DirectSystem {
       m.crank_acceleration = m.stroke_acceleration = S(0.0);
       m.rod_force = m.stored_moment = N_k_beta;
       m.motor_torque = at.motor.torque;
-      m.friction_torque = at.motor.torque - N_k_beta;
+      m.friction_torque = at.motor.torque - N_k_beta - vehicle.load_torque;
     }
     return m;
   }
@@ -179,11 +179,11 @@ struct DirectSystem {
   S spring_moment_at(const State& y) const { return vehicle.wing_count * vehicle.spring.stiffness * y[0]; }
   /// T_c [N m].
   S holding_torque() const { return vehicle.friction.torque + vehicle.motor.friction_torque; }
-  /// K i - N_w k beta [N m]: what would move the shaft at rest.
+  /// K i - T_x - N_w k beta [N m]: what would move the shaft at rest.
   S net_torque(const S& phi, const State& y) const {
     State at_rest = y;
     at_rest[1] = S(0.0);
-    return vehicle.motor.torque_constant * current(phi, at_rest) - spring_moment_at(y);
+    return vehicle.motor.torque_constant * current(phi, at_rest) - vehicle.load_torque - spring_moment_at(y);
   }
   void hold_or_move(const S& phi, const State& y, Signs& signs) const {
     using std::abs;

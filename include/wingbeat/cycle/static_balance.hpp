@@ -69,7 +69,7 @@ struct StandingTorques {
 template <template <Scalar> class V, Scalar S>
 StandingTorques<S> standing_torques(const V<S>& v, const CrankKinematics<S>& k, const S& F_s) {
   using std::abs;
-  const S load = F_s * k.crank_lever, friction = v.friction.radius * abs(F_s) + v.friction.torque;
+  const S load = F_s * k.crank_lever + v.load_torque, friction = v.friction.radius * abs(F_s) + v.friction.torque;
   const S own = v.motor.friction_torque;
   return {-torque_before_gear(v.motor, S(friction - load)) - own,
           torque_before_gear(v.motor, S(load + friction)) + own};
@@ -81,7 +81,7 @@ template <template <Scalar> class V, Scalar S>
 S advance_torque(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta, const S& torque) {
   const S F_s = static_rod_force(k, N_k_beta);
   if (has_gear_loss(v.motor)) return torque - standing_torques(v, k, F_s).high;
-  return torque - F_s * k.crank_lever - holding_torque(v, F_s);
+  return torque - F_s * k.crank_lever - v.load_torque - holding_torque(v, F_s);
 }
 
 /// mu r_e |F_s| + T_c - |torque - F_s h| [N m]: >= 0 where friction holds a crank at rest. Behind a gearbox: what the
@@ -95,7 +95,7 @@ S lock_margin(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta, con
     const StandingTorques<S> at = standing_torques(v, k, F_s);
     return min(S(at.high - torque), S(torque - at.low));
   }
-  return holding_torque(v, F_s) - abs(S(torque - F_s * k.crank_lever));
+  return holding_torque(v, F_s) - abs(S(torque - F_s * k.crank_lever - v.load_torque));
 }
 
 /// The least of J + A (h + s mu r_e) over both branches [kg m2]; <= 0 jams.
@@ -151,7 +151,8 @@ S torque_surplus(const V<S>& v, std::span<const LoadPlace<S>> places, const S& o
   if (!places.empty()) load = load * S(1.0 / double(places.size()));
   const S motor = v.motor.torque_constant * algebraic_current(v, v.voltage, omega) - v.motor.viscous_damping * omega -
                   v.motor.friction_torque;
-  return gear_torque_ratio(v.motor, S(1.0)) * motor - load_free_friction(v.friction, omega, S(1.0)) - load;
+  return gear_torque_ratio(v.motor, S(1.0)) * motor - load_free_friction(v.friction, omega, S(1.0)) - load -
+         v.load_torque;
 }
 
 /// Crank speeds at which the motor's torque balances the mean load of a cycle at constant speed.

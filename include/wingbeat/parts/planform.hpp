@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -96,19 +97,19 @@ S root_chord_of(const Planform<S>& p) {
 
 }  // namespace detail
 
-/// Chord moments of ONE wing about the hinge; `moments` holds the moments of all wings and is not for this function.
-/// Semi-ellipse: c = c_0 sqrt(1 - (x/R)^2), root moments pi c_0 R/4, c_0 R^2/3, pi c_0 R^3/16, 2 c_0 R^4/15.
+namespace detail {
+
+/// Moments m_n = integral c x^n dx of ONE wing about its root, n = 0 to 3; `moments` holds the moments of all wings and
+/// is not for this function. Semi-ellipse: c = c_0 sqrt(1 - (x/R)^2).
 template <Scalar S>
-ChordMoments<S> one_wing_moments(const Planform<S>& p) {
+std::array<S, 4> root_moments(const Planform<S>& p) {
   const S R = p.length;
   const S c_0 = detail::root_chord_of(p);
-  const S d = p.hub_offset;
   if (p.shape == PlanformShape::semi_ellipse) {
-    return detail::shift_moments<S>(pi / 4.0 * c_0 * R, c_0 * R * R / 3.0, pi / 16.0 * c_0 * R * R * R,
-                                    2.0 / 15.0 * c_0 * R * R * R * R, d);
+    return {pi / 4.0 * c_0 * R, c_0 * R * R / 3.0, pi / 16.0 * c_0 * R * R * R, 2.0 / 15.0 * c_0 * R * R * R * R};
   }
   if (p.shape == PlanformShape::rectangle) {
-    return detail::shift_moments<S>(c_0 * R, c_0 * R * R / 2.0, c_0 * R * R * R / 3.0, c_0 * R * R * R * R / 4.0, d);
+    return {c_0 * R, c_0 * R * R / 2.0, c_0 * R * R * R / 3.0, c_0 * R * R * R * R / 4.0};
   }
   double m[4] = {0.0, 0.0, 0.0, 0.0};
   detail::visit_table(p.chord_table, [&](double weight, double chord, double x) {
@@ -118,7 +119,23 @@ ChordMoments<S> one_wing_moments(const Planform<S>& p) {
       power *= x;
     }
   });
-  return detail::shift_moments<S>(S(m[0]), S(m[1]), S(m[2]), S(m[3]), d);
+  return {S(m[0]), S(m[1]), S(m[2]), S(m[3])};
+}
+
+}  // namespace detail
+
+/// Chord moments of ONE wing about the hinge; of a planform that has a shape.
+template <Scalar S>
+ChordMoments<S> one_wing_moments(const Planform<S>& p) {
+  const std::array<S, 4> m = detail::root_moments(p);
+  return detail::shift_moments<S>(m[0], m[1], m[2], m[3], p.hub_offset);
+}
+
+/// S_1 = N_w integral c r dr [m3] of all `count` wings, of a planform that has a shape.
+template <Scalar S>
+S first_chord_moment(const Planform<S>& p, const S& count) {
+  const std::array<S, 4> m = detail::root_moments(p);
+  return count * (m[1] + p.hub_offset * m[0]);
 }
 
 /// S_2 [m4] and S_3 [m5] of all `count` wings.

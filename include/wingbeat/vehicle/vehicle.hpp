@@ -37,11 +37,14 @@ struct Vehicle {
   MotorThermal<S> thermal;     ///< what changes `motor` where it heats up; see with_motor_at()
   S motors = S(1);             ///< M: rod forces are reported of one of so many rods
   PitchingWings<S> pitch;      ///< of wings whose pitch is a degree of freedom; see pitches()
+  /// T_x that a load outside the vehicle takes from crank or shaft, against a positive speed [N m]; no design states
+  /// one. SIMD packs do not know it.
+  S load_torque = S(0);
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
     return use(of.voltage, of.motor, of.transmission, of.friction, of.spring, of.wing_count, of.wing_inertia, of.wings,
-               of.source_resistance, of.drive_frequency, of.thermal, of.motors, of.pitch);
+               of.source_resistance, of.drive_frequency, of.thermal, of.motors, of.pitch, of.load_torque);
   }
 };
 
@@ -266,7 +269,7 @@ struct Instant {
   AeroLoads<S> aero;  ///< of all wings
   S spring_moment;    ///< N_w k beta [N m]
   S load_free;        ///< friction on the crank that does not depend on F [N m]
-  S drive;            ///< K i - b omega - load_free [N m]; behind a gearbox, which the motor's share of it passes
+  S drive;            ///< K i - b omega - load_free - T_x [N m]; behind a gearbox, which the motor's share of it passes
   S gear_ratio;       ///< e, torque behind the gearbox over torque before it [1]
   S inertia;          ///< e J [kg m2]
   S A_g;              ///< A g of F = A omega' + C [kg m2]
@@ -299,6 +302,8 @@ template <template <Scalar> class V, Scalar S>
     at.inertia = at.gear_ratio * v.motor.inertia;
     at.drive = at.gear_ratio * (at.motor.torque - at.motor.drag_torque - own) - mechanism;
   }
+
+  if constexpr (ScalarTraits<S>::reads_tables) at.drive = at.drive - v.load_torque;
 
   // F = A omega' + C of model.md, both sides times g, which saves dividing by it twice.
   at.A_g = inertia * k.stroke_slope;
@@ -345,6 +350,7 @@ template <template <Scalar> class V, Scalar S>
   m.stroke_acceleration = k.stroke_slope * m.crank_acceleration + k.stroke_curve * omega2;
   m.friction_torque = load_friction(v.friction, branch.force * m.rod_force, branch.direction) + at.load_free;
   m.motor_torque = m.rod_force * k.crank_lever + m.friction_torque;
+  if constexpr (ScalarTraits<S>::reads_tables) m.motor_torque = m.motor_torque + v.load_torque;
   m.gear_torque = m.gear_loss = S(0.0);
   if (has_gear_loss(v.motor)) {
     m.gear_torque =

@@ -6,6 +6,7 @@
     result.gradient("lift_mean", ["transmission.crank_radius"])
     vehicle.simulate().time_to_steady
     vehicle.simulation().step_to(0.1)                   # under commanded voltages, for controllers
+    vehicle.linearise().discrete.to_scipy()             # for control design
     vehicle.sweep({"supply.voltage": [2, 3, 4]})        # xarray
     wb.solve({"supply.voltage": [2, 3, 4]}, vehicle=vehicle).lift_mean
     vehicle.equations_of_motion().rates(time, state)    # for SciPy
@@ -19,6 +20,7 @@ from ._core import version as __version__
 from ._ensemble import Ensemble, solve_columns
 from ._equations import EquationsOfMotion
 from ._errors import InputError
+from ._linear import ControlModels, LinearModel, linearise
 from ._optimise import Front, OwnOptimum, optimise
 from ._parts import coefficient_curves, kinematics, motor_curves
 from ._quantity import Quantity
@@ -31,6 +33,7 @@ from ._tables import Metric, Parameter, metrics, parameters
 from ._vehicle import Vehicle, read
 
 __all__ = [
+    "ControlModels",
     "EnergyBalance",
     "Ensemble",
     "EquationsOfMotion",
@@ -40,6 +43,7 @@ __all__ = [
     "Front",
     "Identification",
     "InputError",
+    "LinearModel",
     "Metric",
     "OwnOptimum",
     "Parameter",
@@ -57,6 +61,7 @@ __all__ = [
     "fit",
     "identify_motor",
     "kinematics",
+    "linearise",
     "metrics",
     "motor_curves",
     "open_dataset",

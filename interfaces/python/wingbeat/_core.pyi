@@ -101,6 +101,16 @@ class Simulation:
     def restore(self, numbers: Sequence[float]) -> None: ...
 
 def endurance(design: Design, allow_extrapolation: bool) -> dict[str, Any]: ...
+def linearise(
+    design: Design,
+    condition: str,
+    frequency: float | None,
+    lift: float | None,
+    allow_extrapolation: bool,
+    cycles: int,
+    hinge_offset: float,
+    maps: bool,
+) -> dict[str, Any]: ...
 def identify_motor(
     file: str, frequency: float | None, assume_steel_cylinder: bool, assume_typical_damping: bool, shaft: str
 ) -> dict[str, Any]: ...

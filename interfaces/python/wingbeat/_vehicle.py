@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from ._accessor import SweepData
     from ._ensemble import Ensemble
     from ._equations import EquationsOfMotion
+    from ._linear import ControlModels
     from ._result import RunResult, StartUp
     from ._simulation import Simulation
     from ._studies import Flight
@@ -243,6 +244,12 @@ class Vehicle(Sections):
         from ._studies import endurance
 
         return endurance(self, **options)
+
+    def linearise(self, **options: Any) -> ControlModels:
+        """Linear models for control design: see wingbeat.linearise."""
+        from ._linear import linearise
+
+        return linearise(self, **options)
 
     def motor_curves(self, **options: Any) -> Dataset:
         """Torque, current, powers and efficiency of its motors over speed: see wingbeat.motor_curves."""

@@ -1,0 +1,97 @@
+#include "operating_point.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "options.hpp"
+#include "wingbeat/files/design_file.hpp"
+#include "wingbeat/files/units.hpp"
+#include "wingbeat/report/describe.hpp"
+
+namespace wingbeat::app {
+namespace {
+
+void apply_voltage(Supply<double>& supply, const std::string& text) {
+  if (is_sine(supply.type)) {
+    throw InputError("--voltage", 0, 0, "", "the supply is a sine; use --set supply.amplitude=\"3 V\"");
+  }
+  if (supply.type == SupplyType::battery) {
+    throw InputError("--voltage", 0, 0, "",
+                     "the supply is a battery, whose charge gives its voltage; use --set "
+                     "supply.charge=0.5, or --set supply.cell_voltage=\"3.7 V\"");
+  }
+  supply.voltage = quantity_of("--voltage", text, "V");
+  if (supply.voltage < 0.0) throw InputError("--voltage", 0, 0, "", "must be >= 0 V");
+}
+
+}  // namespace
+
+double quantity_of(const char* option, const std::string& text, const char* unit) {
+  try {
+    const double x = parse_quantity(text, unit);
+    if (!std::isfinite(x)) throw InputError(option, 0, 0, "", "must be finite");
+    return x;
+  } catch (const UnitError& error) {
+    throw InputError(option, 0, 0, "", error.what());
+  }
+}
+
+void add_operating_point(CLI::App* command, OperatingPointArguments& a) {
+  add_input(command, a.vehicle, InputKind::vehicle, "vehicle", "Vehicle file (TOML)", "VEHICLE");
+  add_set(command, a.overrides);
+  CLI::Option* voltage =
+      command->add_option("--voltage", a.voltage, "Supply voltage (pwm: while switched on), as \"3 V\"")
+          ->type_name("QUANTITY");
+  CLI::Option* frequency = command->add_option("--frequency", a.frequency,
+                                               "Find the voltage that gives this flapping frequency, as \"22 Hz\"");
+  frequency->type_name("QUANTITY")->excludes(voltage);
+  CLI::Option* lift =
+      command->add_option("--lift", a.lift, "Find the voltage (pwm: the duty) that gives this mean lift, as \"20 mN\"");
+  lift->type_name("QUANTITY")->excludes(voltage)->excludes(frequency);
+  command->add_option("--lift-to-weight", a.lift_to_weight, "The same for lift over weight; 1: hover")
+      ->type_name("NUMBER")
+      ->excludes(voltage)
+      ->excludes(frequency)
+      ->excludes(lift);
+  add_choice<Condition>(command, "--condition", a.condition, "air (default), vacuum or wingless", "CONDITION");
+}
+
+Design<double> read_operating_point(const OperatingPointArguments& arguments, RunOptions& options) {
+  options.allow_extrapolation = arguments.allow_extrapolation;
+  options.condition = choice_of<Condition>("--condition", arguments.condition);
+  if (!arguments.frequency.empty()) {
+    options.frequency = quantity_of("--frequency", arguments.frequency, "Hz");
+    if (!(*options.frequency > 0.0)) throw InputError("--frequency", 0, 0, "", "must be > 0 Hz");
+  }
+  if (!arguments.lift.empty()) {
+    options.lift = quantity_of("--lift", arguments.lift, "N");
+    if (!(*options.lift > 0.0)) throw InputError("--lift", 0, 0, "", "must be > 0 N");
+  }
+  Design<double> design = read_design(arguments.vehicle, arguments.overrides);
+  if (!arguments.lift_to_weight.empty()) {
+    const double ratio = quantity_of("--lift-to-weight", arguments.lift_to_weight, "1");
+    if (!(ratio > 0.0)) throw InputError("--lift-to-weight", 0, 0, "", "must be > 0");
+    const std::optional<double> mass = total_mass(design);
+    if (!mass) throw InputError("--lift-to-weight", 0, 0, "", "needs vehicle.mass, which the vehicle does not give");
+    options.lift = ratio * *mass * standard_gravity;
+  }
+  if (!arguments.voltage.empty()) apply_voltage(design.supply, arguments.voltage);
+  return design;
+}
+
+void require_reached(const OperatingPointArguments& arguments, const RunResult& result) {
+  if (!result.search || result.search->outcome == FrequencyOutcome::reached ||
+      result.status != FlappingStatus::flapping) {
+    return;
+  }
+  // It flaps, only not so: no design that fails, but a request that cannot be met.
+  const std::string asked = !arguments.frequency.empty() ? "--frequency " + arguments.frequency
+                            : !arguments.lift.empty()    ? "--lift " + arguments.lift
+                                                         : "--lift-to-weight " + arguments.lift_to_weight;
+  const bool leaves = result.search->finding.inside_domain_only();
+  throw InputError(asked, 0, 0, "",
+                   describe(result.search->finding) + (leaves ? "; --allow-extrapolation searches beyond" : ""));
+}
+
+}  // namespace wingbeat::app

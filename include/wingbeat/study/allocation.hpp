@@ -1,0 +1,65 @@
+// Static maps for control allocation: mean lift and mean body moments over what commands the drives.
+//
+// Axes as in study/body_derivatives.hpp: roll moment L positive with the right wing down, pitch M with the nose up, yaw
+// N with the nose to the right. The air's forces act at the centre of pressure r = S_3 / S_2 from the stroke axis.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "wingbeat/study/linear_model.hpp"
+
+namespace wingbeat {
+
+enum class AllocationInput {
+  voltage,               ///< of both sides alike [V]
+  differential_voltage,  ///< of the left side less that of the right: each has half of it [V]; needs vehicle.motors = 2
+  bias_voltage,          ///< added to a direct drive's sine, on both sides [V]
+  split_cycle  ///< delta: the positive half of a direct drive's sine takes (1 + delta)/2 of the period on the right and
+               ///< (1 - delta)/2 on the left, with its mean taken out [1]; needs vehicle.motors = 2
+};
+template <>
+inline constexpr std::pair<const char*, AllocationInput> names_of<AllocationInput>[] = {
+    {"voltage", AllocationInput::voltage},
+    {"differential_voltage", AllocationInput::differential_voltage},
+    {"bias_voltage", AllocationInput::bias_voltage},
+    {"split_cycle", AllocationInput::split_cycle}};
+
+inline const char* unit_of(AllocationInput input) { return input == AllocationInput::split_cycle ? "1" : "V"; }
+
+/// Means of a settled cycle; absent where it does not flap there.
+struct AllocationPoint {
+  double input;      ///< [V] or [1]
+  double lift;       ///< of all wings [N]
+  double roll;       ///< L [N m]
+  double pitch;      ///< M [N m]
+  double yaw;        ///< N [N m]
+  double frequency;  ///< of a differential voltage that of the left side [Hz]
+};
+
+/// A quantity of the maps: its name, unit, and what it is.
+struct AllocationColumn {
+  const char* name;
+  const char* unit;
+  const char* meaning;
+  double AllocationPoint::* member;
+};
+inline constexpr AllocationColumn allocation_columns[] = {
+    {"lift", "N", "mean lift", &AllocationPoint::lift},
+    {"roll_moment", "N m", "mean roll moment, positive with the right wing down", &AllocationPoint::roll},
+    {"pitch_moment", "N m", "mean pitch moment, positive with the nose up", &AllocationPoint::pitch},
+    {"yaw_moment", "N m", "mean yaw moment, positive with the nose to the right", &AllocationPoint::yaw},
+    {"frequency", "Hz", "flapping frequency", &AllocationPoint::frequency}};
+
+struct AllocationMap {
+  AllocationInput input;
+  std::vector<AllocationPoint> points;
+  AllocationPoint slope;  ///< by the input at the operating point, from points next to it [.../V or .../1]
+};
+
+/// The maps that the vehicle has, in the order of AllocationInput, about an operating point that flaps: voltages from
+/// half to 1.3 times its own, differences up to half of it, biases up to a fifth, splits up to 0.3. A pwm supply's
+/// voltage is its mean.
+std::vector<AllocationMap> allocation_maps(const Linearisation& at, Condition condition, double hinge_offset = 0.0);
+
+}  // namespace wingbeat

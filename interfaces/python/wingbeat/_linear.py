@@ -1,0 +1,124 @@
+"""Linear models of a vehicle for control design."""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _core
+from ._result import quantity
+from ._studies import StudyResult
+from ._vehicle import Vehicle
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+
+def _names(signals: list[dict[str, Any]]) -> list[str]:
+    return [str(signal["name"]) for signal in signals]
+
+
+def _matrix(rows: list[list[float | None]], columns: int) -> npt.NDArray[np.float64]:
+    return np.array(rows, dtype=np.float64).reshape(len(rows), columns)
+
+
+class LinearModel:
+    """Matrices A, B, C, D with the names of states, inputs and outputs, all of them deviations in SI units.
+
+    `dt` [s] is the time step, None of a model in continuous time.
+    """
+
+    def __init__(self, model: dict[str, Any], inputs: list[str], outputs: list[str], dt: float | None) -> None:
+        self.states: list[str] = _names(model["states"])
+        self.inputs = inputs
+        self.outputs = outputs
+        self.dt = dt
+        self.A = _matrix(model["A"], len(self.states))
+        self.B = _matrix(model["B"], len(inputs))
+        self.C = _matrix(model["C"], len(self.states))
+        self.D = _matrix(model["D"], len(inputs))
+
+    def to_scipy(self) -> Any:
+        """As scipy.signal.StateSpace, with `dt` where it has one."""
+        signal = importlib.import_module("scipy.signal")
+        matrices = (self.A, self.B, self.C, self.D)
+        return signal.StateSpace(*matrices) if self.dt is None else signal.StateSpace(*matrices, dt=self.dt)
+
+    def to_control(self) -> Any:
+        """As control.StateSpace of the package `control`, with names."""
+        control = importlib.import_module("control")
+        return control.ss(
+            self.A,
+            self.B,
+            self.C,
+            self.D,
+            *([] if self.dt is None else [self.dt]),
+            states=self.states,
+            inputs=self.inputs,
+            outputs=self.outputs,
+        )
+
+    def __repr__(self) -> str:
+        time = "continuous time" if self.dt is None else f"dt = {self.dt:.6g} s"
+        return f"<{type(self).__name__}: {', '.join(self.states)}; {time}>"
+
+
+class ControlModels(StudyResult):
+    """Linear models about steady flapping, static maps and body derivatives: the keys of `wingbeat linearise --json`."""
+
+    def _model(self) -> dict[str, Any]:
+        model = self["model"]
+        if model is None:
+            raise ValueError(f"no linear model: {self['status_detail']}")
+        return dict(model)
+
+    @property
+    def discrete(self) -> LinearModel:
+        """From one cycle to the next. Raises ValueError where the vehicle does not flap."""
+        model = self._model()
+        return LinearModel(model, _names(model["inputs"]), _names(model["outputs"]), float(model["period_s"]))
+
+    @property
+    def continuous(self) -> LinearModel:
+        """The same in continuous time, without what settles within a cycle. Raises as `discrete`."""
+        model = self._model()
+        return LinearModel(model["continuous"], _names(model["inputs"]), _names(model["outputs"]), None)
+
+
+def linearise(
+    vehicle: Vehicle,
+    *,
+    condition: str = "air",
+    frequency: float | str | None = None,
+    lift: float | str | None = None,
+    allow_extrapolation: bool = False,
+    cycles: int = 0,
+    hinge_offset: float | str = 0.0,
+    maps: bool = True,
+) -> ControlModels:
+    """Linear models and static maps for control design: `wingbeat linearise`.
+
+    Parameters
+    ----------
+    condition : "air", "vacuum" or "wingless"
+    frequency, lift : of the operating point, which the voltage follows [Hz], [N]
+    allow_extrapolation : searches for them outside the model's domain too
+    cycles : of the step responses; 0: about five time constants
+    hinge_offset : from the body's middle plane to the axis of a wing's stroke [m]
+    maps : False: without the static maps, which take most of the time
+
+    Raises InputError.
+    """
+    found = _core.linearise(
+        vehicle._design,
+        condition,
+        quantity("frequency", frequency, "Hz"),
+        quantity("lift", lift, "N"),
+        allow_extrapolation,
+        cycles,
+        quantity("hinge_offset", hinge_offset, "m") or 0.0,
+        maps,
+    )
+    return ControlModels(found)

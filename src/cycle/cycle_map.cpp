@@ -1,0 +1,113 @@
+#include "wingbeat/cycle/cycle_map.hpp"
+
+#include <variant>
+
+#include "wingbeat/cycle/cycle_gradient.hpp"
+
+namespace wingbeat {
+namespace {
+
+const CycleSignal crank_speed{"crank_speed", "rad/s", 0.0};
+const CycleSignal stroke_angle{"stroke_angle", "rad", 0.0};
+const CycleSignal flapping_velocity{"flapping_velocity", "rad/s", 0.0};
+const CycleSignal armature_current{"current", "A", 0.0};
+const CycleSignal pitch_angle{"pitch_angle", "rad", 0.0};
+const CycleSignal pitch_velocity{"pitch_velocity", "rad/s", 0.0};
+
+// The states of each system, without the current, which comes last.
+template <int N>
+std::vector<CycleSignal> mechanical_states(const CrankSystem<double, N>&) {
+  return {crank_speed};
+}
+template <int N>
+std::vector<CycleSignal> mechanical_states(const DirectSystem<double, N>&) {
+  return {stroke_angle, flapping_velocity};
+}
+template <int N>
+std::vector<CycleSignal> mechanical_states(const PitchCrankSystem<double, N>&) {
+  return {crank_speed, pitch_angle, pitch_velocity};
+}
+template <int N>
+std::vector<CycleSignal> mechanical_states(const PitchDirectSystem<double, N>&) {
+  return {stroke_angle, flapping_velocity, pitch_angle, pitch_velocity};
+}
+
+/// The inputs, and the vehicle that they are parameters of, as gradient_seed() numbers them.
+std::vector<CycleSignal> seed_inputs(const Supply<double>& supply, Vehicle<GradientJet>& v) {
+  std::vector<CycleSignal> inputs;
+  const auto seed = [&](GradientJet& number, const char* name, const char* unit) {
+    number = gradient_seed(number.a, int(inputs.size()));
+    inputs.push_back({name, unit, number.a});
+  };
+  if (supply.type == SupplyType::pwm) {
+    const GradientJet duty = gradient_seed(supply.duty, 0);
+    v.voltage = duty * supply.voltage;
+    inputs.push_back({"duty", "1", supply.duty});
+  } else {
+    seed(v.voltage, "voltage", "V");
+  }
+  seed(v.load_torque, "load_torque", "N m");
+  if (drive_of(v).alternating) {
+    seed(v.drive_frequency, "frequency", "Hz");
+    seed(v.spring.stiffness, "spring_stiffness", "N m/rad");
+  }
+  return inputs;
+}
+
+template <class System>
+CycleMap linearised(const RecordedCycle<System>& recorded, const Vehicle<double>& vehicle,
+                    const Supply<double>& supply) {
+  using Gradient = CycleGradient<System>;
+  using W = typename Gradient::W;
+  constexpr int N = Gradient::N;
+  constexpr int first_input = gradient_first_slot + Gradient::shift;
+  Vehicle<GradientJet> seeded = cast<GradientJet>(vehicle);
+  seeded.motor = cast<GradientJet>(recorded.system.vehicle.motor);  // as warm as the orbit's
+  CycleMap map;
+  map.inputs = seed_inputs(supply, seeded);
+  Gradient cycle(recorded, seeded);
+  cycle.run();  // whether the orbit itself can be differentiated does not matter to its map
+
+  map.states = mechanical_states(recorded.system);
+  if (int(map.states.size()) < N) map.states.push_back(armature_current);
+  for (int n = 0; n < N; ++n) map.states[std::size_t(n)].value = recorded.cycle.steps.front().y[std::size_t(n)];
+
+  const auto total = [&](Integral which) -> const W& { return cycle.totals()[std::size_t(which)]; };
+  const W frequency = 1.0 / total(Integral::time);
+  map.period = total(Integral::time).a;
+  std::vector<W> outputs;
+  const auto put = [&](const char* name, const char* unit, const W& value) {
+    map.outputs.push_back({name, unit, value.a});
+    outputs.push_back(value);
+  };
+  put("lift_mean", "N", frequency * total(Integral::lift));
+  put("power_electrical", "W", frequency * total(Integral::electrical_work));
+  put("current_mean", "A", frequency * total(Integral::current));
+  put("power_aerodynamic", "W", frequency * total(Integral::aero_work));
+  if (drive_of(vehicle).voltage_sets_frequency) {
+    put("crank_speed_mean", "rad/s", two_pi * frequency);
+    put("frequency", "Hz", frequency);
+  }
+
+  const auto inputs = Eigen::Index(map.inputs.size()), rows = Eigen::Index(outputs.size());
+  map.a.resize(N, N), map.b.resize(N, inputs), map.c.resize(rows, N), map.d.resize(rows, inputs);
+  for (Eigen::Index row = 0; row < N; ++row) {
+    const W& end = cycle.end()[std::size_t(row)];
+    map.a.row(row) = end.v.template head<N>().transpose();
+    map.b.row(row) = end.v.segment(first_input, inputs).transpose();
+  }
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    map.c.row(row) = outputs[std::size_t(row)].v.template head<N>().transpose();
+    map.d.row(row) = outputs[std::size_t(row)].v.segment(first_input, inputs).transpose();
+  }
+  return map;
+}
+
+}  // namespace
+
+CycleMap cycle_map(const SteadyFlapping& orbit, const Vehicle<double>& vehicle, const Supply<double>& supply) {
+  if (orbit.status != FlappingStatus::flapping || orbit.record.empty()) return {};
+  return std::visit([&](const auto& recorded) { return linearised(recorded, vehicle, supply); }, orbit.record.cycles());
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,145 @@
+// Control models as a MAT-file of version 5, by libmatio.
+#include <fmt/format.h>
+#include <matio.h>
+
+#include <array>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "wingbeat/files/control_file.hpp"
+
+namespace wingbeat {
+namespace {
+
+struct FreeVariable {
+  void operator()(matvar_t* v) const { Mat_VarFree(v); }
+};
+using MatVariable = std::unique_ptr<matvar_t, FreeVariable>;
+
+MatVariable made(matvar_t* variable) {
+  if (!variable) throw std::runtime_error("cannot make a variable of a MAT-file: out of memory");
+  return MatVariable(variable);
+}
+
+MatVariable real_array(const char* name, const double* values, std::vector<std::size_t> sizes) {
+  return made(Mat_VarCreate(name, MAT_C_DOUBLE, MAT_T_DOUBLE, int(sizes.size()), sizes.data(),
+                            const_cast<double*>(values), 0));  // libmatio copies what it takes for mutable
+}
+MatVariable matrix(const char* name, const Eigen::MatrixXd& m) {
+  return real_array(name, m.data(), {std::size_t(m.rows()), std::size_t(m.cols())});
+}
+MatVariable row(const char* name, const std::vector<double>& values) {
+  return real_array(name, values.data(), {1, values.size()});
+}
+MatVariable text(const char* name, const std::string& content) {
+  std::array<std::size_t, 2> sizes = {1, content.size()};
+  return made(Mat_VarCreate(name, MAT_C_CHAR, MAT_T_UTF8, 2, sizes.data(), const_cast<char*>(content.data()), 0));
+}
+MatVariable cell_of_texts(const char* name, const std::vector<std::string>& texts) {
+  std::array<std::size_t, 2> sizes = {1, texts.size()};
+  std::vector<matvar_t*> cells;
+  for (const std::string& content : texts) cells.push_back(text(nullptr, content).release());
+  return made(Mat_VarCreate(name, MAT_C_CELL, MAT_T_CELL, 2, sizes.data(), cells.data(), 0));
+}
+MatVariable structure_of(const AllocationMap& map) {
+  std::vector<const char*> fields = {"input"};
+  for (const AllocationColumn& c : allocation_columns) fields.push_back(c.name);
+  fields.push_back("slope");
+  std::array<std::size_t, 2> sizes = {1, 1};
+  MatVariable of = made(Mat_VarCreateStruct((std::string("map_") + name_of(map.input)).c_str(), 2, sizes.data(),
+                                            fields.data(), unsigned(fields.size())));
+  const auto put = [&](const char* field, MatVariable value) {
+    Mat_VarSetStructFieldByName(of.get(), field, 0, value.release());
+  };
+  const auto column = [&](double AllocationPoint::* member) {
+    std::vector<double> values;
+    for (const AllocationPoint& p : map.points) values.push_back(p.*member);
+    return row(nullptr, values);
+  };
+  put("input", column(&AllocationPoint::input));
+  std::vector<double> slope;
+  for (const AllocationColumn& c : allocation_columns) {
+    put(c.name, column(c.member));
+    slope.push_back(map.slope.*c.member);
+  }
+  put("slope", row(nullptr, slope));
+  return of;
+}
+
+struct CloseMat {
+  void operator()(mat_t* file) const { Mat_Close(file); }
+};
+
+class MatFile {
+ public:
+  MatFile(const std::filesystem::path& path, const std::string& header)
+      : path_(path.string()), file_(Mat_CreateVer(path_.c_str(), header.c_str(), MAT_FT_MAT5)) {
+    if (!file_) fail();
+  }
+  void write(const MatVariable& variable) {
+    if (Mat_VarWrite(file_.get(), variable.get(), MAT_COMPRESSION_NONE) != 0) fail();
+  }
+  void close() {
+    if (Mat_Close(file_.release()) != 0) fail();
+  }
+
+ private:
+  [[noreturn]] void fail() const { throw std::runtime_error(path_ + ": the MAT-file cannot be written"); }
+  std::string path_;
+  std::unique_ptr<mat_t, CloseMat> file_;
+};
+
+void write_signals(MatFile& file, const std::string& kind, const std::vector<CycleSignal>& signals) {
+  std::vector<std::string> names, units;
+  std::vector<double> values;
+  for (const CycleSignal& s : signals) names.push_back(s.name), units.push_back(s.unit), values.push_back(s.value);
+  file.write(cell_of_texts((kind + "_names").c_str(), names));
+  file.write(cell_of_texts((kind + "_units").c_str(), units));
+  file.write(row((kind + "_values").c_str(), values));
+}
+
+}  // namespace
+
+void write_control_mat(const ControlModels& models, const std::string& version, const std::filesystem::path& file) {
+  const LinearModel& model = *models.linear.model;
+  MatFile mat(file, fmt::format("MATLAB 5.0 MAT-file, Written by wingbeat {} linearise", version));
+  mat.write(matrix("A", model.map.a));
+  mat.write(matrix("B", model.map.b));
+  mat.write(matrix("C", model.map.c));
+  mat.write(matrix("D", model.map.d));
+  mat.write(row("dt", {model.map.period}));
+  write_signals(mat, "state", model.map.states);
+  write_signals(mat, "input", model.map.inputs);
+  write_signals(mat, "output", model.map.outputs);
+  mat.write(matrix("steady_gain", model.steady_gain));
+  mat.write(matrix("Ac", model.continuous.a));
+  mat.write(matrix("Bc", model.continuous.b));
+  mat.write(matrix("Cc", model.continuous.c));
+  mat.write(matrix("Dc", model.continuous.d));
+  write_signals(mat, "continuous_state", model.continuous.states);
+  std::vector<double> re, im, time_constants;
+  for (const CycleMode& mode : model.modes) {
+    re.push_back(mode.multiplier.real()), im.push_back(mode.multiplier.imag());
+    time_constants.push_back(mode.time_constant);
+  }
+  mat.write(row("multipliers_real", re));
+  mat.write(row("multipliers_imaginary", im));
+  mat.write(row("time_constants", time_constants));
+  std::vector<double> steps;
+  for (const Eigen::MatrixXd& response : model.step_responses) {
+    steps.insert(steps.end(), response.data(), response.data() + response.size());
+  }
+  mat.write(real_array(
+      "step_responses", steps.data(),
+      {std::size_t(model.step_responses.front().rows()), model.map.outputs.size(), model.step_responses.size()}));
+  if (models.body) {
+    mat.write(matrix("body_derivatives", *models.body));
+    mat.write(cell_of_texts("body_loads", {body_loads.begin(), body_loads.end()}));
+    mat.write(cell_of_texts("body_motions", {body_motions.begin(), body_motions.end()}));
+  }
+  for (const AllocationMap& map : models.maps) mat.write(structure_of(map));
+  mat.close();
+}
+
+}  // namespace wingbeat

@@ -1,0 +1,97 @@
+#include "wingbeat/fmu/fmu.hpp"
+
+#include <cctype>
+
+#include "fmu/binary/fmi2_functions.h"
+#include "fmu/binary/fmi3_functions.h"
+#include "fmu/description.hpp"
+#include "fmu/package.hpp"
+#include "fmu/variables.hpp"
+
+namespace wingbeat::fmu {
+namespace {
+
+std::string html(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
+  return out;
+}
+
+/// Binaries run where the C library is no older than that of the build.
+std::string oldest_libc() {
+#ifdef __GLIBC__
+  return ", on Linux glibc " + std::to_string(__GLIBC__) + "." + std::to_string(__GLIBC_MINOR__) + " or newer";
+#else
+  return {};
+#endif
+}
+
+std::string documentation_of(const Design<double>& design, const FmuOptions& options) {
+  std::string page = "<!DOCTYPE html>\n<html><head><meta charset=\"utf-8\"><title>" + html(design.name) +
+                     "</title></head>\n<body>\n<h1>" + html(design.name.empty() ? "wingbeat" : design.name) +
+                     "</h1>\n<p>A flapping-wing drive as computed by wingbeat " + options.program_version +
+                     ": motor, transmission, springs and wings in blade-element air. All variables are SI and radians. "
+                     "The air meets wings of a body at rest. The binaries need libc and libm alone" +
+                     oldest_libc() +
+                     ".</p>\n"
+                     "<table>\n<tr><th>variable</th><th>unit</th><th>causality</th><th>variability</th>"
+                     "<th>meaning</th></tr>\n";
+  for (const Variable& v : variables_of(design)) {
+    page += "<tr><td><code>" + html(v.name) + "</code></td><td>" + html(v.unit) + "</td><td>" + v.causality +
+            "</td><td>" + v.variability + "</td><td>" + html(v.description) + "</td></tr>\n";
+  }
+  return page + "</table>\n</body></html>\n";
+}
+
+/// The translation unit of the sources: linked statically the functions have the identifier before their names.
+std::string source_of(const FmuOptions& options) {
+  const bool second = options.version == FmiVersion::fmi2;
+  std::string text = "#ifndef " + std::string(second ? "FMI2" : "FMI3") + "_OVERRIDE_FUNCTION_PREFIX\n";
+  const auto rename = [&](const char* name) {
+    text += std::string("#define ") + name + " " + options.identifier + "_" + name + "\n";
+  };
+#define WINGBEAT_RENAME(result, name, parameters) rename(#name);
+  if (second) {
+    FMI2_FUNCTIONS(WINGBEAT_RENAME)
+  } else {
+    FMI3_FUNCTIONS(WINGBEAT_RENAME)
+  }
+#undef WINGBEAT_RENAME
+  return text + "#endif\n#include \"all.cpp\"\n";
+}
+
+std::string build_description_of(const FmuOptions& options) {
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiBuildDescription fmiVersion=\"3.0\">\n"
+         "  <BuildConfiguration modelIdentifier=\"" +
+         options.identifier +
+         "\" description=\"One C++ file with all others\">\n"
+         "    <SourceFileSet language=\"C++20\" compiler=\"gcc\" compilerOptions=\"-std=c++20 -O2 -fPIC\">\n"
+         "      <SourceFile name=\"fmu.cpp\"/>\n"
+         "      <IncludeDirectory name=\".\"/>\n"
+         "    </SourceFileSet>\n"
+         "  </BuildConfiguration>\n</fmiBuildDescription>\n";
+}
+
+}  // namespace
+
+FmuContent fmu_content(const Design<double>& design, const FmuOptions& options) {
+  FmuContent content;
+  content.resource = resource_of(design);
+  content.description = model_description(design, token_of(content.resource), options);
+  content.documentation = documentation_of(design, options);
+  const bool second = options.version == FmiVersion::fmi2;
+  content.linux_folder = second ? "binaries/linux64" : "binaries/x86_64-linux";
+  content.windows_folder = second ? "binaries/win64" : "binaries/x86_64-windows";
+  if (options.sources) content.source = source_of(options);
+  if (options.sources && !second) content.build_description = build_description_of(options);
+  return content;
+}
+
+std::string identifier_of(const std::string& name) {
+  std::string identifier;
+  for (const char c : name) identifier += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+  if (identifier.empty() || std::isdigit(static_cast<unsigned char>(identifier[0]))) identifier = "_" + identifier;
+  return identifier;
+}
+
+}  // namespace wingbeat::fmu

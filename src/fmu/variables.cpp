@@ -1,0 +1,221 @@
+#include "fmu/variables.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fmu/instant.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
+
+namespace wingbeat::fmu {
+namespace {
+
+struct Row {
+  const char* name;
+  const char* unit;
+  const char* description;
+};
+
+constexpr Row output_rows[] = {{"crank_angle", "rad", "crank angle, not wrapped"},
+                               {"crank_speed", "rad/s", "crank speed"},
+                               {"stroke_angle", "rad", "stroke angle"},
+                               {"flapping_velocity", "rad/s", "rate of the stroke angle"},
+                               {"pitch_angle", "rad", "pitch angle of the wings, 0 with the chord upright"},
+                               {"pitch_velocity", "rad/s", "rate of the pitch angle"},
+                               {"current", "A", "armature current of all motors"},
+                               {"terminal_voltage", "V", "voltage at the motor terminals"},
+                               {"lift", "N", "lift of all wings"},
+                               {"drag_moment", "N.m", "moment of the air on all wings about their hinges"},
+                               {"rod_force", "N", "force in one rod, positive as it raises the stroke angle"},
+                               {"motor_torque", "N.m", "motor torque on crank or shaft"},
+                               {"friction_torque", "N.m", "friction torque on crank or shaft"},
+                               {"power_electrical", "W", "electrical input power"},
+                               {"power_motor", "W", "motor output power"},
+                               {"power_friction", "W", "friction loss"},
+                               {"power_aerodynamic", "W", "power given to the air"},
+                               {"power_copper", "W", "loss in the armature resistance"},
+                               {"power_viscous", "W", "viscous loss of the motor"},
+                               {"power_load", "W", "power given to the external load"}};
+static_assert(std::size(output_rows) == std::size_t(OutputId::last));
+
+constexpr Row mean_rows[] = {{"frequency_mean", "Hz", "flapping frequency"},
+                             {"lift_mean", "N", "mean lift"},
+                             {"current_mean", "A", "mean current"},
+                             {"power_electrical_mean", "W", "mean electrical power"},
+                             {"power_friction_mean", "W", "mean friction loss"},
+                             {"power_aerodynamic_mean", "W", "mean power given to the air"},
+                             {"power_copper_mean", "W", "mean loss in the armature resistance"}};
+static_assert(std::size(mean_rows) == std::size_t(MeanId::last));
+
+bool has_output(OutputId which, const Places& at) {
+  switch (which) {
+    case OutputId::crank_angle:
+    case OutputId::crank_speed:
+    case OutputId::rod_force: return at.crank;
+    case OutputId::pitch_angle:
+    case OutputId::pitch_velocity: return at.pitching;
+    default: return true;
+  }
+}
+
+std::vector<Row> state_rows(const Places& at) {
+  std::vector<Row> rows(at.count);
+  rows[0] = at.crank ? Row{"state_crank_angle", "rad", "crank angle, not wrapped"}
+                     : Row{"state_stroke_angle", "rad", "stroke angle"};
+  rows[1] = at.crank ? Row{"state_crank_speed", "rad/s", "crank speed"}
+                     : Row{"state_flapping_velocity", "rad/s", "rate of the stroke angle"};
+  if (at.inductive) rows[at.current] = {"state_current", "A", "armature current of all motors"};
+  if (at.pitching) {
+    rows[at.pitch] = {"state_pitch_angle", "rad", "pitch angle of the wings"};
+    rows[at.pitch + 1] = {"state_pitch_velocity", "rad/s", "rate of the pitch angle"};
+  }
+  for (const ExposedSum& sum : exposed_sums) rows.push_back({sum.name, sum.unit, sum.description});
+  return rows;
+}
+
+std::string flat(std::string_view key) {
+  std::string name(key);
+  std::replace(name.begin(), name.end(), '.', '_');
+  return name;
+}
+
+class Table {
+ public:
+  std::vector<Variable> variables;
+
+  Variable& add(VariableKind kind, std::size_t number, const std::string& name, const std::string& unit,
+                const std::string& description, const char* causality, const char* variability,
+                const char* initial = "") {
+    variables.push_back({kind, number, name, unit, description, causality, variability, initial, {}, {}, {}});
+    return variables.back();
+  }
+};
+
+void add_inputs(Table& table, const Design<double>& design) {
+  const auto add = [&](InputId id, const char* name, const char* unit, const char* description,
+                       const char* variability = "continuous") {
+    table.add(VariableKind::input, std::size_t(id), name, unit, description, "input", variability);
+  };
+  const bool sine = is_sine(design.supply.type), pwm = design.supply.type == SupplyType::pwm;
+  add(InputId::voltage, "voltage", "V",
+      sine  ? "amplitude of the sine that drives the motors"
+      : pwm ? "voltage while switched on"
+            : "voltage that drives the motors, before the resistance of the supply",
+      pwm ? "discrete" : "continuous");
+  if (sine) add(InputId::voltage_offset, "voltage_offset", "V", "added to the sine");
+  if (pwm) add(InputId::duty, "duty", "1", "part of a switching period that is on", "discrete");
+  add(InputId::load_torque, "load_torque", "N.m", "torque of a load on crank or shaft, against a positive speed");
+}
+
+void add_parameters(Table& table, const Design<double>& design) {
+  const auto rows = parameter_table<double>();
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const Parameter<double>& p = rows[row];
+    if (!p.get || !p.get(design)) continue;
+    const bool tunable = is_tunable(p.path);
+    Variable& v = table.add(VariableKind::parameter, row, flat(p.path), unit_in_fmu(p.unit), std::string(p.meaning),
+                            "parameter", tunable ? "tunable" : "fixed", "exact");
+    // Bounds that are not allowed themselves lie a little inside.
+    constexpr double tiny = std::numeric_limits<double>::min(), below = 1.0 - 1e-15;
+    if (std::isfinite(p.range.lower)) v.min = p.range.above_lower && p.range.lower == 0.0 ? tiny : p.range.lower;
+    if (std::isfinite(p.range.upper)) v.max = p.range.upper * (p.range.below_upper ? below : 1.0);
+  }
+  const Places at(resolve(design));
+  const auto setting = [&](SettingId id, const char* name, const char* unit, const char* description) -> Variable& {
+    return table.add(VariableKind::setting, std::size_t(id), name, unit, description, "parameter", "fixed", "exact");
+  };
+  Variable& tolerance =
+      setting(SettingId::tolerance, "solver_tolerance", "1", "relative error of a step, co-simulation");
+  tolerance.min = 1e-12;
+  tolerance.max = 1e-2;
+  setting(SettingId::angle, "initial_angle", "rad", "crank angle, of a direct drive stroke angle, at the start");
+  setting(SettingId::speed, "initial_speed", "rad/s", "its rate at the start");
+  if (at.inductive) setting(SettingId::current, "initial_current", "A", "armature current at the start");
+  if (at.pitching) {
+    setting(SettingId::pitch_angle, "initial_pitch_angle", "rad", "pitch angle at the start");
+    setting(SettingId::pitch_velocity, "initial_pitch_velocity", "rad/s", "its rate at the start");
+  }
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const Parameter<double>& p = rows[row];
+    if (p.get || !p.text || p.text(design).empty()) continue;
+    table.add(VariableKind::text, row, flat(p.path), "", std::string(p.meaning), "local", "constant", "exact");
+  }
+}
+
+}  // namespace
+
+bool is_tunable(std::string_view key) {
+  // What wears, warms up, is adjusted or changes with the weather. Geometry and inertia do not, nor what decides which
+  // states there are.
+  constexpr std::string_view keys[] = {"motor.armature_resistance",
+                                       "motor.torque_constant",
+                                       "motor.viscous_damping",
+                                       "friction.radius",
+                                       "friction.damping",
+                                       "friction.coefficient",
+                                       "spring.stiffness",
+                                       "aerodynamics.air_density",
+                                       "aerodynamics.pitch_coefficient",
+                                       "pitch.stiffness",
+                                       "pitch.damping",
+                                       "supply.internal_resistance"};
+  return std::find(std::begin(keys), std::end(keys), key) != std::end(keys);
+}
+
+std::size_t indicators_of(const Design<double>& design) {
+  const Vehicle<double> v = resolve(design);
+  const Places at(v);
+  const std::size_t stops = at.pitching && has_stop(v.pitch.hinge) ? 1 : 0;
+  if (at.crank) return 3 + stops;
+  if (at.pitching) return stops;
+  return v.friction.torque + v.motor.friction_torque > 0.0 ? 1 : 0;
+}
+
+std::string unit_in_fmu(std::string_view unit) {
+  std::string text;
+  for (const char c : unit) text += c == ' ' ? '.' : c;
+  return text;
+}
+
+std::vector<Variable> variables_of(const Design<double>& design) {
+  const Places at(resolve(design));
+  Table table;
+  table.add(VariableKind::time, 0, "time", "s", "simulation time", "independent", "continuous");
+  const std::vector<Row> states = state_rows(at);
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    table.add(VariableKind::state, k, states[k].name, states[k].unit, states[k].description, "local", "continuous",
+              "calculated");
+  }
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    const std::string unit = states[k].unit;
+    const std::string per = unit == "J"            ? "W"
+                            : unit.ends_with(".s") ? unit.substr(0, unit.size() - 2)
+                            : unit.ends_with("/s") ? unit.substr(0, unit.size() - 2) + "/s2"
+                                                   : unit + "/s";
+    table.add(VariableKind::derivative, k, std::string("der(") + states[k].name + ")", per,
+              std::string("rate of ") + states[k].name, "local", "continuous", "calculated");
+  }
+  add_inputs(table, design);
+  for (std::size_t k = 0; k < std::size(output_rows); ++k) {
+    if (!has_output(OutputId(k), at)) continue;
+    const Row& row = output_rows[k];
+    table.add(VariableKind::output, k, row.name, row.unit, row.description, "output", "continuous", "calculated");
+  }
+  for (std::size_t k = 0; k < std::size(mean_rows); ++k) {
+    const Row& row = mean_rows[k];
+    table.add(VariableKind::mean, k, row.name, row.unit, std::string(row.description) + " of the last whole cycle",
+              "output", "discrete", "calculated");
+  }
+  table.add(VariableKind::count, std::size_t(CountId::status), "status", "",
+            "0 before the first whole cycle, 1 flapping, 2 standing, 3 jammed", "output", "discrete", "calculated");
+  table.add(VariableKind::count, std::size_t(CountId::cycles), "cycles", "", "whole cycles since the start", "output",
+            "discrete", "calculated");
+  add_parameters(table, design);
+  for (std::size_t k = 0; k < indicators_of(design); ++k) {
+    table.add(VariableKind::indicator, k, "event_indicator_" + std::to_string(k + 1), "1",
+              "positive until an event of the motion happens", "local", "continuous", "calculated");
+  }
+  return table.variables;
+}
+
+}  // namespace wingbeat::fmu

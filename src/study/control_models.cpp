@@ -1,0 +1,24 @@
+#include "wingbeat/study/control_models.hpp"
+
+#include "wingbeat/core/status.hpp"
+
+namespace wingbeat {
+
+ControlModels control_models(const Design<double>& design, const ControlOptions& options) {
+  require(options.hinge_offset >= 0.0, "hinge_offset", "must be >= 0", "m", options.hinge_offset);
+  require(options.step_cycles >= 0 && options.step_cycles <= 100000, "cycles", "must be 0 to 100000", "1",
+          options.step_cycles);
+  ControlModels models;
+  models.options = options;
+  models.linear = linearise(design, options.at, options.step_cycles);
+  if (!models.linear.model) return models;
+  const Design<double>& at = models.linear.operating_point.design;
+  models.body =
+      body_derivatives(at, resolve(at, options.at.condition), models.linear.orbit.record, options.hinge_offset);
+  if (options.allocation_maps) {
+    models.maps = allocation_maps(models.linear, options.at.condition, options.hinge_offset);
+  }
+  return models;
+}
+
+}  // namespace wingbeat
