@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "report/report_tools.hpp"
+#include "report/schema_tools.hpp"
 #include "wingbeat/cycle/domain.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/files/published.hpp"
@@ -16,71 +16,7 @@
 namespace wingbeat {
 namespace {
 
-using detail::Json;
-using SchemaKeys = std::vector<std::pair<std::string, Json>>;
-
-Json of_type(const char* type) { return {{"type", type}}; }
-const Json any_text = of_type("string"), any_number = of_type("number"),
-           any_count = {{"type", "integer"}, {"minimum", 0}}, yes_or_no = of_type("boolean"), nothing = of_type("null");
-
-Json either(std::vector<Json> schemas) { return {{"anyOf", std::move(schemas)}}; }
-
-/// The same, or null.
-Json or_null(Json schema) {
-  if (!schema.contains("type") || !schema["type"].is_string() || schema.contains("enum"))
-    return either({schema, nothing});
-  schema["type"] = Json::array({schema["type"], "null"});
-  return schema;
-}
-const Json number_if_any = or_null(any_number), text_if_any = or_null(any_text);
-
-Json listed(Json item) { return {{"type", "array"}, {"items", std::move(item)}}; }
-Json pair_of(const Json& item) { return {{"type", "array"}, {"items", item}, {"minItems", 2}, {"maxItems", 2}}; }
-
-/// An object with all of `always`, any of `sometimes` and nothing else.
-Json object(const SchemaKeys& always, const SchemaKeys& sometimes = {}) {
-  Json schema = of_type("object");
-  schema["properties"] = Json::object();
-  for (const SchemaKeys* keys : {&always, &sometimes}) {
-    for (const auto& [key, value] : *keys) schema["properties"][key] = value;
-  }
-  schema["required"] = Json::array();
-  for (const auto& [key, value] : always) schema["required"].push_back(key);
-  schema["additionalProperties"] = false;
-  return schema;
-}
-/// An object whose keys depend on the input.
-Json by_name(Json value) { return {{"type", "object"}, {"additionalProperties", std::move(value)}}; }
-
-Json one_of(std::vector<std::string> names) { return {{"enum", std::move(names)}}; }
-template <NamedEnum E>
-Json one_of_names() {
-  std::vector<std::string> names;
-  for (const auto& [name, value] : names_of<E>) names.emplace_back(name);
-  return one_of(std::move(names));
-}
-Json statuses() {
-  std::vector<std::string> names;
-  for (const FlappingStatus s :
-       {FlappingStatus::flapping, FlappingStatus::stalled, FlappingStatus::locked, FlappingStatus::jammed})
-    names.emplace_back(name_of(s));
-  return one_of(std::move(names));
-}
-Json metric_key() {
-  std::vector<std::string> names;
-  for (const MetricInfo& metric : metric_table()) names.emplace_back(metric.key);
-  return one_of(std::move(names));
-}
-
-SchemaKeys operator+(SchemaKeys a, const SchemaKeys& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
-Json with_text(Json schema, const std::string& text) {
-  schema["description"] = text;
-  return schema;
-}
+using namespace schema;
 
 SchemaKeys metrics(int count = metric_count) {
   SchemaKeys keys;
@@ -97,8 +33,6 @@ SchemaKeys by_status(const Json& value) {
   for (int s = 0; s < sweep_status_count; ++s) keys.push_back({name_of(SweepStatus(s)), value});
   return keys;
 }
-
-const Json domain = with_text(any_text, "inside, or the limits that are left");
 
 Json run_schema() {
   const Json events = object({{"revolution", any_count},
@@ -429,7 +363,7 @@ Json metrics_schema() {
   return object({{"metrics", listed(object({{"key", metric_key()}, {"unit", any_text}, {"long_name", any_text}}))}});
 }
 
-constexpr std::array<std::pair<std::string_view, Json (*)()>, 11> schemas = {{{"run", run_schema},
+constexpr std::array<std::pair<std::string_view, Json (*)()>, 12> schemas = {{{"run", run_schema},
                                                                               {"compare", compare_schema},
                                                                               {"sweep", sweep_schema},
                                                                               {"identify-motor", identify_motor_schema},
@@ -437,6 +371,7 @@ constexpr std::array<std::pair<std::string_view, Json (*)()>, 11> schemas = {{{"
                                                                               {"tolerance", tolerance_schema},
                                                                               {"optimise", optimise_schema},
                                                                               {"endurance", endurance_schema},
+                                                                              {"linearise", linearise_schema},
                                                                               {"reproduce", reproduce_schema},
                                                                               {"keys", keys_schema},
                                                                               {"metrics", metrics_schema}}};

@@ -188,6 +188,12 @@ class Schema(unittest.TestCase):
     def test_endurance(self):
         self.check("endurance", "friction2022-battery")
 
+    def test_linearise(self):
+        self.check("linearise", "friction2022", "--frequency", "22 Hz")
+        self.check("linearise", "two-wing-direct-hinge")
+        locked = self.check("linearise", "friction2022-springs", "--voltage", "0.5 V", statuses=(3,))
+        self.assertIsNone(locked["model"])
+
     def test_reproduce(self):
         self.check("reproduce", "friction2022", "--coarse", "-o", self.folder / "reproduce")
 

@@ -30,6 +30,7 @@ Vehicle<double> generic_vehicle(Formulation formulation) {
   v.wings.added_inertia = 4e-8;
   v.thermal = {20.0, 48.0, 303.0, 298.0, 3.9e-3, -1e-3, 358.0};
   v.drive_frequency = 22.0;
+  v.load_torque = 2e-5;
   v.pitch.hinge = {3e-4, 2e-8, 0.8};
   v.pitch.pitch_inertia = 6e-9;
   v.pitch.mass_product = 1e-8;
