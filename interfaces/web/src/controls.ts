@@ -103,6 +103,7 @@ export class Controls {
       };
       row.bars.title = s ? `1 % more: lift ${said(s.lift)}, electrical power ${said(s.power)}` : '';
       row.bars.setAttribute('aria-label', row.bars.title);
+      row.bars.setAttribute('aria-hidden', String(!s)); // no picture where there are no sensitivities
     }
   }
 
