@@ -46,6 +46,7 @@ class Figure {
         break;
     }
     add("set encoding utf8\n"
+        "set minussign\n"
         "set border 3 lw 0.6 lc rgb '#404040'\n"
         "set tics nomirror out scale 0.5 noenhanced\n"
         "unset key\n");

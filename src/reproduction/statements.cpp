@@ -170,9 +170,8 @@ std::string summary_html(const Material& m) {
       number([&](const Claim& c) { return c.basis == Basis::predicted && c.restates && checkable(c); }),
       number([](const Claim& c) { return c.outcome == StatementOutcome::not_checkable; }));
   html +=
-      "<p><b>What the paper's own formulation does not reproduce</b>, largest deviation first (section 5 with the "
-      "stroke "
-      "held):</p>\n<div class=\"wide\"><table class=\"claims\"><thead><tr><th>statement</th><th>where</th>"
+      "<details><summary>What the paper's own formulation does not reproduce, largest deviation first (section 5 with "
+      "the stroke held)</summary>\n<div class=\"wide\"><table class=\"claims sortable\"><thead><tr><th>statement</th><th>where</th>"
       "<th>published</th>" +
       variants_head(a) + "</tr></thead><tbody>\n";
   for (const Claim* c : missed_by_rod_force(a)) {
@@ -183,20 +182,19 @@ std::string summary_html(const Material& m) {
     }
     html += "</tr>\n";
   }
-  html += "</tbody></table></div>\n<p><b>Errors of the paper:</b></p>\n<ul>\n";
+  html += "</tbody></table></div></details>\n<p><b>Errors of the paper:</b></p>\n<ul>\n";
   for (const Claim& c : a.claims) {
     if (!c.erratum.empty()) html += fmt::format("<li>{} ({}).</li>\n", escaped(c.erratum), escaped(c.where));
   }
-  return html + "</ul>\n" + equation_1(a) +
-         "<p><b>Friction must depend on load.</b> Only load-proportional friction predicts what springs do: see <a "
-         "href=\"#question\">the title question</a>.</p>\n";
+  return html + "</ul>\n" + equation_1(a);
 }
 
 std::string parameters_html(const Material& m) {
   const Design<double>& d = m.pair[1];
   const Vehicle<double> v = resolve(d);
   std::string html =
-      "<div class=\"wide\"><table><thead><tr><th>parameter</th><th>value</th><th>source</th></tr></thead><tbody>\n";
+      "<details><summary>Parameters, and where each one stands</summary>\n<div class=\"wide\"><table "
+      "class=\"sortable\"><thead><tr><th>parameter</th><th>value</th><th>source</th></tr></thead><tbody>\n";
   const auto row = [&](const char* name, const std::string& value, const char* from) {
     html += fmt::format("<tr><td>{}</td><td class=\"n\">{}</td><td>{}</td></tr>\n", name, value, from);
   };
@@ -221,7 +219,7 @@ std::string parameters_html(const Material& m) {
       "calibrated, not published");
   row(fmt::format("chord moment {}", s3).c_str(), scientific(v.wings.s3, 3, "m<sup>5</sup>"),
       "calibrated, not published");
-  html += "</tbody></table></div>\n";
+  html += "</tbody></table></div></details>\n";
   if (m.assessment.calibrations.empty()) return html;
   html += fmt::format(
       "<p><b>Calibration.</b> The planform of the wings is not available numerically; {0} and {1} are all that the "
@@ -326,7 +324,8 @@ std::string readings_html(const Material& m) {
 
 std::string claims_html(const Assessment& a) {
   std::string html =
-      "<div class=\"wide\"><table class=\"claims\"><thead><tr><th>statement</th><th>where</th><th>published</th>" +
+      fmt::format("<details><summary>All {} statements, a column for each formulation</summary>\n", a.claims.size()) +
+      "<div class=\"wide\"><table class=\"claims sortable\"><thead><tr><th>statement</th><th>where</th><th>published</th>" +
       variants_head(a) + "<th>outcome</th></tr></thead><tbody>\n";
   for (const ClaimGroup& group : claim_groups()) {
     bool first = true;
@@ -347,7 +346,7 @@ std::string claims_html(const Assessment& a) {
       html += fmt::format("<td class=\"{}\">{}</td></tr>\n", class_of(c.outcome), outcome_text(c));
     }
   }
-  return html + "</tbody></table></div>\n";
+  return html + "</tbody></table></div></details>\n";
 }
 
 }  // namespace wingbeat::reproduction
