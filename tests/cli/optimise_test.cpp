@@ -172,7 +172,7 @@ TEST_F(Optimise, SeveralObjectivesGiveAFront) {
     EXPECT_EQ(count_of(text.err, "\n"), count_of(text.err, "wrote "));
     EXPECT_THAT(text.out, HasSubstr("hypervolume "));
     EXPECT_THAT(text.out, HasSubstr("knee"));
-    EXPECT_THAT(read(path("front.svg")), HasSubstr("mean electrical input power (mW)"));
+    EXPECT_THAT(read(path("front.svg")), HasSubstr("mean electrical input power (W)"));
     const Json json = run({"optimise", file, "--json"}).json();
     EXPECT_EQ(json, run({"optimise", file, "--json", "--threads", "1"}).json());
     EXPECT_EQ(json["evaluations"], 64 + 16 * 5);
