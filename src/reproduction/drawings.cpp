@@ -254,8 +254,8 @@ std::vector<Sheet> mechanism_sheets(const Material& m) {
                   "The motor turns the crank; rod and slider swing the wings about their hinges by {:.1f} deg to "
                   "either side. The rod force F (crank reaction force in the paper) loads the joints: their friction "
                   "torque "
-                  "is µ r_e |F| with "
-                  "µ r_e = {:.4g} mm.",
+                  "is µ rₑ |F| with "
+                  "µ rₑ = {:.4g} mm.",
                   degrees_per_radian * drawn_angle, degrees_per_radian * stroke_amplitude(crank),
                   1e3 * design.friction.coefficient);
     const CycleCase* cycle = cycle_of(m.computed.at_frequency, Formulation::rod_force, springs);

@@ -158,7 +158,7 @@ std::vector<Sheet> energy_sheets(const Material& m) {
     s.caption = fmt::format(
         "Mean powers of a cycle, bands to the same scale. Springs save {:.1f} mW of input: {:.1f} mW less copper loss, "
         "{:.1f} mW less "
-        "friction. The air gets {:.1f} mW without springs and {:.1f} mW with them. {}",
+        "friction. The aerodynamic power is {:.1f} mW without springs and {:.1f} mW with them. {}",
         1e3 * (off.supply - on.supply), 1e3 * (off.motor[0].power - on.motor[0].power),
         1e3 * (off.transmission[0].power - on.transmission[0].power), 1e3 * off.air, 1e3 * on.air,
         formulation == Formulation::rod_force ? "The formulation residual is what the paper's equation (1) as "

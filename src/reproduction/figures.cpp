@@ -120,7 +120,8 @@ std::vector<Sheet> paper_sheets(const Material& m) {
       4, "Electrical input power in air, in vacuum and without wings", true,
       three(Metric::power_electrical) +
           " (rod-force, no springs). Most of the input is spent in the motor and the mechanism, even without air. "
-          "Virtual-work (dashed) needs less in air and vacuum; without wings the formulations are the same. The paper's "
+          "By virtual-work (dashed) it is lower in air and in vacuum; without wings the formulations are the same. The "
+          "paper's "
           "curves are not available numerically.",
       {{Metric::power_electrical, "electrical input power (mW)", ""}});
   frequency_sheet(5, "Motor output power as a test bench estimates it (eq 17)", true,
@@ -149,7 +150,8 @@ std::vector<Sheet> paper_sheets(const Material& m) {
   frequency_sheet(
       7, "Input power, total loss, motor output and friction loss", true,
       fmt::format(
-          "Panels a and b are (a) of the paper, c and d (b). In air the loss is {:.0f} % of the input at {:g} Hz; in vacuum and without wings all of it. "
+          "Panels a and b are (a) of the paper, c and d (b). In air the loss is {:.0f} % of the input at {:g} Hz; "
+          "in vacuum and without wings all of it. "
           "Friction takes {} of {} motor output in air, {} of {} in vacuum: it follows the inertial load at stroke "
           "reversal, which does not depend on air. The paper says that motor output minus friction equals the "
           "aerodynamic power; ratio at {:g} Hz: {}. The difference by rod-force is its formulation residual.",
@@ -198,7 +200,8 @@ std::vector<Sheet> paper_sheets(const Material& m) {
       11, "Losses with and without springs", false,
       fmt::format(
           "All losses at {:g} Hz: {} without springs, {} with. Friction falls from {} to {}, and the copper loss "
-          "from {} to {}: less friction torque needs less current. The motor viscous loss depends on speed alone and "
+          "from {} to {}: a lower friction torque takes a lower current. The motor viscous loss depends on "
+          "speed alone and "
           "is "
           "almost unaffected by the springs.",
           f0, mw(value(off, Metric::power_loss)), mw(value(on, Metric::power_loss)),
@@ -211,7 +214,8 @@ std::vector<Sheet> paper_sheets(const Material& m) {
   frequency_sheet(
       12, "Efficiency of system, motor and mechanism, with and without springs", false,
       fmt::format(
-          "Panel a is (a) of the paper, b and c are (b). Frequency of maximum system efficiency with springs: {}. Of maximum mechanism efficiency: {}. Gain of the "
+          "Panel a is (a) of the paper, b and c are (b). Frequency of maximum system efficiency with springs: {}. "
+          "Of maximum mechanism efficiency: {}. Gain of the "
           "system at {:g} Hz: {}. The motor efficiency is almost unaffected by the springs; at 3 V without springs: "
           "{}.",
           beside(m.assessment, "with springs the system"), beside(m.assessment, "with springs the mechanism"), f0,

@@ -59,12 +59,12 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
                      links(s.id), s.wide ? " class=\"page\"" : "",
                      one_formulation ? " data-formulation=\"virtual-work\"" : "");
       if (!s.animation.empty()) {
-        fmt::format_to(
-            out,
-            "<figure><div class=\"drawing\">{0}</div><figcaption><b>Animation.</b> One computed cycle, repeated: the crank speed "
-            "is not constant. "
-            "<span class=\"files\">File: <a href=\"{1}-moving.svg\">svg</a></span></figcaption></figure>\n",
-            inlined(s.animation, s.id + "-moving", s.heading), s.id);
+        fmt::format_to(out,
+                       "<figure><div class=\"drawing\">{0}</div><figcaption><b>Animation.</b> "
+                       "One computed cycle, repeated: the crank speed "
+                       "is not constant. "
+                       "<span class=\"files\">File: <a href=\"{1}-moving.svg\">svg</a></span></figcaption></figure>\n",
+                       inlined(s.animation, s.id + "-moving", s.heading), s.id);
       }
     }
     html += "</div>\n";
@@ -163,7 +163,8 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
       "<p>The deviation is computed over published minus 1. A number is met within {:g} %, the same for every "
       "statement; a bound (\"below\", \"above\") where it holds. ● met in both formulations, ◐ in one, ○ in "
       "neither; the outcome compares rod-force and virtual-work with the same chord moments, the third column "
-      "has those calibrated for virtual-work. Also as <a href=\"claims.csv\">claims.csv</a> and <a href=\"claims.json\">claims.json</a>.</p>\n",
+      "has those calibrated for virtual-work. Also as <a href=\"claims.csv\">claims.csv</a> and <a "
+      "href=\"claims.json\">claims.json</a>.</p>\n",
       100.0 * m.file.tolerance);
   html += claims_html(a);
   end();
@@ -189,6 +190,10 @@ build/release/wingbeat sweep data/studies/trend-rod.toml -o rod.nc
 build/release/wingbeat sweep data/studies/trend-voltage.toml -o voltage.nc</pre>
 <h3>The published values alone</h3>
 <pre>build/release/wingbeat compare data/published/friction2022.toml</pre>
+<h3>More physics</h3>
+<pre>build/release/wingbeat run data/designs/friction2022-springs.toml --frequency "22 Hz" --set motor.gear_efficiency=0.8
+build/release/wingbeat run data/designs/friction2022-springs.toml --voltage "5 V" )"
+      R"(--set motor.thermal_resistance_winding="20 K/W" --set motor.thermal_resistance_case="48 K/W"</pre>
 <h3>A friction law</h3>
 <pre>build/release/wingbeat run data/designs/friction2022-springs.toml --frequency "22 Hz" )"
       R"(--set friction.type=constant )";

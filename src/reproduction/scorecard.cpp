@@ -132,7 +132,8 @@ Sheet laws_sheet(const Material& m) {
   const LawPrediction& first = m.assessment.laws.front();
   s.caption = fmt::format(
       "Each law has one coefficient, calibrated without springs. (a) Root mean square of its deviations from the {} "
-      "published values with springs that no calibration has seen. (b) By how much springs then cut the electrical "
+      "published values with springs that were not used in a calibration. (b) By how much springs then cut "
+      "the electrical "
       "input at {:g} Hz.",
       first.tests.size(), m.computed.options.frequency);
   DotPlot plot;

@@ -75,16 +75,17 @@ std::vector<const Claim*> missed_by_rod_force(const Assessment& a) {
   return missed;
 }
 
-/// What can be said about equation (1), from the values that no calibration has seen.
+/// What can be said about equation (1), from the values that were not used in the calibration.
 std::string equation_1(const Assessment& a) {
   if (a.variants < variant_count) return "";
   const double rod = a.rms_of_predicted_values(0), work = a.rms_of_predicted_values(1),
                own = a.rms_of_predicted_values(recalibrated);
   const MomentCalibration& c = a.calibrations[1];
   std::string html = fmt::format(
-      "<p><b>Equation (1).</b> The published values of section 4 that no calibration has seen deviate by {:.1f} % "
+      "<p><b>Equation (1).</b> The published values of section 4 that were not used in the calibration "
+      "deviate by {:.1f} % "
       "(root "
-      "mean square) with rod-force and by {:.1f} % with virtual-work. That comparison is unfair to virtual-work, "
+      "mean square) with rod-force and by {:.1f} % with virtual-work. That comparison is biased against virtual-work, "
       "because "
       "{} and {} were chosen with rod-force. With chord moments calibrated for virtual-work to the same two peak lifts "
       "({} and {}) the deviation is {:.1f} %. ",
@@ -98,14 +99,15 @@ std::string equation_1(const Assessment& a) {
         published_peak(a, false), published_peak(a, true), readable(c.lift_peak[0], "N"),
         readable(c.lift_peak[1], "N"));
   }
-  html += own > rod
-              ? "The chord moments therefore do not explain the difference: the paper's numbers agree with equation "
-                "(1) as printed, and not with a formulation that conserves power. "
-              : "The chord moments explain the difference, and the numbers do not tell the formulations apart. ";
+  html +=
+      own > rod
+          ? "The chord moments therefore do not explain the difference: the paper's numbers agree with equation "
+            "(1) as printed, and not with a formulation that conserves power. "
+          : "The chord moments explain the difference, and the numbers do not discriminate between the formulations. ";
   for (const Claim& c7 : a.claims) {
     if (c7.statement.rfind("motor output minus friction", 0) != 0 || c7.within[0] || !c7.within[1]) continue;
     html += fmt::format(
-        "One statement speaks against it: motor output minus friction loss equals the aerodynamic power (figure 7b) "
+        "One statement contradicts it: motor output minus friction loss equals the aerodynamic power (figure 7b) "
         "only "
         "by virtual-work; by rod-force the ratio is {}.",
         escaped(c7.ours_text[0]));
@@ -171,8 +173,8 @@ std::string summary_html(const Material& m) {
       number([](const Claim& c) { return c.outcome == StatementOutcome::not_checkable; }));
   html +=
       "<details><summary>What the paper's own formulation does not reproduce, largest deviation first (section 5 with "
-      "the stroke held)</summary>\n<div class=\"wide\"><table class=\"claims sortable\"><thead><tr><th>statement</th><th>where</th>"
-      "<th>published</th>" +
+      "the stroke held)</summary>\n<div class=\"wide\"><table class=\"claims sortable\"><thead><tr>"
+      "<th>statement</th><th>where</th><th>published</th>" +
       variants_head(a) + "</tr></thead><tbody>\n";
   for (const Claim* c : missed_by_rod_force(a)) {
     html += fmt::format("<tr><td>{}</td><td>{}</td><td class=\"n\">{}</td>", escaped(c->statement), escaped(c->where),
@@ -251,7 +253,7 @@ std::string parameters_html(const Material& m) {
   html += fmt::format(
       "</tbody></table></div>\n<p>The vehicle file agrees with the result for rod-force within {:.1f} % ({}) and "
       "{:.1f} % "
-      "({}). The two frequencies at 3 V were looked at as well when its values were chosen. These four values are "
+      "({}). The two frequencies at 3 V were used in the calibration as well. These four values are "
       "therefore not counted as predictions.</p>\n",
       100.0 * std::abs(v.wings.s2 / first.s2 - 1.0), s2, 100.0 * std::abs(v.wings.s3 / first.s3 - 1.0), s3);
   return html;
@@ -325,7 +327,8 @@ std::string readings_html(const Material& m) {
 std::string claims_html(const Assessment& a) {
   std::string html =
       fmt::format("<details><summary>All {} statements, a column for each formulation</summary>\n", a.claims.size()) +
-      "<div class=\"wide\"><table class=\"claims sortable\"><thead><tr><th>statement</th><th>where</th><th>published</th>" +
+      "<div class=\"wide\"><table class=\"claims sortable\"><thead><tr><th>statement</th><th>where</th>"
+      "<th>published</th>" +
       variants_head(a) + "<th>outcome</th></tr></thead><tbody>\n";
   for (const ClaimGroup& group : claim_groups()) {
     bool first = true;

@@ -173,7 +173,7 @@ std::string question_html(const Material& m) {
       "flaps "
       "at the published {} at {}. Then springs are added, nothing else is changed, and the law predicts the {} "
       "published "
-      "values with springs that no calibration has seen. Root mean square of the deviations:</p>\n<div "
+      "values with springs that were not used in a calibration. Root mean square of the deviations:</p>\n<div "
       "class=\"wide\"><table><thead><tr><th></th>",
       target.published_text, operating_point(target.voltage, target.frequency), load->tests.size());
   for (const FrictionLaw law : compared_friction_laws) html += fmt::format("<th>{}</th>", name_of(law));
