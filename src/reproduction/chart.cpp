@@ -8,6 +8,7 @@
 
 #include "report/figure.hpp"
 #include "reproduction/sheet.hpp"
+#include "wingbeat/core/text.hpp"
 #include "wingbeat/files/design_file.hpp"
 
 namespace wingbeat::reproduction {
@@ -75,9 +76,8 @@ void add_read_out(const Chart& chart, const std::vector<PanelBox>& boxes, const 
     }
     panels.push_back(std::move(panel));
   }
-  std::string text = read_text_file(file), attribute;
-  for (const char c : panels.dump()) attribute += c == '\'' ? "&#39;" : c == '<' ? "&lt;" : std::string(1, c);
-  text.insert(text.find("<svg ") + 5, fmt::format("data-panels='{}' ", attribute));
+  std::string text = read_text_file(file);
+  text.insert(text.find("<svg ") + 5, fmt::format("data-panels=\"{}\" ", markup_escaped(panels.dump())));
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   if (!out.write(text.data(), std::streamsize(text.size()))) {
     throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));

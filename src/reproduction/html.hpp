@@ -2,13 +2,13 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "reproduction/sheet.hpp"
+#include "wingbeat/core/text.hpp"
 
 namespace wingbeat::reproduction {
 
-std::string escaped(std::string_view text);
+using detail::markup_escaped;
 
 /// Of the page: its style sheet, its script, and a drawing in colours that follow the page's theme.
 std::string page_style();

@@ -26,7 +26,8 @@ std::string inlined(std::string svg, const std::string& id, const std::string& t
   replace_all(svg, "url(#", fmt::format("url(#{}", mark));
   // Named for screen readers; a title would also be a tooltip over the read-out.
   const auto open = svg.find("<svg ");
-  if (open != std::string::npos) svg.insert(open + 5, fmt::format("role=\"img\" aria-label=\"{}\" ", escaped(title)));
+  if (open != std::string::npos)
+    svg.insert(open + 5, fmt::format("role=\"img\" aria-label=\"{}\" ", markup_escaped(title)));
   use_page_colours(svg);
   return svg;
 }
@@ -55,8 +56,8 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
       fmt::format_to(out,
                      "<figure id=\"{0}\"{5}{6}><div class=\"drawing\">{1}</div><figcaption><b>{2}</b> {3} <span "
                      "class=\"files\">Files: {4}</span></figcaption></figure>\n",
-                     s.id, inlined(svg_of(s), s.id + "-drawing", s.heading), escaped(s.heading), escaped(s.caption),
-                     links(s.id), s.wide ? " class=\"page\"" : "",
+                     s.id, inlined(svg_of(s), s.id + "-drawing", s.heading), markup_escaped(s.heading),
+                     markup_escaped(s.caption), links(s.id), s.wide ? " class=\"page\"" : "",
                      one_formulation ? " data-formulation=\"virtual-work\"" : "");
       if (!s.animation.empty()) {
         fmt::format_to(out,
@@ -97,7 +98,7 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
       "href=\"data:,\">\n<style>{}</style></head>\n<body>\n<header>\n"
       "<h1>The 2022 friction paper: a reproducibility assessment</h1>\n<p class=\"lead\">{}. Made by wingbeat {} with "
       "<code>wingbeat reproduce friction2022</code>{}.</p>\n</header>\n<nav><ol>\n",
-      page_style(), escaped(m.file.source), version, m.computed.options.coarse ? ", coarse setting" : "");
+      page_style(), markup_escaped(m.file.source), version, m.computed.options.coarse ? ", coarse setting" : "");
   for (const auto& [id, name] : sections) fmt::format_to(out, "<li><a href=\"#{}\">{}</a></li>\n", id, name);
   html +=
       "</ol></nav>\n<div class=\"tools\" hidden>Formulation in figures: <button value=\"\" aria-pressed=\"true\">both"
@@ -191,7 +192,7 @@ build/release/wingbeat sweep data/studies/trend-voltage.toml -o voltage.nc</pre>
 <h3>The published values alone</h3>
 <pre>build/release/wingbeat compare data/published/friction2022.toml</pre>
 <h3>More physics</h3>
-<pre>build/release/wingbeat run data/designs/friction2022-springs.toml --frequency "22 Hz" --set motor.gear_efficiency=0.8
+<pre>build/release/wingbeat run data/designs/friction2022-springs.toml --voltage "3 V" --set motor.gear_efficiency=0.8
 build/release/wingbeat run data/designs/friction2022-springs.toml --voltage "5 V" )"
       R"(--set motor.thermal_resistance_winding="20 K/W" --set motor.thermal_resistance_case="48 K/W"</pre>
 <h3>A friction law</h3>
