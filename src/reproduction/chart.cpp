@@ -77,7 +77,7 @@ void add_read_out(const Chart& chart, const std::vector<PanelBox>& boxes, const 
     panels.push_back(std::move(panel));
   }
   std::string text = read_text_file(file);
-  text.insert(text.find("<svg ") + 5, fmt::format("data-panels=\"{}\" ", markup_escaped(panels.dump())));
+  text.insert(text.find("<svg ") + 5, fmt::format("data-panels=\"{}\" ", detail::markup_escaped(panels.dump())));
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   if (!out.write(text.data(), std::streamsize(text.size()))) {
     throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
