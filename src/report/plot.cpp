@@ -64,7 +64,7 @@ void plot_cycle(std::span<const WaveformRow> rows, const Design<double>& design,
                pitching ? degrees_per_radian * r.pitch_angle : 0.0, r.angle_of_attack_deg);
   }
   // Margins of the page, in its fractions.
-  constexpr double left = 0.15, right = 0.85;
+  constexpr double left = 0.17, right = 0.83;
   figure.add("END\nset multiplot\n");
   figure.text(title, 8.0, fmt::format("screen 0.5,{} center", 1.0 - 0.1 / page_height));
   figure.text(mechanism_caption(vehicle), 7.0, fmt::format("screen 0.5,{} center", 1.0 - 0.28 / page_height));

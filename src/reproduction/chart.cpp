@@ -14,7 +14,7 @@
 namespace wingbeat::reproduction {
 namespace {
 
-constexpr double left = 0.5, character = 0.054;  ///< [in]: margin of a panel; width of a letter of a label
+constexpr double left = 0.5, character = 0.056;  ///< [in]: margin of a panel; width of a letter of a label
 constexpr int mark_value = 13, mark_hollow = 12, mark_place = 9;
 
 std::string line(const CurveStyle& s) { return style::stroke(s.colour, s.dash, s.weight); }
@@ -154,7 +154,7 @@ void draw(const Chart& chart, PlotFormat format, const std::filesystem::path& fi
   const bool titled =
       std::any_of(chart.panels.begin(), chart.panels.end(), [](const auto& p) { return !p.title.empty(); });
   const bool lettered = chart.panels.size() > 1;
-  const double right = 0.1 + character * double(longest), foot = 0.42, gap = titled ? 0.27 : 0.14;
+  const double right = longest == 0 ? 0.1 : 0.14 + character * double(longest), foot = 0.42, gap = titled ? 0.27 : 0.14;
   const double head = keys.empty() ? 0.04 : 0.06 + 0.15 * (key_line + 1);
   const std::size_t columns = std::size_t(chart.columns), rows = (chart.panels.size() + columns - 1) / columns;
   const double inches = head + double(rows) * (gap + chart.panel_height) + foot;

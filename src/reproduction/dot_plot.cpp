@@ -11,7 +11,7 @@
 namespace wingbeat::reproduction {
 namespace {
 
-constexpr double letter = 0.053, second_line = 0.108, heading_height = 0.2;  // [in]
+constexpr double letter = 0.05, second_line = 0.108, heading_height = 0.2;  // [in]
 constexpr int filled[] = {7, 5, 9}, hollow[] = {6, 4, 8};
 constexpr const char* variant_key[] = {"rod-force", "virtual-work", "virtual-work, own calibration"};
 
