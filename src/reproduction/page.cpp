@@ -19,7 +19,7 @@ h3 { font-size: 1.05rem; margin: 1.6rem 0 .4rem; }
 p, ul, ol { max-width: 46rem; }
 .lead { color: var(--soft); }
 .answer { font-size: 1.15rem; border-left: 4px solid var(--accent); padding: .2rem 0 .2rem 1rem; }
-nav ol { columns: 2; padding-left: 1.4rem; }
+nav ol { columns: 2; column-gap: 3rem; padding-left: 1.6rem; }
 nav li { break-inside: avoid; }
 a { color: var(--accent); }
 .figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 26rem), 1fr));
