@@ -198,8 +198,9 @@ TEST_F(Files, PlotsAreDrawnInEachFormat) {
     }
   }
   const std::string cycle = read(path("cycle.svg"));
-  for (const char* title : {"stroke angle (deg)", "velocity (rad/s)", "lift (mN)", "rod force (mN)", "power (mW)",
-                            "time since stroke reversal (ms)", "electrical", "motor output", "aerodynamic", "3.000 V, 23.4"}) {
+  for (const char* title :
+       {"stroke angle (deg)", "velocity (rad/s)", "lift (mN)", "rod force (mN)", "power (mW)",
+        "time since stroke reversal (ms)", "electrical", "motor output", "aerodynamic", "3.000 V, 23.4"}) {
     EXPECT_THAT(cycle, HasSubstr(title));
   }
   EXPECT_GE(count_of(cycle, "stroke-dasharray"), 4U);
