@@ -163,6 +163,11 @@ bool is_stiff(const Vehicle<double>& v, PackCurrent current) {
          braking * coarse_step > stable * no_load;
 }
 
+/// Whether balanced_speed() seeks on a fine grid, about.
+bool pitches_far(const Vehicle<double>& v) {
+  return v.wings.pitch_coefficient * typical_stroke_slope(v.transmission) * no_load_speed(v) > far_pitch;
+}
+
 /// The settings of an attempt for a kind. Stiff designs take at once what others take after a start from rest, and
 /// begin again with more points. Where coefficients bend, segments have more places to end at, and the rod force may
 /// peak at a bend; with the knots of a table, means converge with the fourth power of the nodes only.
@@ -221,7 +226,11 @@ class EnsembleRun {
         by_kind[kind_of(v)].push_back(n);
       }
     }
-    for (const auto& [kind, alike] : by_kind) solve_alike(kind, alike);
+    for (auto& [kind, alike] : by_kind) {
+      // A block in which one wing pitches far balances all loads on a fine grid.
+      std::ranges::stable_partition(alike, [&](std::size_t n) { return !pitches_far(members_[n].vehicle); });
+      solve_alike(kind, alike);
+    }
     for (const std::vector<std::size_t>& alike : direct_by_kind) solve_direct(alike);
   }
 

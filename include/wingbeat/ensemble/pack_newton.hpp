@@ -71,9 +71,11 @@ void PackOrbit<L, N>::place_nodes() {
 
 /// What the nodes of a segment would each move by if the node before stood still: its rates' integral says so. `end` is
 /// what the node before the segment, and afterwards its last one, moves by if the iterate's start stands still.
+/// `known_intervals` are the rule's, or 0.
 template <class L, int N>
-void PackOrbit<L, N>::propose(std::size_t base, const L& h, State& end) {
-  const std::size_t intervals = std::size_t(rule_.intervals);
+template <int known_intervals>
+void PackOrbit<L, N>::propose_with(std::size_t base, const L& h, State& end) {
+  const std::size_t intervals = std::size_t(known_intervals > 0 ? known_intervals : rule_.intervals);
   for (std::size_t n = 0; n < N; ++n) end[n] = end[n] + correction_[base][n];
   for (std::size_t m = 1; m <= intervals; ++m) {
     State sum;
@@ -143,12 +145,11 @@ template <class L, int N>
 template <bool last>
 void PackOrbit<L, N>::newton_iteration() {
   const std::size_t intervals = std::size_t(rule_.intervals);
-  solver::Rates<System> rates;
+  NodeRates at_node;
   State end;
   end.fill(L(0.0));
   correction_[0] = end;
   L overlooked(0.0), highest(0.0), bend_depth(0.0);
-  std::array<std::array<L, nodes_per_segment>, 4> controlled;
   typename System::Quadrature integrands_before;
   if (lags_) lag_current();
   if constexpr (last) {
@@ -168,12 +169,9 @@ void PackOrbit<L, N>::newton_iteration() {
       for (std::size_t m = 0; m <= intervals; ++m) {
         if (lags_) system.drop = drop_[base + m];
         if (bends_) margin_[base + m] = system.pitch_margin_at(configuration_of(base + m), trajectory_[base + m]);
+        solver::Rates<System>& rates = at_node[last ? m : 0];
         if constexpr (last) {
           visit_node(system, base + m, sign, rates);
-          const L weight = L(rule_.weight[m]) * h;
-          for (std::size_t q = 0; q < integrals_.size(); ++q) integrals_[q] = integrals_[q] + weight * rates.dq[q];
-          for (std::size_t c = 0; c < controlled.size(); ++c)
-            controlled[c][m] = rates.dq[System::controlled_integrals[c]];
           highest = max(highest, abs(rates.switches[0]));
           if (m > 0 && m < intervals) overlooked = max(overlooked, -(rates.switches[0] * sign));
         } else {
@@ -223,8 +221,13 @@ void PackOrbit<L, N>::newton_iteration() {
       h_before = h;
       propose(base, h, end);
       if constexpr (last) {
-        integrands_before = rates.dq;
-        add_tails(controlled, base, h);
+        for (std::size_t q = 0; q < integrals_.size(); ++q) {
+          L sum(0.0);
+          for (std::size_t m = 0; m <= intervals; ++m) sum = sum + L(rule_.weight[m]) * at_node[m].dq[q];
+          integrals_[q] = integrals_[q] + h * sum;
+        }
+        integrands_before = at_node[intervals].dq;
+        add_tails(at_node, base, h);
         overlooked = max(overlooked, dip_between_nodes(base, sign));
         if (wanted_[std::size_t(Quantity::force)]) {
           const L per_h = inverse_of(max(h, L(1e-12)));
@@ -329,24 +332,24 @@ L PackOrbit<L, N>::dip_between_nodes(std::size_t base, const L& sign) const {
     const double x0 = rule_.node[m - 1], x1 = rule_.node[m], x2 = rule_.node[m + 1];
     const L f0 = sign * force_[base + m - 1], f1 = sign * force_[base + m], f2 = sign * force_[base + m + 1];
     const L left = (f1 - f0) * L(1.0 / (x1 - x0)), right = (f2 - f1) * L(1.0 / (x2 - x1));
-    const L curve = (right - left) * L(1.0 / (x2 - x0)), slope = left + curve * L(x1 - x0);
-    const L at = -(L(0.5) * slope * inverse_of(select<L>(curve > L(0.0), curve, L(1.0))));
-    const Mask inside = curve > L(0.0) && at > L(x0 - x1) && at < L(x2 - x1);
-    depth = max(depth, select<L>(inside, -(f1 + L(0.5) * slope * at), L(0.0)));
+    const L curve = (right - left) * L(1.0 / (x2 - x0)), slope = left + curve * L(x1 - x0), back = L(-0.5) * slope;
+    const Mask inside = curve > L(0.0) && back > curve * L(x0 - x1) && back < curve * L(x2 - x1);
+    const Mask dips = inside && square(back) > f1 * curve;
+    if (!any<L>(dips)) continue;
+    depth = max(depth, select<L>(dips, square(back) * inverse_of(select<L>(dips, curve, L(1.0))) - f1, L(0.0)));
   }
   return depth;
 }
 
 /// Adds the last coefficients of a segment's rates of speed and integrals.
 template <class L, int N>
-void PackOrbit<L, N>::add_tails(const std::array<std::array<L, nodes_per_segment>, 4>& controlled, std::size_t base,
-                                const L& h) {
+void PackOrbit<L, N>::add_tails(const NodeRates& rates, std::size_t base, const L& h) {
   const std::size_t n = std::size_t(rule_.intervals);
   const L per_omega = inverse_of(trajectory_[base][0]);
   for (std::size_t c = 0; c < high_.size(); ++c) {
     L tail[4] = {L(0.0), L(0.0), L(0.0), L(0.0)};
     for (std::size_t j = 0; j <= n; ++j) {
-      const L value = c == 0 ? rates_[base + j][0] * per_omega : controlled[c - 1][j];
+      const L value = c == 0 ? rates[j].dy[0] * per_omega : rates[j].dq[System::controlled_integrals[c - 1]];
       for (std::size_t k = 0; k < 4; ++k) tail[k] = tail[k] + L(k <= n ? rule_.legendre[n - k][j] : 0.0) * value;
     }
     high_[c] = high_[c] + h * (abs(tail[0]) + abs(tail[1]));
@@ -354,47 +357,29 @@ void PackOrbit<L, N>::add_tails(const std::array<std::array<L, nodes_per_segment
   }
 }
 
-/// The observables wanted at a state, with the motion there.
+/// A quantity but the rod force, with the motion there.
 template <class L, int N>
-void PackOrbit<L, N>::read(const System& system, const L& u, const State& y, const L& force, const Motion<L>& m,
-                           const State& dy, const L& drop_slope, const std::array<bool, quantity_count>& wanted,
-                           std::array<Observable<L>, quantity_count>& out) const {
-  const auto is_wanted = [&](Quantity q) { return wanted[std::size_t(q)]; };
-  const auto at = [&](Quantity q) -> Observable<L>& { return out[std::size_t(q)]; };
-  if (is_wanted(Quantity::velocity)) {
-    at(Quantity::velocity) = {system.half * m.stroke_velocity, system.half * m.stroke_acceleration * inverse_of(y[0])};
-  }
-  if (is_wanted(Quantity::speed)) at(Quantity::speed) = {y[0], dy[0]};
-  if (is_wanted(Quantity::negated_speed)) at(Quantity::negated_speed) = {-y[0], -dy[0]};
-  if (is_wanted(Quantity::current)) {
-    if constexpr (N == 2) {
-      at(Quantity::current) = {y[1], dy[1]};
-    } else {
-      const L per_resistance = inverse_of(circuit_resistance(vehicle_));
-      at(Quantity::current) = {m.current, lags_ ? system.drop * per_inductance_ * inverse_of(y[0])
-                                                : -(vehicle_.motor.torque_constant * dy[0] * per_resistance)};
+Observable<L> PackOrbit<L, N>::observable(const System& system, const Configuration<L>& place, const State& y,
+                                          const Motion<L>& m, const State& dy, Quantity quantity) const {
+  switch (quantity) {
+    case Quantity::velocity:
+      return {system.half * m.stroke_velocity, system.half * m.stroke_acceleration * inverse_of(y[0])};
+    case Quantity::speed: return {y[0], dy[0]};
+    case Quantity::negated_speed: return {-y[0], -dy[0]};
+    case Quantity::current:
+      if constexpr (N == 2) {
+        return {y[1], dy[1]};
+      } else {
+        return {m.current, lags_ ? system.drop * per_inductance_ * inverse_of(y[0])
+                                 : -(vehicle_.motor.torque_constant * dy[0] * per_resistance_)};
+      }
+    default: {
+      const L kinetic = L(0.5) * vehicle_.wing_count * vehicle_.wing_inertia * square(m.stroke_velocity);
+      // At the dead centres the slope is zero but for rounding; its sign is that of the moment there.
+      const L rising = sign_of(L(system.half * m.stored_moment));
+      const L steepness = max(abs(L(m.stored_moment * m.kinematics.stroke_slope)), L(1e-30));
+      return {kinetic + compliance_ * square(place.spring_moment), rising * steepness};
     }
-  }
-  if (is_wanted(Quantity::energy)) {
-    const L energy = wing_energy(vehicle_, m.kinematics, m.stroke_velocity);
-    // At the dead centres the slope is zero but for rounding; its sign is that of the moment there.
-    const L rising = sign_of(L(system.half * m.stored_moment));
-    const L steepness = max(abs(L(m.stored_moment * m.kinematics.stroke_slope)), L(1e-30));
-    at(Quantity::energy) = {energy, rising * steepness};
-  }
-  if (is_wanted(Quantity::force)) {
-    // The slope along the solution by central differences.
-    constexpr double by = 1e-4;
-    L ahead[2];
-    for (int side = 0; side < 2; ++side) {
-      const L move(side == 0 ? -by : by);
-      State moved;
-      for (std::size_t n = 0; n < N; ++n) moved[n] = y[n] + move * dy[n];
-      System there = system;
-      if (lags_) there.drop = system.drop + move * drop_slope;
-      ahead[side] = there.motion(there.place(u + move), moved, force).rod_force;
-    }
-    at(Quantity::force) = {force * m.rod_force, force * (ahead[1] - ahead[0]) * L(0.5 / by)};
   }
 }
 
@@ -403,16 +388,22 @@ template <class L, int N>
 template <bool every_law>
 void PackOrbit<L, N>::visit_node_of(const System& system, std::size_t node, const L& force,
                                     solver::Rates<System>& rates) {
-  const Motion<L> motion = system.template motion_of<every_law>(configuration_of(node), trajectory_[node], force);
-  rates = system.template rates_of<true>(motion, trajectory_[node], force);
-  if (!reads_) return;
-  std::array<bool, quantity_count> wanted = wanted_;
-  wanted[std::size_t(Quantity::force)] = false;
-  std::array<Observable<L>, quantity_count> observables;
-  read(system, L(0.0), trajectory_[node], force, motion, rates.dy, L(0.0), wanted, observables);
-  observables[std::size_t(Quantity::force)].value = force * motion.rod_force;
-  for (std::size_t q = 0; q < std::size_t(quantity_count); ++q) {
-    if (wanted_[q]) observables_[q][node] = observables[q];
+  const Configuration<L>& place = configuration_of(node);
+  const State& y = trajectory_[node];
+  const Motion<L> motion = system.template motion_of<every_law>(place, y, force);
+  rates = system.template rates_of<true>(motion, y, force);
+  const auto keep_of = [&](Quantity q) {
+    if (wanted_[std::size_t(q)]) {
+      observables_[std::size_t(q)][node] = observable(system, place, y, motion, rates.dy, q);
+    }
+  };
+  keep_of(Quantity::velocity);
+  keep_of(Quantity::current);
+  keep_of(Quantity::negated_speed);
+  keep_of(Quantity::speed);
+  keep_of(Quantity::energy);
+  if (wanted_[std::size_t(Quantity::force)]) {
+    observables_[std::size_t(Quantity::force)][node].value = force * motion.rod_force;
   }
 }
 

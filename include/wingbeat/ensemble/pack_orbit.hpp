@@ -94,8 +94,9 @@ class PackOrbit {
     per_resistance_ = L(1.0) / circuit_resistance(vehicle);
     current_scale_ = vehicle.voltage * per_resistance_;
     wanted_ = settings.wanted;
-    for (const bool wanted : wanted_) reads_ = reads_ || wanted;
     geometry_ = geometry_of(vehicle.transmission.slider_crank);
+    const L stiffness = vehicle.wing_count * vehicle.spring.stiffness;
+    compliance_ = select<L>(stiffness > L(0.0), L(0.5) / max(stiffness, L(1e-300)), L(0.0));
     bends_ = bends_on_lanes(vehicle.wings);
     every_law_ = bends_ || any<L>(vehicle.wings.added_inertia > L(0.0));
     lags_ = N == 1 && settings.current == PackCurrent::lagging;
@@ -137,8 +138,8 @@ class PackOrbit {
   [[gnu::noinline, gnu::flatten]] void assess_statics();
   [[gnu::noinline, gnu::flatten]] L guess_speed();
   [[gnu::noinline, gnu::flatten]] void start_from_rest();
-  [[gnu::noinline]] void replace_stiff(const System& system, const L& u, const L& h, const State& y, State& end,
-                                       L& force_in_middle, L& force_at_end) const;
+  [[gnu::noinline]] void replace_stiff(const System& system, const Configuration<L>* over, const L& u, const L& h,
+                                       const State& y, State& end, L& force_in_middle, L& force_at_end) const;
   template <bool last>
   [[gnu::noinline, gnu::flatten]] void coarse_iterate();
   [[gnu::noinline, gnu::flatten]] L find_switches(ForceSwitches<L>& known, const L* u, const L* force, int count);
@@ -156,7 +157,16 @@ class PackOrbit {
   [[gnu::noinline, gnu::flatten]] void follow_switches();
   static L misplaced(const L& by) { return L(0.15) * square(by); }
   [[gnu::noinline, gnu::flatten]] L dip_between_nodes(std::size_t base, const L& sign) const;
-  [[gnu::noinline, gnu::flatten]] void propose(std::size_t base, const L& h, State& end);
+  void propose(std::size_t base, const L& h, State& end) {
+    switch (rule_.intervals) {
+      case 4: return propose_with<4>(base, h, end);
+      case 6: return propose_with<6>(base, h, end);
+      case 8: return propose_with<8>(base, h, end);
+      default: return propose_with<0>(base, h, end);
+    }
+  }
+  template <int known_intervals>
+  [[gnu::noinline, gnu::flatten]] void propose_with(std::size_t base, const L& h, State& end);
   [[gnu::noinline, gnu::flatten]] void correct(State end);
   [[gnu::noinline, gnu::flatten]] void lag_current();
   [[gnu::noinline, gnu::flatten]] solver::Rates<System> relaxation(System system, std::size_t base,
@@ -170,12 +180,10 @@ class PackOrbit {
   template <bool every_law>
   [[gnu::noinline, gnu::flatten]] void visit_node_of(const System& system, std::size_t node, const L& force,
                                                      solver::Rates<System>& rates);
-  [[gnu::noinline, gnu::flatten]] void add_tails(const std::array<std::array<L, nodes_per_segment>, 4>& controlled,
-                                                 std::size_t base, const L& h);
-  [[gnu::noinline, gnu::flatten]] void read(const System& system, const L& u, const State& y, const L& force,
-                                            const Motion<L>& m, const State& dy, const L& drop_slope,
-                                            const std::array<bool, quantity_count>& wanted,
-                                            std::array<Observable<L>, quantity_count>& out) const;
+  using NodeRates = std::array<solver::Rates<System>, nodes_per_segment>;  ///< at a segment's nodes
+  [[gnu::noinline, gnu::flatten]] void add_tails(const NodeRates& rates, std::size_t base, const L& h);
+  [[gnu::always_inline]] Observable<L> observable(const System& system, const Configuration<L>& place, const State& y,
+                                                  const Motion<L>& m, const State& dy, Quantity quantity) const;
   [[gnu::noinline, gnu::flatten]] void follow(const L& segment, SegmentTrajectory<L, N>& trajectory) const;
   [[gnu::noinline, gnu::flatten]] Observable<L> observable_inside(Quantity quantity,
                                                                   const SegmentTrajectory<L, N>& trajectory,
@@ -196,9 +204,9 @@ class PackOrbit {
                                        const State& rates, const L& force) const;
   [[gnu::noinline]] Matrix jacobian_at_node(System system, std::size_t node, const L& force) const;
   static Mask is_stiff(const Matrix& jacobian, const L& h);
-  [[gnu::noinline, gnu::flatten]] static void find_rates(const System& system, const L& u, const State& y, State& rates,
-                                                         L& force) {
-    const Motion<L> m = system.motion_on_its_branch(system.place(u), y);
+  [[gnu::noinline, gnu::flatten]] static void find_rates(const System& system, const Configuration<L>& place,
+                                                         const State& y, State& rates, L& force) {
+    const Motion<L> m = system.motion_on_its_branch(place, y);
     force = m.force_switch;
     rates = system.template rates_of<false>(m, y, L(1.0)).dy;
   }
@@ -262,10 +270,10 @@ class PackOrbit {
   std::array<Matrix, max_nodes> step_;  ///< derivative of the state by that at the node before
   std::array<std::array<Observable<L>, max_nodes>, quantity_count> observables_;
 
+  L compliance_;  ///< of all springs, half of it: their energy per square of their moment [1/(N m)]; 0 without
   std::array<L, pack_integrals.size()> integrals_;
   std::array<L, 5> high_, low_;  ///< sums of the last and last but two coefficients of what limits the error
   std::array<bool, quantity_count> wanted_;
-  bool reads_ = false;  ///< anything
   // Where the coefficients bend within a half: the switches of the pitch margin, as those of the rod force.
   bool bends_;
   std::array<ForceSwitches<L>, 2> bend_switches_{};
