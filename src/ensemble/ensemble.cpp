@@ -79,8 +79,8 @@ struct MeshOfTolerance {
   int segments, intervals, newton_iterations;
 };
 constexpr std::array meshes_by_tolerance = {
-    MeshOfTolerance{3.5, 6, 4, 2},  MeshOfTolerance{4.5, 8, 4, 2},   MeshOfTolerance{5.5, 6, 6, 3},
-    MeshOfTolerance{6.5, 8, 6, 3},  MeshOfTolerance{7.5, 10, 6, 4},  MeshOfTolerance{8.5, 8, 8, 4},
+    MeshOfTolerance{3.5, 6, 4, 2},  MeshOfTolerance{4.5, 8, 4, 2},   MeshOfTolerance{5.5, 6, 6, 2},
+    MeshOfTolerance{6.5, 8, 6, 2},  MeshOfTolerance{7.5, 10, 6, 4},  MeshOfTolerance{8.5, 8, 8, 4},
     MeshOfTolerance{9.5, 10, 8, 5}, MeshOfTolerance{10.5, 8, 10, 6}, MeshOfTolerance{12.0, 8, 12, 7}};
 
 Plan plan_for(const EnsembleOptions& options) {

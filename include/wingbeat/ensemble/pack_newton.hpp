@@ -5,13 +5,9 @@
 #include "wingbeat/ensemble/pack_orbit.hpp"
 namespace wingbeat {
 
-/// Nodes on segments that end at the switches as march() left them, with its trajectory and derivatives interpolated
-/// there.
+/// Nodes on segments that end at the switches as march() left them, with its trajectory interpolated there.
 template <class L, int N>
 void PackOrbit<L, N>::place_nodes() {
-  for (std::size_t row = 0; row < N; ++row) {
-    for (std::size_t column = 0; column < N; ++column) monodromy_[row][column] = L(row == column ? 1.0 : 0.0);
-  }
   for (int half = 0; half < 2; ++half) {
     const System system = half_cycle(half);
     const HalfMesh<L> before = mesh_[std::size_t(half)];
@@ -31,20 +27,6 @@ void PackOrbit<L, N>::place_nodes() {
         c2[n] = L(3.0) * rise - L(2.0) * d0 - d1;
         c3[n] = d0 + d1 - L(2.0) * rise;
       }
-      // The derivatives by the parabola through start, middle and end; across a switch they jump, and a straight line
-      // goes on from the middle.
-      const bool last = s + 1 == std::size_t(segments_);
-      Mask smooth = (last ? L(-1.0) : before.force[s] * before.force[s + 1]) > L(0.0);
-      if (bends_ && !last) smooth = smooth && before.pitching[s] * before.pitching[s + 1] > L(0.0);
-      Matrix linear, bend;
-      for (std::size_t row = 0; row < N; ++row) {
-        for (std::size_t column = 0; column < N; ++column) {
-          const L rise = L(2.0) * (from.jacobian[1][row][column] - from.jacobian[0][row][column]);
-          linear[row][column] = rise;
-          bend[row][column] =
-              select<L>(smooth, L(2.0) * (to.jacobian[0][row][column] - from.jacobian[0][row][column] - rise), L(0.0));
-        }
-      }
       for (std::size_t m = 0; m <= std::size_t(rule_.intervals); ++m) {
         const double x = rule_.node[m];
         if (m > 0 || s == 0) find_node(system, u, h, L(x), places_[base + m]);
@@ -53,30 +35,23 @@ void PackOrbit<L, N>::place_nodes() {
           trajectory_[base + m][n] = from.y[n] + L(x) * (c1[n] + L(x) * (c2[n] + L(x) * c3[n])) +
                                      moved * (c1[n] + L(2.0 * x) * c2[n] + L(3.0 * x * x) * c3[n]);
         }
-        if (m == 0) continue;
-        const double width = x - rule_.node[m - 1], t = x - 0.5 * width;
-        Matrix jacobian;
-        for (std::size_t row = 0; row < N; ++row) {
-          for (std::size_t column = 0; column < N; ++column) {
-            jacobian[row][column] =
-                from.jacobian[0][row][column] + L(t) * (linear[row][column] + L(t - 0.5) * bend[row][column]);
-          }
-        }
-        propagator(jacobian, L(width) * h, step_[base + m]);
-        append(step_[base + m], monodromy_);
       }
     }
   }
 }
 
-/// What the nodes of a segment would each move by if the node before stood still: its rates' integral says so. `end` is
-/// what the node before the segment, and afterwards its last one, moves by if the iterate's start stands still.
-/// `known_intervals` are the rule's, or 0.
+/// What the nodes of a segment would each move by if the node before stood still. `end` is what the node before the
+/// segment, and afterwards its last one, moves by if the iterate's start stands still.
+///
+/// The rates' integral from the segment's start on is off the trajectory by R; a correction is R + w with w' = J (w +
+/// R). R swings from node to node, J does not: over an interval J counts as constant, and R as its mean over the
+/// interval. `known_intervals` are the rule's, or 0.
 template <class L, int N>
 template <int known_intervals>
 void PackOrbit<L, N>::propose_with(std::size_t base, const L& h, State& end) {
   const std::size_t intervals = std::size_t(known_intervals > 0 ? known_intervals : rule_.intervals);
-  for (std::size_t n = 0; n < N; ++n) end[n] = end[n] + correction_[base][n];
+  std::array<State, nodes_per_segment> off;
+  off[0].fill(L(0.0));
   for (std::size_t m = 1; m <= intervals; ++m) {
     State sum;
     sum.fill(L(0.0));
@@ -84,17 +59,28 @@ void PackOrbit<L, N>::propose_with(std::size_t base, const L& h, State& end) {
       const L weight(rule_.between[m][j]);
       for (std::size_t n = 0; n < N; ++n) sum[n] = sum[n] + weight * rates_[base + j][n];
     }
-    for (std::size_t n = 0; n < N; ++n) sum[n] = h * sum[n] - (trajectory_[base + m][n] - trajectory_[base + m - 1][n]);
-    // (1 - z)^-1 = (1 + step) / 2
-    const Matrix& step = step_[base + m];
-    const State before = end;
     for (std::size_t n = 0; n < N; ++n) {
-      L along = step[n][0] * sum[0], onward = step[n][0] * before[0];
+      off[m][n] = off[m - 1][n] + (h * sum[n] - (trajectory_[base + m][n] - trajectory_[base + m - 1][n]));
+    }
+  }
+  for (std::size_t n = 0; n < N; ++n) end[n] = end[n] + correction_[base][n];
+  for (std::size_t m = 1; m <= intervals; ++m) {
+    State mean;
+    mean.fill(L(0.0));
+    for (std::size_t j = 1; j <= intervals; ++j) {
+      const L weight(rule_.mean[m][j]);
+      for (std::size_t n = 0; n < N; ++n) mean[n] = mean[n] + weight * off[j][n];
+    }
+    const Matrix& step = step_[base + m];
+    State from, before = end;
+    for (std::size_t n = 0; n < N; ++n) from[n] = mean[n] - off[m - 1][n];
+    for (std::size_t n = 0; n < N; ++n) {
+      L along = step[n][0] * from[0], onward = step[n][0] * before[0];
       if constexpr (N == 2) {
-        along = along + step[n][1] * sum[1];
+        along = along + step[n][1] * from[1];
         onward = onward + step[n][1] * before[1];
       }
-      correction_[base + m][n] = L(0.5) * (sum[n] + along);
+      correction_[base + m][n] = off[m][n] - mean[n] + along;
       end[n] = onward + correction_[base + m][n];
     }
   }
@@ -134,18 +120,24 @@ void PackOrbit<L, N>::correct(State end) {
   y_ = trajectory_[0];
 }
 
-/// The equations at all nodes, and the corrections that follow; the last iteration takes integrals and observables,
-/// too.
+/// The equations at all nodes, and the corrections that follow.
 ///
 /// Where a node stands off the sign change it was meant for by d, the wrong branch has held, or will hold, over d. The
 /// difference of the branches grows linearly from zero there, so that half of d times the difference at the node is the
 /// error left behind, up to O(d^3). Where d is longer than the segment, or where the sign changes are others than those
 /// that the segments were made for, an error of O(d^2) stays.
 template <class L, int N>
-template <bool last>
+template <typename PackOrbit<L, N>::Newton which>
 void PackOrbit<L, N>::newton_iteration() {
+  constexpr bool first = which == Newton::first, last = which == Newton::last;
   const std::size_t intervals = std::size_t(rule_.intervals);
   NodeRates at_node;
+  Matrix jacobian, jacobian_before;
+  if constexpr (first) {
+    for (std::size_t row = 0; row < N; ++row) {
+      for (std::size_t column = 0; column < N; ++column) monodromy_[row][column] = L(row == column ? 1.0 : 0.0);
+    }
+  }
   State end;
   end.fill(L(0.0));
   correction_[0] = end;
@@ -174,6 +166,19 @@ void PackOrbit<L, N>::newton_iteration() {
           visit_node(system, base + m, sign, rates);
           highest = max(highest, abs(rates.switches[0]));
           if (m > 0 && m < intervals) overlooked = max(overlooked, -(rates.switches[0] * sign));
+        } else if constexpr (first) {
+          linearise(system, base + m, sign, rates, jacobian);
+          if (m > 0) {
+            Matrix mean;
+            for (std::size_t row = 0; row < N; ++row) {
+              for (std::size_t column = 0; column < N; ++column) {
+                mean[row][column] = L(0.5) * (jacobian_before[row][column] + jacobian[row][column]);
+              }
+            }
+            propagator(mean, L(rule_.node[m] - rule_.node[m - 1]) * h, step_[base + m]);
+            append(step_[base + m], monodromy_);
+          }
+          jacobian_before = jacobian;
         } else {
           evaluate<false>(system, configuration_of(base + m), trajectory_[base + m], sign, rates);
         }
@@ -380,6 +385,34 @@ Observable<L> PackOrbit<L, N>::observable(const System& system, const Configurat
       const L steepness = max(abs(L(m.stored_moment * m.kinematics.stroke_slope)), L(1e-30));
       return {kinetic + compliance_ * square(place.spring_moment), rising * steepness};
     }
+  }
+}
+
+/// Rates at a node, and their derivatives by the state there. Without added mass the rates are linear in the current.
+template <class L, int N>
+void PackOrbit<L, N>::linearise(const System& system, std::size_t node, const L& force, solver::Rates<System>& rates,
+                                Matrix& jacobian) const {
+  const Configuration<L>& place = configuration_of(node);
+  const State& y = trajectory_[node];
+  evaluate<false>(system, place, y, force, rates);
+  if (N == 1 || every_law_) {
+    jacobian = jacobian_at(system, place, y, rates.dy, force);
+    return;
+  }
+  solver::Rates<System> beside;
+  State moved = y;
+  const L by = L(1e-7) * y[0];
+  moved[0] = moved[0] + by;
+  evaluate<false>(system, place, moved, force, beside);
+  const CrankKinematics<L>& k = place.kinematics;
+  const L inertia_g = vehicle_.motor.inertia * k.wing_lever + vehicle_.wing_count * vehicle_.wing_inertia *
+                                                                  k.stroke_slope *
+                                                                  (k.crank_lever + force * vehicle_.friction.radius);
+  const L both = inverse_of(L(inertia_g * y[0])), per_omega = both * inertia_g, per_move = L(1e7) * per_omega;
+  for (std::size_t row = 0; row < N; ++row) jacobian[row][0] = (beside.dy[row] - rates.dy[row]) * per_move;
+  if constexpr (N == 2) {
+    jacobian[0][1] = vehicle_.motor.torque_constant * k.wing_lever * both;
+    jacobian[1][1] = -(circuit_resistance(vehicle_) * per_inductance_ * per_omega);
   }
 }
 

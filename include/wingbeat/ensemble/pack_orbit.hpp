@@ -152,7 +152,9 @@ class PackOrbit {
   [[gnu::noinline]] L error_of_peak_on_bend(const L& peak) const;
   [[gnu::noinline]] void march();
   [[gnu::noinline, gnu::flatten]] void place_nodes();
-  template <bool last>
+  /// The first one takes the derivatives along the trajectory, the last one integrals and observables.
+  enum class Newton { first, middle, last };
+  template <Newton which>
   [[gnu::noinline]] void newton_iteration();
   [[gnu::noinline, gnu::flatten]] void follow_switches();
   static L misplaced(const L& by) { return L(0.15) * square(by); }
@@ -180,6 +182,8 @@ class PackOrbit {
   template <bool every_law>
   [[gnu::noinline, gnu::flatten]] void visit_node_of(const System& system, std::size_t node, const L& force,
                                                      solver::Rates<System>& rates);
+  [[gnu::noinline]] void linearise(const System& system, std::size_t node, const L& force, solver::Rates<System>& rates,
+                                   Matrix& jacobian) const;
   using NodeRates = std::array<solver::Rates<System>, nodes_per_segment>;  ///< at a segment's nodes
   [[gnu::noinline, gnu::flatten]] void add_tails(const NodeRates& rates, std::size_t base, const L& h);
   [[gnu::always_inline]] Observable<L> observable(const System& system, const Configuration<L>& place, const State& y,
@@ -255,10 +259,9 @@ class PackOrbit {
   std::array<ForceSwitches<L>, 2> switches_{};
   std::array<HalfMesh<L>, 2> mesh_;
 
-  /// Where a segment starts as march() leaves it, and the derivatives of the rates there and in its middle.
+  /// Where a segment starts as march() leaves it.
   struct Subinterval {
     State y, rates;
-    std::array<Matrix, 2> jacobian;
   };
   std::array<Subinterval, 2 * max_half_segments + 1> subintervals_;
   // At the nodes, segment after segment; where segments meet there is one for either.
@@ -444,10 +447,14 @@ Metrics<L> PackOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   place_nodes();
   if (lags_) drop_.fill(L(0.0));
   for (int n = 0; n < settings_.newton_iterations; ++n) {
-    newton_iteration<false>();
+    if (n == 0) {
+      newton_iteration<Newton::first>();
+    } else {
+      newton_iteration<Newton::middle>();
+    }
     if (n == 1 && settings_.follow_switches) follow_switches();
   }
-  newton_iteration<true>();
+  newton_iteration<Newton::last>();
 
   CycleIntegrals<L> integrals;
   integrals.fill(L(0.0));

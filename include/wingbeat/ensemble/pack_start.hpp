@@ -304,20 +304,19 @@ void PackOrbit<L, N>::march() {
       if (bends_) margin[2 * s] = system.pitch_margin_at(start, y_);
       subinterval.y = y_;
       subinterval.rates = k1.dy;
-      subinterval.jacobian[0] = jacobian_at(system, start, y_, k1.dy, sign);
       evaluate<false>(system, middle, moved(y_, k1.dy, half_h), sign, k2);
       const State inside = moved(y_, k2.dy, half_h);
       evaluate<false>(system, middle, inside, sign, k3);
       force[2 * s + 1] = k3.switches[0];
       if (bends_) margin[2 * s + 1] = system.pitch_margin_at(middle, inside);
-      subinterval.jacobian[1] = jacobian_at(system, middle, inside, k3.dy, sign);
       evaluate<false>(system, end, moved(y_, k3.dy, h), sign, k4);
       State next;
       for (std::size_t n = 0; n < N; ++n) {
         next[n] = y_[n] + L(1.0 / 6.0) * h * (k1.dy[n] + L(2.0) * (k2.dy[n] + k3.dy[n]) + k4.dy[n]);
       }
-      const Mask stiff = is_stiff(subinterval.jacobian[0], h);
-      if (settings_.implicit && any<L>(stiff)) {
+      Mask stiff = L(1.0) < L(0.0);
+      if (settings_.implicit) stiff = is_stiff(jacobian_at(system, start, y_, k1.dy, sign), h);
+      if (any<L>(stiff)) {
         solver::Rates<System> rates;
         Configuration<L> inside_step;
         find_configuration(system, mesh.u[s] + L(first_stage) * h, inside_step);
@@ -333,13 +332,6 @@ void PackOrbit<L, N>::march() {
         evaluate<false>(system, middle, between, sign, rates);
         force[2 * s + 1] = select<L>(stiff, rates.switches[0], force[2 * s + 1]);
         if (bends_) margin[2 * s + 1] = select<L>(stiff, system.pitch_margin_at(middle, between), margin[2 * s + 1]);
-        const Matrix jacobian = jacobian_at(system, middle, between, rates.dy, sign);
-        for (std::size_t row = 0; row < N; ++row) {
-          for (std::size_t column = 0; column < N; ++column) {
-            L& to = subinterval.jacobian[1][row][column];
-            to = select<L>(stiff, jacobian[row][column], to);
-          }
-        }
       }
       y_ = next;
     }
