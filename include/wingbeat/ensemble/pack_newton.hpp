@@ -112,11 +112,13 @@ void PackOrbit<L, N>::correct(State end) {
       }
       sum = sum + abs(by[0]) * per_speed;
       if constexpr (N == 2) sum = sum + abs(by[1]) * per_current;
-      for (std::size_t n = 0; n < N; ++n) trajectory_[node][n] = trajectory_[node][n] + by[n];
+      for (std::size_t n = 0; n < N; ++n) {
+        trajectory_[node][n] = select<L>(settled_, trajectory_[node][n], trajectory_[node][n] + by[n]);
+      }
       slowest_ = min(slowest_, trajectory_[node][0]);
     }
   }
-  residual_ = sum * L(1.0 / double(nodes));
+  residual_ = select<L>(settled_, residual_, sum * L(1.0 / double(nodes)));
   y_ = trajectory_[0];
 }
 

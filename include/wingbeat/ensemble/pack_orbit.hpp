@@ -156,6 +156,7 @@ class PackOrbit {
   enum class Newton { first, middle, last };
   template <Newton which>
   [[gnu::noinline]] void newton_iteration();
+  void iterate();
   [[gnu::noinline, gnu::flatten]] void follow_switches();
   static L misplaced(const L& by) { return L(0.15) * square(by); }
   [[gnu::noinline, gnu::flatten]] L dip_between_nodes(std::size_t base, const L& sign) const;
@@ -255,7 +256,8 @@ class PackOrbit {
   State y_;         ///< where an iterate starts
   bool every_law_;  ///< HalfCycle::has_every_law
   Mask unresolved_, locked_;
-  Mask lost_;  ///< the crank comes near standstill on the way to the orbit
+  Mask settled_;  ///< on the trajectory that the last iteration will start from
+  Mask lost_;     ///< the crank comes near standstill on the way to the orbit
   std::array<ForceSwitches<L>, 2> switches_{};
   std::array<HalfMesh<L>, 2> mesh_;
 
@@ -287,7 +289,7 @@ class PackOrbit {
   L lag_residual_;                 ///< its last change, of the voltage
   L layer_;                        ///< largest relaxation() of the speed, relative
 
-  L slowest_, residual_;
+  L slowest_, residual_ = L(0.0);
   L switch_error_;              ///< of segments that end off the rod force's sign changes
   L step_error_, speed_error_;  ///< of what the segments' polynomials leave out: at all, and of speed and time
   L overlooked_;  ///< depth to which the rod force has the wrong sign inside a segment, of its largest magnitude
@@ -423,6 +425,28 @@ void PackOrbit<L, N>::build_mesh(int half) {
   });
 }
 
+/// Newton's method up to its last iteration. A lane stays where it is once its next correction is expected to be small:
+/// as much smaller than the last one as that was than the one before. What others still need does not move it.
+template <class L, int N>
+void PackOrbit<L, N>::iterate() {
+  settled_ = unresolved_ || locked_;
+  L gain(0.01);
+  for (int n = 0; n < settings_.newton_iterations; ++n) {
+    const L before = residual_;
+    if (n == 0) {
+      newton_iteration<Newton::first>();
+    } else {
+      newton_iteration<Newton::middle>();
+      gain = min(L(residual_ * inverse_of(max(before, L(1e-300)))), L(1.0));
+    }
+    if (settings_.follow_switches && n == 1) follow_switches();
+    if (lags_ || (settings_.follow_switches && n < 2)) continue;
+    settled_ = settled_ || gain * residual_ <= L(settings_.settled);
+    if (all<L>(settled_)) break;
+  }
+  settled_ = L(1.0) < L(0.0);
+}
+
 template <class L, int N>
 Metrics<L> PackOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant) {
   lost_ = L(1.0) < L(0.0);
@@ -446,14 +470,7 @@ Metrics<L> PackOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   march();
   place_nodes();
   if (lags_) drop_.fill(L(0.0));
-  for (int n = 0; n < settings_.newton_iterations; ++n) {
-    if (n == 0) {
-      newton_iteration<Newton::first>();
-    } else {
-      newton_iteration<Newton::middle>();
-    }
-    if (n == 1 && settings_.follow_switches) follow_switches();
-  }
+  iterate();
   newton_iteration<Newton::last>();
 
   CycleIntegrals<L> integrals;
