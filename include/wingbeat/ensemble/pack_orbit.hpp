@@ -187,8 +187,9 @@ class PackOrbit {
                                    Matrix& jacobian) const;
   using NodeRates = std::array<solver::Rates<System>, nodes_per_segment>;  ///< at a segment's nodes
   [[gnu::noinline, gnu::flatten]] void add_tails(const NodeRates& rates, std::size_t base, const L& h);
-  [[gnu::always_inline]] Observable<L> observable(const System& system, const Configuration<L>& place, const State& y,
-                                                  const Motion<L>& m, const State& dy, Quantity quantity) const;
+  [[gnu::always_inline]] inline Observable<L> observable(const System& system, const Configuration<L>& place,
+                                                         const State& y, const Motion<L>& m, const State& dy,
+                                                         Quantity quantity) const;
   [[gnu::noinline, gnu::flatten]] void follow(const L& segment, SegmentTrajectory<L, N>& trajectory) const;
   [[gnu::noinline, gnu::flatten]] Observable<L> observable_inside(Quantity quantity,
                                                                   const SegmentTrajectory<L, N>& trajectory,
