@@ -149,6 +149,7 @@ L PackOrbit<L, N>::floquet_multiplier() {
             }
           }
         }
+        const Mask smooth = resolves(base);
         Matrix move = off[0];
         for (std::size_t m = 1; m <= intervals; ++m) {
           Matrix mean;
@@ -156,8 +157,8 @@ L PackOrbit<L, N>::floquet_multiplier() {
             for (std::size_t column = 0; column < N; ++column) {
               L sum(0.0);
               for (std::size_t j = 1; j <= intervals; ++j) sum = sum + L(rule_.mean[m][j]) * off[j][row][column];
-              mean[row][column] = sum;
-              move[row][column] = move[row][column] + (sum - off[m - 1][row][column]);
+              mean[row][column] = select<L>(smooth, sum, L(0.5) * (off[m - 1][row][column] + off[m][row][column]));
+              move[row][column] = move[row][column] + (mean[row][column] - off[m - 1][row][column]);
             }
           }
           append(step_[base + m], move);

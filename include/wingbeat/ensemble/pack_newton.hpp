@@ -45,11 +45,13 @@ void PackOrbit<L, N>::place_nodes() {
 ///
 /// The rates' integral from the segment's start on is off the trajectory by R; a correction is R + w with w' = J (w +
 /// R). R swings from node to node, J does not: over an interval J counts as constant, and R as its mean over the
-/// interval. `known_intervals` are the rule's, or 0.
+/// interval; where J is large against the interval, as the mean of the ends, which damps. `known_intervals` are the
+/// rule's, or 0.
 template <class L, int N>
 template <int known_intervals>
 void PackOrbit<L, N>::propose_with(std::size_t base, const L& h, State& end) {
   const std::size_t intervals = std::size_t(known_intervals > 0 ? known_intervals : rule_.intervals);
+  const Mask smooth = resolves(base);
   std::array<State, nodes_per_segment> off;
   off[0].fill(L(0.0));
   for (std::size_t m = 1; m <= intervals; ++m) {
@@ -73,7 +75,10 @@ void PackOrbit<L, N>::propose_with(std::size_t base, const L& h, State& end) {
     }
     const Matrix& step = step_[base + m];
     State from, before = end;
-    for (std::size_t n = 0; n < N; ++n) from[n] = mean[n] - off[m - 1][n];
+    for (std::size_t n = 0; n < N; ++n) {
+      mean[n] = select<L>(smooth, mean[n], L(0.5) * (off[m - 1][n] + off[m][n]));
+      from[n] = mean[n] - off[m - 1][n];
+    }
     for (std::size_t n = 0; n < N; ++n) {
       L along = step[n][0] * from[0], onward = step[n][0] * before[0];
       if constexpr (N == 2) {

@@ -220,6 +220,13 @@ class PackOrbit {
   [[gnu::noinline]] State implicit_step(const State& y, const L& h, const Rates& rates) const;
   static void propagator(const Matrix& jacobian, const L& h, Matrix& out);
   static void append(const Matrix& step, Matrix& product);
+  /// Whether disturbances last longer than the widest interval of a segment; else propagator() is no more than stable.
+  Mask resolves(std::size_t base) const {
+    const Matrix& step = step_[base + std::size_t(rule_.intervals / 2)];
+    Mask resolved = step[0][0] > L(0.4);
+    if constexpr (N == 2) resolved = resolved && step[1][1] > L(0.4);
+    return resolved;
+  }
   static L largest_modulus(const Matrix& M);
   void close_iterate(State& off) const;
   /// Without springs the first guess is as good as what a coarse iterate would make of it.
@@ -434,10 +441,13 @@ void PackOrbit<L, N>::iterate() {
   L gain(0.01);
   for (int n = 0; n < settings_.newton_iterations; ++n) {
     const L before = residual_;
-    if (n == 0) {
+    // Where the equations are stiff, the first trajectory is a poor one.
+    if (n == 0 || settings_.implicit) {
       newton_iteration<Newton::first>();
     } else {
       newton_iteration<Newton::middle>();
+    }
+    if (n > 0) {
       gain = min(L(residual_ * inverse_of(max(before, L(1e-300)))), L(1.0));
     }
     if (settings_.follow_switches && n == 1) follow_switches();
