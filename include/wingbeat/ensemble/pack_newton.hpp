@@ -22,7 +22,9 @@ void PackOrbit<L, N>::place_nodes() {
       const L per_h_before = inverse_of(max(h_before, L(1e-12)));
       State c1, c2, c3;
       for (std::size_t n = 0; n < N; ++n) {
-        const L rise = to.y[n] - from.y[n], d0 = h_before * from.rates[n], d1 = h_before * to.rates[n];
+        const L rise = to.y[n] - from.y[n];
+        const L d0 = select<L>(from.stiff, rise, h_before * from.rates[n]);
+        const L d1 = select<L>(from.stiff, rise, h_before * to.rates[n]);
         c1[n] = d0;
         c2[n] = L(3.0) * rise - L(2.0) * d0 - d1;
         c3[n] = d0 + d1 - L(2.0) * rise;

@@ -272,6 +272,7 @@ class PackOrbit {
   /// Where a segment starts as march() leaves it.
   struct Subinterval {
     State y, rates;
+    Mask stiff;  ///< beyond which the rates at either end say little of what is in between
   };
   std::array<Subinterval, 2 * max_half_segments + 1> subintervals_;
   // At the nodes, segment after segment; where segments meet there is one for either.

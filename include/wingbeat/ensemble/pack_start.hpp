@@ -316,6 +316,7 @@ void PackOrbit<L, N>::march() {
       }
       Mask stiff = L(1.0) < L(0.0);
       if (settings_.implicit) stiff = is_stiff(jacobian_at(system, start, y_, k1.dy, sign), h);
+      subinterval.stiff = stiff;
       if (any<L>(stiff)) {
         solver::Rates<System> rates;
         Configuration<L> inside_step;
