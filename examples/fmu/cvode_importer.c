@@ -36,18 +36,7 @@ typedef struct {
 #define TAKE(member, name) *(void**)&fmu.member = function(name)
 
 static void start2(const char* resources, const char* token) {
-  LOOK_UP(fmi2Instantiate);
-  LOOK_UP(fmi2SetupExperiment);
-  LOOK_UP(fmi2EnterInitializationMode);
-  LOOK_UP(fmi2ExitInitializationMode);
-  static const fmi2CallbackFunctions callbacks = {logger2, calloc, free, NULL, NULL};
-  char uri[4096];
-  uri_of(resources, uri, sizeof uri);
-  fmu.one = p_fmi2Instantiate("one", fmi2ModelExchange, token, uri, &callbacks, 0, 1);
-  if (!fmu.one) exit(1);
-  check(p_fmi2SetupExperiment(fmu.one, 0, 0.0, 0.0, 0, 0.0), "fmi2SetupExperiment");
-  check(p_fmi2EnterInitializationMode(fmu.one), "fmi2EnterInitializationMode");
-  check(p_fmi2ExitInitializationMode(fmu.one), "fmi2ExitInitializationMode");
+  fmu.one = started2(fmi2ModelExchange, resources, token);
   TAKE(set_time, "fmi2SetTime");
   TAKE(set_states, "fmi2SetContinuousStates");
   TAKE(get_states, "fmi2GetContinuousStates");
@@ -59,18 +48,10 @@ static void start2(const char* resources, const char* token) {
 }
 
 static void start3(const char* resources, const char* token) {
-  LOOK_UP(fmi3InstantiateModelExchange);
-  LOOK_UP(fmi3EnterInitializationMode);
-  LOOK_UP(fmi3ExitInitializationMode);
   LOOK_UP(fmi3GetNumberOfContinuousStates);
   LOOK_UP(fmi3GetNumberOfEventIndicators);
-  char folder[4096];
   size_t states, indicators;
-  snprintf(folder, sizeof folder, "%s/", resources);
-  fmu.one = p_fmi3InstantiateModelExchange("one", token, folder, false, true, NULL, logger3);
-  if (!fmu.one) exit(1);
-  check(p_fmi3EnterInitializationMode(fmu.one, false, 0.0, 0.0, false, 0.0), "fmi3EnterInitializationMode");
-  check(p_fmi3ExitInitializationMode(fmu.one), "fmi3ExitInitializationMode");
+  fmu.one = started3(false, resources, token);
   check(p_fmi3GetNumberOfContinuousStates(fmu.one, &states), "fmi3GetNumberOfContinuousStates");
   check(p_fmi3GetNumberOfEventIndicators(fmu.one, &indicators), "fmi3GetNumberOfEventIndicators");
   check(states == fmu.states && indicators == fmu.indicators ? 0 : 3, "numbers of states and event indicators");

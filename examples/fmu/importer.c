@@ -8,24 +8,12 @@
 
 static void run2(const char* resources, const char* token, double end, double step, const unsigned* references,
                  int count, double* values) {
-  LOOK_UP(fmi2Instantiate);
-  LOOK_UP(fmi2SetupExperiment);
-  LOOK_UP(fmi2EnterInitializationMode);
-  LOOK_UP(fmi2ExitInitializationMode);
   LOOK_UP(fmi2DoStep);
   LOOK_UP(fmi2GetReal);
   LOOK_UP(fmi2Terminate);
   LOOK_UP(fmi2FreeInstance);
-  const fmi2CallbackFunctions callbacks = {logger2, calloc, free, NULL, NULL};
-  char uri[4096];
+  fmi2Component one = started2(fmi2CoSimulation, resources, token);
   long k, steps = (long)(end / step + 0.5);
-  fmi2Component one;
-  uri_of(resources, uri, sizeof uri);
-  one = p_fmi2Instantiate("one", fmi2CoSimulation, token, uri, &callbacks, 0, 1);
-  if (!one) exit(1);
-  check(p_fmi2SetupExperiment(one, 0, 0.0, 0.0, 1, end), "fmi2SetupExperiment");
-  check(p_fmi2EnterInitializationMode(one), "fmi2EnterInitializationMode");
-  check(p_fmi2ExitInitializationMode(one), "fmi2ExitInitializationMode");
   for (k = 0; k < steps; ++k) check(p_fmi2DoStep(one, (double)k * step, step, 1), "fmi2DoStep");
   check(p_fmi2GetReal(one, references, (size_t)count, values), "fmi2GetReal");
   check(p_fmi2Terminate(one), "fmi2Terminate");
@@ -34,21 +22,12 @@ static void run2(const char* resources, const char* token, double end, double st
 
 static void run3(const char* resources, const char* token, double end, double step, const unsigned* references,
                  int count, double* values) {
-  LOOK_UP(fmi3InstantiateCoSimulation);
-  LOOK_UP(fmi3EnterInitializationMode);
-  LOOK_UP(fmi3ExitInitializationMode);
   LOOK_UP(fmi3DoStep);
   LOOK_UP(fmi3GetFloat64);
   LOOK_UP(fmi3Terminate);
   LOOK_UP(fmi3FreeInstance);
-  char folder[4096];
+  fmi3Instance one = started3(true, resources, token);
   long k, steps = (long)(end / step + 0.5);
-  fmi3Instance one;
-  snprintf(folder, sizeof folder, "%s/", resources);
-  one = p_fmi3InstantiateCoSimulation("one", token, folder, false, true, false, false, NULL, 0, NULL, logger3, NULL);
-  if (!one) exit(1);
-  check(p_fmi3EnterInitializationMode(one, false, 0.0, 0.0, true, end), "fmi3EnterInitializationMode");
-  check(p_fmi3ExitInitializationMode(one), "fmi3ExitInitializationMode");
   for (k = 0; k < steps; ++k) {
     fmi3Boolean event = false, terminate = false, early = false;
     fmi3Float64 last = 0.0;

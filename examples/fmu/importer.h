@@ -73,4 +73,40 @@ static void logger3(fmi3InstanceEnvironment environment, fmi3Status status, fmi3
   fprintf(stderr, "%s: %s\n", category, message);
 }
 
+/* An instance of FMI 2, initialised at time 0. */
+static fmi2Component started2(fmi2Type type, const char* resources, const char* token) {
+  LOOK_UP(fmi2Instantiate);
+  LOOK_UP(fmi2SetupExperiment);
+  LOOK_UP(fmi2EnterInitializationMode);
+  LOOK_UP(fmi2ExitInitializationMode);
+  static const fmi2CallbackFunctions callbacks = {logger2, calloc, free, NULL, NULL};
+  char uri[4096];
+  fmi2Component one;
+  uri_of(resources, uri, sizeof uri);
+  one = p_fmi2Instantiate("one", type, token, uri, &callbacks, 0, 1);
+  if (!one) exit(1);
+  check(p_fmi2SetupExperiment(one, 0, 0.0, 0.0, 0, 0.0), "fmi2SetupExperiment");
+  check(p_fmi2EnterInitializationMode(one), "fmi2EnterInitializationMode");
+  check(p_fmi2ExitInitializationMode(one), "fmi2ExitInitializationMode");
+  return one;
+}
+
+/* The same of FMI 3. */
+static fmi3Instance started3(bool co_simulation, const char* resources, const char* token) {
+  LOOK_UP(fmi3InstantiateModelExchange);
+  LOOK_UP(fmi3InstantiateCoSimulation);
+  LOOK_UP(fmi3EnterInitializationMode);
+  LOOK_UP(fmi3ExitInitializationMode);
+  char folder[4096];
+  fmi3Instance one;
+  snprintf(folder, sizeof folder, "%s/", resources);
+  one = co_simulation ? p_fmi3InstantiateCoSimulation("one", token, folder, false, true, false, false, NULL, 0, NULL,
+                                                      logger3, NULL)
+                      : p_fmi3InstantiateModelExchange("one", token, folder, false, true, NULL, logger3);
+  if (!one) exit(1);
+  check(p_fmi3EnterInitializationMode(one, false, 0.0, 0.0, false, 0.0), "fmi3EnterInitializationMode");
+  check(p_fmi3ExitInitializationMode(one), "fmi3ExitInitializationMode");
+  return one;
+}
+
 #endif

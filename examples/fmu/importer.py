@@ -59,7 +59,7 @@ class Package:
         kinds = [self.xml.find(kind) for kind in ("ModelExchange", "CoSimulation")]
         self.identifier = next(kind for kind in kinds if kind is not None).get("modelIdentifier")
         self.variables = {v.get("name"): v for v in self.xml.find("ModelVariables")}
-        self.library = c.CDLL(str(self.binary()))
+        self.functions = c.CDLL(str(self.binary()))
 
     def binary(self, windows=False):
         platforms = {2: ("linux64", "win64"), 3: ("x86_64-linux", "x86_64-windows")}
@@ -76,10 +76,10 @@ class Instance:
     def __init__(self, package, co_simulation, start=None, tolerance=None, values=None, binary=None):
         """Of the package's binary, or of another one for it."""
         self.package, self.co_simulation = package, co_simulation
-        self.library = c.CDLL(str(binary)) if binary else package.library
+        self.functions = c.CDLL(str(binary)) if binary else package.functions
         self.two = package.version == 2
         self.messages = []
-        lib = self.library
+        lib = self.functions
         resources = package.root / "resources"
         token = package.token.encode()
         if self.two:
@@ -115,7 +115,7 @@ class Instance:
 
     def call(self, name, *arguments, name3=None):
         function = f"fmi2{name}" if self.two else f"fmi3{name3 or name}"
-        status = getattr(self.library, function)(self.handle, *arguments)
+        status = getattr(self.functions, function)(self.handle, *arguments)
         if status > WARNING:
             raise FmuError(function, status, self.messages[-1:])
 
@@ -263,9 +263,9 @@ class Instance:
 
     def close(self):
         if self.two:
-            self.library.fmi2FreeInstance(self.handle)
+            self.functions.fmi2FreeInstance(self.handle)
         else:
-            self.library.fmi3FreeInstance(self.handle)
+            self.functions.fmi3FreeInstance(self.handle)
 
 
 def integrate(instance, until, tolerance=1e-9, sample=None, command=None):

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <string_view>
 #include <vector>
@@ -12,38 +11,19 @@
 #include "fmu/dependencies.hpp"
 #include "fmu/instance.hpp"
 #include "fmu/variables.hpp"
+#include "wingbeat/core/text.hpp"
 
 namespace wingbeat::fmu {
 namespace {
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return out;
-}
-
+/// The shortest text that reads back as x.
 std::string number(double x) {
   char text[40];
-  std::snprintf(text, sizeof text, "%.17g", x);
-  double back = 0.0;
-  for (int digits = 1; digits < 17; ++digits) {
-    char shorter[40];
-    std::snprintf(shorter, sizeof shorter, "%.*g", digits, x);
-    if (std::sscanf(shorter, "%lf", &back) == 1 && back == x) return shorter;
-  }
-  return text;
+  return {text, std::to_chars(text, text + sizeof text, x).ptr};
 }
 
 std::string attribute(const char* name, const std::string& value) {
-  return std::string(" ") + name + "=\"" + escaped(value) + "\"";
+  return std::string(" ") + name + "=\"" + detail::markup_escaped(value) + "\"";
 }
 
 /// Exponents of kg, m, s, A, K, rad, and the factor to the SI unit.

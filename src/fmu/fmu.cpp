@@ -7,15 +7,12 @@
 #include "fmu/description.hpp"
 #include "fmu/package.hpp"
 #include "fmu/variables.hpp"
+#include "wingbeat/core/text.hpp"
 
 namespace wingbeat::fmu {
 namespace {
 
-std::string html(const std::string& text) {
-  std::string out;
-  for (const char c : text) out += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
-  return out;
-}
+using detail::markup_escaped;
 
 /// Binaries run where the C library is no older than that of the build.
 std::string oldest_libc() {
@@ -27,8 +24,8 @@ std::string oldest_libc() {
 }
 
 std::string documentation_of(const Design<double>& design, const FmuOptions& options) {
-  std::string page = "<!DOCTYPE html>\n<html><head><meta charset=\"utf-8\"><title>" + html(design.name) +
-                     "</title></head>\n<body>\n<h1>" + html(design.name.empty() ? "wingbeat" : design.name) +
+  std::string page = "<!DOCTYPE html>\n<html><head><meta charset=\"utf-8\"><title>" + markup_escaped(design.name) +
+                     "</title></head>\n<body>\n<h1>" + markup_escaped(design.name.empty() ? "wingbeat" : design.name) +
                      "</h1>\n<p>A flapping-wing drive as computed by wingbeat " + options.program_version +
                      ": motor, transmission, springs and wings in blade-element air. All variables are SI and radians. "
                      "The air meets wings of a body at rest. The binaries need libc and libm alone" +
@@ -37,8 +34,8 @@ std::string documentation_of(const Design<double>& design, const FmuOptions& opt
                      "<table>\n<tr><th>variable</th><th>unit</th><th>causality</th><th>variability</th>"
                      "<th>meaning</th></tr>\n";
   for (const Variable& v : variables_of(design)) {
-    page += "<tr><td><code>" + html(v.name) + "</code></td><td>" + html(v.unit) + "</td><td>" + v.causality +
-            "</td><td>" + v.variability + "</td><td>" + html(v.description) + "</td></tr>\n";
+    page += "<tr><td><code>" + markup_escaped(v.name) + "</code></td><td>" + markup_escaped(v.unit) + "</td><td>" +
+            v.causality + "</td><td>" + v.variability + "</td><td>" + markup_escaped(v.description) + "</td></tr>\n";
   }
   return page + "</table>\n</body></html>\n";
 }

@@ -1,6 +1,7 @@
 #include "fmu/instance.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <type_traits>
 
@@ -26,6 +27,32 @@ AnyModel model_of(const Design<double>& design) {
 
 template <class Model>
 constexpr bool is_crank = std::is_same_v<Model, MeasuredModel<detail::CrankModel>>;
+
+/// Number of the model's indicator of an event that it has.
+template <class Model>
+std::size_t indicator_of(Watched event) {
+  if constexpr (is_crank<Model>) {
+    switch (event) {
+      case Watched::standstill: return Model::standstill;
+      case Watched::jam: return Model::jam;
+      case Watched::stop: return Model::stop;
+      default: return Model::cycle_end;
+    }
+  } else if constexpr (std::is_same_v<Model, MeasuredModel<detail::DirectModel>>) {
+    return Model::motion_ends;
+  } else {
+    return Model::stop;
+  }
+}
+
+/// Member `number` in the order of the list; nullptr behind the last.
+template <class List>
+auto* member_of(List& list, std::size_t number) {
+  return List::members(list, [number](auto&... member) {
+    const std::array all = {&member...};
+    return number < sizeof...(member) ? all[number] : nullptr;
+  });
+}
 
 void start_at(MeasuredModel<detail::CrankModel>& model, const Settings& s) {
   model.start(s.angle, s.speed, s.current, s.pitch_angle, s.pitch_velocity);
@@ -86,16 +113,7 @@ void Instance::start_model() {
           };
         }
         watched_.clear();
-        const bool stops = places_.pitching && has_stop(model.vehicle.pitch.hinge);
-        if constexpr (is_crank<M>) {
-          watched_ = {M::standstill, M::jam};
-          if (stops) watched_.push_back(M::stop);
-          watched_.push_back(M::cycle_end);
-        } else if constexpr (std::is_same_v<M, MeasuredModel<detail::DirectModel>>) {
-          if (model.sticks) watched_ = {M::motion_ends};
-        } else if (stops) {
-          watched_ = {M::stop};
-        }
+        for (const Watched event : watched_events(model.vehicle)) watched_.push_back(indicator_of<M>(event));
       },
       model_);
   scaled_to_ = 0.0;
@@ -172,7 +190,9 @@ std::vector<double> Instance::states() const {
         std::vector<double> y(max_unknowns + detail::quadrature_count);
         model.unknowns(y.data());
         std::vector<double> states(y.begin(), y.begin() + long(places_.count));
-        for (const ExposedSum& sum : exposed_sums) states.push_back(y[places_.count + sum.quadrature]);
+        for (const ExposedSum& sum : exposed_sums) {
+          states.push_back(y[places_.count + detail::quadrature_of(sum.integral)]);
+        }
         return states;
       },
       model_);
@@ -185,7 +205,7 @@ void Instance::set_states(const double* given) {
         model.unknowns(y.data());
         std::copy_n(given, places_.count, y.begin());
         for (std::size_t k = 0; k < exposed_sum_count; ++k) {
-          y[places_.count + exposed_sums[k].quadrature] = given[places_.count + k];
+          y[places_.count + detail::quadrature_of(exposed_sums[k].integral)] = given[places_.count + k];
         }
         model.set(model.now.t, y.data());
       },
@@ -266,9 +286,7 @@ S output_of(OutputId which, const Everything<S>& at, const Vehicle<double>& v, c
 std::vector<double> Instance::rates() const {
   const Everything<double> at = now<double>({});
   std::vector<double> rates(at.rates.begin(), at.rates.begin() + long(places_.count));
-  for (const ExposedSum& sum : exposed_sums) {
-    rates.push_back(at.integrands[std::size_t(detail::quadratures[sum.quadrature])]);
-  }
+  for (const ExposedSum& sum : exposed_sums) rates.push_back(at.integrands[std::size_t(sum.integral)]);
   return rates;
 }
 
@@ -292,8 +310,6 @@ std::vector<double> Instance::nominals() const {
 std::vector<double> Instance::directional(const std::vector<std::size_t>& unknowns,
                                           const std::vector<Direction>& knowns) const {
   const Everything<Jet<1>> at = now<Jet<1>>(knowns);
-  const Vehicle<double>& vehicle =
-      std::visit([](const auto& model) -> const Vehicle<double>& { return model.vehicle; }, model_);
   const auto known = [&](VariableKind kind, std::size_t number) {
     double change = 0.0;
     for (const Direction& d : knowns) {
@@ -305,17 +321,16 @@ std::vector<double> Instance::directional(const std::vector<std::size_t>& unknow
   for (const std::size_t reference : unknowns) {
     const std::size_t number = number_of(reference);
     if (kind_of(reference) == VariableKind::derivative) {
-      found.push_back(
-          number < places_.count
-              ? at.rates[number].v[0]
-              : at.integrands[std::size_t(detail::quadratures[exposed_sums[number - places_.count].quadrature])].v[0]);
+      found.push_back(number < places_.count
+                          ? at.rates[number].v[0]
+                          : at.integrands[std::size_t(exposed_sums[number - places_.count].integral)].v[0]);
     } else if (OutputId(number) == OutputId::crank_angle) {
       found.push_back(known(VariableKind::state, 0));
     } else {
       const OutputId which = OutputId(number);
       Jet<1> turning(0.0);
       if (places_.pitching) turning = at.rates[places_.pitch];
-      double derivative = output_of(which, at, vehicle, turning).v[0];
+      double derivative = output_of(which, at, vehicle(), turning).v[0];
       if (which == OutputId::power_load) {
         derivative += known(VariableKind::input, std::size_t(InputId::load_torque)) * at.shaft_speed.a;
       }
@@ -325,40 +340,35 @@ std::vector<double> Instance::directional(const std::vector<std::size_t>& unknow
   return found;
 }
 
+const Vehicle<double>& Instance::vehicle() const {
+  return std::visit([](const auto& model) -> const Vehicle<double>& { return model.vehicle; }, model_);
+}
+
 std::optional<double> Instance::real(std::size_t reference) const {
+  const auto value_at = [](const double* of) { return of ? std::optional(*of) : std::nullopt; };
   const std::size_t number = number_of(reference);
   switch (kind_of(reference)) {
     case VariableKind::time: return time();
     case VariableKind::state: return number < state_count() ? std::optional(states()[number]) : std::nullopt;
     case VariableKind::derivative: return number < state_count() ? std::optional(rates()[number]) : std::nullopt;
-    case VariableKind::input:
-      switch (InputId(number)) {
-        case InputId::voltage: return inputs_.voltage;
-        case InputId::voltage_offset: return inputs_.voltage_offset;
-        case InputId::duty: return inputs_.duty;
-        case InputId::load_torque: return inputs_.load_torque;
-      }
-      return std::nullopt;
+    case VariableKind::input: return value_at(member_of(inputs_, number));
     case VariableKind::output: {
       if (number >= std::size_t(OutputId::last)) return std::nullopt;
       if (OutputId(number) == OutputId::crank_angle) return states()[0];
       const Everything<double> at = now<double>({});
-      const Vehicle<double>& vehicle =
-          std::visit([](const auto& model) -> const Vehicle<double>& { return model.vehicle; }, model_);
-      return output_of(OutputId(number), at, vehicle, places_.pitching ? at.rates[places_.pitch] : 0.0);
+      return output_of(OutputId(number), at, vehicle(), places_.pitching ? at.rates[places_.pitch] : 0.0);
     }
     case VariableKind::mean: {
       const CycleMeans& means = std::visit([](const auto& m) -> const CycleMeans& { return m.means; }, model_);
-      const Vehicle<double>& v =
-          std::visit([](const auto& model) -> const Vehicle<double>& { return model.vehicle; }, model_);
+      const auto mean = [&](Integral of) { return means.mean[detail::quadrature_of(of)]; };
       switch (MeanId(number)) {
         case MeanId::frequency: return means.period > 0.0 ? 1.0 / means.period : 0.0;
-        case MeanId::lift: return means.mean[8];
-        case MeanId::current: return means.mean[0];
-        case MeanId::power_electrical: return means.mean[3];
-        case MeanId::power_friction: return means.mean[5];
-        case MeanId::power_aerodynamic: return means.mean[6];
-        case MeanId::power_copper: return v.motor.armature_resistance * means.mean[1];
+        case MeanId::lift: return mean(Integral::lift);
+        case MeanId::current: return mean(Integral::current);
+        case MeanId::power_electrical: return mean(Integral::electrical_work);
+        case MeanId::power_friction: return mean(Integral::friction_work);
+        case MeanId::power_aerodynamic: return mean(Integral::aero_work);
+        case MeanId::power_copper: return vehicle().motor.armature_resistance * mean(Integral::current_square);
         case MeanId::last: break;
       }
       return std::nullopt;
@@ -371,11 +381,7 @@ std::optional<double> Instance::real(std::size_t reference) const {
       const std::vector<double> values = indicators();
       return number < values.size() ? std::optional(values[number]) : std::nullopt;
     }
-    case VariableKind::setting: {
-      const double* const numbers[] = {&settings_.tolerance, &settings_.angle,       &settings_.speed,
-                                       &settings_.current,   &settings_.pitch_angle, &settings_.pitch_velocity};
-      return number < std::size(numbers) ? std::optional(*numbers[number]) : std::nullopt;
-    }
+    case VariableKind::setting: return value_at(member_of(settings_, number));
     default: return std::nullopt;
   }
 }
@@ -403,10 +409,10 @@ bool Instance::set_real(std::size_t reference, double value) {
   const std::size_t number = number_of(reference);
   switch (kind_of(reference)) {
     case VariableKind::input: {
-      double* const numbers[] = {&inputs_.voltage, &inputs_.voltage_offset, &inputs_.duty, &inputs_.load_torque};
-      if (number >= std::size(numbers)) return false;
+      double* const input = member_of(inputs_, number);
+      if (!input) return false;
       if (InputId(number) == InputId::duty && !(value >= 0.0 && value <= 1.0)) return false;
-      *numbers[number] = value;
+      *input = value;
       apply_inputs();
       return true;
     }
@@ -423,11 +429,10 @@ bool Instance::set_real(std::size_t reference, double value) {
       return true;
     }
     case VariableKind::setting: {
-      double* const numbers[] = {&settings_.tolerance, &settings_.angle,       &settings_.speed,
-                                 &settings_.current,   &settings_.pitch_angle, &settings_.pitch_velocity};
-      if (number >= std::size(numbers)) return false;
+      double* const setting = member_of(settings_, number);
+      if (!setting) return false;
       if (SettingId(number) == SettingId::tolerance && !(value >= 1e-12 && value <= 1e-2)) return false;
-      *numbers[number] = value;
+      *setting = value;
       changed_ = true;
       return true;
     }

@@ -16,6 +16,7 @@ namespace wingbeat::fmu {
 using AnyModel = std::variant<MeasuredModel<detail::CrankModel>, MeasuredModel<detail::DirectModel>,
                               MeasuredModel<detail::PitchDirectModel>>;
 
+/// In the order of InputId.
 struct Inputs {
   double voltage = 0.0, voltage_offset = 0.0, duty = 1.0, load_torque = 0.0;
 
@@ -25,6 +26,7 @@ struct Inputs {
   }
 };
 
+/// In the order of SettingId.
 struct Settings {
   double tolerance = 1e-8, angle = 0.0, speed = 0.0, current = 0.0, pitch_angle = 0.0, pitch_velocity = 0.0;
 
@@ -96,6 +98,7 @@ class Instance {
   void apply_inputs();
   void apply_parameters();
   double supply_voltage_scale() const;
+  const Vehicle<double>& vehicle() const;
 
   Design<double> given_, design_;
   Inputs inputs_, given_inputs_;

@@ -162,13 +162,16 @@ bool is_tunable(std::string_view key) {
   return std::find(std::begin(keys), std::end(keys), key) != std::end(keys);
 }
 
-std::size_t indicators_of(const Design<double>& design) {
-  const Vehicle<double> v = resolve(design);
+std::vector<Watched> watched_events(const Vehicle<double>& v) {
   const Places at(v);
-  const std::size_t stops = at.pitching && has_stop(v.pitch.hinge) ? 1 : 0;
-  if (at.crank) return 3 + stops;
-  if (at.pitching) return stops;
-  return v.friction.torque + v.motor.friction_torque > 0.0 ? 1 : 0;
+  std::vector<Watched> events;
+  if (at.crank) events = {Watched::standstill, Watched::jam};
+  if (at.pitching && has_stop(v.pitch.hinge)) events.push_back(Watched::stop);
+  if (at.crank) events.push_back(Watched::cycle_end);
+  if (!at.crank && !at.pitching && v.friction.torque + v.motor.friction_torque > 0.0) {
+    events.push_back(Watched::slip_end);
+  }
+  return events;
 }
 
 std::string unit_in_fmu(std::string_view unit) {
@@ -178,7 +181,8 @@ std::string unit_in_fmu(std::string_view unit) {
 }
 
 std::vector<Variable> variables_of(const Design<double>& design) {
-  const Places at(resolve(design));
+  const Vehicle<double> vehicle = resolve(design);
+  const Places at(vehicle);
   Table table;
   table.add(VariableKind::time, 0, "time", "s", "simulation time", "independent", "continuous");
   const std::vector<Row> states = state_rows(at);
@@ -211,7 +215,7 @@ std::vector<Variable> variables_of(const Design<double>& design) {
   table.add(VariableKind::count, std::size_t(CountId::cycles), "cycles", "", "whole cycles since the start", "output",
             "discrete", "calculated");
   add_parameters(table, design);
-  for (std::size_t k = 0; k < indicators_of(design); ++k) {
+  for (std::size_t k = 0; k < watched_events(vehicle).size(); ++k) {
     table.add(VariableKind::indicator, k, "event_indicator_" + std::to_string(k + 1), "1",
               "positive until an event of the motion happens", "local", "continuous", "calculated");
   }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat::fmu {
@@ -60,15 +61,15 @@ struct ExposedSum {
   const char* name;
   const char* unit;
   const char* description;
-  std::size_t quadrature;  ///< place in detail::quadratures
+  Integral integral;
 };
 inline constexpr ExposedSum exposed_sums[] = {
-    {"sum_lift", "N.s", "lift, integrated over time", 8},
-    {"sum_current", "A.s", "current, integrated over time", 0},
-    {"sum_current_square", "A2.s", "square of the current, integrated over time", 1},
-    {"sum_power_electrical", "J", "electrical energy taken", 3},
-    {"sum_power_friction", "J", "energy lost in friction", 5},
-    {"sum_power_aerodynamic", "J", "energy given to the air", 6}};
+    {"sum_lift", "N.s", "lift, integrated over time", Integral::lift},
+    {"sum_current", "A.s", "current, integrated over time", Integral::current},
+    {"sum_current_square", "A2.s", "square of the current, integrated over time", Integral::current_square},
+    {"sum_power_electrical", "J", "electrical energy taken", Integral::electrical_work},
+    {"sum_power_friction", "J", "energy lost in friction", Integral::friction_work},
+    {"sum_power_aerodynamic", "J", "energy given to the air", Integral::aero_work}};
 inline constexpr std::size_t exposed_sum_count = std::size(exposed_sums);
 
 /// Value references count up to 999 within a kind.
@@ -91,8 +92,9 @@ inline std::size_t number_of(std::size_t reference) { return reference % 1000; }
 /// Those that a vehicle has, in the order of their references.
 std::vector<Variable> variables_of(const Design<double>& design);
 
-/// How many event indicators its time model has.
-std::size_t indicators_of(const Design<double>& design);
+/// What the event indicators of a vehicle's time model watch, in their order.
+enum class Watched { standstill, jam, stop, cycle_end, slip_end };
+std::vector<Watched> watched_events(const Vehicle<double>& vehicle);
 
 /// True for a parameter that may change while the vehicle flies.
 bool is_tunable(std::string_view key);

@@ -154,7 +154,8 @@ constexpr MetricDefinition metric_definitions[] = {
     {Metric::stroke_amplitude, R"($\tfrac12 (\beta_\mathrm{max} - \beta_\mathrm{min})$)", ""},
     {Metric::flapping_velocity_peak, R"($\max \lvert \dot\beta \rvert$)", "of a wing about its hinge"},
     {Metric::angle_of_attack_min, R"($\alpha_\mathrm{min}$)",
-     R"(of the law $\alpha = 90^\circ - C_\alpha \lvert\dot\beta\rvert\, 180^\circ/\pi$ (eq 14), or of the pitch angle)"},
+     R"(of the law $\alpha = 90^\circ - C_\alpha \lvert\dot\beta\rvert\, 180^\circ/\pi$ (eq 14), )"
+     "or of the pitch angle"},
     {Metric::crank_speed_min, R"($\omega_\mathrm{min}$)", ""},
     {Metric::crank_speed_max, R"($\omega_\mathrm{max}$)", ""},
     {Metric::efficiency_system, R"($\eta_\mathrm{s}$)", R"($P_\mathrm{aero} / P_\mathrm{e}$ (eq 24))"},

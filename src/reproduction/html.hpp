@@ -2,13 +2,13 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "reproduction/sheet.hpp"
+#include "wingbeat/core/text.hpp"
 
 namespace wingbeat::reproduction {
 
-std::string escaped(std::string_view text);
+using detail::markup_escaped;
 
 /// What the report says before any figure: how many predictions are met, what is not, errors of the paper, equation
 /// (1).

@@ -70,7 +70,7 @@ std::string inlined(std::string svg, const std::string& id, const std::string& t
     replace_all(svg, fmt::format("href={}#", quote), fmt::format("href={}#{}", quote, mark));
   }
   replace_all(svg, "url(#", fmt::format("url(#{}", mark));
-  replace_all(svg, "<title>Gnuplot</title>", fmt::format("<title>{}</title>", escaped(title)));
+  replace_all(svg, "<title>Gnuplot</title>", fmt::format("<title>{}</title>", markup_escaped(title)));
   const auto desc = svg.find("<desc>"), end = svg.find("</desc>");
   if (desc != std::string::npos && end != std::string::npos) svg.erase(desc, end + 7 - desc);
   return svg;
@@ -90,7 +90,8 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
       fmt::format_to(out,
                      "<figure id=\"{0}\">{1}<figcaption><b>{2}</b> {3} <span class=\"files\">Files: {0} .svg .pdf .csv "
                      ".nc</span></figcaption></figure>\n",
-                     s.id, inlined(svg_of(s), s.id + "-drawing", s.heading), escaped(s.heading), escaped(s.caption));
+                     s.id, inlined(svg_of(s), s.id + "-drawing", s.heading), markup_escaped(s.heading),
+                     markup_escaped(s.caption));
       if (!s.animation.empty()) {
         fmt::format_to(out,
                        "<figure>{}<figcaption><b>Animation.</b> One computed cycle, repeated: the crank speed "
@@ -128,7 +129,7 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
       "href=\"data:,\">\n<style>{}</style></head>\n<body>\n<header>\n"
       "<h1>The 2022 friction paper: a reproducibility assessment</h1>\n<p class=\"lead\">{}. Made by wingbeat {} with "
       "<code>wingbeat reproduce friction2022</code>{}.</p>\n</header>\n<nav><ol>\n",
-      style, escaped(m.file.source), version, m.computed.options.coarse ? ", coarse setting" : "");
+      style, markup_escaped(m.file.source), version, m.computed.options.coarse ? ", coarse setting" : "");
   for (const auto& [id, name] : sections) fmt::format_to(out, "<li><a href=\"#{}\">{}</a></li>\n", id, name);
   html += "</ol></nav>\n<main>\n";
 

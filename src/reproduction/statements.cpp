@@ -32,7 +32,7 @@ const char* class_of(StatementOutcome outcome) {
 
 std::string with_deviation(const Claim& c, std::size_t f) {
   const std::string off = percent_text(c.deviation[f]);
-  return escaped(c.ours_text[f]) + (off.empty() ? "" : " (" + off + ")");
+  return markup_escaped(c.ours_text[f]) + (off.empty() ? "" : " (" + off + ")");
 }
 
 std::string score_row(const std::string& name, const Assessment& a, const std::string& reading) {
@@ -108,26 +108,12 @@ std::string equation_1(const Assessment& a) {
         "One statement speaks against it: motor output minus friction loss equals the aerodynamic power (figure 7b) "
         "only "
         "by virtual-work; by rod-force the ratio is {}.",
-        escaped(c7.ours_text[0]));
+        markup_escaped(c7.ours_text[0]));
   }
   return html + "</p>\n";
 }
 
 }  // namespace
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += c;
-    }
-  }
-  return out;
-}
 
 std::string summary_html(const Material& m) {
   const Assessment& a = m.assessment;
@@ -176,8 +162,8 @@ std::string summary_html(const Material& m) {
       "<th>published</th>" +
       variants_head(a) + "</tr></thead><tbody>\n";
   for (const Claim* c : missed_by_rod_force(a)) {
-    html += fmt::format("<tr><td>{}</td><td>{}</td><td class=\"n\">{}</td>", escaped(c->statement), escaped(c->where),
-                        escaped(c->published_text));
+    html += fmt::format("<tr><td>{}</td><td>{}</td><td class=\"n\">{}</td>", markup_escaped(c->statement),
+                        markup_escaped(c->where), markup_escaped(c->published_text));
     for (std::size_t f = 0; f < a.variants; ++f) {
       html += fmt::format("<td class=\"{}\">{}</td>", c->within[f] ? "yes" : "no", with_deviation(*c, f));
     }
@@ -185,7 +171,8 @@ std::string summary_html(const Material& m) {
   }
   html += "</tbody></table></div>\n<p><b>Errors of the paper:</b></p>\n<ul>\n";
   for (const Claim& c : a.claims) {
-    if (!c.erratum.empty()) html += fmt::format("<li>{} ({}).</li>\n", escaped(c.erratum), escaped(c.where));
+    if (!c.erratum.empty())
+      html += fmt::format("<li>{} ({}).</li>\n", markup_escaped(c.erratum), markup_escaped(c.where));
   }
   return html + "</ul>\n" + equation_1(a) +
          "<p><b>Friction must depend on load.</b> Only load-proportional friction predicts what springs do: see <a "
@@ -278,7 +265,8 @@ std::string readings_html(const Material& m) {
       if (d.reading == readings[1] && d.statement.rfind(what + ", ", 0) == 0) other = &d;
     }
     if (!other) continue;
-    html += fmt::format("<tr><td>{}</td><td class=\"n\">{}</td>", escaped(what), escaped(c.published_text));
+    html +=
+        fmt::format("<tr><td>{}</td><td class=\"n\">{}</td>", markup_escaped(what), markup_escaped(c.published_text));
     for (std::size_t f = 0; f < 2; ++f) {
       for (const Claim* side : {&c, other}) {
         html += fmt::format("<td class=\"{}\">{}</td>", side->within[f] ? "yes" : "no", with_deviation(*side, f));
@@ -316,7 +304,7 @@ std::string readings_html(const Material& m) {
                           c.ours[f] < weight ? "no"
                           : c.outside[f]     ? "only outside the domain"
                                              : "yes",
-                          fmt::format("{:.2f}", c.ours[f] / weight), escaped(c.ours_text[f]));
+                          fmt::format("{:.2f}", c.ours[f] / weight), markup_escaped(c.ours_text[f]));
       separator = "; ";
     }
     html += ".</li>\n";
@@ -335,14 +323,14 @@ std::string claims_html(const Assessment& a) {
       if (first)
         html += fmt::format("<tr><th class=\"group\" colspan=\"{}\">{}</th></tr>\n", 4 + a.variants, group.name);
       first = false;
-      html += fmt::format("<tr><td>{}", escaped(c.statement));
+      html += fmt::format("<tr><td>{}", markup_escaped(c.statement));
       for (const std::string* said : {&c.note, &c.reason}) {
-        if (!said->empty()) html += fmt::format("<br><span class=\"files\">{}</span>", escaped(*said));
+        if (!said->empty()) html += fmt::format("<br><span class=\"files\">{}</span>", markup_escaped(*said));
       }
       if (!c.erratum.empty()) {
-        html += fmt::format("<br><span class=\"erratum\">Error of the paper: {}.</span>", escaped(c.erratum));
+        html += fmt::format("<br><span class=\"erratum\">Error of the paper: {}.</span>", markup_escaped(c.erratum));
       }
-      html += fmt::format("</td><td>{}</td><td>{}</td>", escaped(c.where), escaped(c.published_text));
+      html += fmt::format("</td><td>{}</td><td>{}</td>", markup_escaped(c.where), markup_escaped(c.published_text));
       for (std::size_t f = 0; f < a.variants; ++f) html += fmt::format("<td>{}</td>", with_deviation(c, f));
       html += fmt::format("<td class=\"{}\">{}</td></tr>\n", class_of(c.outcome), outcome_text(c));
     }

@@ -18,6 +18,13 @@ constexpr Integral quadratures[] = {Integral::current,         Integral::current
                                     Integral::rod_force};
 constexpr int quadrature_count = int(std::size(quadratures));
 
+/// Where among them an integral is.
+constexpr std::size_t quadrature_of(Integral which) {
+  std::size_t place = 0;
+  while (quadratures[place] != which) ++place;
+  return place;
+}
+
 /// Largest deviation of a metric of `m` from that of `other` beside its error_scale(). A metric that is absent counts
 /// as equal.
 inline double metrics_apart(const Metrics<double>& m, const Metrics<double>& other) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <stdexcept>
 #include <vector>
 
@@ -156,16 +157,17 @@ int Component::get_none(std::size_t count, const char* type) {
   return count == 0 ? int(ok) : refuse(std::string("there are no variables of the type ") + type);
 }
 
-int Component::save(std::string*& into) {
+int Component::save(void** state) {
   std::string bytes = instance_->save();
   bytes += char(phase_);
-  if (into) *into = std::move(bytes);
-  else into = new std::string(std::move(bytes));
+  if (*state) *static_cast<std::string*>(*state) = std::move(bytes);
+  else *state = new std::string(std::move(bytes));
   return ok;
 }
 
-int Component::restore(const std::string& from) {
+int Component::restore(const void* state) {
   try {
+    const std::string& from = *static_cast<const std::string*>(state);
     if (from.empty()) throw std::runtime_error("the saved state is empty");
     instance_->restore(from.substr(0, from.size() - 1));
     phase_ = Phase(from.back());
@@ -173,6 +175,26 @@ int Component::restore(const std::string& from) {
   } catch (const std::exception& problem) {
     return refuse(std::string("SetFMUState: ") + problem.what());
   }
+}
+
+void Component::free_state(void** state) {
+  if (!state) return;
+  delete static_cast<std::string*>(*state);
+  *state = nullptr;
+}
+
+std::size_t Component::size_of(const void* state) { return static_cast<const std::string*>(state)->size(); }
+
+int Component::serialise(const void* state, void* bytes, std::size_t size) {
+  const std::string& from = *static_cast<const std::string*>(state);
+  if (size < from.size()) return unsupported("a buffer smaller than the state");
+  std::memcpy(bytes, from.data(), from.size());
+  return ok;
+}
+
+void Component::deserialise(const void* bytes, std::size_t size, void** state) {
+  free_state(state);
+  *state = new std::string(static_cast<const char*>(bytes), size);
 }
 
 int Component::directional(const unsigned* unknowns, std::size_t unknown_count, const unsigned* knowns,

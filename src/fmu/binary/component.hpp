@@ -35,8 +35,14 @@ class Component {
   /// For types that no variable has: right for none, wrong for any.
   int get_none(std::size_t count, const char* type);
 
-  int save(std::string*& into);
-  int restore(const std::string& from);
+  // ---- saved states, as the standard passes them on: made by save() or deserialise(), gone with free_state()
+  int save(void** state);
+  int restore(const void* state);
+  static void free_state(void** state);
+  static std::size_t size_of(const void* state);
+  int serialise(const void* state, void* bytes, std::size_t size);
+  static void deserialise(const void* bytes, std::size_t size, void** state);
+
   int directional(const unsigned* unknowns, std::size_t unknown_count, const unsigned* knowns, std::size_t known_count,
                   const double* seed, std::size_t seed_count, double* sensitivity, std::size_t sensitivity_count);
 
@@ -66,6 +72,8 @@ class Component {
   void log(StatusCode status, const char* category, const std::string& message) const {
     if (log_) log_(status, category, message);
   }
+  /// Error, logged.
+  int unsupported(const char* what) const { return refuse(std::string(what) + " is not supported by this FMU"); }
 
  private:
   /// Does what may be done in these phases; what it throws is logged and an error.

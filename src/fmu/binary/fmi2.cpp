@@ -1,5 +1,4 @@
 // FMI 2.0: model exchange and co-simulation.
-#include <cstring>
 #include <exception>
 #include <string>
 
@@ -16,17 +15,12 @@ struct Fmi2 {
   Component component;
   double start = 0.0, tolerance = 0.0;
   bool has_tolerance = false;
-  bool logging = false;
 };
 
 Component& of(fmi2Component c) { return static_cast<Fmi2*>(c)->component; }
 fmi2Status status(int code) { return fmi2Status(code); }
-std::string& state_of(fmi2FMUstate state) { return *static_cast<std::string*>(state); }
 
-fmi2Status unsupported(fmi2Component c, const char* what) {
-  of(c).log(wingbeat::fmu::error, "logStatusError", std::string(what) + " is not supported by this FMU");
-  return fmi2Error;
-}
+fmi2Status unsupported(fmi2Component c, const char* what) { return status(of(c).unsupported(what)); }
 
 }  // namespace
 
@@ -35,13 +29,10 @@ extern "C" {
 const char* fmi2GetTypesPlatform(void) { return "default"; }
 const char* fmi2GetVersion(void) { return "2.0"; }
 
-fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t, const fmi2String[]) {
-  static_cast<Fmi2*>(c)->logging = on != 0;
-  return fmi2OK;
-}
+fmi2Status fmi2SetDebugLogging(fmi2Component, fmi2Boolean, size_t, const fmi2String[]) { return fmi2OK; }
 
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
-                              const fmi2CallbackFunctions* callbacks, fmi2Boolean, fmi2Boolean logging) {
+                              const fmi2CallbackFunctions* callbacks, fmi2Boolean, fmi2Boolean) {
   const std::string own_name = name ? name : "";
   const fmi2CallbackLogger logger = callbacks ? callbacks->logger : nullptr;
   const fmi2ComponentEnvironment environment = callbacks ? callbacks->componentEnvironment : nullptr;
@@ -50,7 +41,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
   };
   try {
     const std::string folder = wingbeat::fmu::path_of_uri(resources ? resources : "");
-    return new Fmi2{{folder, guid ? guid : "", type == fmi2CoSimulation, log}, 0.0, 0.0, false, logging != 0};
+    return new Fmi2{{folder, guid ? guid : "", type == fmi2CoSimulation, log}, 0.0, 0.0, false};
   } catch (const std::exception& problem) {
     log(wingbeat::fmu::error, "logStatusError", std::string("fmi2Instantiate: ") + problem.what());
     return nullptr;
@@ -101,32 +92,21 @@ fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference[], size_t n, 
   return n == 0 ? fmi2OK : unsupported(c, "setting a String");
 }
 
-fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
-  std::string* kept = static_cast<std::string*>(*state);
-  const int code = of(c).save(kept);
-  *state = kept;
-  return status(code);
-}
-fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) { return status(of(c).restore(state_of(state))); }
+fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) { return status(of(c).save(state)); }
+fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) { return status(of(c).restore(state)); }
 fmi2Status fmi2FreeFMUstate(fmi2Component, fmi2FMUstate* state) {
-  if (!state) return fmi2OK;
-  delete static_cast<std::string*>(*state);
-  *state = nullptr;
+  Component::free_state(state);
   return fmi2OK;
 }
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component, fmi2FMUstate state, size_t* size) {
-  *size = state_of(state).size();
+  *size = Component::size_of(state);
   return fmi2OK;
 }
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
-  const std::string& from = state_of(state);
-  if (size < from.size()) return unsupported(c, "a buffer smaller than the state");
-  std::memcpy(bytes, from.data(), from.size());
-  return fmi2OK;
+  return status(of(c).serialise(state, bytes, size));
 }
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component, const fmi2Byte bytes[], size_t size, fmi2FMUstate* state) {
-  delete static_cast<std::string*>(*state);
-  *state = new std::string(bytes, size);
+  Component::deserialise(bytes, size, state);
   return fmi2OK;
 }
 

@@ -1,5 +1,4 @@
 // FMI 3.0: model exchange and co-simulation.
-#include <cstring>
 #include <exception>
 #include <string>
 
@@ -15,12 +14,8 @@ namespace {
 
 Component& component_of(fmi3Instance c) { return *static_cast<Component*>(c); }
 fmi3Status as3(int code) { return fmi3Status(code); }
-std::string& kept_state(fmi3FMUState state) { return *static_cast<std::string*>(state); }
 
-fmi3Status not_supported(fmi3Instance c, const char* what) {
-  component_of(c).log(wingbeat::fmu::error, "logStatusError", std::string(what) + " is not supported by this FMU");
-  return fmi3Error;
-}
+fmi3Status not_supported(fmi3Instance c, const char* what) { return as3(component_of(c).unsupported(what)); }
 
 fmi3Instance instantiate(fmi3String token, fmi3String resources, bool co_simulation,
                          fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger) {
@@ -189,34 +184,21 @@ fmi3Status fmi3GetVariableDependencies(fmi3Instance c, fmi3ValueReference depend
   return fmi3OK;
 }
 
-fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState* state) {
-  std::string* kept = static_cast<std::string*>(*state);
-  const int code = component_of(c).save(kept);
-  *state = kept;
-  return as3(code);
-}
-fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state) {
-  return as3(component_of(c).restore(kept_state(state)));
-}
+fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState* state) { return as3(component_of(c).save(state)); }
+fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state) { return as3(component_of(c).restore(state)); }
 fmi3Status fmi3FreeFMUState(fmi3Instance, fmi3FMUState* state) {
-  if (!state) return fmi3OK;
-  delete static_cast<std::string*>(*state);
-  *state = nullptr;
+  Component::free_state(state);
   return fmi3OK;
 }
 fmi3Status fmi3SerializedFMUStateSize(fmi3Instance, fmi3FMUState state, size_t* size) {
-  *size = kept_state(state).size();
+  *size = Component::size_of(state);
   return fmi3OK;
 }
 fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte bytes[], size_t size) {
-  const std::string& from = kept_state(state);
-  if (size < from.size()) return not_supported(c, "a buffer smaller than the state");
-  std::memcpy(bytes, from.data(), from.size());
-  return fmi3OK;
+  return as3(component_of(c).serialise(state, bytes, size));
 }
 fmi3Status fmi3DeserializeFMUState(fmi3Instance, const fmi3Byte bytes[], size_t size, fmi3FMUState* state) {
-  delete static_cast<std::string*>(*state);
-  *state = new std::string(reinterpret_cast<const char*>(bytes), size);
+  Component::deserialise(bytes, size, state);
   return fmi3OK;
 }
 
