@@ -229,7 +229,8 @@ class EnsembleRun {
     }
     for (auto& [kind, alike] : by_kind) {
       // A block in which one wing pitches far balances all loads on a fine grid.
-      std::ranges::stable_partition(alike, [&](std::size_t n) { return !pitches_far(members_[n].vehicle); });
+      std::stable_partition(alike.begin(), alike.end(),
+                            [&](std::size_t n) { return !pitches_far(members_[n].vehicle); });
       solve_alike(kind, alike);
     }
     for (const std::vector<std::size_t>& alike : direct_by_kind) solve_direct(alike);
