@@ -439,7 +439,6 @@ void PackOrbit<L, N>::build_mesh(int half) {
 template <class L, int N>
 void PackOrbit<L, N>::iterate() {
   settled_ = unresolved_ || locked_;
-  L gain(0.01);
   for (int n = 0; n < settings_.newton_iterations; ++n) {
     const L before = residual_;
     // Where the equations are stiff, the first trajectory is a poor one.
@@ -448,11 +447,9 @@ void PackOrbit<L, N>::iterate() {
     } else {
       newton_iteration<Newton::middle>();
     }
-    if (n > 0) {
-      gain = min(L(residual_ * inverse_of(max(before, L(1e-300)))), L(1.0));
-    }
     if (settings_.follow_switches && n == 1) follow_switches();
-    if (lags_ || (settings_.follow_switches && n < 2)) continue;
+    if (lags_ || n < (settings_.follow_switches ? 2 : 1)) continue;
+    const L gain = min(L(residual_ * inverse_of(max(before, L(1e-300)))), L(1.0));
     settled_ = settled_ || gain * residual_ <= L(settings_.settled);
     if (all<L>(settled_)) break;
   }
