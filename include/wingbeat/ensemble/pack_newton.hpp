@@ -141,11 +141,9 @@ void PackOrbit<L, N>::newton_iteration() {
   constexpr bool first = which == Newton::first, last = which == Newton::last;
   const std::size_t intervals = std::size_t(rule_.intervals);
   NodeRates at_node;
-  Matrix jacobian, jacobian_before;
-  if constexpr (first) {
-    for (std::size_t row = 0; row < N; ++row) {
-      for (std::size_t column = 0; column < N; ++column) monodromy_[row][column] = L(row == column ? 1.0 : 0.0);
-    }
+  Matrix jacobian, jacobian_before, monodromy;
+  for (std::size_t row = 0; row < N; ++row) {
+    for (std::size_t column = 0; column < N; ++column) monodromy[row][column] = L(row == column ? 1.0 : 0.0);
   }
   State end;
   end.fill(L(0.0));
@@ -184,8 +182,10 @@ void PackOrbit<L, N>::newton_iteration() {
                 mean[row][column] = L(0.5) * (jacobian_before[row][column] + jacobian[row][column]);
               }
             }
-            propagator(mean, L(rule_.node[m] - rule_.node[m - 1]) * h, step_[base + m]);
-            append(step_[base + m], monodromy_);
+            Matrix step;
+            propagator(mean, L(rule_.node[m] - rule_.node[m - 1]) * h, step);
+            keep_settled(step, step_[base + m]);
+            append(step_[base + m], monodromy);
           }
           jacobian_before = jacobian;
         } else {
@@ -285,6 +285,7 @@ void PackOrbit<L, N>::newton_iteration() {
       }
     }
   }
+  if constexpr (first) keep_settled(monodromy, monodromy_);
   correct(end);
   if constexpr (last) {
     overlooked_ = max(L(overlooked * inverse_of(max(highest, L(1e-300)))), bend_depth);

@@ -220,6 +220,11 @@ class PackOrbit {
   [[gnu::noinline]] State implicit_step(const State& y, const L& h, const Rates& rates) const;
   static void propagator(const Matrix& jacobian, const L& h, Matrix& out);
   static void append(const Matrix& step, Matrix& product);
+  void keep_settled(const Matrix& from, Matrix& to) const {
+    for (std::size_t row = 0; row < N; ++row) {
+      for (std::size_t n = 0; n < N; ++n) to[row][n] = select<L>(settled_, to[row][n], from[row][n]);
+    }
+  }
   /// Whether disturbances last longer than the widest interval of a segment; else propagator() is no more than stable.
   Mask resolves(std::size_t base) const {
     const Matrix& step = step_[base + std::size_t(rule_.intervals / 2)];
@@ -438,7 +443,7 @@ void PackOrbit<L, N>::build_mesh(int half) {
 /// as much smaller than the last one as that was than the one before. What others still need does not move it.
 template <class L, int N>
 void PackOrbit<L, N>::iterate() {
-  settled_ = unresolved_ || locked_;
+  settled_ = L(1.0) < L(0.0);
   for (int n = 0; n < settings_.newton_iterations; ++n) {
     const L before = residual_;
     // Where the equations are stiff, the first trajectory is a poor one.
@@ -450,7 +455,7 @@ void PackOrbit<L, N>::iterate() {
     if (settings_.follow_switches && n == 1) follow_switches();
     if (lags_ || n < (settings_.follow_switches ? 2 : 1)) continue;
     const L gain = min(L(residual_ * inverse_of(max(before, L(1e-300)))), L(1.0));
-    settled_ = settled_ || gain * residual_ <= L(settings_.settled);
+    settled_ = settled_ || unresolved_ || locked_ || gain * residual_ <= L(settings_.settled);
     if (all<L>(settled_)) break;
   }
   settled_ = L(1.0) < L(0.0);
