@@ -11,7 +11,7 @@
 namespace wingbeat {
 namespace {
 
-constexpr std::array response_styles = {blue_solid, vermillion_dashed, black_dotted};
+constexpr std::array response_styles = {style::first_curve, style::second_curve, style::third_curve};
 
 /// The outputs that are drawn, those that the model has.
 std::vector<std::size_t> drawn_outputs(const CycleMap& map) {
@@ -73,7 +73,7 @@ void plot_step_responses(const ControlModels& models, PlotFormat format, const s
     if (input == 0) {
       figure.text("Means of a cycle after a step, as parts of their steady change", 8.0,
                   fmt::format("screen 0.5,{} center", 1.0 - 0.12 / inches));
-      figure.text("time since the step [ms]", 7.5,
+      figure.text("time since the step (ms)", 7.5,
                   fmt::format("screen {},{} center", 0.5 * (left + right), 0.09 / inches));
       constexpr std::array places = {0.0, 0.22, 0.56};
       for (std::size_t k = 0; k < outputs.size(); ++k) {

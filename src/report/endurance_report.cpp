@@ -252,7 +252,7 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
   const auto& rows = result.rows;
   const bool weighed = total_mass(design).has_value();
   const double weight = total_mass(design).value_or(absent) * standard_gravity;
-  const bool in_minutes = result.endurance() >= 300.0;
+  const bool in_minutes = result.endurance() >= 120.0;
   const double time_scale = in_minutes ? 1.0 / 60.0 : 1.0;
   double lift_most = weighed ? weight : 0.0, power_most = 0.0;
   for (const EnduranceRow& r : rows) {
@@ -301,33 +301,35 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
   };
 
   panel(0, fmt::format("lift ({})", lift_in_newton ? "N" : "mN"), lift_scale * lift_most);
-  figure.key_entry(left, key_height, blue_solid, "mean lift");
+  figure.key_entry(left, key_height, style::first_curve, "mean lift");
   if (weighed) {
-    figure.key_entry(left + 0.22, key_height, vermillion_dashed,
+    figure.key_entry(left + 0.22, key_height, style::reference_line,
                      fmt::format("weight, {:.4g} {}", lift_scale * weight, lift_in_newton ? "N" : "mN"));
     if (result.hover_lost) figure.key_entry(left + 0.56, key_height, "dt (3,3) lw 0.8 lc rgb '#404040'", "hover lost");
   }
-  figure.add("plot $flight using 1:2 with lines {}", blue_solid);
-  if (weighed) figure.add(", {} with lines {}", lift_scale * weight, vermillion_dashed);
+  figure.add("plot $flight using 1:2 with lines {}", style::first_curve);
+  if (weighed) figure.add(", {} with lines {}", lift_scale * weight, style::reference_line);
   figure.add("\n");
 
   panel(1, power_in_watt ? "power (W)" : "power (mW)", power_scale * power_most);
-  figure.key_entry(left, key_height, blue_solid, "electrical");
-  figure.key_entry(left + 0.22, key_height, vermillion_dashed, "aerodynamic");
-  figure.add("plot $flight using 1:3 with lines {}, '' using 1:4 with lines {}\n", blue_solid, vermillion_dashed);
+  figure.key_entry(left, key_height, style::first_curve, "electrical");
+  figure.key_entry(left + 0.22, key_height, style::stroke(style::aerodynamic), "aerodynamic");
+  figure.add("plot $flight using 1:3 with lines {}, '' using 1:4 with lines {}\n", style::first_curve,
+             style::stroke(style::aerodynamic));
 
   panel(2, "voltage (V)", rows.front().open_circuit_voltage);
-  figure.key_entry(left, key_height, blue_solid, "terminals");
-  figure.key_entry(left + 0.22, key_height, vermillion_dashed, "open circuit");
-  figure.add("plot $flight using 1:5 with lines {}, '' using 1:6 with lines {}\n", blue_solid, vermillion_dashed);
+  figure.key_entry(left, key_height, style::first_curve, "terminals");
+  figure.key_entry(left + 0.22, key_height, style::second_curve, "open circuit");
+  figure.add("plot $flight using 1:5 with lines {}, '' using 1:6 with lines {}\n", style::first_curve,
+             style::second_curve);
 
   panel(3, "charge (%)", 100.0);
   if (outside(result).first > 0) {
-    figure.text("hatched: outside the model's domain", 6.5, fmt::format("screen {},0.014 right", right));
+    figure.text("hatched: outside the model's domain", style::text_size, fmt::format("screen {},0.014 right", right));
   }
   figure.text(in_minutes ? "time (min)" : "time (s)", 7.5, fmt::format("screen {},0.014 center", 0.5 * (left + right)));
-  figure.key_entry(left, key_height, blue_solid, "state of charge");
-  figure.add("plot $flight using 1:7 with lines {}\n", blue_solid);
+  figure.key_entry(left, key_height, style::first_curve, "state of charge");
+  figure.add("plot $flight using 1:7 with lines {}\n", style::first_curve);
   figure.add("unset multiplot\nunset output\n");
   run_gnuplot(figure.script(), file);
 }

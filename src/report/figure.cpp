@@ -72,6 +72,19 @@ void run_gnuplot(const std::string& script, const std::filesystem::path& output)
   if (status != 0 || drawn < 200) {
     throw std::runtime_error(fmt::format("gnuplot failed: {}", said.empty() ? "it drew nothing" : said));
   }
+  if (script.find("set terminal svg") != std::string::npos) style::tidy_svg(output);
+}
+
+void Figure::remarks(const std::string& all, double height) {
+  constexpr std::size_t longest = 60;
+  std::size_t split = std::string::npos;
+  if (all.size() > longest) {
+    split = all.rfind("; ", longest);
+    if (split == std::string::npos) split = all.find("; ");
+  }
+  const bool two = split != std::string::npos;
+  text(all.substr(0, split), style::text_size, fmt::format("screen 0.97,{} right", (two ? 0.19 : 0.075) / height));
+  if (two) text(all.substr(split + 2), style::text_size, fmt::format("screen 0.97,{} right", 0.075 / height));
 }
 
 std::string quoted(const std::string& text) {

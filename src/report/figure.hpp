@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "report/style.hpp"
 #include "wingbeat/report/plot.hpp"
 
 namespace wingbeat {
@@ -20,12 +21,6 @@ void run_gnuplot(const std::string& script, const std::filesystem::path& output)
 /// A string for gnuplot: nothing in it is special but the quote.
 std::string quoted(const std::string& text);
 
-/// How a curve or its key is drawn: colours of Okabe and Ito, told apart with any colour vision; dash types tell them
-/// apart in grey.
-inline constexpr const char* blue_solid = "dt 1 lw 1.3 lc rgb '#0072b2'";
-inline constexpr const char* vermillion_dashed = "dt (12,6) lw 1.3 lc rgb '#d55e00'";
-inline constexpr const char* black_dotted = "dt (3,3) lw 1.3 lc rgb '#000000'";
-
 /// A gnuplot script under way. Sizes are those of the printed figure, text in points; everything is placed by its
 /// anchor on the page, because terminals disagree about the width of text.
 class Figure {
@@ -35,25 +30,25 @@ class Figure {
       case PlotFormat::svg:
         // A browser shows it twice as large as it prints, and may scale it freely.
         points_ = 192.0 / 72.0;
-        add("set terminal svg noenhanced size {:.0f},{:.0f} dynamic butt font 'sans-serif,{}' lw 2.4 dl 0.6 "
+        add("set terminal svg enhanced size {:.0f},{:.0f} dynamic butt font 'sans-serif,{}' lw 2.4 dl 0.6 "
             "background '#ffffff'\n",
             192.0 * width, 192.0 * height, 7.5 * points_);
         break;
       case PlotFormat::pdf:
         points_ = 0.75;
-        add("set terminal pdfcairo noenhanced size {:.3f}in,{:.3f}in butt font 'Sans,{}' fontscale 1 lw 1.8 dl 1.1\n",
+        add("set terminal pdfcairo enhanced size {:.3f}in,{:.3f}in butt font 'Sans,{}' fontscale 1 lw 1.8 dl 1.1\n",
             width, height, 7.5 * points_);
         break;
       case PlotFormat::png:
         points_ = 300.0 / 96.0;
-        add("set terminal pngcairo noenhanced size {:.0f},{:.0f} butt font 'Sans,{}' lw 3.75 dl 1.2\n", 300.0 * width,
+        add("set terminal pngcairo enhanced size {:.0f},{:.0f} butt font 'Sans,{}' lw 3.75 dl 1.2\n", 300.0 * width,
             300.0 * height, 7.5 * points_);
         break;
     }
     add("set encoding utf8\n"
+        "set minussign\n"
         "set border 3 lw 0.6 lc rgb '#404040'\n"
-        "set tics nomirror out scale 0.5\n"
-        "set grid x y back lt 1 dt 1 lw 0.35 lc rgb '#d8d8d8'\n"
+        "set tics nomirror out scale 0.5 noenhanced\n"
         "unset key\n");
   }
 
@@ -63,12 +58,19 @@ class Figure {
   }
   /// `placement`: position, anchor and further options of a gnuplot label.
   void text(const std::string& content, double size, const std::string& placement) {
-    add("set label {} {} at {} front font ',{}'\n", ++labels_, quoted(content), placement, size * points_);
+    add("set label {} {} at {} front noenhanced font ',{}'\n", ++labels_, quoted(content), placement, size * points_);
   }
-  /// A sample of a line with its name, starting at (x, y) of the page.
-  void key_entry(double x, double y, const char* line, const std::string& name) {
+  /// The same with gnuplot's marks for italics and subscripts: "{/:Italic r}_c". Not for a user's words.
+  void symbols(const std::string& content, double size, const std::string& placement) {
+    add("set label {} {} at {} front enhanced font ',{}'\n", ++labels_, quoted(content), placement, size * points_);
+  }
+  /// Remarks that "; " separates, at the foot of a page one column wide, in one or two lines; `height` of the page
+  /// [in].
+  void remarks(const std::string& all, double height);
+  /// A sample of a line with its name, starting at (x, y) of the page, which is a single column wide.
+  void key_entry(double x, double y, const std::string& line, const std::string& name) {
     add("set arrow {} from screen {},{} to screen {},{} nohead front {}\n", ++arrows_, x, y, x + 0.057, y, line);
-    text(name, 7.0, fmt::format("screen {},{} left", x + 0.065, y));
+    text(name, style::text_size, fmt::format("screen {},{} left", x + 0.065, y));
   }
   void box(const std::string& from_to, const char* fill) {
     add("set object {} rectangle {} front fillcolor rgb '{}' fillstyle solid border lc rgb '#202020' lw 0.4\n",

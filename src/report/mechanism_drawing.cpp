@@ -105,8 +105,8 @@ class MechanismSketch {
                y - 0.5 * scale * height, y + 0.5 * scale * height);
     figure.add("unset border\nunset tics\nunset grid\n");
     figure.add("{}{}", script_, joints_);
-    for (const auto& [text, placement] : names_) figure.text(text, 6.5, placement);
-    figure.add("plot NaN\nunset object\nset border 3\nset tics nomirror out scale 0.5\nset grid x y\n");
+    for (const auto& [text, placement] : names_) figure.text(text, style::text_size, placement);
+    figure.add("plot NaN\nunset object\nset border 3\nset tics nomirror out scale 0.5 noenhanced\n");
     figure.add("set xtics nomirror autofreq\nset ytics nomirror autofreq\nset yrange [*:*]\n");
   }
 
@@ -211,7 +211,7 @@ void draw_stroke_law(Figure& figure, const StrokeTable<double>& table) {
   figure.add(
       "END\nset xrange [0:360]\nset xtics 60\nset format x '%g'\nplot $law using 1:2 with lines {}, "
       "$rows using 1:2 with points pt 7 ps 0.3 lc rgb '#000000'\nset xtics nomirror autofreq\n",
-      blue_solid);
+      style::first_curve);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "report/figure.hpp"
+#include "report/sweep_scales.hpp"
 #include "wingbeat/report/optimise_report.hpp"
 #include "wingbeat/report/report.hpp"
 
@@ -27,7 +28,11 @@ void plot_optimum(const OptimiseFile& file, const MotorTrial& trial, PlotFormat 
   const double inches = walks ? walks_top + panel + 0.55 : bounds_top + rows + 0.55;
   Figure figure(format, 3.5, inches);
   const auto y = [&](double from_top) { return 1.0 - from_top / inches; };
-  const std::string unit = std::string_view(objective.unit) == "1" ? "" : fmt::format(" ({})", objective.unit);
+  double largest = 0.0;
+  for (const SearchEnd& s : r.searches) {
+    for (const double x : {s.began, s.ended}) largest = std::isfinite(x) ? std::max(largest, std::abs(x)) : largest;
+  }
+  const Display display = display_of(study.objective, largest);
   const std::string chosen = name_of(file, trial);
   figure.add("set multiplot\nset rmargin at screen 0.96\nset datafile missing 'nan'\n");
   const std::string title = file.title.empty() ? "Optimum" : file.title;
@@ -36,17 +41,17 @@ void plot_optimum(const OptimiseFile& file, const MotorTrial& trial, PlotFormat 
   int marks = 900;
   const auto mark = [&](double x, double from_top, const char* style, const std::string& name) {
     figure.add("set label {} '' at screen {},{} point {}\n", ++marks, x, y(from_top), style);
-    figure.text(name, 6.5, fmt::format("screen {},{} left", x + 0.02, y(from_top)));
+    figure.text(name, style::text_size, fmt::format("screen {},{} left", x + 0.02, y(from_top)));
   };
-  const char *begun = "pt 6 ps 0.5 lc rgb '#7f7f7f'", *ended = "pt 7 ps 0.5 lc rgb '#0072b2'";
+  const char *begun = "pt 6 ps 0.5 lw 1.6 lc rgb '#707070'", *ended = "pt 7 ps 0.5 lc rgb '#000000'";
 
   if (searches) {
     figure.add("$searches << END\n");
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (std::size_t n = 0; n < r.searches.size(); ++n) {
       const SearchEnd& s = r.searches[n];
-      figure.add("{} {} {}\n", n + 1, s.began, s.ended);
-      for (const double x : {s.began, s.ended}) {
+      figure.add("{} {} {}\n", n + 1, display.factor * s.began, display.factor * s.ended);
+      for (const double x : {display.factor * s.began, display.factor * s.ended}) {
         if (!std::isfinite(x)) continue;
         low = std::min(low, x);
         high = std::max(high, x);
@@ -59,7 +64,7 @@ void plot_optimum(const OptimiseFile& file, const MotorTrial& trial, PlotFormat 
     mark(0.22, 0.46, begun, "where a search began");
     mark(0.6, 0.46, ended, "where it ended");
     figure.text("local search", 7.0, fmt::format("screen 0.58,{} center", y(0.62 + panel + 0.33)));
-    figure.text(objective.long_name + unit, 6.5,
+    figure.text(objective.long_name + display.in_brackets(), style::text_size,
                 fmt::format("screen 0.03,{} center rotate by 90", y(0.62 + 0.5 * panel)));
     figure.add("plot $searches using 1:2 with points {}, $searches using 1:3 with points {}\n", begun, ended);
     figure.next_panel();
@@ -86,19 +91,20 @@ void plot_optimum(const OptimiseFile& file, const MotorTrial& trial, PlotFormat 
     figure.add("END\n");
     for (std::size_t k = 0; k < study.parameters.size(); ++k) {
       const double row = bounds_top + rows * (double(k) + 0.5) / double(study.parameters.size());
-      figure.text(study.parameters[k].parameter.key, 6.5, fmt::format("screen 0.44,{} right", y(row)));
+      figure.text(words(study.parameters[k].parameter.key), style::text_size,
+                  fmt::format("screen 0.44,{} right", y(row)));
     }
-    figure.text(fmt::format("optimum between its bounds; bar: within {:g} % of it", 100.0 * flat_loss), 6.5,
-                fmt::format("screen 0.5,{} center", y(bounds_top - 0.12)));
+    figure.text(fmt::format("optimum between its bounds; bar: within {:g} % of it", 100.0 * flat_loss),
+                style::text_size, fmt::format("screen 0.5,{} center", y(bounds_top - 0.12)));
     figure.text("share of the bounds", 7.0, fmt::format("screen 0.71,{} center", y(bounds_top + rows + 0.33)));
     figure.add(
-        "plot $optimum using 3:2:($4-$3):(0) with vectors nohead lw 5 lc rgb '#9ecae1', "
+        "plot $optimum using 3:2:($4-$3):(0) with vectors nohead lw 5 lc rgb '#cfcfcf', "
         "$optimum using 1:2 with points {}\n",
         ended);
   }
 
   if (walks) {
-    static constexpr const char* colours[] = {"#0072b2", "#d55e00", "#009e73", "#000000"};
+    static constexpr const char* colours[] = {"#000000", "#707070", "#653a92", "#b79fd0"};
     const std::size_t drawn = std::min<std::size_t>(4, r.directions.size());
     figure.next_panel();
     figure.add("set lmargin at screen 0.2\nset tmargin at screen {}\nset bmargin at screen {}\n", y(walks_top),
@@ -123,15 +129,14 @@ void plot_optimum(const OptimiseFile& file, const MotorTrial& trial, PlotFormat 
         figure.add("{} {}\n", s.distance, 100.0 * loss);
       }
       figure.add("END\n");
-      plot += fmt::format("{}$walk{} using 1:2 with linespoints pt 7 ps 0.3 dt {} lw 1.3 lc rgb '{}'",
-                          d == 0 ? "" : ", ", d, d + 1, colours[d]);
+      plot += fmt::format("{}$walk{} using 1:2 with lines dt {} lw 1.1 lc rgb '{}'", d == 0 ? "" : ", ", d, d + 1,
+                          colours[d]);
       figure.key_entry(0.06 + 0.235 * double(d), y(walks_top - 0.12),
-                       fmt::format("dt {} lw 1.3 lc rgb '{}'", d + 1, colours[d]).c_str(),
-                       fmt::format("direction {}", d + 1));
+                       fmt::format("dt {} lw 1.1 lc rgb '{}'", d + 1, colours[d]), fmt::format("direction {}", d + 1));
     }
     figure.text("distance along a free direction (ranges of the bounds)", 7.0,
                 fmt::format("screen 0.58,{} center", y(walks_top + panel + 0.33)));
-    figure.text("objective worse by (%)", 6.5,
+    figure.text("objective worse by (%)", style::text_size,
                 fmt::format("screen 0.03,{} center rotate by 90", y(walks_top + 0.5 * panel)));
     figure.add("plot {}\n", plot);
   }

@@ -7,6 +7,7 @@
 
 #include "report/figure.hpp"
 #include "report/report_tools.hpp"
+#include "report/sweep_scales.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/netcdf.hpp"
 #include "wingbeat/report/optimise_report.hpp"
@@ -353,7 +354,15 @@ void plot_front(const ParetoStudy& study, const ParetoResult& r, const std::stri
   const double panel = 2.45, inches = 0.45 + panel * double(panels.size());
   Figure figure(format, 3.5, inches);
   const auto y = [&](double from_top) { return 1.0 - from_top / inches; };
-  const auto value = [&](const ParetoDesign& d, std::size_t k) { return d.metrics[study.objectives[k].metric]; };
+  std::vector<Display> displays;
+  for (const ParetoObjective& o : study.objectives) {
+    double largest = 0.0;
+    for (const ParetoDesign& d : r.front) largest = std::max(largest, std::abs(d.metrics[o.metric]));
+    displays.push_back(display_of(o.metric, largest));
+  }
+  const auto value = [&](const ParetoDesign& d, std::size_t k) {
+    return displays[k].factor * d.metrics[study.objectives[k].metric];
+  };
 
   // A drawing with every design solved would be too large; those left out look like their neighbours.
   std::vector<const ParetoDesign*> cloud;
@@ -389,16 +398,14 @@ void plot_front(const ParetoStudy& study, const ParetoResult& r, const std::stri
     figure.add("set label {} '' at screen {},{} point {}\n", ++keys, x, y(0.32), style);
     figure.text(name, 7.0, fmt::format("screen {},{} left", x + 0.02, y(0.32)));
   };
-  const char *grey = "pt 7 ps 0.2 lc rgb '#bdbdbd'", *blue = "pt 7 ps 0.3 lc rgb '#0072b2'";
-  const char *end = "pt 9 ps 0.8 lc rgb '#d55e00'", *knee = "pt 5 ps 0.75 lc rgb '#009e73'";
+  const char *grey = "pt 7 ps 0.2 lc rgb '#bdbdbd'", *blue = "pt 7 ps 0.3 lc rgb '#000000'";
+  const char *end = "pt 9 ps 0.8 lc rgb '#653a92'", *knee = "pt 13 ps 0.9 lc rgb '#8d68b5'";
   key(0.16, grey, "feasible designs");
   key(0.48, blue, "front");
   key(0.66, end, "ends");
   key(0.82, knee, "knee");
   const auto label = [&](std::size_t k) {
-    const MetricInfo& metric = metric_info(study.objectives[k].metric);
-    return std::string(metric.long_name) +
-           (std::string_view(metric.unit) == "1" ? "" : fmt::format(" ({})", metric.unit));
+    return metric_info(study.objectives[k].metric).long_name + displays[k].in_brackets();
   };
   const auto range = [&](const char* axis, std::size_t k) {
     double low = HUGE_VAL, high = -HUGE_VAL;

@@ -55,16 +55,16 @@ void plot_cycle(std::span<const WaveformRow> rows, const Design<double>& design,
                page_height = waveforms + mechanism_height;
   Figure figure(format, page_width, page_height);
   figure.add("$cycle << END\n");
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    const WaveformRow& r = rows[k];
-    figure.add("{} {} {} {} {} {} {} {} {} {}\n", time_scale * (r.time - rows.front().time),
-               degrees_per_radian * r.stroke_angle, r.flapping_velocity, lift_scale * r.lift,
-               rod ? r.rod_force : 1e3 * r.current, power_scale * r.power_electrical, power_scale * r.power_motor,
-               power_scale * r.power_aerodynamic, pitching ? degrees_per_radian * r.pitch_angle : 0.0,
-               r.angle_of_attack_deg);
+  const std::vector<style::Phase> order = style::phases(rows);
+  for (const auto& [row, periods] : order) {
+    const WaveformRow& r = rows[row];
+    figure.add("{} {} {} {} {} {} {} {} {} {}\n", time_scale * periods * period, degrees_per_radian * r.stroke_angle,
+               r.flapping_velocity, lift_scale * r.lift, 1e3 * (rod ? r.rod_force : r.current),
+               power_scale * r.power_electrical, power_scale * r.power_motor, power_scale * r.power_aerodynamic,
+               pitching ? degrees_per_radian * r.pitch_angle : 0.0, r.angle_of_attack_deg);
   }
   // Margins of the page, in its fractions.
-  constexpr double left = 0.15, right = 0.85;
+  constexpr double left = 0.17, right = 0.83;
   figure.add("END\nset multiplot\n");
   figure.text(title, 8.0, fmt::format("screen 0.5,{} center", 1.0 - 0.1 / page_height));
   figure.text(mechanism_caption(vehicle), 7.0, fmt::format("screen 0.5,{} center", 1.0 - 0.28 / page_height));
@@ -77,8 +77,8 @@ void plot_cycle(std::span<const WaveformRow> rows, const Design<double>& design,
                         .page_width = page_width,
                         .page_height = page_height});
   figure.next_panel();
-  figure.add("set lmargin at screen {}\nset rmargin at screen {}\nset xrange [0:{}]\n", left, right,
-             time_scale * period);
+  figure.add("set lmargin at screen {}\nset rmargin at screen {}\nset xrange [{}:{}]\n", left, right,
+             time_scale * period * order.front().periods, time_scale * period * order.back().periods);
   double key_height = 0.0;
   int drawn = 0;
   double middle = 0.0;  ///< of the panel's height
@@ -96,40 +96,42 @@ void plot_cycle(std::span<const WaveformRow> rows, const Design<double>& design,
 
   panel("stroke angle (deg)");
   figure.text("velocity (rad/s)", 7.5, fmt::format("screen 0.974,{} center rotate by 90", middle));
-  figure.key_entry(left, key_height, blue_solid, "stroke angle");
-  figure.key_entry(left + 0.28, key_height, vermillion_dashed, "flapping velocity (right)");
+  figure.key_entry(left, key_height, style::first_curve, "stroke angle");
+  figure.key_entry(left + 0.28, key_height, style::second_curve, "flapping velocity (right)");
   figure.add("set y2tics nomirror out scale 0.5\nset border 11\n");
-  figure.add("plot $cycle using 1:2 with lines {}, '' using 1:3 axes x1y2 with lines {}\n", blue_solid,
-             vermillion_dashed);
+  figure.add("plot $cycle using 1:2 with lines {}, '' using 1:3 axes x1y2 with lines {}\n", style::first_curve,
+             style::second_curve);
   figure.add("unset y2tics\nset border 3\n");
 
   if (pitching) {
     panel("pitch (deg)");
-    figure.key_entry(left, key_height, blue_solid, "pitch angle");
-    figure.key_entry(left + 0.28, key_height, vermillion_dashed, "angle of attack");
-    figure.add("plot $cycle using 1:9 with lines {}, '' using 1:10 with lines {}\n", blue_solid, vermillion_dashed);
+    figure.key_entry(left, key_height, style::first_curve, "pitch angle");
+    figure.key_entry(left + 0.28, key_height, style::second_curve, "angle of attack");
+    figure.add("plot $cycle using 1:9 with lines {}, '' using 1:10 with lines {}\n", style::first_curve,
+               style::second_curve);
   }
 
   const char* lift_unit = lift_in_newton ? "N" : "mN";
   panel(fmt::format("lift ({})", lift_unit));
-  figure.key_entry(left, key_height, blue_solid, "lift of all wings");
-  figure.key_entry(left + 0.36, key_height, vermillion_dashed,
+  figure.key_entry(left, key_height, style::first_curve, "lift of all wings");
+  figure.key_entry(left + 0.36, key_height, style::reference_line,
                    fmt::format("mean, {:.4g} {}", lift_scale * lift_mean, lift_unit));
-  figure.add("plot $cycle using 1:4 with lines {}, {} with lines {}\n", blue_solid, lift_scale * lift_mean,
-             vermillion_dashed);
+  figure.add("plot $cycle using 1:4 with lines {}, {} with lines {}\n", style::first_curve, lift_scale * lift_mean,
+             style::reference_line);
 
-  panel(rod ? force + " (N)" : "current (mA)");
-  figure.key_entry(left, key_height, blue_solid, rod ? force + ", above 0 raises the stroke angle" : "current");
-  figure.add("plot $cycle using 1:5 with lines {}\n", blue_solid);
+  panel(rod ? force + " (mN)" : "current (mA)");
+  figure.key_entry(left, key_height, style::first_curve, rod ? force + ", above 0 raises the stroke angle" : "current");
+  figure.add("plot $cycle using 1:5 with lines {}\n", style::first_curve);
 
   panel(power_in_watt ? "power (W)" : "power (mW)");
-  figure.text(in_seconds ? "time (s)" : "time (ms)", 7.5,
+  figure.text(in_seconds ? "time since stroke reversal (s)" : "time since stroke reversal (ms)", 7.5,
               fmt::format("screen {},{} center", 0.5 * (left + right), 0.0763 / page_height));
-  figure.key_entry(left, key_height, black_dotted, "electrical");
-  figure.key_entry(left + 0.205, key_height, blue_solid, "motor output");
-  figure.key_entry(left + 0.465, key_height, vermillion_dashed, "aerodynamic");
+  const std::string air = style::stroke(style::aerodynamic);
+  figure.key_entry(left, key_height, style::first_curve, "electrical");
+  figure.key_entry(left + 0.205, key_height, style::second_curve, "motor output");
+  figure.key_entry(left + 0.465, key_height, air, "aerodynamic");
   figure.add("plot $cycle using 1:6 with lines {}, '' using 1:7 with lines {}, '' using 1:8 with lines {}\n",
-             black_dotted, blue_solid, vermillion_dashed);
+             style::first_curve, style::second_curve, air);
   figure.add("unset multiplot\nunset output\n");
   run_gnuplot(figure.script(), file);
 }
@@ -144,17 +146,17 @@ void plot_powers(std::span<const PowerBar> bars, const std::string& title, PlotF
     bool light;    ///< needs dark text
     double key_x;  ///< where its key starts, fraction of the page
   };
-  std::vector<Part> parts = {{"copper", &EnergyAudit::copper, "#d55e00", false, 0.04},
-                             {"viscous", &EnergyAudit::viscous, "#f0e442", true, 0.216},
-                             {"friction", &EnergyAudit::friction, "#56b4e9", true, 0.398},
-                             {"aerodynamic", &EnergyAudit::aerodynamic, "#00507c", false, 0.575},
-                             {"residual", &EnergyAudit::residual, "#bbbbbb", true, 0.829}};
+  std::vector<Part> parts = {{"copper", &EnergyAudit::copper, style::copper, true, 0.04},
+                             {"viscous", &EnergyAudit::viscous, style::viscous, true, 0.216},
+                             {"friction", &EnergyAudit::friction, style::friction, true, 0.398},
+                             {"aerodynamic", &EnergyAudit::aerodynamic, style::aerodynamic, true, 0.575},
+                             {"residual", &EnergyAudit::residual, style::residual, true, 0.829}};
   const auto lost_in = [&](double EnergyAudit::* power) {
     return std::any_of(bars.begin(), bars.end(), [&](const PowerBar& bar) { return bar.audit.*power != 0.0; });
   };
   const bool gearbox = lost_in(&EnergyAudit::gear), hinges = lost_in(&EnergyAudit::hinge);
-  if (hinges) parts.insert(parts.begin() + 2, {"hinges", &EnergyAudit::hinge, "#cc79a7", true, 0.0});
-  if (gearbox) parts.insert(parts.begin() + 2, {"gearbox", &EnergyAudit::gear, "#009e73", false, 0.0});
+  if (hinges) parts.insert(parts.begin() + 2, {"hinges", &EnergyAudit::hinge, style::hinges, false, 0.0});
+  if (gearbox) parts.insert(parts.begin() + 2, {"gearbox", &EnergyAudit::gear, style::gearbox, false, 0.0});
   if (gearbox || hinges) {
     constexpr double one_more[] = {0.03, 0.174, 0.326, 0.492, 0.64, 0.862},
                      two_more[] = {0.01, 0.136, 0.27, 0.42, 0.553, 0.683, 0.878};
@@ -202,8 +204,10 @@ void plot_powers(std::span<const PowerBar> bars, const std::string& title, PlotF
       const double middle = 0.5 * (from + to);
       if (to - from > 0.09 * span) {
         const char* colour = part.light ? "#000000" : "#ffffff";
-        figure.text(shown(power), 6.5, fmt::format("{},{} center textcolor rgb '{}'", middle, y + 0.025, colour));
-        figure.text(percent, 6.5, fmt::format("{},{} center textcolor rgb '{}'", middle, y - 0.145, colour));
+        figure.text(shown(power), style::text_size,
+                    fmt::format("{},{} center textcolor rgb '{}'", middle, y + 0.025, colour));
+        figure.text(percent, style::text_size,
+                    fmt::format("{},{} center textcolor rgb '{}'", middle, y - 0.145, colour));
       } else {
         narrow.push_back({middle, part.fill, fmt::format("{} ({})", shown(power), percent)});
       }
@@ -218,7 +222,7 @@ void plot_powers(std::span<const PowerBar> bars, const std::string& title, PlotF
     for (const Narrow& n : narrow) {
       const double start = n.at - 0.45 * room;
       figure.box(fmt::format("from {},{} to {},{}", start, y + 0.2, start + 0.018 * span, y + 0.27), n.fill);
-      figure.text(n.text, 6.5, fmt::format("{},{} left", start + 0.025 * span, y + 0.235));
+      figure.text(n.text, style::text_size, fmt::format("{},{} left", start + 0.025 * span, y + 0.235));
     }
     figure.text(bars[b].label, 7.0, fmt::format("0,{} left", y + 0.44));
     figure.text(fmt::format("{} {}", shown(scale * audit.electrical), unit), 7.0,
@@ -236,7 +240,7 @@ void plot_powers(std::span<const PowerBar> bars, const std::string& title, PlotF
     figure.box(fmt::format("from screen {},screen {} to screen {},screen {}", part.key_x, key_height - 0.035 / inches,
                            part.key_x + 0.03, key_height + 0.035 / inches),
                part.fill);
-    figure.text(part.name, 6.5, fmt::format("screen {},screen {} left", part.key_x + 0.037, key_height));
+    figure.text(part.name, style::text_size, fmt::format("screen {},screen {} left", part.key_x + 0.037, key_height));
   }
   figure.add("plot NaN\nunset output\n");
   run_gnuplot(figure.script(), file);

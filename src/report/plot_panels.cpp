@@ -22,9 +22,10 @@ void plot_panels(std::span<const PointPanel> panels, const PointAxes& axes, Plot
       for (const auto& [x, y] : s.points) most = std::max(most, std::abs(y));
     }
   }
-  // Okabe and Ito's colours; the shapes tell them apart in grey.
-  constexpr std::pair<const char*, int> styles[] = {{"#0072b2", 7},  {"#d55e00", 8},  {"#009e73", 4}, {"#000000", 2},
-                                                    {"#cc79a7", 10}, {"#e69f00", 12}, {"#56b4e9", 6}, {"#606060", 1}};
+  // The shapes tell quantities apart.
+  constexpr std::pair<const char*, int> styles[] = {{style::ink, 7}, {style::ink, 6},  {style::grey, 5},
+                                                    {style::ink, 4}, {style::grey, 9}, {style::ink, 8},
+                                                    {style::ink, 2}, {style::ink, 12}};
   constexpr std::size_t style_count = std::size(styles), per_row = 2;
   const double rows = std::ceil(double(names.size()) / per_row);
   const double head = 0.1 + 0.14 * rows, foot = 0.5, each = 1.05, gap = 0.42;
@@ -55,9 +56,9 @@ void plot_panels(std::span<const PointPanel> panels, const PointAxes& axes, Plot
       figure.text(axes.x, 7.5, fmt::format("screen {},{} center", 0.5 * (left + right), 0.09 / inches));
       for (std::size_t n = 0; n < names.size(); ++n) {
         const double y = 1.0 - (0.32 + 0.14 * double(n / per_row)) / inches, x = left + 0.42 * double(n % per_row);
-        figure.add("set label {} '' at screen {},{} point pt {} ps 0.45 lc rgb '{}' front\n", 500 + n, x, y,
+        figure.add("set label {} '' at screen {},{} point pt {} ps 0.45 lw 1.6 lc rgb '{}' front\n", 500 + n, x, y,
                    styles[n % style_count].second, styles[n % style_count].first);
-        figure.text(names[n], 6.5, fmt::format("screen {},{} left", x + 0.025, y));
+        figure.text(names[n], style::text_size, fmt::format("screen {},{} left", x + 0.025, y));
       }
     }
     std::string plots = "0 with lines lt 1 dt 1 lw 0.5 lc rgb '#404040'";
@@ -65,7 +66,7 @@ void plot_panels(std::span<const PointPanel> panels, const PointAxes& axes, Plot
       const PointSeries& series = panels[p].series[s];
       if (series.points.empty()) continue;
       const std::size_t n = std::size_t(std::find(names.begin(), names.end(), series.name) - names.begin());
-      plots += fmt::format(", {} using 1:2 with points pt {} ps 0.45 lc rgb '{}'", data_name(p, s),
+      plots += fmt::format(", {} using 1:2 with points pt {} ps 0.45 lw 1.6 lc rgb '{}'", data_name(p, s),
                            styles[n % style_count].second, styles[n % style_count].first);
     }
     figure.add("plot {}\n", plots);

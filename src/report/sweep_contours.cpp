@@ -89,7 +89,7 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
   }
   const bool all_flap = std::all_of(status.begin(), status.end(), [](double s) { return s == 0.0; });
 
-  const double head = 0.52, panel = 2.05, gap = 0.84, foot = 0.62;
+  const double head = 0.52, panel = 2.05, gap = 0.84, foot = 0.74;
   const double inches = head + double(metrics.size()) * panel + double(metrics.size() - 1) * gap + foot;
   Figure figure(format, 3.5, inches);
   constexpr double left = 0.135, right = 0.83;
@@ -154,8 +154,8 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
       const std::size_t every = bands > 8 ? 2 : 1;
       for (std::size_t k = 0; k < levels.size(); k += every) {
         const double at = bottom + (top - bottom) * double(k) / double(bands);
-        figure.text(fmt::format("{:.6g}", std::abs(levels[k]) < 1e-9 * (most - least) ? 0.0 : levels[k]), 6.5,
-                    fmt::format("screen {},{} left", right + 0.068, at));
+        figure.text(fmt::format("{:.6g}", std::abs(levels[k]) < 1e-9 * (most - least) ? 0.0 : levels[k]),
+                    style::text_size, fmt::format("screen {},{} left", right + 0.068, at));
       }
     }
     drawn +=
@@ -185,7 +185,7 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
       figure.circle(x.at[best / ny], y.at[best % ny], 0.003, "fillcolor rgb '#000000' fillstyle solid", "#000000");
       figure.text(fmt::format("circle: {} {} at {}, {}", field.superlative(), field.shown(field.values[best]),
                               x.value(best / ny), y.value(best % ny)),
-                  6.5, fmt::format("screen {},{} right", right, top + 0.09 / inches));
+                  style::text_size, fmt::format("screen {},{} right", right, top + 0.09 / inches));
     }
     if (p + 1 == metrics.size()) {
       std::string note = all_flap ? "" : "grey: does not flap";
@@ -195,7 +195,7 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
                             extrapolates ? "" : ", no best there");
       }
       if (weighed && !carried) note += fmt::format("{}lift < weight everywhere", note.empty() ? "" : "; ");
-      if (!note.empty()) figure.text(note, 6.5, fmt::format("screen {},{} right", right, 0.075 / inches));
+      if (!note.empty()) figure.remarks(note, inches);
     }
     figure.add("set grid noxtics noytics\nplot {}\n", drawn);
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "report/figure.hpp"
@@ -10,14 +11,6 @@
 
 namespace wingbeat {
 namespace {
-
-constexpr const char* curve_styles[max_curves] = {blue_solid,
-                                                  vermillion_dashed,
-                                                  black_dotted,
-                                                  "dt (14,4,3,4) lw 1.3 lc rgb '#009e73'",
-                                                  "dt (20,5) lw 1.3 lc rgb '#cc79a7'",
-                                                  "dt (6,3) lw 1.3 lc rgb '#56b4e9'"};
-constexpr const char* curve_colours[max_curves] = {"#0072b2", "#d55e00", "#000000", "#009e73", "#cc79a7", "#56b4e9"};
 
 /// "springs on, supply amplitude 3 V": the choices and numbers of one curve.
 std::string curve_name(const Sweep& sweep, std::uint64_t index) {
@@ -39,6 +32,39 @@ std::string curve_name(const Sweep& sweep, std::uint64_t index) {
     }
   }
   return name;
+}
+
+/// How a curve is drawn: springs, surroundings and an ordered number decide its colour, the formulation its dash.
+struct CurveLook {
+  const char *colour = nullptr, *dash = nullptr;
+  std::string line() const { return style::stroke(colour, dash); }
+};
+
+CurveLook look_of(const Sweep& sweep, std::uint64_t index) {
+  const auto place = places(sweep, index);
+  CurveLook look;
+  std::size_t rest = 0;
+  for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
+    const SweepAxis& axis = sweep.axes[a];
+    if (!makes_curves(sweep, axis)) continue;
+    const SweptQuantity& q = axis.quantities.front();
+    const std::string label = q.kind == SweptQuantity::Kind::choice ? q.labels[place[a]] : "";
+    if (q.key == "springs" && !look.colour) {
+      look.colour = label == "on" ? style::with_springs : style::without_springs;
+    } else if (q.key == "condition" && !look.colour) {
+      look.colour = label == "air" ? style::in_air : label == "vacuum" ? style::in_vacuum : style::without_wings;
+    } else if (q.key == "transmission.formulation" && !look.dash) {
+      look.dash = label == "rod-force" ? style::solid : style::dashed;
+    } else if (label.empty() && !look.colour) {
+      look.colour = style::ordered[std::size_t(place[a]) * std::size(style::ordered) / std::size_t(axis.count)];
+    } else {
+      rest = rest * std::size_t(axis.count) + place[a];
+    }
+  }
+  constexpr const char* dashes[] = {style::solid, style::dashed, style::dotted, style::dash_dotted};
+  if (!look.dash) look.dash = dashes[rest % std::size(dashes)];
+  if (!look.colour) look.colour = rest < std::size(dashes) ? style::ink : style::grey;
+  return look;
 }
 
 /// The axis of numbers, how far designs lie apart along it, and the first design of each curve.
@@ -86,8 +112,10 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
   for (std::size_t n = 0; n < count; ++n) order[n] = n;
   std::sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) { return x.at[p] < x.at[q]; });
 
+  std::vector<CurveLook> looks;
+  for (const std::uint64_t curve : curves) looks.push_back(look_of(sweep, curve));
   const bool named = curves.size() > 1;
-  const double panel = 1.45, gap = 0.45, foot = 0.62;
+  const double panel = 1.45, gap = 0.45, foot = 0.74;
   const double head = 0.58 + (named ? 0.15 * double((curves.size() + 1) / 2) : 0.0);
   const double inches = head + double(metrics.size()) * panel + double(metrics.size() - 1) * gap + foot;
   Figure figure(format, 3.5, inches);
@@ -143,7 +171,7 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
   figure.text(title_of(study), 8.0, fmt::format("screen 0.5,{} center", title_y));
   if (named) {
     for (std::size_t c = 0; c < curves.size(); ++c) {
-      figure.key_entry(c % 2 == 0 ? left : 0.56, title_y - (0.2 + 0.15 * double(c / 2)) / inches, curve_styles[c],
+      figure.key_entry(c % 2 == 0 ? left : 0.56, title_y - (0.2 + 0.15 * double(c / 2)) / inches, looks[c].line(),
                        curve_name(sweep, curves[c]));
     }
   }
@@ -175,24 +203,31 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
       const std::uint64_t first = best - at * stride;
       const std::size_t curve = std::size_t(std::find(curves.begin(), curves.end(), first) - curves.begin());
       figure.text(fmt::format("circle: {} {} at {}", field.superlative(), field.shown(field.values[best]), x.value(at)),
-                  6.5, fmt::format("screen {},{} right", right, top + 0.09 / inches));
-      figure.circle(x.at[at], field.values[best], 0.01, "fillstyle empty", curve_colours[curve]);
+                  style::text_size, fmt::format("screen {},{} right", right, top + 0.09 / inches));
+      figure.circle(x.at[at], field.values[best], 0.01, "fillstyle empty", looks[curve].colour);
     }
     if (p + 1 == metrics.size()) {
-      figure.text(x.label(), 7.5, fmt::format("screen {},{} center", 0.5 * (left + right), 0.23 / inches));
+      figure.text(x.label(), 7.5, fmt::format("screen {},{} center", 0.5 * (left + right), 0.35 / inches));
       std::string note = broken ? "no line: does not flap" : "";
       if (leaves) note += fmt::format("{}crossed, hatched: outside the model's domain", note.empty() ? "" : "; ");
       if (carried) note += fmt::format("{}best sought where lift >= weight", note.empty() ? "" : "; ");
-      if (!note.empty()) figure.text(note, 6.5, fmt::format("screen {},{} right", right, 0.075 / inches));
+      if (!note.empty()) figure.remarks(note, inches);
     }
     std::string curves_drawn;
     for (std::size_t c = 0; c < curves.size(); ++c) {
       curves_drawn += fmt::format(
           "{}$curve_{}_{} using 1:2 with lines {}, $lone_{}_{} using 1:2 with points pt 7 "
           "ps 0.2 lc rgb '{}', $outside_{}_{} using 1:2 with points pt 2 ps 0.3 lc rgb '{}'",
-          c == 0 ? "" : ", ", p, c, curve_styles[c], p, c, curve_colours[c], p, c, curve_colours[c]);
+          c == 0 ? "" : ", ", p, c, looks[c].line(), p, c, looks[c].colour, p, c, looks[c].colour);
     }
-    figure.add("set yrange [*:*]\nset offsets 0,0,graph 0.06,0\nplot {}\n", curves_drawn);
+    double least = INFINITY, most = -INFINITY;
+    for (const double y : field.values) {
+      if (!std::isfinite(y)) continue;
+      least = std::min(least, y);
+      most = std::max(most, y);
+    }
+    const bool from_zero = least >= 0.0 && least < 0.6 * most;
+    figure.add("set yrange [{}:*]\nset offsets 0,0,graph 0.06,0\nplot {}\n", from_zero ? "0" : "*", curves_drawn);
   }
   figure.add("unset multiplot\nunset output\n");
   run_gnuplot(figure.script(), output);

@@ -10,9 +10,8 @@
 #include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
-namespace {
 
-Display display_for(std::string_view unit, double largest, bool efficiency = false) {
+Display display_for(std::string_view unit, double largest, bool efficiency) {
   if (efficiency) return {"%", 100.0};
   if (unit == "1") return {"", 1.0};
   if (unit == "rad") return {"deg", degrees_per_radian};
@@ -21,13 +20,15 @@ Display display_for(std::string_view unit, double largest, bool efficiency = fal
   const bool simple = unit.find_first_of(" /0123456789") == std::string_view::npos || unit.starts_with("N m");
   if (!simple || unit == "Hz" || unit == "V" || !(largest > 0.0)) return {std::string(unit), 1.0};
   if (unit == "kg") return {"g", 1e3};
-  constexpr std::pair<double, const char*> prefixes[] = {{1e-9, "n"}, {1e-6, "u"}, {1e-3, "m"}, {1.0, ""}, {1e3, "k"}};
+  constexpr std::pair<double, const char*> prefixes[] = {{1e-9, "n"}, {1e-6, "µ"}, {1e-3, "m"}, {1.0, ""}, {1e3, "k"}};
   const auto* best = &prefixes[0];
   for (const auto& prefix : prefixes) {
     if (largest >= 0.9999 * prefix.first) best = &prefix;
   }
   return {fmt::format("{}{}", best->second, unit), 1.0 / best->first};
 }
+
+namespace {
 
 bool is_efficiency(Metric m) { return std::string_view(metric_info(m).key).starts_with("efficiency"); }
 
@@ -58,6 +59,10 @@ std::string words(const std::string& key) {
 }
 
 std::string Display::in_brackets() const { return unit.empty() ? "" : fmt::format(" ({})", unit); }
+
+Display display_of(Metric metric, double largest) {
+  return display_for(metric_info(metric).unit, largest, is_efficiency(metric));
+}
 
 Scale::Scale(const SweepAxis& axis) {
   const SweptQuantity& q = axis.quantities.front();
@@ -94,7 +99,7 @@ std::string title_of(const Study& study) {
 Field::Field(const NetcdfReader& file, Metric m) : metric(m), values(file.read(metric_info(m).key)) {
   double largest = 0.0;
   for (const double x : values) largest = std::isfinite(x) ? std::max(largest, std::abs(x)) : largest;
-  display = display_for(metric_info(m).unit, largest, is_efficiency(m));
+  display = display_of(m, largest);
   for (double& x : values) x *= display.factor;
 }
 

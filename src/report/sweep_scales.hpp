@@ -30,6 +30,10 @@ struct Display {
   std::string in_brackets() const;
 };
 
+/// For values of that unit up to `largest` [SI]; an efficiency is shown in per cent.
+Display display_for(std::string_view unit, double largest, bool efficiency = false);
+Display display_of(Metric metric, double largest);
+
 /// One axis of numbers as it is drawn.
 struct Scale {
   std::string name;

@@ -20,7 +20,7 @@ std::string nothing_flaps(const std::vector<std::uint64_t>& designs) {
 void plot_statuses(const std::string& title, const std::string& x_label, const std::string& x_range,
                    const std::vector<double>& x, const std::vector<StatusCurve>& curves, PlotFormat format,
                    const std::filesystem::path& file) {
-  constexpr const char* colours[] = {"#0072b2", "#d55e00", "#000000", "#009e73", "#cc79a7", "#56b4e9"};
+  constexpr const char* colours[] = {"#000000", "#8d68b5", "#707070", "#35125e", "#b79fd0", "#a0a0a0"};
   std::vector<std::uint64_t> designs(sweep_status_count, 0);
   std::vector<int> present, row(sweep_status_count, -1);
   for (const StatusCurve& c : curves) {

@@ -7,6 +7,7 @@
 
 #include "report/figure.hpp"
 #include "report/report_tools.hpp"
+#include "report/sweep_scales.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/report/describe.hpp"
@@ -241,6 +242,10 @@ void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns, co
     else ++outside;
   }
   std::sort(values.begin(), values.end());
+  const Display display = display_of(*output.metric, std::max(std::abs(values.front()), std::abs(values.back())));
+  for (double& x : values) x *= display.factor;
+  const double linear_mean = display.factor * output.linear_mean,
+               linear_deviation = display.factor * output.linear_deviation;
   // Freedman and Diaconis, 1981; the few samples beyond the drawn range are in the tails.
   const auto at = [&](double p) { return values[std::size_t(p * double(values.size() - 1))]; };
   const double low = at(0.001), high = at(0.999);
@@ -260,7 +265,7 @@ void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns, co
   };
   for (std::size_t i = 0; i < inputs.size(); ++i) order.push_back(i);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return weight(a) > weight(b); });
-  const bool linear = output.linear_deviation > 0.0;
+  const bool linear = linear_deviation > 0.0;
   const bool sources = sobol || !output.linear_share.empty();
 
   const double rows_height = sources ? 0.24 * double(inputs.size()) : 0.0;
@@ -280,26 +285,25 @@ void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns, co
   figure.text(title, 8.0, fmt::format("screen 0.5,{} center", y(0.12)));
   std::string drawn = fmt::format("{} vehicles that flap", values.size());
   if (outside > 0) drawn += fmt::format(" ({} outside the domain left out)", outside);
-  figure.key_entry(0.07, y(0.32), "lw 5 lc rgb '#9ecae1'", drawn);
-  if (linear) figure.key_entry(0.07, y(0.48), vermillion_dashed, "linear prediction from the gradient");
-  if (output.metric == Metric::lift_to_weight) figure.key_entry(0.6, y(0.32), black_dotted, "hover");
+  figure.key_entry(0.07, y(0.32), "lw 5 lc rgb '#cfcfcf'", drawn);
+  if (linear) figure.key_entry(0.07, y(0.48), style::second_curve, "linear prediction from the gradient");
+  if (output.metric == Metric::lift_to_weight) figure.key_entry(0.6, y(0.32), style::reference_line, "hover");
   const MetricInfo& info = metric_table()[std::size_t(*output.metric)];
-  const std::string unit = std::string(info.unit) == "1" ? "" : fmt::format(" ({})", info.unit);
-  figure.text(info.long_name + unit, 7.5, fmt::format("screen 0.52,{} center", y(2.42)));
+  figure.text(info.long_name + display.in_brackets(), 7.5, fmt::format("screen 0.52,{} center", y(2.42)));
   double left = low, right = high;
   if (linear) {
-    left = std::min(left, output.linear_mean - 3.0 * output.linear_deviation);
-    right = std::max(right, output.linear_mean + 3.0 * output.linear_deviation);
-    highest = std::max(highest, 0.4 / output.linear_deviation);
+    left = std::min(left, linear_mean - 3.0 * linear_deviation);
+    right = std::max(right, linear_mean + 3.0 * linear_deviation);
+    highest = std::max(highest, 0.4 / linear_deviation);
   }
   const bool one_inside = output.metric == Metric::lift_to_weight && left < 1.0 && right > 1.0;
   figure.add("unset ytics\nset border 1\nset xrange [{}:{}]\nset yrange [0:{}]\n", left, right, 1.08 * highest);
   figure.add("set style fill solid 1.0 noborder\n");
-  if (one_inside) figure.add("set arrow 900 from 1,graph 0 to 1,graph 1 nohead front {}\n", black_dotted);
-  figure.add("set samples 400\nplot $bins using 1:2:({}) with boxes lc rgb '#9ecae1'", width);
+  if (one_inside) figure.add("set arrow 900 from 1,graph 0 to 1,graph 1 nohead front {}\n", style::reference_line);
+  figure.add("set samples 400\nplot $bins using 1:2:({}) with boxes lc rgb '#cfcfcf'", width);
   if (linear) {
-    figure.add(", exp(-0.5*((x-{0})/{1})**2)/({1}*sqrt(2*pi)) with lines {2}", output.linear_mean,
-               output.linear_deviation, vermillion_dashed);
+    figure.add(", exp(-0.5*((x-{0})/{1})**2)/({1}*sqrt(2*pi)) with lines {2}", linear_mean, linear_deviation,
+               style::second_curve);
   }
   figure.add("\n");
   if (sources) {
@@ -307,13 +311,13 @@ void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns, co
     const double top = 2.98, bottom = top + rows_height;
     figure.add("set tmargin at screen {}\nset bmargin at screen {}\nset lmargin at screen 0.46\n", y(top), y(bottom));
     figure.text("share of the variance", 7.5, fmt::format("screen 0.07,{} left", y(top - 0.14)));
-    figure.text("first order", 6.5, fmt::format("screen 0.49,{} left", y(top - 0.14)));
-    figure.text("total", 6.5, fmt::format("screen 0.67,{} left", y(top - 0.14)));
-    figure.text("linear", 6.5, fmt::format("screen 0.82,{} left", y(top - 0.14)));
+    figure.text("first order", style::text_size, fmt::format("screen 0.49,{} left", y(top - 0.14)));
+    figure.text("total", style::text_size, fmt::format("screen 0.67,{} left", y(top - 0.14)));
+    figure.text("linear", style::text_size, fmt::format("screen 0.82,{} left", y(top - 0.14)));
     figure.add(
-        "set label 901 '' at screen 0.475,{0} point pt 7 ps 0.45 lc rgb '#0072b2'\n"
-        "set label 902 '' at screen 0.655,{0} point pt 5 ps 0.45 lc rgb '#009e73'\n"
-        "set label 903 '' at screen 0.805,{0} point pt 8 ps 0.6 lc rgb '#d55e00'\n",
+        "set label 901 '' at screen 0.475,{0} point pt 7 ps 0.45 lc rgb '#000000'\n"
+        "set label 902 '' at screen 0.655,{0} point pt 5 ps 0.45 lc rgb '#707070'\n"
+        "set label 903 '' at screen 0.805,{0} point pt 8 ps 0.6 lc rgb '#000000'\n",
         y(top - 0.14));
     figure.add("$sources << END\n");
     double most = 0.1;
@@ -330,14 +334,14 @@ void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns, co
     figure.add("END\n");
     for (std::size_t r = 0; r < order.size(); ++r) {
       const double row = y(top + rows_height * (double(r) + 0.5) / double(order.size()));
-      figure.text(inputs[order[r]].name, 6.5, fmt::format("screen 0.44,{} right", row));
+      figure.text(words(inputs[order[r]].name), style::text_size, fmt::format("screen 0.44,{} right", row));
     }
     figure.add("set xrange [{}:{}]\nset yrange [{}:0.5]\nset border 3\nset datafile missing 'nan'\n", -0.03 * most,
                1.04 * most, 0.5 - double(order.size()));
     figure.add(
-        "plot $sources using 2:($1+0.22):3:4 with xerrorbars pt 7 ps 0.45 lc rgb '#0072b2', "
-        "$sources using 5:1:6:7 with xerrorbars pt 5 ps 0.45 lc rgb '#009e73', "
-        "$sources using 8:($1-0.22) with points pt 8 ps 0.6 lc rgb '#d55e00'\n");
+        "plot $sources using 2:($1+0.22):3:4 with xerrorbars pt 7 ps 0.45 lc rgb '#000000', "
+        "$sources using 5:1:6:7 with xerrorbars pt 5 ps 0.45 lc rgb '#707070', "
+        "$sources using 8:($1-0.22) with points pt 8 ps 0.6 lc rgb '#000000'\n");
   }
 
   figure.add("unset multiplot\nunset output\n");

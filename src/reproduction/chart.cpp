@@ -2,23 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "report/figure.hpp"
 #include "reproduction/sheet.hpp"
+#include "wingbeat/core/text.hpp"
+#include "wingbeat/files/design_file.hpp"
 
 namespace wingbeat::reproduction {
 namespace {
 
-constexpr double left = 0.155, right = 0.965;
+constexpr double left = 0.5, character = 0.056;  ///< [in]: margin of a panel; width of a letter of a label
+constexpr int mark_value = 13, mark_hollow = 12, mark_place = 9;
 
-std::string line(const CurveStyle& s) { return fmt::format("dt {} lw {} lc rgb '{}'", s.dash, s.weight, s.colour); }
-
-/// Marks at about eight places of a curve.
-std::string with(const CurveStyle& s, std::size_t points) {
-  if (s.mark == 0) return fmt::format("with lines {}", line(s));
-  return fmt::format("with linespoints {} pt {} ps 0.6 pi {}", line(s), s.mark, std::max<std::size_t>(1, points / 8));
-}
+std::string line(const CurveStyle& s) { return style::stroke(s.colour, s.dash, s.weight); }
 
 double nice_step(double span) {
   const double raw = span / 4.0, unit = std::pow(10.0, std::floor(std::log10(raw)));
@@ -28,34 +27,138 @@ double nice_step(double span) {
   return 10.0 * unit;
 }
 
+/// Letters of a label without gnuplot's marks.
+std::size_t length_of(const std::string& label) {
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < label.size(); ++k) {
+    if (label[k] == '{') k = label.find(' ', k);
+    else if (label[k] != '}' && label[k] != '_') ++n;
+  }
+  return n;
+}
+
+/// The key and what published values add to it.
+std::vector<ChartKey> whole_key(const Chart& chart) {
+  std::vector<ChartKey> key = chart.key;
+  bool value = false, hollow = false, place = false, span = false;
+  for (const ChartPanel& panel : chart.panels) {
+    for (const ChartMark& m : panel.marks) (!std::isfinite(m.y) ? place : m.calibrated ? hollow : value) = true;
+    span = span || !panel.spans.empty();
+  }
+  if (value) key.push_back({"published", {}, nullptr, mark_value});
+  if (hollow) key.push_back({"published, used in the calibration", {}, nullptr, mark_hollow});
+  if (place) key.push_back({"published place", {}, nullptr, mark_place});
+  if (span) key.push_back({"published range", {style::grey, style::solid, 3.0}});
+  return key;
+}
+
+/// Where the drawing's quantities stand on it, for the report's read-out: the box and ranges of each panel in the
+/// units of the drawing, as JSON.
+struct PanelBox {
+  double x0, x1, y0, y1;  ///< of the page [in], y from above
+  double x_low, x_high, y_low, y_high;
+};
+
+void add_read_out(const Chart& chart, const std::vector<PanelBox>& boxes, const std::filesystem::path& file) {
+  constexpr double unit = 192.0;  // of an inch in the SVG
+  nlohmann::ordered_json panels = nlohmann::ordered_json::array();
+  for (std::size_t p = 0; p < boxes.size(); ++p) {
+    const PanelBox& b = boxes[p];
+    nlohmann::ordered_json panel;
+    const auto rounded = [](double v) { return std::round(100.0 * v) / 100.0; };
+    panel["box"] = {rounded(unit * b.x0), rounded(unit * b.x1), rounded(unit * b.y0), rounded(unit * b.y1)};
+    panel["range"] = {b.x_low, b.x_high, b.y_low, b.y_high};
+    panel["x"] = chart.x;
+    panel["y"] = chart.panels[p].y;
+    panel["marks"] = nlohmann::ordered_json::array();
+    for (const ChartMark& m : chart.panels[p].marks) {
+      panel["marks"].push_back({m.x, std::isfinite(m.y) ? nlohmann::ordered_json(m.y) : nullptr, m.name});
+    }
+    panels.push_back(std::move(panel));
+  }
+  std::string text = read_text_file(file);
+  text.insert(text.find("<svg ") + 5, fmt::format("data-panels=\"{}\" ", detail::markup_escaped(panels.dump())));
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  if (!out.write(text.data(), std::streamsize(text.size()))) {
+    throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
+  }
+}
+
+void draw_marks(Figure& figure, const ChartPanel& panel) {
+  int n = 800;
+  for (const ChartSpan& span : panel.spans) {
+    figure.add("set arrow {} from first {},graph 0.04 to first {},graph 0.04 nohead front lw 3 lc rgb '{}'\n", ++n,
+               span.from, span.to, span.colour);
+  }
+  for (const ChartMark& m : panel.marks) {
+    const std::string at = std::isfinite(m.y) ? fmt::format("first {}", m.y) : std::string("graph 0.04");
+    figure.add("set label {} '' at first {},{} point pt {} ps 0.8 lw 1.5 lc rgb '{}' front\n", ++n, m.x, at,
+               !std::isfinite(m.y) ? mark_place
+               : m.calibrated      ? mark_hollow
+                                   : mark_value,
+               m.colour);
+  }
+}
+
+/// Labels beside the right ends of curves, kept apart. `per_inch`: of y.
+void draw_labels(Figure& figure, const ChartPanel& panel, double low, double high, double height) {
+  struct Label {
+    double at;  ///< [in] above the foot
+    const ChartCurve* curve;
+  };
+  std::vector<Label> labels;
+  for (const ChartCurve& curve : panel.curves) {
+    if (curve.label.empty()) continue;
+    const auto last = std::find_if(curve.y.rbegin(), curve.y.rend(), [](double y) { return std::isfinite(y); });
+    if (last != curve.y.rend()) labels.push_back({height * (*last - low) / (high - low), &curve});
+  }
+  std::stable_sort(labels.begin(), labels.end(), [](const Label& p, const Label& q) { return p.at < q.at; });
+  constexpr double apart = 0.125;
+  for (std::size_t n = 1; n < labels.size(); ++n) labels[n].at = std::max(labels[n].at, labels[n - 1].at + apart);
+  double top = height + 0.05;
+  for (std::size_t n = labels.size(); n-- > 0; top -= apart) labels[n].at = std::min(labels[n].at, top);
+  for (const Label& l : labels) {
+    figure.symbols(l.curve->label, style::text_size,
+                   fmt::format("graph 1.02,graph {:.4f} left textcolor rgb '{}'", l.at / height,
+                               l.curve->label_colour ? l.curve->label_colour : l.curve->style.colour));
+  }
+}
+
 }  // namespace
 
-CurveStyle thin(CurveStyle style) {
-  style.mark = 0;
-  style.weight = 0.55;
+CurveStyle of_virtual_work(CurveStyle style) {
+  style.dash = style::dashed;
   return style;
 }
 
 void draw(const Chart& chart, PlotFormat format, const std::filesystem::path& file) {
+  const std::vector<ChartKey> keys = whole_key(chart);
+  const double page = chart.columns == 1 ? style::single_column : style::double_column, cell = page / chart.columns;
   // Key entries follow each other on lines, as words do.
   std::vector<std::pair<double, int>> places;
-  double key_x = left - 0.1;
+  double key_x = 0.1;
   int key_line = 0;
-  for (const ChartKey& entry : chart.key) {
-    const double width = 0.1 + 0.015 * double(entry.name.size());
-    if (key_x + width > right + 0.03) {
-      key_x = left - 0.1;
+  for (const ChartKey& entry : keys) {
+    const double width = 0.4 + character * double(entry.name.size());
+    if (key_x > 0.2 && key_x + width > page) {
+      key_x = 0.1;
       ++key_line;
     }
     places.push_back({key_x, key_line});
     key_x += width;
   }
+  std::size_t longest = 0;
+  for (const ChartPanel& panel : chart.panels) {
+    for (const ChartCurve& curve : panel.curves) longest = std::max(longest, length_of(curve.label));
+  }
   const bool titled =
       std::any_of(chart.panels.begin(), chart.panels.end(), [](const auto& p) { return !p.title.empty(); });
-  const double head = 0.06 + 0.15 * (key_line + 1), foot = 0.42, gap = titled ? 0.25 : 0.14;
-  const double count = double(chart.panels.size());
-  const double inches = head + count * (gap + chart.panel_height) + foot;
-  Figure figure(format, 3.5, inches);
+  const bool lettered = chart.panels.size() > 1;
+  const double right = longest == 0 ? 0.1 : 0.14 + character * double(longest), foot = 0.42, gap = titled ? 0.27 : 0.14;
+  const double head = keys.empty() ? 0.04 : 0.06 + 0.15 * (key_line + 1);
+  const std::size_t columns = std::size_t(chart.columns), rows = (chart.panels.size() + columns - 1) / columns;
+  const double inches = head + double(rows) * (gap + chart.panel_height) + foot;
+  Figure figure(format, page, inches);
 
   double x_low = INFINITY, x_high = -INFINITY;
   for (std::size_t p = 0; p < chart.panels.size(); ++p) {
@@ -79,16 +182,20 @@ void draw(const Chart& chart, PlotFormat format, const std::filesystem::path& fi
     }
   }
   if (!(x_high > x_low)) throw std::runtime_error("no curve to draw");
-  figure.add("set multiplot\nset lmargin at screen {}\nset rmargin at screen {}\nset xrange [{}:{}]\n", left, right,
-             x_low, x_high);
+  std::vector<PanelBox> boxes;
+  figure.add("set multiplot\nset xrange [{}:{}]\n", x_low, x_high);
   for (std::size_t p = 0; p < chart.panels.size(); ++p) {
     const ChartPanel& panel = chart.panels[p];
-    const bool last = p + 1 == chart.panels.size();
+    const std::size_t row = p / columns, column = p % columns;
+    const bool last = p + columns >= chart.panels.size();
     if (p > 0) figure.next_panel();
-    const double top = 1.0 - (head + gap + (chart.panel_height + gap) * double(p)) / inches;
-    const double bottom = top - chart.panel_height / inches;
-    figure.add("set tmargin at screen {}\nset bmargin at screen {}\nset format x {}\n", top, bottom,
-               last ? "'%g'" : "''");
+    const double above = head + gap + (chart.panel_height + gap) * double(row);  // [in]
+    const double x0 = cell * double(column) + left, x1 = cell * double(column + 1) - right;
+    const double top = 1.0 - above / inches, bottom = top - chart.panel_height / inches;
+    figure.add(
+        "set lmargin at screen {}\nset rmargin at screen {}\nset tmargin at screen {}\nset bmargin at screen {}\n"
+        "set format x {}\n",
+        x0 / page, x1 / page, top, bottom, last ? "'%g'" : "''");
     double low = panel.from_zero ? 0.0 : INFINITY, high = panel.from_zero ? 0.0 : -INFINITY;
     const auto cover = [&](double y) {
       if (!std::isfinite(y)) return;
@@ -99,36 +206,52 @@ void draw(const Chart& chart, PlotFormat format, const std::filesystem::path& fi
       for (const double y : curve.y) cover(y);
     }
     for (const ChartLevel& level : panel.levels) cover(level.y);
+    for (const ChartMark& m : panel.marks) cover(m.y);
     if (!(high > low)) high = low + 1.0;
     const double step = nice_step(high - low);
     low = std::floor(low / step + 1e-9) * step;
-    high = std::ceil(high / step - 1e-9) * step;
+    // No empty band above the highest value, which need not be a marked one.
+    high = low < 0.0 ? std::ceil(high / step - 1e-9) * step : std::min(1.03 * high, std::ceil(high / step) * step);
     figure.add("set yrange [{}:{}]\nset ytics {}\n", low, high, step);
-    figure.text(panel.y, 7.5, fmt::format("screen 0.028,{} center rotate by 90", 0.5 * (top + bottom)));
+    boxes.push_back({x0, x1, above, above + chart.panel_height, x_low, x_high, low, high});
+    figure.text(panel.y, style::heading_size,
+                fmt::format("screen {},{} center rotate by 90", (x0 - left + 0.1) / page, 0.5 * (top + bottom)));
+    if (lettered) {
+      figure.symbols(fmt::format("{{/:Bold {}}}", char('a' + p)), style::title_size,
+                     fmt::format("screen {},{} left", (x0 - left + 0.05) / page, top + 0.1 / inches));
+    }
     if (!panel.title.empty())
-      figure.text(panel.title, 7.5, fmt::format("screen {},{} left", left, top + 0.09 / inches));
-    if (last) figure.text(chart.x, 7.5, fmt::format("screen {},{} center", 0.5 * (left + right), 0.1 / inches));
+      figure.text(panel.title, style::heading_size, fmt::format("screen {},{} left", x0 / page, top + 0.1 / inches));
+    if (last) {
+      figure.text(chart.x, style::heading_size,
+                  fmt::format("screen {},{} center", 0.5 * (x0 + x1) / page, bottom - 0.32 / inches));
+    }
     if (p == 0) {
-      for (std::size_t k = 0; k < chart.key.size(); ++k) {
+      for (std::size_t k = 0; k < keys.size(); ++k) {
         const double x = places[k].first, y = 1.0 - (0.1 + 0.15 * places[k].second) / inches;
-        const ChartKey& entry = chart.key[k];
+        const ChartKey& entry = keys[k];
         if (entry.fill) {
-          figure.box(
-              fmt::format("from screen {},{} to screen {},{}", x, y - 0.04 / inches, x + 0.05, y + 0.04 / inches),
-              entry.fill);
-          figure.text(entry.name, 7.0, fmt::format("screen {},{} left", x + 0.065, y));
-          continue;
+          figure.box(fmt::format("from screen {},{} to screen {},{}", x / page, y - 0.04 / inches, (x + 0.18) / page,
+                                 y + 0.04 / inches),
+                     entry.fill);
+        } else if (entry.mark > 0) {
+          figure.add("set label {} '' at screen {},{} point pt {} ps 0.8 lw 1.5 lc rgb '#000000' front\n", 700 + k,
+                     (x + 0.12) / page, y, entry.mark);
+        } else {
+          figure.add("set arrow {} from screen {},{} to screen {},{} nohead front {}\n", 700 + k, x / page, y,
+                     (x + 0.2) / page, y,
+                     // gnuplot's SVG misses a change of dash alone.
+                     style::stroke(entry.style.colour, entry.style.dash, entry.style.weight + 0.004 * double(k)));
         }
-        figure.key_entry(x, y, line(entry.style).c_str(), entry.name);
-        if (entry.style.mark > 0) {
-          figure.add("set label {} '' at screen {},{} point pt {} ps 0.6 lc rgb '{}' front\n", 700 + k, x + 0.0285, y,
-                     entry.style.mark, entry.style.colour);
-        }
+        figure.symbols(entry.name, style::text_size, fmt::format("screen {},{} left", (x + 0.24) / page, y));
       }
     }
     for (const ChartLevel& level : panel.levels) {
-      figure.text(level.name, 6.5, fmt::format("graph 0.02,first {} left offset 0,0.45", level.y));
+      figure.text(level.name, style::text_size,
+                  fmt::format("graph 0.02,first {} left offset 0,{}", level.y, level.y > 0.8 * high ? -0.5 : 0.5));
     }
+    draw_marks(figure, panel);
+    draw_labels(figure, panel, low, high, chart.panel_height);
     std::string plots;
     for (std::size_t a = 0; a < panel.areas.size(); ++a) {
       const ChartArea& area = panel.areas[a];
@@ -137,20 +260,22 @@ void draw(const Chart& chart, PlotFormat format, const std::filesystem::path& fi
           "'' using 1:($2 < 0 ? $2 : 0) with filledcurves y=0 fs solid lc rgb '{3}', ",
           p, a, area.above, area.below);
     }
-    plots += low < 0.0 ? "0 with lines dt 1 lw 0.5 lc rgb '#404040'" : "NaN";
+    plots += low < 0.0 ? "0 with lines dt 1 lw 0.6 lc rgb '#404040'" : "NaN";
     for (const ChartLevel& level : panel.levels) {
-      plots += fmt::format(", {} with lines dt (12,4,3,4) lw 0.9 lc rgb '#606060'", level.y);
+      plots += fmt::format(", {} with lines {}", level.y, style::reference_line);
     }
     for (std::size_t c = 0; c < panel.curves.size(); ++c) {
-      const auto& ys = panel.curves[c].y;
-      if (std::none_of(ys.begin(), ys.end(), [](double y) { return std::isfinite(y); })) continue;
-      plots += fmt::format(", $c{}_{} using 1:2 {}", p, c, with(panel.curves[c].style, panel.curves[c].x.size()));
+      const ChartCurve& curve = panel.curves[c];
+      if (std::none_of(curve.y.begin(), curve.y.end(), [](double y) { return std::isfinite(y); })) continue;
+      plots += fmt::format(", $c{}_{} using 1:2 with lines {} title {}", p, c, line(curve.style),
+                           quoted(fmt::format("curve|{}|{}|{}", p, curve.name, curve.formulation)));
     }
     figure.add("plot {}\n", plots);
     if (p == 0) figure.add("unset object\n");
   }
   figure.add("unset multiplot\nunset output\n");
   run_gnuplot(figure.script(), file);
+  if (format == PlotFormat::svg) add_read_out(chart, boxes, file);
 }
 
 void Table::add(std::string name, std::string unit, std::string long_name, std::vector<double> values) {

@@ -67,6 +67,10 @@ class Sketch {
   void text(const std::string& content, Point p, const char* anchor = "center", double size = 7.5) {
     figure_.text(content, size, fmt::format("{:.6g},{:.6g} {}", p.x, p.y, anchor));
   }
+  /// With gnuplot's marks for italics and subscripts.
+  void symbols(const std::string& content, Point p, const char* anchor = "center", double size = 7.5) {
+    figure_.symbols(content, size, fmt::format("{:.6g},{:.6g} {}", p.x, p.y, anchor));
+  }
   void dimension(Point a, Point b, const std::string& name, Point at, const char* anchor = "center") {
     line(a, b, 0.6, "#404040", "1", "heads filled size screen 0.015,18");
     text(name, at, anchor);
@@ -130,20 +134,22 @@ void draw_mechanism(const SliderCrank<double>& crank, bool springs, PlotFormat f
   for (int n = 0; n <= 20; ++n)
     arc.push_back({0.75 * r * std::cos(theta * n / 20), 0.75 * r * std::sin(theta * n / 20)});
   s.path(arc, 0.7, "#202020");
-  s.text("θ", {0.95 * r * std::cos(0.45 * theta), 0.95 * r * std::sin(0.45 * theta)});
+  s.symbols("{/:Italic θ}", {0.95 * r * std::cos(0.45 * theta), 0.95 * r * std::sin(0.45 * theta)});
   const double beta = stroke_angle(crank_kinematics(crank, std::sin(theta), std::cos(theta)));
   arc.clear();
   for (int n = 0; n <= 20; ++n) {
     arc.push_back({p.hinge[0].x + 2.2 * H * std::cos(beta * n / 20), p.hinge[0].y - 2.2 * H * std::sin(beta * n / 20)});
   }
   s.path(arc, 0.7, "#202020");
-  s.text("β", {p.hinge[0].x + 2.45 * H * std::cos(0.5 * beta), p.hinge[0].y - 2.45 * H * std::sin(0.5 * beta)});
+  s.symbols("{/:Italic β}",
+            {p.hinge[0].x + 2.45 * H * std::cos(0.5 * beta), p.hinge[0].y - 2.45 * H * std::sin(0.5 * beta)});
   // Names and sizes.
   s.text("crank and motor", {-1.35 * r, -0.25 * H}, "right", 7.0);
-  s.text(fmt::format("r_c = {:.4g} mm", r), {-1.35 * r, -0.25 * H - 0.62 * H}, "right", 7.0);
-  s.text(fmt::format("rod, l = {:.4g} mm", mm * crank.rod_length),
-         {0.5 * (p.pin.x + p.slider.x) + 0.3 * H, 0.5 * (p.pin.y + p.slider.y)}, "left", 7.0);
-  s.text("F", {0.25 * p.pin.x + 0.75 * p.slider.x - 0.45 * H, 0.25 * p.pin.y + 0.75 * p.slider.y}, "center", 8.0);
+  s.symbols(fmt::format("{{/:Italic r}}_c = {:.4g} mm", r), {-1.35 * r, -0.25 * H - 0.62 * H}, "right", 7.0);
+  s.symbols(fmt::format("rod, {{/:Italic l}} = {:.4g} mm", mm * crank.rod_length),
+            {0.5 * (p.pin.x + p.slider.x) + 0.3 * H, 0.5 * (p.pin.y + p.slider.y)}, "left", 7.0);
+  s.symbols("{/:Italic F}", {0.25 * p.pin.x + 0.75 * p.slider.x - 0.45 * H, 0.25 * p.pin.y + 0.75 * p.slider.y},
+            "center", 8.0);
   {
     const Point a{0.4 * p.pin.x + 0.6 * p.slider.x - 0.2 * H, 0.4 * p.pin.y + 0.6 * p.slider.y};
     const double dx = p.slider.x - p.pin.x, dy = p.slider.y - p.pin.y, d = std::hypot(dx, dy);
@@ -152,10 +158,10 @@ void draw_mechanism(const SliderCrank<double>& crank, bool springs, PlotFormat f
   const double up = high - 0.55 * H;
   s.line({H, y0 + 0.3 * H}, {H, up + 0.15 * H}, 0.5, grey);
   s.dimension({0, up}, {H, up}, "", {0, 0});
-  s.text(fmt::format("H = {:.4g} mm", H), {1.15 * H, up}, "left", 7.0);
+  s.symbols(fmt::format("{{/:Italic H}} = {:.4g} mm", H), {1.15 * H, up}, "left", 7.0);
   s.text("slider on its guide", {-0.35 * H, up}, "right", 7.0);
-  s.text(springs ? "hinge with spring k" : "wing hinge", {-1.55 * H, y0 - 0.95 * H - (springs ? 0.1 * H : 0.0)},
-         "center", 7.0);
+  s.symbols(springs ? "hinge with spring {/:Italic k}" : "wing hinge",
+            {-1.55 * H, y0 - 0.95 * H - (springs ? 0.1 * H : 0.0)}, "center", 7.0);
   s.text("wing (cut)", {p.tip[0].x - 0.9 * H, p.tip[0].y - 0.3 * H}, "center", 7.0);
   s.draw(file);
 }
@@ -248,8 +254,8 @@ std::vector<Sheet> mechanism_sheets(const Material& m) {
                   "The motor turns the crank; rod and slider swing the wings about their hinges by {:.1f} deg to "
                   "either side. The rod force F (crank reaction force in the paper) loads the joints: their friction "
                   "torque "
-                  "is mu r_e |F| with "
-                  "mu r_e = {:.4g} mm.",
+                  "is µ rₑ |F| with "
+                  "µ rₑ = {:.4g} mm.",
                   degrees_per_radian * drawn_angle, degrees_per_radian * stroke_amplitude(crank),
                   1e3 * design.friction.coefficient);
     const CycleCase* cycle = cycle_of(m.computed.at_frequency, Formulation::rod_force, springs);

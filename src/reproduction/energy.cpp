@@ -83,40 +83,42 @@ void draw_flows(const std::vector<FlowCase>& cases, PlotFormat format, const std
     const auto leave = [&](const std::string& name, double power, const char* fill, double at, const char* colour) {
       // A formulation may also add power; there is no band for less than nothing.
       const double width = std::max(power, 0.0) * per_watt;
-      band(x, at, top, remaining, "#9fb8cc");
+      band(x, at, top, remaining, "#d0d0d0");
       x = at;
       if (width > 0.0015) {
-        band(x - 0.0005, x, top, remaining, "#9fb8cc");
+        band(x - 0.0005, x, top, remaining, "#d0d0d0");
         bend(figure, object, x, top - remaining + width, width, floor + 0.22, fill);
       }
       const double middle = x + 0.06 + 0.5 * width;
-      figure.text(name, 6.5, fmt::format("{:.4f},{:.4f} center textcolor rgb '{}'", middle, floor, colour));
-      figure.text(shown(power), 6.5, fmt::format("{:.4f},{:.4f} center", middle, floor - 0.13));
-      figure.text(share(power), 6.5, fmt::format("{:.4f},{:.4f} center", middle, floor - 0.26));
+      figure.text(name, style::text_size,
+                  fmt::format("{:.4f},{:.4f} center textcolor rgb '{}'", middle, floor, colour));
+      figure.text(shown(power), style::text_size, fmt::format("{:.4f},{:.4f} center", middle, floor - 0.13));
+      figure.text(share(power), style::text_size, fmt::format("{:.4f},{:.4f} center", middle, floor - 0.26));
       remaining -= width;
     };
-    leave(f.motor[0].name, f.motor[0].power, "#d55e00", 0.62, "#a04600");
-    leave(f.motor[1].name, f.motor[1].power, "#e6b800", 1.52, "#7a6200");
-    leave(f.transmission[0].name, f.transmission[0].power, "#56b4e9", 2.12, "#1f6f9c");
+    leave(f.motor[0].name, f.motor[0].power, style::copper, 0.62, "#7a5300");
+    leave(f.motor[1].name, f.motor[1].power, style::viscous, 1.52, "#6b6000");
+    leave(f.transmission[0].name, f.transmission[0].power, style::friction, 2.12, "#8f3d6e");
     if (std::abs(f.transmission[1].power) > 1e-4 * f.supply) {
-      leave(f.transmission[1].name, f.transmission[1].power, "#a0a0a0", 2.78, "#505050");
+      leave(f.transmission[1].name, f.transmission[1].power, style::residual, 2.78, "#505050");
     }
     const double tip = 3.08;
-    band(x, tip - 0.1, top, remaining, "#9fb8cc");
+    band(x, tip - 0.1, top, remaining, "#d0d0d0");
     figure.add(
         "set object {} polygon from {:.5f},{:.5f} to {:.5f},{:.5f} to {:.5f},{:.5f} to {:.5f},{:.5f} front fillcolor "
-        "rgb '#00507c' "
+        "rgb '#56b4e9' "
         "fillstyle solid noborder\n",
         ++object, tip - 0.1, top + 0.03, tip + 0.02, top - 0.5 * remaining, tip - 0.1, top - remaining - 0.03,
         tip - 0.1, top + 0.03);
     figure.text("supply", 7.0, fmt::format("0.09,{:.4f} left", top - 0.1));
     figure.text(shown(f.supply), 7.0, fmt::format("0.09,{:.4f} left", top - 0.23));
-    figure.text("motor output", 6.5, fmt::format("1.86,{:.4f} center", top + 0.16));
-    figure.text(shown(f.motor_output), 6.5, fmt::format("1.86,{:.4f} center", top + 0.06));
-    figure.text("air", 7.0, fmt::format("3.13,{:.4f} left textcolor rgb '#00507c'", top - 0.5 * remaining + 0.13));
-    figure.text(fmt::format("{:.1f}", 1e3 * f.air), 6.5, fmt::format("3.13,{:.4f} left", top - 0.5 * remaining));
-    figure.text("mW", 6.5, fmt::format("3.13,{:.4f} left", top - 0.5 * remaining - 0.12));
-    figure.text(share(f.air), 6.5, fmt::format("3.13,{:.4f} left", top - 0.5 * remaining - 0.24));
+    figure.text("motor output", style::text_size, fmt::format("1.86,{:.4f} center", top + 0.16));
+    figure.text(shown(f.motor_output), style::text_size, fmt::format("1.86,{:.4f} center", top + 0.06));
+    figure.text("air", 7.0, fmt::format("3.13,{:.4f} left textcolor rgb '#1f6f9c'", top - 0.5 * remaining + 0.13));
+    figure.text(fmt::format("{:.1f}", 1e3 * f.air), style::text_size,
+                fmt::format("3.13,{:.4f} left", top - 0.5 * remaining));
+    figure.text("mW", style::text_size, fmt::format("3.13,{:.4f} left", top - 0.5 * remaining - 0.12));
+    figure.text(share(f.air), style::text_size, fmt::format("3.13,{:.4f} left", top - 0.5 * remaining - 0.24));
   }
   figure.add("plot NaN\nunset output\n");
   run_gnuplot(figure.script(), file);
@@ -156,7 +158,7 @@ std::vector<Sheet> energy_sheets(const Material& m) {
     s.caption = fmt::format(
         "Mean powers of a cycle, bands to the same scale. Springs save {:.1f} mW of input: {:.1f} mW less copper loss, "
         "{:.1f} mW less "
-        "friction. The air gets {:.1f} mW without springs and {:.1f} mW with them. {}",
+        "friction. The aerodynamic power is {:.1f} mW without springs and {:.1f} mW with them. {}",
         1e3 * (off.supply - on.supply), 1e3 * (off.motor[0].power - on.motor[0].power),
         1e3 * (off.transmission[0].power - on.transmission[0].power), 1e3 * off.air, 1e3 * on.air,
         formulation == Formulation::rod_force ? "The formulation residual is what the paper's equation (1) as "
@@ -174,10 +176,6 @@ std::vector<Sheet> energy_sheets(const Material& m) {
     s.section = "energy";
     const auto& rows = c->run.cycle;
     std::vector<double> time, electrical, output, aero, stored, ms;
-    const auto scaled = [](std::vector<double> x) {
-      for (double& v : x) v *= 1e3;
-      return x;
-    };
     double stored_sum = 0.0, returned_sum = 0.0;
     for (std::size_t n = 0; n < rows.size(); ++n) {
       time.push_back(rows[n].time - rows.front().time);
@@ -203,22 +201,30 @@ std::vector<Sheet> energy_sheets(const Material& m) {
         on ? "With springs less of it passes through the rod and its joints, whose friction grows with the force."
            : "Without springs all of it passes through the rod twice in each cycle, with a friction loss each time.");
     Chart chart;
-    chart.x = "time (ms)";
+    chart.x = "time since stroke reversal (ms)";
     chart.panel_height = 2.3;
-    const CurveStyle supply{"#000000", "(3,3)", 0}, motor{"#d55e00", "(12,6)", 4}, air{"#0072b2", "1", 7};
+    const CurveStyle supply{style::ink}, motor{style::grey, style::dashed}, air{style::aerodynamic};
+    constexpr const char *into = "#c8c8c8", *out_of = "#ececec";
     chart.key = {{"electrical input", supply},
                  {"motor output", motor},
                  {"aerodynamic", air},
-                 {"stored in wings and springs", {}, "#b9ddb9"},
-                 {"returned", {}, "#f3c9a5"}};
+                 {"stored in wings and springs", {}, into},
+                 {"returned", {}, out_of}};
     ChartPanel panel;
     panel.y = "power (mW)";
-    const std::vector<double> t_ms = scaled(time);
-    panel.areas.push_back({t_ms, scaled(stored), "#b9ddb9", "#f3c9a5"});
-    panel.curves = {{t_ms, scaled(stored), {"#909090", "1", 0, 0.4}},
-                    {t_ms, scaled(electrical), supply},
-                    {t_ms, scaled(output), motor},
-                    {t_ms, scaled(aero), air}};
+    const std::vector<style::Phase> order = style::phases(rows);
+    std::vector<double> t_ms;
+    for (const style::Phase& at : order) t_ms.push_back(1e3 * at.periods * time.back());
+    const auto drawn = [&](const std::vector<double>& watt) {
+      std::vector<double> y;
+      for (const style::Phase& at : order) y.push_back(1e3 * watt[at.row]);
+      return y;
+    };
+    panel.areas.push_back({t_ms, drawn(stored), into, out_of});
+    panel.curves = {{t_ms, drawn(stored), {style::grey, style::solid, style::thin_width}, "stored"},
+                    {t_ms, drawn(electrical), supply, "electrical input"},
+                    {t_ms, drawn(output), motor, "motor output"},
+                    {t_ms, drawn(aero), air, "aerodynamic"}};
     chart.panels.push_back(std::move(panel));
     s.draw = [chart](PlotFormat format, const std::filesystem::path& file) { reproduction::draw(chart, format, file); };
     sheets.push_back(std::move(s));

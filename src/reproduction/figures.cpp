@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <functional>
+#include <utility>
 
 #include "wingbeat/core/text.hpp"
 
@@ -12,12 +14,13 @@ namespace {
 
 using enum Formulation;
 
-/// One quantity of the four cycles over the fraction of the period.
+/// One quantity of the four cycles over the fraction of the period; `mark` adds published values.
 Sheet cycle_sheet(int number, const std::vector<CycleCase>& cycles, double WaveformRow::* value, double scale,
-                  const char* name, const char* unit, std::string label, std::string what) {
+                  const char* name, const char* unit, std::string label, std::string what,
+                  const std::function<void(ChartPanel&)>& mark) {
   Sheet s = sheet(number, std::move(what), "cycles");
   Chart chart;
-  chart.x = "time / period (1)";
+  chart.x = "time since stroke reversal / period";
   chart.key = springs_key();
   chart.panel_height = 1.9;
   ChartPanel panel;
@@ -25,12 +28,16 @@ Sheet cycle_sheet(int number, const std::vector<CycleCase>& cycles, double Wavef
   for (const CycleCase& c : cycles) {
     if (c.run.cycle.empty()) continue;
     const auto& rows = c.run.cycle;
-    std::vector<double> fraction, time, angle, y;
+    std::vector<double> fraction, time, angle, y, periods, drawn;
     for (const WaveformRow& row : rows) {
       fraction.push_back((row.time - rows.front().time) / (rows.back().time - rows.front().time));
       time.push_back(row.time);
       angle.push_back(row.crank_angle);
       y.push_back(row.*value);
+    }
+    for (const auto& [row, phase] : style::phases(rows)) {
+      periods.push_back(phase);
+      drawn.push_back(scale * y[row]);
     }
     const std::string which =
         fmt::format("{}_{}", springs_name(c.of.springs), detail::underscored(wingbeat::name_of(c.of.formulation)));
@@ -41,11 +48,24 @@ Sheet cycle_sheet(int number, const std::vector<CycleCase>& cycles, double Wavef
     s.table.add("time_s_" + which, "s", "time since crank angle zero, " + words, time);
     s.table.add("crank_angle_rad_" + which, "rad", "crank angle, " + words, angle);
     s.table.add(fmt::format("{}_{}", name, which), unit, fmt::format("{}, {}", name, words), y);
-    panel.curves.push_back({fraction, scaled(y, scale), style_of(c.of, false)});
+    panel.curves.push_back({periods, drawn, style_of(c.of, false), words, wingbeat::name_of(c.of.formulation)});
   }
+  mark(panel);
   chart.panels.push_back(std::move(panel));
   finish(s, std::move(chart));
   return s;
+}
+
+/// Where a cycle has its greatest magnitude (or its highest value), as drawn: periods since stroke reversal and value.
+std::pair<double, double> peak_of(const std::vector<CycleCase>& cycles, bool springs, double WaveformRow::* value) {
+  const CycleCase* c = cycle_of(cycles, rod_force, springs);
+  std::pair<double, double> peak{absent, 0.0};
+  if (!c) return peak;
+  for (const auto& [row, phase] : style::phases(c->run.cycle)) {
+    const double y = c->run.cycle[row].*value;
+    if (std::abs(y) > std::abs(peak.second)) peak = {phase, y};
+  }
+  return peak;
 }
 
 }  // namespace
@@ -59,19 +79,29 @@ std::vector<Sheet> paper_sheets(const Material& m) {
       empty{rod_force, false, Condition::vacuum}, bare{rod_force, false, Condition::wingless};
   const auto by_condition = [](const TrendCurve& c) { return !c.of.springs; };
   const auto by_springs = [](const TrendCurve& c) { return c.of.condition == Condition::air; };
-  const auto condition_style = [](const TrendCurve& c) { return std::optional(style_of(c.of, true)); };
-  const auto springs_style = [](const TrendCurve& c) { return std::optional(style_of(c.of, false)); };
+  const auto condition_style = [](const TrendCurve& c) { return style_of(c.of, true); };
+  const auto springs_style = [](const TrendCurve& c) { return style_of(c.of, false); };
+  const auto condition_name = [](const TrendCurve& c) {
+    return c.of.formulation == rod_force ? condition_label(c.of.condition) : "";
+  };
+  const auto springs_name = [](const TrendCurve& c) {
+    return c.of.formulation == rod_force ? springs_label(c.of.springs) : "";
+  };
+  const auto& j = m.assessment;
 
   const auto frequency_sheet = [&](int number, std::string what, bool conditions, std::string caption,
-                                   const std::vector<std::tuple<Metric, const char*, const char*>>& panels) {
+                                   const std::vector<std::tuple<Metric, const char*, const char*>>& panels,
+                                   const std::function<void(std::vector<ChartPanel>&)>& mark = {}) {
     Sheet s = sheet(number, std::move(what), conditions ? "conditions" : "springs");
     TrendFigure figure(frequency_axis(r), 1.0, frequency_label);
-    figure.chart().key = conditions ? condition_key() : springs_key();
-    figure.chart().panel_height = panels.size() == 1 ? 1.9 : panels.size() == 2 ? 1.5 : 1.15;
+    figure.chart().key = formulation_key();
+    figure.chart().panel_height = panels.size() == 1 ? 1.9 : 1.5;
+    figure.chart().columns = panels.size() < 4 ? 1 : 2;
     for (const auto& [metric, label, title] : panels) {
-      if (conditions) figure.panel(f, metric, label, title, by_condition, condition_style);
-      else figure.panel(f, metric, label, title, by_springs, springs_style);
+      if (conditions) figure.panel(f, metric, label, title, by_condition, condition_style, condition_name);
+      else figure.panel(f, metric, label, title, by_springs, springs_style, springs_name);
     }
+    if (mark) mark(figure.chart().panels);
     s.caption = std::move(caption);
     figure.into(s);
     sheets.push_back(std::move(s));
@@ -90,7 +120,8 @@ std::vector<Sheet> paper_sheets(const Material& m) {
       4, "Electrical input power in air, in vacuum and without wings", true,
       three(Metric::power_electrical) +
           " (rod-force, no springs). Most of the input is spent in the motor and the mechanism, even without air. "
-          "Virtual-work (thin) needs less in air and vacuum; without wings the formulations are the same. The paper's "
+          "By virtual-work (dashed) it is lower in air and in vacuum; without wings the formulations are the same. The "
+          "paper's "
           "curves are not available numerically.",
       {{Metric::power_electrical, "electrical input power (mW)", ""}});
   frequency_sheet(5, "Motor output power as a test bench estimates it (eq 17)", true,
@@ -101,11 +132,12 @@ std::vector<Sheet> paper_sheets(const Material& m) {
   Sheet lift = sheet(6, "Mean lift against flapping frequency", "conditions");
   {
     TrendFigure figure(frequency_axis(r), 1.0, frequency_label);
-    figure.chart().key = {{"without springs", springs_off}, {"thin: virtual-work", plain_thin}};
+    figure.chart().key = formulation_key();
     figure.chart().panel_height = 1.9;
     figure.panel(
         f, Metric::lift_mean, "mean lift (mN)", "",
-        [](const TrendCurve& c) { return c.of.condition == Condition::air && !c.of.springs; }, springs_style);
+        [](const TrendCurve& c) { return c.of.condition == Condition::air && !c.of.springs; }, springs_style,
+        springs_name);
     const double a = at(f, off, Metric::lift_mean, 10.0), b = at(f, off, Metric::lift_mean, 20.0);
     lift.caption = fmt::format(
         "In air, without springs. From 10 to 20 Hz the mean lift grows {:.2f}-fold, more than the square of the "
@@ -116,9 +148,10 @@ std::vector<Sheet> paper_sheets(const Material& m) {
     sheets.push_back(std::move(lift));
   }
   frequency_sheet(
-      7, "(a) Input power and total loss, (b) motor output and friction loss", true,
+      7, "Input power, total loss, motor output and friction loss", true,
       fmt::format(
-          "(a) In air the loss is {:.0f} % of the input at {:g} Hz; in vacuum and without wings all of it. (b) "
+          "Panels a and b are (a) of the paper, c and d (b). In air the loss is {:.0f} % of the input at {:g} Hz; "
+          "in vacuum and without wings all of it. "
           "Friction takes {} of {} motor output in air, {} of {} in vacuum: it follows the inertial load at stroke "
           "reversal, which does not depend on air. The paper says that motor output minus friction equals the "
           "aerodynamic power; ratio at {:g} Hz: {}. The difference by rod-force is its formulation residual.",
@@ -126,10 +159,10 @@ std::vector<Sheet> paper_sheets(const Material& m) {
           mw(value(off, Metric::power_friction)), mw(value(off, Metric::power_motor)),
           mw(value(empty, Metric::power_friction)), mw(value(empty, Metric::power_motor)), f0,
           beside(m.assessment, "motor output minus friction")),
-      {{Metric::power_electrical, "power (mW)", "(a) electrical input"},
-       {Metric::power_loss, "power (mW)", "(a) total loss"},
-       {Metric::power_motor, "power (mW)", "(b) motor output"},
-       {Metric::power_friction, "power (mW)", "(b) friction loss"}});
+      {{Metric::power_electrical, "power (mW)", "electrical input"},
+       {Metric::power_loss, "power (mW)", "total loss"},
+       {Metric::power_motor, "power (mW)", "motor output"},
+       {Metric::power_friction, "power (mW)", "friction loss"}});
   frequency_sheet(
       9, "Input and motor output power with and without springs", false,
       two(Metric::power_electrical) +
@@ -138,7 +171,12 @@ std::vector<Sheet> paper_sheets(const Material& m) {
               "{:g} Hz: {}.",
               beside(m.assessment, "springs raise"), f0, beside(m.assessment, "mean electrical input power, ratio")),
       {{Metric::power_electrical, "power (mW)", "electrical input"},
-       {Metric::power_motor, "power (mW)", "motor output"}});
+       {Metric::power_motor, "power (mW)", "motor output"}},
+      [&](std::vector<ChartPanel>& panels) {
+        mark_published(panels[0], j, "mean electrical input power, ratio", style::with_springs,
+                       [&](double ratio) { return std::pair(f0, 1e3 * ratio * value(off, Metric::power_electrical)); });
+        mark_published(panels[0], j, "springs raise", style::ink, [](double hz) { return std::pair(hz, absent); });
+      });
   {
     // The last frequency at which springs add.
     const TrendCurve &with = curve_of(f, on), &without = curve_of(f, off);
@@ -152,13 +190,18 @@ std::vector<Sheet> paper_sheets(const Material& m) {
       break;
     }
     frequency_sheet(10, "Mean absolute reactive power with and without springs", false,
-                    two(Metric::power_reactive) + "." + said, {{Metric::power_reactive, "reactive power (mW)", ""}});
+                    two(Metric::power_reactive) + "." + said, {{Metric::power_reactive, "reactive power (mW)", ""}},
+                    [&](std::vector<ChartPanel>& panels) {
+                      mark_published(panels[0], j, "with springs the mean absolute reactive power", style::with_springs,
+                                     [](double hz) { return std::pair(hz, absent); });
+                    });
   }
   frequency_sheet(
       11, "Losses with and without springs", false,
       fmt::format(
           "All losses at {:g} Hz: {} without springs, {} with. Friction falls from {} to {}, and the copper loss "
-          "from {} to {}: less friction torque needs less current. The motor viscous loss depends on speed alone and "
+          "from {} to {}: a lower friction torque takes a lower current. The motor viscous loss depends on "
+          "speed alone and "
           "is "
           "almost unaffected by the springs.",
           f0, mw(value(off, Metric::power_loss)), mw(value(on, Metric::power_loss)),
@@ -169,49 +212,99 @@ std::vector<Sheet> paper_sheets(const Material& m) {
        {Metric::power_friction, "power (mW)", "friction"},
        {Metric::power_viscous, "power (mW)", "motor viscous loss"}});
   frequency_sheet(
-      12, "Efficiency: (a) system, (b) motor and mechanism, with and without springs", false,
+      12, "Efficiency of system, motor and mechanism, with and without springs", false,
       fmt::format(
-          "Frequency of maximum system efficiency with springs: {}. Of maximum mechanism efficiency: {}. Gain of the "
+          "Panel a is (a) of the paper, b and c are (b). Frequency of maximum system efficiency with springs: {}. "
+          "Of maximum mechanism efficiency: {}. Gain of the "
           "system at {:g} Hz: {}. The motor efficiency is almost unaffected by the springs; at 3 V without springs: "
           "{}.",
           beside(m.assessment, "with springs the system"), beside(m.assessment, "with springs the mechanism"), f0,
           beside(m.assessment, "gain in system efficiency"), beside(m.assessment, "motor efficiency in the flapper")),
-      {{Metric::efficiency_system, "efficiency (%)", "(a) system"},
-       {Metric::efficiency_motor, "efficiency (%)", "(b) motor"},
-       {Metric::efficiency_mechanism, "efficiency (%)", "(b) mechanism"}});
+      {{Metric::efficiency_system, "efficiency (%)", "system"},
+       {Metric::efficiency_motor, "efficiency (%)", "motor"},
+       {Metric::efficiency_mechanism, "efficiency (%)", "mechanism"}},
+      [&](std::vector<ChartPanel>& panels) {
+        const auto place = [](double hz) { return std::pair(hz, absent); };
+        mark_published(panels[0], j, "with springs the system efficiency is highest", style::with_springs, place);
+        mark_published(panels[2], j, "with springs the mechanism efficiency is highest", style::with_springs, place);
+        mark_published(panels[0], j, "gain in system efficiency", style::with_springs, [&](double gain) {
+          return std::pair(f0, 100.0 * (value(off, Metric::efficiency_system) + gain));
+        });
+        const Claim* at_3_volt = claim_of(j, "flapping frequency without springs at 3 V");
+        mark_published(panels[1], j, "motor efficiency in the flapper", style::without_springs, [&](double share) {
+          return std::pair(at_3_volt && at_3_volt->published ? *at_3_volt->published : absent, 100.0 * share);
+        });
+        for (const PublishedTrend& t : m.file.trends) {
+          if (t.kind != PublishedTrend::Kind::best_range || t.restates || !t.published || !t.published_end) continue;
+          const bool with = t.statement.find("with springs") != std::string::npos;
+          panels[0].spans.push_back(
+              {*t.published, *t.published_end, t.statement, with ? style::with_springs : style::without_springs});
+        }
+      });
   frequency_sheet(
       13, "Mean lift with and without springs", false,
       fmt::format("At prescribed frequency springs change the velocity profile, not the stroke amplitude: the wings "
                   "are faster in "
                   "mid-stroke. Ratio at {:g} Hz: {}.",
                   f0, beside(m.assessment, fmt::format("mean lift, ratio with / without springs at {:g} Hz", f0))),
-      {{Metric::lift_mean, "mean lift (mN)", ""}});
+      {{Metric::lift_mean, "mean lift (mN)", ""}}, [&](std::vector<ChartPanel>& panels) {
+        mark_published(panels[0], j, fmt::format("mean lift, ratio with / without springs at {:g} Hz", f0),
+                       style::with_springs,
+                       [&](double ratio) { return std::pair(f0, 1e3 * ratio * value(off, Metric::lift_mean)); });
+      });
 
   using R = WaveformRow;
-  const auto cycles = [&](int number, bool held, double R::* quantity, double scale, const char* name, const char* unit,
-                          std::string label, const char* what, const std::string& said) {
+  const auto cycles = [&](
+                          int number, bool held, double R::* quantity, double scale, const char* name, const char* unit,
+                          std::string label, const char* what, const std::string& said,
+                          const std::function<void(ChartPanel&)>& mark = [](ChartPanel&) {}) {
     Sheet s = cycle_sheet(number, held ? r.at_frequency : r.at_voltage, quantity, scale, name, unit, std::move(label),
                           fmt::format("{} over a cycle at {}", what,
-                                      held ? fmt::format("{:g} Hz", f0) : fmt::format("{:g} V", r.options.voltage)));
+                                      held ? fmt::format("{:g} Hz", f0) : fmt::format("{:g} V", r.options.voltage)),
+                          mark);
     s.caption = said;
     sheets.push_back(std::move(s));
   };
   const std::string hz = fmt::format("{:g} Hz", f0), v = fmt::format("{:g} V", r.options.voltage);
-  const auto& j = m.assessment;
+  // A published ratio of peaks stands where the computed peak is, over the computed peak without springs.
+  const auto ratio_of_peaks = [&](const std::vector<CycleCase>& of, const std::string& statement,
+                                  double R::* quantity) {
+    return [&, statement, quantity](ChartPanel& panel) {
+      mark_published(panel, j, statement, style::with_springs, [&](double ratio) {
+        return std::pair(peak_of(of, true, quantity).first, ratio * peak_of(of, false, quantity).second);
+      });
+    };
+  };
+  const auto peaks = [&](const std::string& begins, double R::* quantity) {
+    return [&, begins, quantity](ChartPanel& panel) {
+      for (const bool springs : {false, true}) {
+        const auto [phase, computed] = peak_of(r.at_frequency, springs, quantity);
+        mark_published(panel, j, fmt::format("{} {} springs at {}", begins, springs ? "with" : "without", hz),
+                       springs ? style::with_springs : style::without_springs,
+                       [&, at = phase, sign = computed](double newton) {
+                         return std::pair(at, std::copysign(1e3 * newton, sign));
+                       });
+      }
+    };
+  };
   cycles(14, true, &R::flapping_velocity, 1.0, "flapping_velocity_rad_per_s", "rad/s", "flapping velocity (rad/s)",
          "Flapping velocity",
          fmt::format("With springs the velocity's peaks are higher at the same frequency: springs accelerate the wings "
                      "after stroke reversal. Ratio of the peaks: {}.",
-                     beside(j, "peak flapping velocity, ratio with / without springs at " + hz)));
+                     beside(j, "peak flapping velocity, ratio with / without springs at " + hz)),
+         ratio_of_peaks(r.at_frequency, "peak flapping velocity, ratio with / without springs at " + hz,
+                        &R::flapping_velocity));
   cycles(15, true, &R::lift, 1e3, "lift_n", "N", "lift (mN)", "Lift",
          fmt::format("Two peaks, one for each half-stroke. Peak without springs: {}. With springs: {}.",
-                     beside(j, "peak lift without springs at " + hz), beside(j, "peak lift with springs at " + hz)));
+                     beside(j, "peak lift without springs at " + hz), beside(j, "peak lift with springs at " + hz)),
+         peaks("peak lift", &R::lift));
   cycles(16, true, &R::rod_force, 1e3, "rod_force_n", "N", "rod force (mN)", "Rod force",
          fmt::format("Springs carry part of the inertial load at stroke reversal. The paper calls the rod force the "
                      "crank reaction force. Peak magnitude without "
                      "springs: {}. With springs: {}.",
                      beside(j, "peak magnitude of the rod force without springs at " + hz),
-                     beside(j, "peak magnitude of the rod force with springs at " + hz)));
+                     beside(j, "peak magnitude of the rod force with springs at " + hz)),
+         peaks("peak magnitude of the rod force", &R::rod_force));
   const auto frequency_at = [&](bool springs) {
     const CycleCase* c = cycle_of(r.at_voltage, rod_force, springs);
     return c ? c->run.metrics[Metric::frequency] : absent;
@@ -225,7 +318,9 @@ std::vector<Sheet> paper_sheets(const Material& m) {
   cycles(18, false, &R::flapping_velocity, 1.0, "flapping_velocity_rad_per_s", "rad/s", "flapping velocity (rad/s)",
          "Flapping velocity",
          fmt::format("Ratio of the peaks, with / without springs: {}.",
-                     beside(j, "peak flapping velocity, ratio with / without springs at " + v)));
+                     beside(j, "peak flapping velocity, ratio with / without springs at " + v)),
+         ratio_of_peaks(r.at_voltage, "peak flapping velocity, ratio with / without springs at " + v,
+                        &R::flapping_velocity));
   cycles(19, false, &R::rod_force, 1e3, "rod_force_n", "N", "rod force (mN)", "Rod force",
          fmt::format(
              "The mean magnitude of the force falls although the wings beat faster, ratio with / without springs: {}.",

@@ -10,6 +10,13 @@ namespace wingbeat::reproduction {
 
 using detail::markup_escaped;
 
+/// Of the page: its style sheet, its script, and a drawing in colours that follow the page's theme.
+std::string page_style();
+std::string page_script();
+void use_page_colours(std::string& svg);
+
+/// The answer to the title question with its numbers.
+std::string answer_html(const Material& m);
 /// What the report says before any figure: how many predictions are met, what is not, errors of the paper, equation
 /// (1).
 std::string summary_html(const Material& m);
@@ -21,6 +28,9 @@ std::string readings_html(const Material& m);
 std::string claims_html(const Assessment& a);
 /// The title question.
 std::string question_html(const Material& m);
+
+/// What physics beyond the paper's model does to its conclusions.
+std::string further_html(const Material& m);
 
 /// The prediction of a friction law by a variant; nullptr where it was not asked for.
 const LawPrediction* law_of(const Assessment& a, FrictionLaw law, std::size_t variant);

@@ -11,11 +11,12 @@
 namespace wingbeat::reproduction {
 namespace {
 
-constexpr CurveStyle law_styles[] = {{"#000000", "(3,3)", 2},
-                                     {"#009e73", "(14,4,3,4)", 6},
-                                     {"#cc79a7", "(8,3)", 8},
-                                     {"#d55e00", "(12,6)", 4},
-                                     {"#0072b2", "1", 7}};
+// Load-independent laws in grey, told apart by dash; load-proportional friction in the colour of friction.
+constexpr CurveStyle law_styles[] = {{style::outside_domain, style::solid},
+                                     {style::grey, style::dashed},
+                                     {style::grey, style::dotted},
+                                     {style::grey, style::dash_dotted},
+                                     {style::friction, style::solid}};
 
 }  // namespace
 
@@ -27,8 +28,8 @@ std::vector<Sheet> friction_sheets(const Material& m) {
   s.heading = fmt::format("Friction loss and input power as springs are added, {:g} Hz", m.computed.options.frequency);
   s.section = "question";
   Chart chart;
-  chart.x = "spring stiffness / stiffness for resonance (1)";
-  chart.panel_height = 1.35;
+  chart.x = "spring stiffness / stiffness for resonance";
+  chart.panel_height = 1.5;
   ChartPanel force, loss, input;
   force.y = "mean |F| (mN)";
   force.title = "mean magnitude of the rod force";
@@ -64,9 +65,15 @@ std::vector<Sheet> friction_sheets(const Material& m) {
     s.table.add("power_electrical_w_" + which, "W", "mean electrical input power, " + words, e_si);
     if (!first) continue;
     chart.key.push_back({name_of(p.law.law), style});
-    force.curves.push_back({x, f, style});
-    loss.curves.push_back({x, l, style});
-    input.curves.push_back({x, e, style});
+    force.curves.push_back({x, f, style, name_of(p.law.law)});
+    loss.curves.push_back({x, l, style, name_of(p.law.law)});
+    input.curves.push_back({x, e, style, name_of(p.law.law)});
+    if (p.law.law != FrictionLaw::load_proportional) continue;
+    for (const Claim& c : m.assessment.claims) {
+      if (c.statement.rfind("mean electrical input power, ratio", 0) != 0 || !c.published) continue;
+      input.marks.push_back({1.0, e.front() * *c.published,
+                             fmt::format("published: {}, {}", c.statement, c.published_text), style::with_springs});
+    }
   }
   chart.panels = {force, loss, input};
   s.caption =

@@ -1,4 +1,4 @@
-// report.html: everything in one file that needs neither network nor script.
+// report.html: everything in one file that needs no network, and no script to be read.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,52 +8,6 @@
 
 namespace wingbeat::reproduction {
 namespace {
-
-constexpr const char* style = R"(
-:root { --ink: #1a1a1a; --soft: #595959; --line: #d4d4d4; --accent: #00507c; }
-* { box-sizing: border-box; }
-body { margin: 0 auto; padding: 2rem 1.25rem 4rem; max-width: 68rem; color: var(--ink); background: #fff;
-  font: 16px/1.55 Georgia, "Times New Roman", serif; }
-h1 { font-size: 1.9rem; line-height: 1.2; margin: 0 0 .4rem; }
-h2 { font-size: 1.35rem; margin: 2.8rem 0 .6rem; padding-top: .6rem; border-top: 2px solid var(--accent); }
-h3 { font-size: 1.05rem; margin: 1.6rem 0 .4rem; }
-p, ul, ol { max-width: 46rem; }
-.lead { color: var(--soft); }
-nav ol { columns: 2; padding-left: 1.4rem; }
-a { color: var(--accent); }
-.figures { display: grid;
-  grid-template-columns: repeat(auto-fill, minmax(min(100%, 26rem), 1fr)); gap: 1.6rem 2rem; align-items: start; }
-figure { margin: 0; }
-figure svg { width: 100%; height: auto; display: block; border: 1px solid var(--line); }
-figcaption { font-size: .87rem; line-height: 1.45; margin-top: .45rem; }
-figcaption b { display: block; }
-.files { color: var(--soft); }
-.wide { overflow-x: auto; }
-table { border-collapse: collapse; font: .82rem/1.4 Arial, Helvetica, sans-serif; margin: .8rem 0 1.2rem; }
-th, td { text-align: left; vertical-align: top; padding: .28rem .6rem; border-bottom: 1px solid var(--line); }
-thead th { border-bottom: 2px solid var(--ink); }
-td:first-child { min-width: 13rem; }
-table.laws { font-size: .78rem; }
-table.laws td.n { white-space: normal; min-width: 5.2rem; }
-th.group { background: #eef3f6; padding-top: .5rem; }
-td.n { text-align: right; white-space: nowrap; }
-.v { white-space: nowrap; }
-.yes::before { content: "\25CF  "; color: #007a5a; }
-.no::before { content: "\25CB  "; color: #b03a00; }
-.part::before { content: "\25D0  "; color: #7a5c00; }
-.erratum { color: #a02c00; }
-table.claims { font-size: .76rem; }
-pre { background: #f5f5f5; border: 1px solid var(--line); padding: .7rem .9rem; overflow-x: auto; font-size: .85rem;
-  line-height: 1.4; }
-code { font-size: .9em; }
-@media print { body { max-width: none; padding: 0; font-size: 10pt; } h2 { break-after: avoid; }
-  figure, tr { break-inside: avoid; }
-  .figures { grid-template-columns: 1fr 1fr; }
-  nav { display: none; }
-  .wide { overflow: visible; } table, table.laws { width: 100%; font-size: 6.6pt; }
-  th, td { padding: .2rem .3rem; } td:first-child { min-width: 9rem; }
-  td.n, table.laws td.n, .v { white-space: normal; min-width: 0; } pre { white-space: pre-wrap; } }
-)";
 
 void replace_all(std::string& text, std::string_view from, std::string_view to) {
   for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
@@ -70,10 +24,21 @@ std::string inlined(std::string svg, const std::string& id, const std::string& t
     replace_all(svg, fmt::format("href={}#", quote), fmt::format("href={}#{}", quote, mark));
   }
   replace_all(svg, "url(#", fmt::format("url(#{}", mark));
-  replace_all(svg, "<title>Gnuplot</title>", fmt::format("<title>{}</title>", markup_escaped(title)));
-  const auto desc = svg.find("<desc>"), end = svg.find("</desc>");
-  if (desc != std::string::npos && end != std::string::npos) svg.erase(desc, end + 7 - desc);
+  // Named for screen readers; a title would also be a tooltip over the read-out.
+  const auto open = svg.find("<svg ");
+  if (open != std::string::npos)
+    svg.insert(open + 5, fmt::format("role=\"img\" aria-label=\"{}\" ", markup_escaped(title)));
+  use_page_colours(svg);
   return svg;
+}
+
+/// Links to a figure's files beside the report.
+std::string links(const std::string& id) {
+  std::string text;
+  for (const char* extension : {"svg", "pdf", "csv", "nc"}) {
+    text += fmt::format("{}<a href=\"{}.{}\">{}</a>", text.empty() ? "" : " ", id, extension, extension);
+  }
+  return text;
 }
 
 }  // namespace
@@ -87,30 +52,34 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
     html += "<div class=\"figures\">\n";
     for (const Sheet& s : sheets) {
       if (s.section != section) continue;
+      const bool one_formulation = s.id.find("virtual-work") != std::string::npos;
       fmt::format_to(out,
-                     "<figure id=\"{0}\">{1}<figcaption><b>{2}</b> {3} <span class=\"files\">Files: {0} .svg .pdf .csv "
-                     ".nc</span></figcaption></figure>\n",
+                     "<figure id=\"{0}\"{5}{6}><div class=\"drawing\">{1}</div><figcaption><b>{2}</b> {3} <span "
+                     "class=\"files\">Files: {4}</span></figcaption></figure>\n",
                      s.id, inlined(svg_of(s), s.id + "-drawing", s.heading), markup_escaped(s.heading),
-                     markup_escaped(s.caption));
+                     markup_escaped(s.caption), links(s.id), s.wide ? " class=\"page\"" : "",
+                     one_formulation ? " data-formulation=\"virtual-work\"" : "");
       if (!s.animation.empty()) {
         fmt::format_to(out,
-                       "<figure>{}<figcaption><b>Animation.</b> One computed cycle, repeated: the crank speed "
+                       "<figure><div class=\"drawing\">{0}</div><figcaption><b>Animation.</b> "
+                       "One computed cycle, repeated: the crank speed "
                        "is not constant. "
-                       "<span class=\"files\">File: {}-moving.svg</span></figcaption></figure>\n",
+                       "<span class=\"files\">File: <a href=\"{1}-moving.svg\">svg</a></span></figcaption></figure>\n",
                        inlined(s.animation, s.id + "-moving", s.heading), s.id);
       }
     }
     html += "</div>\n";
   };
-  const std::pair<const char*, const char*> sections[] = {{"summary", "Summary"},
+  const std::pair<const char*, const char*> sections[] = {{"summary", "The answer"},
+                                                          {"question", "Should friction losses be included?"},
+                                                          {"further", "What more physics does to the conclusions"},
                                                           {"vehicle", "The vehicle"},
                                                           {"conditions", "Air, vacuum, no wings (figures 4 to 7)"},
                                                           {"springs", "With and without springs (figures 9 to 13)"},
                                                           {"cycles", "Over a cycle (figures 14 to 19)"},
                                                           {"section5", "Section 5 in two readings (figures 20 to 22)"},
-                                                          {"claims", "Reproducibility assessment"},
-                                                          {"question", "Should friction losses be included?"},
                                                           {"energy", "Where the energy goes"},
+                                                          {"claims", "Reproducibility assessment: every statement"},
                                                           {"how", "How each number was computed"}};
   const auto begin = [&](const char* id) {
     for (std::size_t n = 0; n < std::size(sections); ++n) {
@@ -129,14 +98,26 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
       "href=\"data:,\">\n<style>{}</style></head>\n<body>\n<header>\n"
       "<h1>The 2022 friction paper: a reproducibility assessment</h1>\n<p class=\"lead\">{}. Made by wingbeat {} with "
       "<code>wingbeat reproduce friction2022</code>{}.</p>\n</header>\n<nav><ol>\n",
-      style, markup_escaped(m.file.source), version, m.computed.options.coarse ? ", coarse setting" : "");
+      page_style(), markup_escaped(m.file.source), version, m.computed.options.coarse ? ", coarse setting" : "");
   for (const auto& [id, name] : sections) fmt::format_to(out, "<li><a href=\"#{}\">{}</a></li>\n", id, name);
-  html += "</ol></nav>\n<main>\n";
+  html +=
+      "</ol></nav>\n<div class=\"tools\" hidden>Formulation in figures: <button value=\"\" aria-pressed=\"true\">both"
+      "</button><button value=\"rod-force\" aria-pressed=\"false\">rod-force</button><button "
+      "value=\"virtual-work\" aria-pressed=\"false\">virtual-work</button></div>\n<main>\n";
 
   begin("summary");
+  html += answer_html(m);
+  figures("summary");
   html += summary_html(m);
   end();
-
+  begin("question");
+  html += question_html(m);
+  figures("question");
+  end();
+  begin("further");
+  html += further_html(m);
+  figures("further");
+  end();
   begin("vehicle");
   html +=
       "<p>A geared DC motor turns a crank; a rod moves a slider up and down its guide; the slider swings two wings "
@@ -146,8 +127,8 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
   end();
   begin("conditions");
   html +=
-      "<p>The frequency is held by the voltage. Thick curves with marks are rod-force, the paper's formulation; thin "
-      "curves without marks of the same colour and dash are virtual-work. Without springs.</p>\n";
+      "<p>The frequency is held by the voltage. Solid curves are rod-force, the paper's formulation; dashed curves of "
+      "the same colour are virtual-work. Without springs.</p>\n";
   figures("conditions");
   end();
   begin("springs");
@@ -159,7 +140,8 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
   begin("cycles");
   fmt::format_to(
       out,
-      "<p>Each cycle begins at crank angle zero, the slider in mid-stroke and rising. First at the same frequency, "
+      "<p>Time counts from stroke reversal, the least stroke angle of each cycle; the data begin at crank angle zero, "
+      "the slider in mid-stroke and rising. First at the same frequency, "
       "{:g} Hz, which the springs reach at a lower voltage; then at the same voltage, {:g} V, at which the vehicle "
       "with springs flaps faster.</p>\n",
       m.computed.options.frequency, m.computed.options.voltage);
@@ -169,26 +151,23 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
   html += readings_html(m);
   figures("section5");
   end();
-  begin("claims");
-  fmt::format_to(
-      out,
-      "<p>The deviation is computed over published minus 1. A number is met within {:g} %, the same for every "
-      "statement; a bound (\"below\", \"above\") where it holds. ● met in both formulations, ◐ in one, ○ in "
-      "neither; the outcome compares rod-force and virtual-work with the same chord moments, the third column "
-      "has those calibrated for virtual-work. Also as claims.csv and claims.json.</p>\n",
-      100.0 * m.file.tolerance);
-  html += claims_html(a);
-  end();
-  begin("question");
-  html += question_html(m);
-  figures("question");
-  end();
   begin("energy");
   html +=
       "<p>What the supply delivers over a cycle leaves as copper loss, motor viscous loss, friction and aerodynamic "
       "power - and, with the paper's equation (1) as printed, as a formulation residual that no part of the vehicle "
       "receives. The sums close to the solver's accuracy.</p>\n";
   figures("energy");
+  end();
+  begin("claims");
+  fmt::format_to(
+      out,
+      "<p>The deviation is computed over published minus 1. A number is met within {:g} %, the same for every "
+      "statement; a bound (\"below\", \"above\") where it holds. ● met in both formulations, ◐ in one, ○ in "
+      "neither; the outcome compares rod-force and virtual-work with the same chord moments, the third column "
+      "has those calibrated for virtual-work. Also as <a href=\"claims.csv\">claims.csv</a> and <a "
+      "href=\"claims.json\">claims.json</a>.</p>\n",
+      100.0 * m.file.tolerance);
+  html += claims_html(a);
   end();
   begin("how");
   html +=
@@ -212,6 +191,10 @@ build/release/wingbeat sweep data/studies/trend-rod.toml -o rod.nc
 build/release/wingbeat sweep data/studies/trend-voltage.toml -o voltage.nc</pre>
 <h3>The published values alone</h3>
 <pre>build/release/wingbeat compare data/published/friction2022.toml</pre>
+<h3>More physics</h3>
+<pre>build/release/wingbeat run data/designs/friction2022-springs.toml --voltage "3 V" --set motor.gear_efficiency=0.8
+build/release/wingbeat run data/designs/friction2022-springs.toml --voltage "5 V" )"
+      R"(--set motor.thermal_resistance_winding="20 K/W" --set motor.thermal_resistance_case="48 K/W"</pre>
 <h3>A friction law</h3>
 <pre>build/release/wingbeat run data/designs/friction2022-springs.toml --frequency "22 Hz" )"
       R"(--set friction.type=constant )";
@@ -223,7 +206,7 @@ build/release/wingbeat sweep data/studies/trend-voltage.toml -o voltage.nc</pre>
       "<code>data/designs/friction2022.toml</code> and <code>friction2022-springs.toml</code>. Both are carried in the "
       "program itself.</p>\n";
   end();
-  html += "</main>\n</body></html>\n";
+  html += fmt::format("</main>\n<script>{}</script>\n</body></html>\n", page_script());
   return html;
 }
 

@@ -78,7 +78,8 @@ namespace {
 
 /// The name a file of a reproduction has.
 bool is_piece(const std::string& name) {
-  const std::string_view begins[] = {"figure-",      "friction-laws.", "energy-flow",
+  const std::string_view begins[] = {"figure-",      "friction-laws.", "friction-law-deviations.",
+                                     "energy-flow",  "scorecard.",     "further-physics.",
                                      "power-cycle-", "claims.",        "report.html"};
   return name == notice ||
          std::any_of(std::begin(begins), std::end(begins), [&](auto b) { return name.starts_with(b); });
@@ -199,10 +200,11 @@ ReproduceResult reproduce_paper(const KnownPaper& paper, const ReproduceOptions&
   result.assessment =
       assess(result.file, options.for_each, [&](double share) { progress(0.2 + 0.1 * share, "assessing statements"); });
 
-  const Material material{result.file, pair, computed, result.assessment};
-  std::vector<Sheet> sheets = mechanism_sheets(material);
-  for (const auto& more :
-       {paper_sheets(material), section5_sheets(material), friction_sheets(material), energy_sheets(material)}) {
+  const std::vector<FurtherVariant> further = further_physics(pair, computing, options.for_each);
+  const Material material{result.file, pair, computed, result.assessment, further};
+  std::vector<Sheet> sheets = summary_sheets(material);
+  for (const auto& more : {mechanism_sheets(material), paper_sheets(material), section5_sheets(material),
+                           friction_sheets(material), further_sheets(material), energy_sheets(material)}) {
     sheets.insert(sheets.end(), more.begin(), more.end());
   }
   result.figures = int(sheets.size());

@@ -11,19 +11,29 @@ namespace {
 
 constexpr const char* efficiency_label = "system efficiency (%)";
 
-std::optional<CurveStyle> springs_style(const TrendCurve& c) { return style_of(c.of, false); }
+CurveStyle springs_style(const TrendCurve& c) { return style_of(c.of, false); }
+std::string springs_label_of(const TrendCurve& c) {
+  return c.of.formulation == rod_force ? springs_label(c.of.springs) : "";
+}
 bool all(const TrendCurve&) { return true; }
 
 Sheet crank_sheet(const Material& m) {
   const Reproduction& r = m.computed;
   Sheet s = sheet(20, fmt::format("Lift and efficiency against crank radius at {:g} V", r.options.voltage), "section5");
   TrendFigure figure({"crank_radius_m", "m", "crank radius", r.crank_fixed_hinge.axis}, 1e3, "crank radius (mm)");
-  figure.chart().key = springs_key();
-  figure.chart().panel_height = 1.15;
+  figure.chart().key = formulation_key();
+  figure.chart().panel_height = 1.5;
+  figure.chart().columns = 2;
   for (const auto& [set, tag] :
        {std::pair(&r.crank_fixed_hinge, readings[0]), std::pair(&r.crank_fixed_stroke, readings[1])}) {
-    figure.panel(*set, Metric::lift_mean, "mean lift (mN)", tag, all, springs_style, tag);
-    figure.panel(*set, Metric::efficiency_system, efficiency_label, tag, all, springs_style, tag);
+    figure.panel(*set, Metric::lift_mean, "mean lift (mN)", tag, all, springs_style, springs_label_of, tag);
+    figure.panel(*set, Metric::efficiency_system, efficiency_label, tag, all, springs_style, springs_label_of, tag);
+  }
+  for (std::size_t p = 0; p < figure.chart().panels.size(); ++p) {
+    // Both published cranks, of lift and of efficiency, are the same.
+    mark_published(figure.chart().panels[p], m.assessment,
+                   p % 2 == 0 ? "crank radius of maximum mean lift" : "crank radius of maximum system efficiency",
+                   style::ink, [](double radius) { return std::pair(1e3 * radius, absent); });
   }
   s.caption = fmt::format(
       "Above, the hinge offset is held and the stroke grows with the crank; below, the stroke is held. Crank radius of "
@@ -39,9 +49,9 @@ Sheet rod_sheet(const Material& m) {
   const Reproduction& r = m.computed;
   Sheet s = sheet(21, fmt::format("Lift and efficiency against rod length at {:g} V", r.options.voltage), "section5");
   TrendFigure figure({"rod_length_m", "m", "rod length", r.rod.axis}, 1e3, "rod length (mm)");
-  figure.chart().key = springs_key();
-  figure.panel(r.rod, Metric::lift_mean, "mean lift (mN)", "", all, springs_style);
-  figure.panel(r.rod, Metric::efficiency_system, efficiency_label, "", all, springs_style);
+  figure.chart().key = formulation_key();
+  figure.panel(r.rod, Metric::lift_mean, "mean lift (mN)", "", all, springs_style, springs_label_of);
+  figure.panel(r.rod, Metric::efficiency_system, efficiency_label, "", all, springs_style, springs_label_of);
   s.caption = fmt::format(
       "A longer rod has a smaller obliquity. Gains from 20 to 40 mm (above) and from 10 to 20 mm (below), without "
       "springs: {}; with springs: {}. The rod has no mass in this model, so that no optimum but the longest rod comes "
@@ -84,23 +94,28 @@ Sheet voltage_sheet(const Material& m, Formulation formulation, bool hold_stroke
   if (formulation == virtual_work) s.id += "-virtual-work";
   if (!hold_stroke) s.id += "-hinge-held";
   TrendFigure figure({"voltage_v", "V", "supply voltage", set.axis}, 1.0, "supply voltage (V)");
-  for (std::size_t k = 0; k < r.options.crank_radii.size(); ++k) {
-    figure.chart().key.push_back(
-        {fmt::format("r_c {:g} mm", 1e3 * r.options.crank_radii[k]), radii[k % std::size(radii)]});
-  }
-  figure.chart().panel_height = 1.25;
+  figure.chart().key = {{"label: crank radius {/:Italic r}_c", {style::ordered[2], style::solid}}};
+  figure.chart().panel_height = 1.5;
+  figure.chart().columns = 2;
+  const auto radius_label = [](const TrendCurve& c) { return fmt::format("{:g} mm", 1e3 * c.crank_radius); };
   const auto radius_style = [&](const TrendCurve& c) {
     const auto n = std::find(r.options.crank_radii.begin(), r.options.crank_radii.end(), c.crank_radius) -
                    r.options.crank_radii.begin();
-    return std::optional(radii[std::size_t(n) % std::size(radii)]);
+    const CurveStyle style{style::ordered[std::size_t(n) % std::size(style::ordered)]};
+    return c.of.formulation == rod_force ? style : of_virtual_work(style);
   };
   for (const bool springs : {false, true}) {
     const auto wanted = [&](const TrendCurve& c) { return c.of.springs == springs && c.of.formulation == formulation; };
     const char* title = springs ? "with springs" : "without springs";
-    figure.panel(set, Metric::lift_mean, "mean lift (mN)", title, wanted, radius_style);
+    figure.panel(set, Metric::lift_mean, "mean lift (mN)", title, wanted, radius_style, radius_label);
     figure.chart().panels.back().levels.push_back(
         {1e3 * weight, springs ? "" : fmt::format("weight: {:.1f} mN", 1e3 * weight)});
-    figure.panel(set, Metric::efficiency_system, efficiency_label, title, wanted, radius_style);
+    if (springs) {
+      mark_published(figure.chart().panels.back(), m.assessment,
+                     fmt::format("maximum mean lift at 5 V over crank radii 3 to 14 mm, with springs, {}", reading),
+                     style::ink, [&](double newton) { return std::pair(r.options.max_voltage, 1e3 * newton); });
+    }
+    figure.panel(set, Metric::efficiency_system, efficiency_label, title, wanted, radius_style, radius_label);
   }
   s.caption = fmt::format("Reading: {}. The weight is carried with: {}.", reading, hovers(r, set, formulation, weight));
   if (formulation == rod_force) {

@@ -7,25 +7,30 @@
 #include <utility>
 #include <vector>
 
+#include "report/style.hpp"
+#include "reproduction/further_physics.hpp"
 #include "wingbeat/files/netcdf.hpp"
 #include "wingbeat/report/plot.hpp"
 #include "wingbeat/reproduction/claims.hpp"
 
 namespace wingbeat::reproduction {
 
-/// How a curve is drawn. Dash and mark tell curves apart without colour.
+/// How a curve is drawn: the colour says what of, the dash which formulation.
 struct CurveStyle {
-  const char* colour = "#000000";
-  const char* dash = "1";  ///< as gnuplot writes it
-  int mark = 0;            ///< gnuplot's point type; 0: none
-  double weight = 1.3;
+  const char* colour = style::ink;
+  const char* dash = style::solid;  ///< as gnuplot writes it
+  double weight = style::curve_width;
 };
-/// The same curve of the other formulation: thin, without marks.
-CurveStyle thin(CurveStyle style);
+/// The same curve of the formulation virtual-work.
+CurveStyle of_virtual_work(CurveStyle style);
 
 struct ChartCurve {
   std::vector<double> x, y;
   CurveStyle style;
+  std::string name;                    ///< read out in the report: "with springs, rod-force"
+  const char* formulation = "";        ///< the report can hide the curves of one
+  std::string label = {};              ///< beside its right end; in gnuplot's marks for symbols
+  const char* label_colour = nullptr;  ///< where it is not the curve's
 };
 /// The area between a curve and zero: above and below in two fills.
 struct ChartArea {
@@ -36,25 +41,42 @@ struct ChartLevel {
   double y;
   std::string name;
 };
+/// A published value; without y a place along the axis.
+struct ChartMark {
+  double x, y = absent;
+  std::string name;
+  const char* colour = style::ink;
+  bool calibrated = false;  ///< used in the calibration: drawn hollow
+};
+/// A published range along the axis.
+struct ChartSpan {
+  double from, to;
+  std::string name;
+  const char* colour;
+};
 struct ChartPanel {
   std::string y;  ///< quantity and unit
   std::string title;
   std::vector<ChartCurve> curves;
   std::vector<ChartArea> areas;
   std::vector<ChartLevel> levels;
+  std::vector<ChartMark> marks;
+  std::vector<ChartSpan> spans;
   bool from_zero = true;
 };
 struct ChartKey {
   std::string name;
   CurveStyle style;
   const char* fill = nullptr;  ///< a box of that fill instead of a line
+  int mark = 0;                ///< gnuplot's point type instead of a line
 };
-/// Panels one below the other over the same axis.
+/// Panels over the same axis: below each other, or in two columns over the width of a page.
 struct Chart {
   std::string x;  ///< quantity and unit
   std::vector<ChartPanel> panels;
-  std::vector<ChartKey> key;
+  std::vector<ChartKey> key;   ///< of what has no label; published values are added
   double panel_height = 1.45;  ///< [in]
+  int columns = 1;
 };
 void draw(const Chart& chart, PlotFormat format, const std::filesystem::path& file);
 
@@ -78,6 +100,7 @@ struct Sheet {
   std::function<void(PlotFormat, const std::filesystem::path&)> draw;
   std::string animation;  ///< an SVG that moves, beside the figure; may be empty
   std::string section;    ///< of the report
+  bool wide = false;      ///< of the width of a page
 };
 
 /// What all figures are made from.
@@ -86,8 +109,11 @@ struct Material {
   const SpringPair& pair;
   const Reproduction& computed;
   const Assessment& assessment;
+  const std::vector<FurtherVariant>& further;
 };
 
+std::vector<Sheet> summary_sheets(const Material& m);
+std::vector<Sheet> further_sheets(const Material& m);
 std::vector<Sheet> mechanism_sheets(const Material& m);
 std::vector<Sheet> paper_sheets(const Material& m);
 std::vector<Sheet> section5_sheets(const Material& m);

@@ -75,16 +75,17 @@ std::vector<const Claim*> missed_by_rod_force(const Assessment& a) {
   return missed;
 }
 
-/// What can be said about equation (1), from the values that no calibration has seen.
+/// What can be said about equation (1), from the values that were not used in the calibration.
 std::string equation_1(const Assessment& a) {
   if (a.variants < variant_count) return "";
   const double rod = a.rms_of_predicted_values(0), work = a.rms_of_predicted_values(1),
                own = a.rms_of_predicted_values(recalibrated);
   const MomentCalibration& c = a.calibrations[1];
   std::string html = fmt::format(
-      "<p><b>Equation (1).</b> The published values of section 4 that no calibration has seen deviate by {:.1f} % "
+      "<p><b>Equation (1).</b> The published values of section 4 that were not used in the calibration "
+      "deviate by {:.1f} % "
       "(root "
-      "mean square) with rod-force and by {:.1f} % with virtual-work. That comparison is unfair to virtual-work, "
+      "mean square) with rod-force and by {:.1f} % with virtual-work. That comparison is biased against virtual-work, "
       "because "
       "{} and {} were chosen with rod-force. With chord moments calibrated for virtual-work to the same two peak lifts "
       "({} and {}) the deviation is {:.1f} %. ",
@@ -98,14 +99,15 @@ std::string equation_1(const Assessment& a) {
         published_peak(a, false), published_peak(a, true), readable(c.lift_peak[0], "N"),
         readable(c.lift_peak[1], "N"));
   }
-  html += own > rod
-              ? "The chord moments therefore do not explain the difference: the paper's numbers agree with equation "
-                "(1) as printed, and not with a formulation that conserves power. "
-              : "The chord moments explain the difference, and the numbers do not tell the formulations apart. ";
+  html +=
+      own > rod
+          ? "The chord moments therefore do not explain the difference: the paper's numbers agree with equation "
+            "(1) as printed, and not with a formulation that conserves power. "
+          : "The chord moments explain the difference, and the numbers do not discriminate between the formulations. ";
   for (const Claim& c7 : a.claims) {
     if (c7.statement.rfind("motor output minus friction", 0) != 0 || c7.within[0] || !c7.within[1]) continue;
     html += fmt::format(
-        "One statement speaks against it: motor output minus friction loss equals the aerodynamic power (figure 7b) "
+        "One statement contradicts it: motor output minus friction loss equals the aerodynamic power (figure 7b) "
         "only "
         "by virtual-work; by rod-force the ratio is {}.",
         markup_escaped(c7.ours_text[0]));
@@ -156,10 +158,9 @@ std::string summary_html(const Material& m) {
       number([&](const Claim& c) { return c.basis == Basis::predicted && c.restates && checkable(c); }),
       number([](const Claim& c) { return c.outcome == StatementOutcome::not_checkable; }));
   html +=
-      "<p><b>What the paper's own formulation does not reproduce</b>, largest deviation first (section 5 with the "
-      "stroke "
-      "held):</p>\n<div class=\"wide\"><table class=\"claims\"><thead><tr><th>statement</th><th>where</th>"
-      "<th>published</th>" +
+      "<details><summary>What the paper's own formulation does not reproduce, largest deviation first (section 5 with "
+      "the stroke held)</summary>\n<div class=\"wide\"><table class=\"claims sortable\"><thead><tr>"
+      "<th>statement</th><th>where</th><th>published</th>" +
       variants_head(a) + "</tr></thead><tbody>\n";
   for (const Claim* c : missed_by_rod_force(a)) {
     html += fmt::format("<tr><td>{}</td><td>{}</td><td class=\"n\">{}</td>", markup_escaped(c->statement),
@@ -169,21 +170,20 @@ std::string summary_html(const Material& m) {
     }
     html += "</tr>\n";
   }
-  html += "</tbody></table></div>\n<p><b>Errors of the paper:</b></p>\n<ul>\n";
+  html += "</tbody></table></div></details>\n<p><b>Errors of the paper:</b></p>\n<ul>\n";
   for (const Claim& c : a.claims) {
     if (!c.erratum.empty())
       html += fmt::format("<li>{} ({}).</li>\n", markup_escaped(c.erratum), markup_escaped(c.where));
   }
-  return html + "</ul>\n" + equation_1(a) +
-         "<p><b>Friction must depend on load.</b> Only load-proportional friction predicts what springs do: see <a "
-         "href=\"#question\">the title question</a>.</p>\n";
+  return html + "</ul>\n" + equation_1(a);
 }
 
 std::string parameters_html(const Material& m) {
   const Design<double>& d = m.pair[1];
   const Vehicle<double> v = resolve(d);
   std::string html =
-      "<div class=\"wide\"><table><thead><tr><th>parameter</th><th>value</th><th>source</th></tr></thead><tbody>\n";
+      "<details><summary>Parameters, and where each one stands</summary>\n<div class=\"wide\"><table "
+      "class=\"sortable\"><thead><tr><th>parameter</th><th>value</th><th>source</th></tr></thead><tbody>\n";
   const auto row = [&](const char* name, const std::string& value, const char* from) {
     html += fmt::format("<tr><td>{}</td><td class=\"n\">{}</td><td>{}</td></tr>\n", name, value, from);
   };
@@ -208,7 +208,7 @@ std::string parameters_html(const Material& m) {
       "calibrated, not published");
   row(fmt::format("chord moment {}", s3).c_str(), scientific(v.wings.s3, 3, "m<sup>5</sup>"),
       "calibrated, not published");
-  html += "</tbody></table></div>\n";
+  html += "</tbody></table></div></details>\n";
   if (m.assessment.calibrations.empty()) return html;
   html += fmt::format(
       "<p><b>Calibration.</b> The planform of the wings is not available numerically; {0} and {1} are all that the "
@@ -240,7 +240,7 @@ std::string parameters_html(const Material& m) {
   html += fmt::format(
       "</tbody></table></div>\n<p>The vehicle file agrees with the result for rod-force within {:.1f} % ({}) and "
       "{:.1f} % "
-      "({}). The two frequencies at 3 V were looked at as well when its values were chosen. These four values are "
+      "({}). The two frequencies at 3 V were used in the calibration as well. These four values are "
       "therefore not counted as predictions.</p>\n",
       100.0 * std::abs(v.wings.s2 / first.s2 - 1.0), s2, 100.0 * std::abs(v.wings.s3 / first.s3 - 1.0), s3);
   return html;
@@ -314,7 +314,9 @@ std::string readings_html(const Material& m) {
 
 std::string claims_html(const Assessment& a) {
   std::string html =
-      "<div class=\"wide\"><table class=\"claims\"><thead><tr><th>statement</th><th>where</th><th>published</th>" +
+      fmt::format("<details><summary>All {} statements, a column for each formulation</summary>\n", a.claims.size()) +
+      "<div class=\"wide\"><table class=\"claims sortable\"><thead><tr><th>statement</th><th>where</th>"
+      "<th>published</th>" +
       variants_head(a) + "<th>outcome</th></tr></thead><tbody>\n";
   for (const ClaimGroup& group : claim_groups()) {
     bool first = true;
@@ -335,7 +337,7 @@ std::string claims_html(const Assessment& a) {
       html += fmt::format("<td class=\"{}\">{}</td></tr>\n", class_of(c.outcome), outcome_text(c));
     }
   }
-  return html + "</tbody></table></div>\n";
+  return html + "</tbody></table></div></details>\n";
 }
 
 }  // namespace wingbeat::reproduction

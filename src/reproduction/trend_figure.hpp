@@ -16,15 +16,8 @@ namespace wingbeat::reproduction {
 
 using enum Formulation;
 
-// Colours of Okabe and Ito.
-inline constexpr CurveStyle springs_on{"#0072b2", "1", 7};
-inline constexpr CurveStyle springs_off{"#d55e00", "(12,6)", 4};
-inline constexpr CurveStyle wingless{"#000000", "(3,3)", 8};
-inline constexpr CurveStyle vacuum{"#009e73", "(14,4,3,4)", 6};
-inline constexpr CurveStyle air{"#0072b2", "1", 7};
-inline constexpr CurveStyle plain_thin{"#606060", "1", 0, 0.55};
-inline constexpr CurveStyle radii[] = {
-    {"#d55e00", "(12,6)", 4}, {"#0072b2", "1", 7}, {"#009e73", "(14,4,3,4)", 6}, {"#000000", "(3,3)", 8}};
+inline constexpr CurveStyle springs_on{style::with_springs}, springs_off{style::without_springs};
+inline constexpr CurveStyle wingless{style::without_wings}, vacuum{style::in_vacuum}, air{style::in_air};
 
 inline const char* springs_name(bool springs) { return springs ? "springs_on" : "springs_off"; }
 
@@ -60,20 +53,24 @@ inline void finish(Sheet& s, Chart chart) {
 }
 
 inline CurveStyle style_of(const FlappingCase& of, bool by_condition) {
-  CurveStyle style = by_condition ? of.condition == Condition::air      ? air
-                                    : of.condition == Condition::vacuum ? vacuum
-                                                                        : wingless
-                     : of.springs ? springs_on
-                                  : springs_off;
-  return of.formulation == rod_force ? style : thin(style);
+  const CurveStyle style = by_condition ? of.condition == Condition::air      ? air
+                                          : of.condition == Condition::vacuum ? vacuum
+                                                                              : wingless
+                           : of.springs ? springs_on
+                                        : springs_off;
+  return of.formulation == rod_force ? style : of_virtual_work(style);
 }
 
+/// The two formulations, where curves have labels beside them.
+inline std::vector<ChartKey> formulation_key() { return {{"rod-force", {}}, {"virtual-work", of_virtual_work({})}}; }
 inline std::vector<ChartKey> springs_key() {
-  return {{"with springs", springs_on}, {"without springs", springs_off}, {"thin: virtual-work", plain_thin}};
+  return {
+      {"with springs", springs_on}, {"without springs", springs_off}, {"dashed: virtual-work", of_virtual_work({})}};
 }
 
-inline std::vector<ChartKey> condition_key() {
-  return {{"air", air}, {"vacuum", vacuum}, {"without wings", wingless}, {"thin: virtual-work", plain_thin}};
+inline const char* springs_label(bool springs) { return springs ? "springs" : "no springs"; }
+inline const char* condition_label(Condition condition) {
+  return condition == Condition::air ? "air" : condition == Condition::vacuum ? "vacuum" : "no wings";
 }
 
 /// A figure of metrics along an axis, one panel for each metric.
@@ -85,9 +82,9 @@ class TrendFigure {
   }
 
   /// Draws and tabulates one metric of the curves that `wanted` lets pass; `tag` tells columns of several sets apart.
-  template <class Wanted, class Style>
+  template <class Wanted, class Style, class Label>
   void panel(const TrendSet& set, Metric metric, std::string label, std::string title, const Wanted& wanted,
-             const Style& style, const std::string& tag = "") {
+             const Style& style, const Label& label_of, const std::string& tag = "") {
     const MetricInfo& info = metric_info(metric);
     ChartPanel panel;
     panel.y = std::move(label);
@@ -95,8 +92,7 @@ class TrendFigure {
     for (const TrendCurve& curve : set.curves) {
       if (!wanted(curve)) continue;
       const std::vector<double> y = column(curve, metric);
-      const std::optional<CurveStyle> drawn = style(curve);
-      if (drawn) draw_curve(panel, set, curve, scaled(y, scale_of(metric)), *drawn);
+      draw_curve(panel, set, curve, scaled(y, scale_of(metric)), style(curve), label_of(curve));
       std::string name = fmt::format("{}_{}", condition_of(curve), springs_name(curve.of.springs));
       std::string meaning =
           fmt::format("{}, {}", condition_of(curve), curve.of.springs ? "with springs" : "without springs");
@@ -134,7 +130,7 @@ class TrendFigure {
  private:
   /// A point outside the domain is drawn as a grey dotted line in place of the curve, so that it is seen not to count.
   void draw_curve(ChartPanel& panel, const TrendSet& set, const TrendCurve& curve, const std::vector<double>& y,
-                  const CurveStyle& style) {
+                  const CurveStyle& style, const std::string& label) {
     std::vector<double> inside = y, outside(y.size(), absent);
     bool left = false;
     for (std::size_t n = 0; n < y.size(); ++n) {
@@ -146,14 +142,21 @@ class TrendFigure {
       left = true;
     }
     const std::vector<double> x = scaled(set.axis, scale_);
-    panel.curves.push_back({x, std::move(inside), style});
+    const char* formulation = curve.of.condition == Condition::wingless ? "" : wingbeat::name_of(curve.of.formulation);
+    std::string name = curve.of.condition != Condition::air ? condition_label(curve.of.condition)
+                       : curve.of.springs                   ? "with springs"
+                                                            : "without springs";
+    if (std::isfinite(curve.crank_radius)) name += fmt::format(", crank {:g} mm", 1e3 * curve.crank_radius);
+    if (*formulation) name += fmt::format(", {}", formulation);
+    const bool ends_outside = !outside.empty() && std::isfinite(outside.back());
+    panel.curves.push_back({x, std::move(inside), style, name, formulation, ends_outside ? "" : label});
     if (!left) return;
     CurveStyle grey = style;
-    grey.colour = "#909090";
-    grey.dash = "(2,3)";
-    grey.mark = 0;
-    panel.curves.push_back({x, std::move(outside), grey});
-    if (!outside_) chart_.key.push_back({"outside the domain", {"#909090", "(2,3)", 0, style.weight}});
+    grey.colour = style::outside_domain;
+    grey.dash = style::dotted;
+    panel.curves.push_back({x, std::move(outside), grey, name + ", outside the domain", formulation,
+                            ends_outside ? label : "", style.colour});
+    if (!outside_) chart_.key.push_back({"outside the domain", grey});
     outside_ = true;
   }
 
@@ -200,15 +203,33 @@ inline constexpr const char* frequency_label = "flapping frequency (Hz)";
 
 inline std::string mw(double watt) { return fmt::format("{:.0f} mW", 1e3 * watt); }
 
+/// The statement of that beginning; nullptr where there is none.
+inline const Claim* claim_of(const Assessment& a, const std::string& beginning) {
+  for (const Claim& c : a.claims) {
+    if (c.statement.rfind(beginning, 0) == 0) return &c;
+  }
+  return nullptr;
+}
+
 /// "published 1.142; rod-force 1.144, virtual-work 1.129: reproduced" for the statement of that beginning.
 inline std::string beside(const Assessment& a, const std::string& beginning) {
-  for (const Claim& c : a.claims) {
-    if (c.statement.rfind(beginning, 0) != 0) continue;
-    const std::string published = c.published_text == "-" ? "" : fmt::format("published {}; ", c.published_text);
-    return published +
-           fmt::format("rod-force {}, virtual-work {}: {}", c.ours_text[0], c.ours_text[1], outcome_text(c));
-  }
-  return "not available numerically";
+  const Claim* c = claim_of(a, beginning);
+  if (!c) return "not available numerically";
+  const std::string published = c->published_text == "-" ? "" : fmt::format("published {}; ", c->published_text);
+  return published +
+         fmt::format("rod-force {}, virtual-work {}: {}", c->ours_text[0], c->ours_text[1], outcome_text(*c));
+}
+
+/// Marks the published number of a statement: at x, y(number). Nothing where it has none.
+template <class Place>
+void mark_published(ChartPanel& panel, const Assessment& a, const std::string& beginning, const char* colour,
+                    const Place& place) {
+  const Claim* c = claim_of(a, beginning);
+  if (!c || !c->published) return;
+  const auto [x, y] = place(*c->published);
+  if (!std::isfinite(x)) return;
+  panel.marks.push_back(
+      {x, y, fmt::format("published: {}, {}", c->statement, c->published_text), colour, c->basis == Basis::calibrated});
 }
 
 }  // namespace wingbeat::reproduction

@@ -54,7 +54,9 @@ TEST_F(Optimise, TheWayThereAsDataAndFigure) {
   const Outcome text = run({"optimise", file, "-o", path("way.nc"), "--plot", path("way.svg")});
   ASSERT_EQ(text.status, 0) << text.err;
   const std::string drawn = read(path("way.svg"));
-  EXPECT_THAT(drawn, HasSubstr("spring.stiffness"));
+  EXPECT_THAT(drawn, HasSubstr("spring stiffness"));
+  EXPECT_THAT(drawn, testing::Not(HasSubstr("spring.stiffness")));
+  EXPECT_THAT(drawn, testing::Not(HasSubstr("<title")));
   EXPECT_THAT(drawn, HasSubstr("objective worse by (%)"));
   const wingbeat::NetcdfReader data(path("way.nc"));
   const Json json = run({"optimise", file, "--json"}).json();

@@ -44,7 +44,7 @@ TEST_F(Tolerance, ReportDataSetFigureAndJsonOfOneStudy) {
                            "Where the variance of lift_to_weight comes from", "sum of first order"}) {
     EXPECT_THAT(text.out, HasSubstr(part));
   }
-  EXPECT_THAT(read(path("t.svg")), HasSubstr("friction.radius"));
+  EXPECT_THAT(read(path("t.svg")), HasSubstr("friction radius"));
 
   const Json json = run({"tolerance", file, "--json", "--threads", "1"}).json();
   const wingbeat::NetcdfReader data(path("t.nc"));

@@ -37,8 +37,11 @@ export function digits(x: number, figures = 4): string {
 export function tickText(x: number): string {
   const short = Number(x.toPrecision(6));
   const size = Math.abs(short);
-  return size > 0 && (size >= 1e5 || size < 1e-3) ? short.toExponential() : String(short);
+  return withMinus(size > 0 && (size >= 1e5 || size < 1e-3) ? short.toExponential() : String(short));
 }
+
+/** With a minus sign in place of a leading hyphen, for numbers that nobody types. */
+export const withMinus = (text: string) => text.replace(/^-/, '\u2212');
 
 export function readable(x: number | null | undefined, unit: string, figures = 4): string {
   if (x === null || x === undefined || !Number.isFinite(x)) return '–';

@@ -21,6 +21,8 @@ for (const width of [1440, 1024, 390]) {
         fullPage: true,
       });
     };
+    // A picture of the whole page has in it what lies below the window.
+    await page.addStyleTag({content: '.views > .wide { content-visibility: visible !important; }'});
     await page.evaluate(() => window.explorer.playback.show(0.18));
     if (width === 1440) {
       await page.waitForTimeout(600);

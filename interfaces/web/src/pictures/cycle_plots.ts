@@ -3,7 +3,7 @@ import {scaleLinear} from 'd3-scale';
 import {line} from 'd3-shape';
 import type {Columns} from '../core';
 import {html, set, svg} from '../dom';
-import {digits, scaleFor, shownUnit} from '../quantities';
+import {digits, scaleFor, shownUnit, withMinus} from '../quantities';
 import {extent, type Frame, numbersBelow, numbersBeside, placeOf, sayNothing} from './axes';
 
 interface Panel {
@@ -109,6 +109,7 @@ export class CyclePlots {
       d.figure.hidden = columns !== null && shown.length === 0;
       d.axes.replaceChildren();
       d.curves.replaceChildren();
+      d.cursor.toggleAttribute('hidden', !columns);
       if (!columns || shown.length === 0) {
         sayNothing(d.curves, frame, 'no steady cycle');
         d.readout.textContent = d.panel.title;
@@ -184,7 +185,7 @@ export class CyclePlots {
           return svg(
             'tspan',
             {class: `label-${n}`, dx: n ? 6 : 0},
-            `${digits(columns[name][row] * scale.factor, 3)} ${shownUnit(scale.unit)}`,
+            `${withMinus(digits(columns[name][row] * scale.factor, 3))} ${shownUnit(scale.unit)}`,
           );
         });
       d.readout.replaceChildren(...parts);

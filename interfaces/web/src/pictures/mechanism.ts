@@ -153,10 +153,8 @@ function sliderCrank(m: Mechanism, i: Instant, range: [number, number], names: b
     if (m.springs) s.spring(hinge);
     s.ground(hinge);
     s.arrow(onCircle(hinge, 0.7 * wing, zero - side * i.strokeAngle), 0, -55 * i.lift, 'lift');
-    if (names && side > 0) {
-      s.name('wing', tip, 'middle', 0, 20);
-      if (m.springs) s.name('spring', hinge, 'start', 20, 6);
-    }
+    if (names && side < 0) s.name('wing', tip, 'middle', 0, 20);
+    if (names && side > 0 && m.springs) s.name('spring', hinge, 'start', 20, 6);
   }
   s.circle(pin, 9 + 14 * Math.abs(i.friction), 'glow', Math.abs(i.friction));
   s.line(pin, slider, 'rod glow-rod', Math.abs(i.rodForce));

@@ -88,11 +88,15 @@ export function drawSankey(picture: SVGSVGElement, balance: Balance | null) {
     const above = node.kind === 'station' || node.kind === 'input';
     picture.append(
       above
-        ? svg('text', {x: x0, y: y0 - 6, class: 'halo'}, node.name)
+        ? svg('text', {...stationPlace(x0, x1, width), y: y0 - 6, class: 'halo'}, node.name)
         : svg('text', {x: x1 + 6, y: (y0 + y1) / 2 + 4}, label),
     );
   }
 }
+
+/** In a narrow picture a station's name ends where it does, for those of the losses begin close by. */
+const stationPlace = (x0: number, x1: number, width: number): Record<string, string | number> =>
+  width < 500 && x0 > 70 ? {x: x1, 'text-anchor': 'end'} : {x: x0};
 
 /** The balance as rows of a table: name, power [W], share of the input. */
 export function balanceRows(b: Balance): [string, number, number][] {

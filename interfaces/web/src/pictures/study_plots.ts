@@ -22,9 +22,11 @@ interface Scaled {
   title: string;
 }
 
+/** Of a metric's name or of a key, which becomes words. */
 const scaledOf = (name: string, unit: string, size: number): Scaled => {
   const {factor, unit: shown} = scaleFor(size, unit);
-  return {factor, title: shown ? `${name}, ${shownUnit(shown)}` : name};
+  const words = name.replace(/[._]/g, ' ');
+  return {factor, title: shown ? `${words}, ${shownUnit(shown)}` : words};
 };
 const largest = ([low, high]: [number, number]) => Math.max(Math.abs(low), Math.abs(high));
 const noneFlaps = 'no design here flaps';

@@ -1,0 +1,226 @@
+// How report.html looks and what moves in it: style and script, both in the file itself.
+#include <fmt/format.h>
+
+#include <string_view>
+#include <utility>
+
+#include "reproduction/html.hpp"
+
+namespace wingbeat::reproduction {
+namespace {
+
+constexpr const char* page_rules = R"(
+* { box-sizing: border-box; }
+body { margin: 0 auto; padding: 2rem 1.25rem 4rem; max-width: 68rem; color: var(--ink); background: var(--page);
+  font: 16px/1.55 Georgia, "Times New Roman", serif; }
+h1 { font-size: 1.9rem; line-height: 1.2; margin: 0 0 .4rem; }
+h2 { font-size: 1.35rem; margin: 2.8rem 0 .6rem; padding-top: .6rem; border-top: 2px solid var(--accent); }
+h3 { font-size: 1.05rem; margin: 1.6rem 0 .4rem; }
+p, ul, ol { max-width: 46rem; }
+.lead { color: var(--soft); }
+.answer { font-size: 1.15rem; border-left: 4px solid var(--accent); padding: .2rem 0 .2rem 1rem; }
+nav ol { columns: 2; column-gap: 3rem; padding-left: 1.6rem; }
+nav li { break-inside: avoid; }
+a { color: var(--accent); }
+.figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 26rem), 1fr));
+  gap: 1.6rem 2rem; align-items: start; margin: 1rem 0; }
+figure { margin: 0; min-width: 0; }
+figure.page { grid-column: 1 / -1; }
+.drawing { border: 1px solid var(--line); overflow-x: auto; background: var(--paper); }
+.drawing svg { width: 100%; height: auto; display: block; }
+figure.page .drawing svg { min-width: 44rem; }
+.drawing text { font-family: "DejaVu Sans", Verdana, Arial, sans-serif; }
+figcaption { font-size: .87rem; line-height: 1.45; margin-top: .45rem; }
+figcaption b { display: block; }
+.files { color: var(--soft); }
+.wide { overflow-x: auto; }
+details { margin: .8rem 0; }
+summary { cursor: pointer; color: var(--accent); }
+table { border-collapse: collapse; font: .82rem/1.4 Arial, Helvetica, sans-serif; margin: .8rem 0 1.2rem; }
+th, td { text-align: left; vertical-align: top; padding: .28rem .6rem; border-bottom: 1px solid var(--line); }
+thead th { border-bottom: 2px solid var(--ink); }
+.sortable thead th[role=button] { cursor: pointer; }
+.sortable thead th[aria-sort=ascending]::after { content: " \25B2"; }
+.sortable thead th[aria-sort=descending]::after { content: " \25BC"; }
+td:first-child { min-width: 13rem; }
+table.laws { font-size: .78rem; }
+table.laws td.n { white-space: normal; min-width: 5.2rem; }
+th.group { background: var(--band); padding-top: .5rem; }
+td.n { text-align: right; white-space: nowrap; }
+.v { white-space: nowrap; }
+.yes::before { content: "\25CF  "; color: var(--good); }
+.no::before { content: "\25CB  "; color: var(--bad); }
+.part::before { content: "\25D0  "; color: var(--mixed); }
+.erratum { color: var(--bad); }
+table.claims { font-size: .76rem; }
+pre { background: var(--band); border: 1px solid var(--line); padding: .7rem .9rem; overflow-x: auto;
+  font-size: .85rem; line-height: 1.4; }
+code { font-size: .9em; }
+.tools { position: sticky; top: 0; z-index: 2; background: var(--page); padding: .4rem 0;
+  font: .85rem Arial, Helvetica, sans-serif; border-bottom: 1px solid var(--line); }
+.tools button { font: inherit; color: inherit; background: none; border: 1px solid var(--line); padding: .15rem .6rem;
+  margin-left: .3rem; border-radius: 3px; cursor: pointer; }
+.tools button[aria-pressed=true] { background: var(--accent); border-color: var(--accent); color: var(--page); }
+body[data-shown=rod-force] [data-formulation=virtual-work],
+body[data-shown=virtual-work] [data-formulation=rod-force] { display: none; }
+.tip { position: fixed; z-index: 3; pointer-events: none; background: var(--page); border: 1px solid var(--ink);
+  padding: .25rem .5rem; font: .78rem/1.4 Arial, Helvetica, sans-serif; max-width: 20rem; display: none; }
+@media (max-width: 40rem) { body { padding: 1rem .75rem 3rem; } nav ol { columns: 1; } td:first-child {
+  min-width: 9rem; } h1 { font-size: 1.5rem; overflow-wrap: anywhere; } }
+@media print { body { max-width: none; padding: 0; font-size: 10pt; } h2 { break-after: avoid; }
+  figure, tr { break-inside: avoid; }
+  .figures { grid-template-columns: 1fr 1fr; }
+  figure.page .drawing svg { min-width: 0; }
+  nav, .tools, .tip { display: none !important; }
+  .wide, .drawing { overflow: visible; } table, table.laws { width: 100%; font-size: 6.6pt; }
+  th, td { padding: .2rem .3rem; } td:first-child { min-width: 9rem; }
+  td.n, table.laws td.n, .v { white-space: normal; min-width: 0; } pre { white-space: pre-wrap; } }
+)";
+
+constexpr const char* script = R"(
+'use strict';
+for (const group of document.querySelectorAll('g[data-curve]')) {
+  const formulation = group.dataset.curve.split('|')[2];
+  if (formulation) group.dataset.formulation = formulation;
+}
+const tools = document.querySelector('.tools');
+tools.hidden = false;
+for (const button of tools.querySelectorAll('button')) {
+  button.addEventListener('click', () => {
+    document.body.dataset.shown = button.value;
+    for (const other of tools.querySelectorAll('button')) other.setAttribute('aria-pressed', String(other === button));
+  });
+}
+const tip = document.body.appendChild(document.createElement('div'));
+tip.className = 'tip';
+const digits = value => Number(value.toPrecision(4)).toString();
+const unit = label => (label.match(/\(([^)]*)\)$/) || ['', ''])[1];
+function points(group) {
+  if (!group.points) {
+    group.points = [];
+    for (const path of group.querySelectorAll('path')) {
+      for (const at of path.getAttribute('d').matchAll(/(-?[\d.]+),(-?[\d.]+)/g)) group.points.push([+at[1], +at[2]]);
+    }
+  }
+  return group.points;
+}
+for (const svg of document.querySelectorAll('svg[data-panels]')) {
+  const panels = JSON.parse(svg.dataset.panels), groups = [...svg.querySelectorAll('g[data-curve]')];
+  const hide = () => { tip.style.display = 'none'; };
+  svg.addEventListener('pointerleave', hide);
+  svg.addEventListener('pointermove', event => {
+    const size = svg.getBoundingClientRect(), view = svg.viewBox.baseVal;
+    const x = (event.clientX - size.left) * view.width / size.width;
+    const y = (event.clientY - size.top) * view.height / size.height;
+    const index = panels.findIndex(({box: b}) => x >= b[0] - 8 && x <= b[1] + 8 && y >= b[2] - 8 && y <= b[3] + 8);
+    if (index < 0) return hide();
+    const {box, range, x: along, y: quantity, marks} = panels[index];
+    const value = range[0] + (x - box[0]) / (box[1] - box[0]) * (range[1] - range[0]);
+    const lines = [`${along.replace(/ \([^)]*\)$/, '')}: ${digits(value)} ${unit(along)}`];
+    for (const group of groups) {
+      const [panel, name] = group.dataset.curve.split('|');
+      if (+panel !== index || getComputedStyle(group).display === 'none') continue;
+      let best = null;
+      for (const at of points(group)) if (!best || Math.abs(at[0] - x) < Math.abs(best[0] - x)) best = at;
+      if (!best || Math.abs(best[0] - x) > 14) continue;
+      const height = range[3] - (best[1] - box[2]) / (box[3] - box[2]) * (range[3] - range[2]);
+      lines.push(`${name}: ${digits(height)} ${unit(quantity)}`);
+    }
+    for (const [at, height, name] of marks) {
+      if (Math.abs(box[0] + (at - range[0]) / (range[1] - range[0]) * (box[1] - box[0]) - x) < 14) lines.push(name);
+    }
+    tip.replaceChildren(...lines.map(text => {
+      const line = document.createElement('div');
+      line.textContent = text;
+      return line;
+    }));
+    tip.style.display = 'block';
+    tip.style.left = Math.max(4, Math.min(event.clientX + 14, innerWidth - tip.offsetWidth - 6)) + 'px';
+    tip.style.top = Math.max(4, Math.min(event.clientY + 14, innerHeight - tip.offsetHeight - 6)) + 'px';
+  });
+}
+for (const table of document.querySelectorAll('table.sortable')) {
+  const heads = [...table.tHead.rows[0].cells];
+  heads.forEach((head, column) => {
+    head.setAttribute('role', 'button');
+    head.tabIndex = 0;
+    const sort = () => {
+      const up = head.getAttribute('aria-sort') !== 'ascending';
+      for (const other of heads) other.removeAttribute('aria-sort');
+      head.setAttribute('aria-sort', up ? 'ascending' : 'descending');
+      const key = row => row.cells[column] ? row.cells[column].textContent.trim() : '';
+      const order = (p, q) => {
+        const a = key(p), b = key(q), m = parseFloat(a), n = parseFloat(b);
+        return (up ? 1 : -1) * (isNaN(m) || isNaN(n) ? a.localeCompare(b) : m - n);
+      };
+      const body = table.tBodies[0], parts = [];
+      for (const row of [...body.rows]) {
+        if (row.cells[0].classList.contains('group') || !parts.length) parts.push([]);
+        parts[parts.length - 1].push(row);
+      }
+      for (const part of parts) {
+        const first = part[0].cells[0].classList.contains('group') ? part.splice(0, 1) : [];
+        body.append(...first, ...part.sort(order));
+      }
+    };
+    head.addEventListener('click', sort);
+    head.addEventListener('keydown', event => { if (event.key === 'Enter') sort(); });
+  });
+}
+addEventListener('beforeprint', () => { for (const d of document.querySelectorAll('details')) d.open = true; });
+)";
+
+/// A colour of the figures: as they are drawn, as a name of the page's style, and on a dark page.
+struct PageColour {
+  const char *drawn, *name, *dark;
+};
+constexpr PageColour colours[] = {
+    {"#ffffff", "paper", "#181b1f"},    {"#000000", "ink", "#e8e8e6"},      {"#404040", "axis", "#b8bec6"},
+    {"#202020", "edge", "#c8ccd2"},     {"#707070", "grey", "#9aa0a6"},     {"#a0a0a0", "out", "#747a80"},
+    {"#e4e4e4", "met", "#31373e"},      {"#d0d0d0", "flow", "#4a5058"},     {"#c8c8c8", "stored", "#50565e"},
+    {"#ececec", "returned", "#2c3137"}, {"#e0e0e0", "slider", "#4a5058"},   {"#0072b2", "springs", "#5ab4f0"},
+    {"#d55e00", "bare", "#ff8c42"},     {"#44aa99", "vacuum", "#5cc9b7"},   {"#999933", "wingless", "#c6c65a"},
+    {"#b79fd0", "first", "#5f4a7c"},    {"#8d68b5", "second", "#8d68b5"},   {"#653a92", "third", "#b79be0"},
+    {"#35125e", "fourth", "#e3d3ff"},   {"#8f3d6e", "friction", "#e39cc4"}, {"#7a5300", "copper", "#f0bc55"},
+    {"#6b6000", "viscous", "#e6dc6a"},  {"#505050", "residual", "#bbbbbb"}, {"#1f6f9c", "air", "#7cc4ee"}};
+
+void replace_in(std::string& text, std::string_view from, std::string_view to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
+}
+
+}  // namespace
+
+std::string page_style() {
+  std::string light =
+                  "--page: #fff; --soft: #595959; --line: #d4d4d4; --accent: #00507c; --band: #f2f4f6; --good: "
+                  "#007a5a; --bad: #b03a00; --mixed: #7a5c00;",
+              dark =
+                  "--page: #111417; --soft: #a5abb2; --line: #3a4047; --accent: #7cc0ea; --band: #1d2227; --good: "
+                  "#41c99a; --bad: #ff9a66; --mixed: #e0bb55; color-scheme: dark;";
+  for (const PageColour& c : colours) {
+    light += fmt::format(" --{}: {};", c.name, c.drawn);
+    dark += fmt::format(" --{}: {};", c.name, c.dark);
+  }
+  // Paper is white, whatever the screen is.
+  return fmt::format(":root {{ {} }}\n@media screen and (prefers-color-scheme: dark) {{ :root {{ {} }} }}", light,
+                     dark) +
+         page_rules;
+}
+
+std::string page_script() { return script; }
+
+void use_page_colours(std::string& svg) {
+  for (const PageColour& c : colours) {
+    const std::string_view hex = c.drawn;
+    const auto part = [&](std::size_t n) { return std::stoi(std::string(hex.substr(1 + 2 * n, 2)), nullptr, 16); };
+    const std::string to = fmt::format("var(--{})", c.name);
+    replace_in(svg, hex, to);
+    replace_in(svg, fmt::format("rgb({:3},{:4},{:4})", part(0), part(1), part(2)), to);
+    replace_in(svg, fmt::format("rgb({},{},{})", part(0), part(1), part(2)), to);
+  }
+  replace_in(svg, "\"black\"", "\"var(--ink)\"");
+  replace_in(svg, " font-family=\"sans-serif\"", "");
+}
+
+}  // namespace wingbeat::reproduction
