@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <vector>
 
 #include "wingbeat/cycle/static_balance.hpp"
@@ -106,6 +107,7 @@ Plan plan_for(const EnsembleOptions& options) {
   s.segments = mesh->segments;
   s.intervals = mesh->intervals;
   s.newton_iterations = mesh->newton_iterations;
+  s.settled = 0.1 * options.tolerance;
   // The error of a segment's end off its sign change is of third order: at 1e-6 it does not count.
   s.follow_switches = digits > 6.5;
   s.coarse_iterates = 2;
@@ -163,6 +165,11 @@ bool is_stiff(const Vehicle<double>& v, PackCurrent current) {
          braking * coarse_step > stable * no_load;
 }
 
+/// Whether balanced_speed() seeks on a fine grid, about.
+bool pitches_far(const Vehicle<double>& v) {
+  return v.wings.pitch_coefficient * typical_stroke_slope(v.transmission) * no_load_speed(v) > far_pitch;
+}
+
 /// The settings of an attempt for a kind. Stiff designs take at once what others take after a start from rest, and
 /// begin again with more points. Where coefficients bend, segments have more places to end at, and the rod force may
 /// peak at a bend; with the knots of a table, means converge with the fourth power of the nodes only.
@@ -199,8 +206,7 @@ class EnsembleRun {
         outcomes_(outcomes),
         plan_(plan_for(options)),
         solver_(solver_for(options.isa)),
-        results_(members.size()),
-        direct_results_(members.size()),
+        starts_(std::make_unique_for_overwrite<IterateStart[]>(members.size())),
         rotates_(members.size()) {}
 
   /// Solves the members that `takes(vehicle)` says are to be, their motors as they are.
@@ -221,7 +227,12 @@ class EnsembleRun {
         by_kind[kind_of(v)].push_back(n);
       }
     }
-    for (const auto& [kind, alike] : by_kind) solve_alike(kind, alike);
+    for (auto& [kind, alike] : by_kind) {
+      // A block in which one wing pitches far balances all loads on a fine grid.
+      std::stable_partition(alike.begin(), alike.end(),
+                            [&](std::size_t n) { return !pitches_far(members_[n].vehicle); });
+      solve_alike(kind, alike);
+    }
     for (const std::vector<std::size_t>& alike : direct_by_kind) solve_direct(alike);
   }
 
@@ -272,56 +283,70 @@ class EnsembleRun {
   /// Direct drives of a kind. Where a finer mesh cannot help, the scalar solver does.
   void solve_direct(std::vector<std::size_t> open) {
     for (const DirectPackSettings& settings : plan_.direct) {
-      run_blocks(open, settings, solver_.solve_direct, direct_results_);
       std::vector<std::size_t> inexact;
-      for (const std::size_t n : open) {
-        const DirectPackResult& r = direct_results_[n];
-        if (r.error_estimate <= options_.tolerance) {
-          accept(n, r.metrics, r.error_estimate);
-        } else if (std::isfinite(r.error_estimate)) {
-          inexact.push_back(n);
-        } else {
-          solve_by_scalar(n);
-        }
-      }
+      const auto begin = [](std::size_t, DirectPackResult&) {};
+      run_blocks<DirectPackResult>(open, settings, solver_.solve_direct, begin,
+                                   [&](std::size_t n, const DirectPackResult& r) {
+                                     if (r.error_estimate <= options_.tolerance) {
+                                       accept(n, r.metrics, r.error_estimate);
+                                     } else if (std::isfinite(r.error_estimate)) {
+                                       inexact.push_back(n);
+                                     } else {
+                                       solve_by_scalar(n);
+                                     }
+                                   });
       open.swap(inexact);
     }
     for (const std::size_t n : open) solve_by_scalar(n);
   }
 
-  /// Those members, as many at a time as there are lanes, through the solver into the results of the same index.
-  template <class Settings, class Solve, class Result>
-  void run_blocks(const std::vector<std::size_t>& which, const Settings& settings, Solve solve,
-                  std::vector<Result>& results) const {
+  /// Those members, as many at a time as there are lanes, through the solver: begin(n, result) before, end(n, result)
+  /// while the result is still in the processor's cache.
+  template <class Result, class Settings, class Solve, class Begin, class End>
+  void run_blocks(const std::vector<std::size_t>& which, const Settings& settings, Solve solve, const Begin& begin,
+                  const End& end) const {
     std::array<const EnsembleMember*, lanes_avx512> members;
+    std::array<Result, lanes_avx512> results;
     std::array<Result*, lanes_avx512> of_members;
     for (std::size_t start = 0; start < which.size(); start += std::size_t(solver_.lanes)) {
       const std::size_t count = std::min(which.size() - start, std::size_t(solver_.lanes));
       for (std::size_t lane = 0; lane < count; ++lane) {
         members[lane] = &members_[which[start + lane]];
-        of_members[lane] = &results[which[start + lane]];
+        of_members[lane] = &results[lane];
+        begin(which[start + lane], results[lane]);
+      }
+      for (std::size_t next = start + count; next < std::min(start + 2 * count, which.size()); ++next) {
+        prefetch(members_[which[next]]);
       }
       solve(members.data(), int(count), settings, of_members.data());
+      for (std::size_t lane = 0; lane < count; ++lane) end(which[start + lane], results[lane]);
     }
+  }
+
+  static void prefetch(const EnsembleMember& member) {
+    const char* const from = reinterpret_cast<const char*>(&member);
+    for (std::size_t byte = 0; byte < sizeof(member); byte += 64) __builtin_prefetch(from + byte, 0, 2);
   }
 
   /// Solves those members; settles the outcomes of the exact ones, and lists the others.
   void run(const std::vector<std::size_t>& which, const PackSettings& settings, std::vector<std::size_t>& unresolved,
            std::vector<std::size_t>& inexact) {
-    run_blocks(which, settings, solver_.solve, results_);
-    for (const std::size_t n : which) {
-      const PackResult& r = results_[n];
+    const auto begin = [&](std::size_t n, PackResult& r) {
+      if (settings.approach == PackApproach::resume) r.start = starts_[n];
+    };
+    run_blocks<PackResult>(which, settings, solver_.solve, begin, [&](std::size_t n, const PackResult& r) {
       if (settings.approach == PackApproach::from_rest) rotates_[n] = r.assessment == PackAssessment::rotates;
       if (r.assessment == PackAssessment::locked) {
         settle(n, FlappingStatus::locked);
       } else if (r.assessment == PackAssessment::unresolved) {
         unresolved.push_back(n);
       } else if (!(r.error_estimate <= options_.tolerance)) {
+        starts_[n] = r.start;
         inexact.push_back(n);
       } else {
         accept(n, r.metrics, r.error_estimate);
       }
-    }
+    });
   }
 
   void accept(std::size_t n, const Metrics<double>& metrics, double error_estimate) {
@@ -368,9 +393,8 @@ class EnsembleRun {
   std::span<EnsembleOutcome> outcomes_;
   Plan plan_;
   PackSolver solver_;
-  std::vector<PackResult> results_;
-  std::vector<DirectPackResult> direct_results_;
-  std::vector<char> rotates_;  ///< from rest, as lanes have shown in time
+  std::unique_ptr<IterateStart[]> starts_;  ///< of inexact members
+  std::vector<char> rotates_;               ///< from rest, as lanes have shown in time
 };
 
 /// Members whose motors heat up: all of them are solved at a temperature each, again and again until it settles.

@@ -56,6 +56,9 @@ CollocationRule make_rule(int n) {
       }
     }
   }
+  for (int m = 1; m <= n; ++m) {
+    for (int j = 0; j <= n; ++j) rule.mean[m][j] = rule.between[m][j] / (rule.node[m] - rule.node[m - 1]);
+  }
   return rule;
 }
 

@@ -199,13 +199,16 @@ BalancedSpeed<S> balanced_on_grid(const V<S>& v, std::span<const LoadPlace<S>> p
   return balanced;
 }
 
+/// largest_pitch() at the speed without load beyond which balances are sought on a fine grid [rad].
+inline constexpr double far_pitch = 1.2;
+
 template <template <Scalar> class V, Scalar S>
 BalancedSpeed<S> balanced_speed(const V<S>& v, std::span<const LoadPlace<std::type_identity_t<S>>> places) {
   // The drag coefficient is a wave in the angle of attack: over a long way of pitching the drag's torque has several
   // humps, and beyond a longer one no grid is fine enough.
   const S pitch = largest_pitch(v, places, no_load_speed(v));
   BalancedSpeed<S> balanced = balanced_on_grid<8>(v, places);
-  const auto bends = pitch > S(1.2);
+  const auto bends = pitch > S(far_pitch);
   if (any<S>(bends)) {
     const BalancedSpeed<S> finely = balanced_on_grid<40>(v, places);
     balanced.slowest = select<S>(bends, finely.slowest, balanced.slowest);

@@ -64,7 +64,8 @@ struct PackSettings {
       false;          ///< where explicit steps would be unstable, iterates before the collocation take implicit ones
   int segments = 6;   ///< of half an iterate
   int intervals = 6;  ///< between the nodes of a segment, even
-  int newton_iterations = 2;     ///< before the last
+  int newton_iterations = 2;     ///< at most, before the last
+  double settled = 1e-7;         ///< fewer where the next correction is expected below, relative
   bool follow_switches = false;  ///< the segments' ends move onto the sign changes after the second one
   double peak_tolerance = 5e-7;  ///< a peak is settled when the cubic at its top promises less, relative
   std::array<bool, quantity_count> wanted{};

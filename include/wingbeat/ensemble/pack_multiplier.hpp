@@ -1,6 +1,8 @@
 // The return map's derivative on SIMD lanes: products of propagators, what closes an iterate, Floquet multipliers.
 #pragma once
 
+#include <algorithm>
+
 #include "wingbeat/ensemble/pack_orbit.hpp"
 
 namespace wingbeat {
@@ -70,9 +72,10 @@ template <class L, int N>
 auto PackOrbit<L, N>::jacobian_at_node(System system, std::size_t node, const L& force) const -> Matrix {
   const Configuration<L>& place = configuration_of(node);
   solver::Rates<System> below, above;
+  Matrix jacobian;
   if (!lags_) {
-    evaluate<false>(system, place, trajectory_[node], force, below);
-    return jacobian_at(system, place, trajectory_[node], below.dy, force);
+    linearise(system, node, force, below, jacobian);
+    return jacobian;
   }
   system.drop = drop_[node];
   const L by = L(1e-4) * trajectory_[node][0];
@@ -82,7 +85,6 @@ auto PackOrbit<L, N>::jacobian_at_node(System system, std::size_t node, const L&
   moved[0] = trajectory_[node][0] + by;
   evaluate<false>(system, place, moved, force, above);
   lag_with(system, node, by, force, below, above);
-  Matrix jacobian;
   for (auto& row : jacobian) row.fill(L(0.0));
   jacobian[0][0] = (above.dy[0] - below.dy[0]) * L(0.5) * inverse_of(by);
   return jacobian;
@@ -96,7 +98,7 @@ L PackOrbit<L, N>::floquet_multiplier() {
   for (std::size_t row = 0; row < N; ++row) {
     for (std::size_t column = 0; column < N; ++column) M[row][column] = L(row == column ? 1.0 : 0.0);
   }
-  std::array<Matrix, nodes_per_segment> jacobian, path, moves;
+  std::array<Matrix, nodes_per_segment> jacobian, path;
   for (int half = 0; half < 2; ++half) {
     System system = half_cycle(half);
     const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
@@ -127,40 +129,43 @@ L PackOrbit<L, N>::floquet_multiplier() {
         path[m] = path[m - 1];
         append(step_[base + m], path[m]);
       }
-      for (int repeat = 0; repeat < settings_.newton_iterations + 2; ++repeat) {
-        std::array<Matrix, nodes_per_segment> rates;
+      // As propose() corrects the trajectory.
+      for (int repeat = 0; repeat < std::max(2, settings_.newton_iterations - 1); ++repeat) {
+        std::array<Matrix, nodes_per_segment> rates, off;
         for (std::size_t m = 0; m <= intervals; ++m) {
           rates[m] = path[m];
           append(jacobian[m], rates[m]);
         }
-        Matrix d;
-        for (auto& row : d) row.fill(L(0.0));
+        for (auto& row : off[0]) row.fill(L(0.0));
         for (std::size_t m = 1; m <= intervals; ++m) {
-          Matrix sum;
           for (std::size_t row = 0; row < N; ++row) {
             for (std::size_t column = 0; column < N; ++column) {
               L integral(0.0);
               for (std::size_t j = 0; j <= intervals; ++j) {
                 integral = integral + L(rule_.between[m][j]) * rates[j][row][column];
               }
-              sum[row][column] = h * integral - (path[m][row][column] - path[m - 1][row][column]);
+              off[m][row][column] =
+                  off[m - 1][row][column] + (h * integral - (path[m][row][column] - path[m - 1][row][column]));
             }
           }
-          // d := step d + (1 + step) sum / 2
-          Matrix along = sum;
-          append(step_[base + m], along);
-          append(step_[base + m], d);
-          for (std::size_t row = 0; row < N; ++row) {
-            for (std::size_t column = 0; column < N; ++column) {
-              d[row][column] = d[row][column] + L(0.5) * (sum[row][column] + along[row][column]);
-            }
-          }
-          moves[m] = d;
         }
+        const Mask smooth = resolves(base);
+        Matrix move = off[0];
         for (std::size_t m = 1; m <= intervals; ++m) {
+          Matrix mean;
           for (std::size_t row = 0; row < N; ++row) {
             for (std::size_t column = 0; column < N; ++column) {
-              path[m][row][column] = path[m][row][column] + moves[m][row][column];
+              L sum(0.0);
+              for (std::size_t j = 1; j <= intervals; ++j) sum = sum + L(rule_.mean[m][j]) * off[j][row][column];
+              mean[row][column] = select<L>(smooth, sum, L(0.5) * (off[m - 1][row][column] + off[m][row][column]));
+              move[row][column] = move[row][column] + (mean[row][column] - off[m - 1][row][column]);
+            }
+          }
+          append(step_[base + m], move);
+          for (std::size_t row = 0; row < N; ++row) {
+            for (std::size_t column = 0; column < N; ++column) {
+              move[row][column] = move[row][column] + (off[m][row][column] - mean[row][column]);
+              path[m][row][column] = path[m][row][column] + move[row][column];
             }
           }
         }

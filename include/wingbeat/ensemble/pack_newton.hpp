@@ -5,13 +5,9 @@
 #include "wingbeat/ensemble/pack_orbit.hpp"
 namespace wingbeat {
 
-/// Nodes on segments that end at the switches as march() left them, with its trajectory and derivatives interpolated
-/// there.
+/// Nodes on segments that end at the switches as march() left them, with its trajectory interpolated there.
 template <class L, int N>
 void PackOrbit<L, N>::place_nodes() {
-  for (std::size_t row = 0; row < N; ++row) {
-    for (std::size_t column = 0; column < N; ++column) monodromy_[row][column] = L(row == column ? 1.0 : 0.0);
-  }
   for (int half = 0; half < 2; ++half) {
     const System system = half_cycle(half);
     const HalfMesh<L> before = mesh_[std::size_t(half)];
@@ -26,24 +22,12 @@ void PackOrbit<L, N>::place_nodes() {
       const L per_h_before = inverse_of(max(h_before, L(1e-12)));
       State c1, c2, c3;
       for (std::size_t n = 0; n < N; ++n) {
-        const L rise = to.y[n] - from.y[n], d0 = h_before * from.rates[n], d1 = h_before * to.rates[n];
+        const L rise = to.y[n] - from.y[n];
+        const L d0 = select<L>(from.stiff, rise, h_before * from.rates[n]);
+        const L d1 = select<L>(from.stiff, rise, h_before * to.rates[n]);
         c1[n] = d0;
         c2[n] = L(3.0) * rise - L(2.0) * d0 - d1;
         c3[n] = d0 + d1 - L(2.0) * rise;
-      }
-      // The derivatives by the parabola through start, middle and end; across a switch they jump, and a straight line
-      // goes on from the middle.
-      const bool last = s + 1 == std::size_t(segments_);
-      Mask smooth = (last ? L(-1.0) : before.force[s] * before.force[s + 1]) > L(0.0);
-      if (bends_ && !last) smooth = smooth && before.pitching[s] * before.pitching[s + 1] > L(0.0);
-      Matrix linear, bend;
-      for (std::size_t row = 0; row < N; ++row) {
-        for (std::size_t column = 0; column < N; ++column) {
-          const L rise = L(2.0) * (from.jacobian[1][row][column] - from.jacobian[0][row][column]);
-          linear[row][column] = rise;
-          bend[row][column] =
-              select<L>(smooth, L(2.0) * (to.jacobian[0][row][column] - from.jacobian[0][row][column] - rise), L(0.0));
-        }
       }
       for (std::size_t m = 0; m <= std::size_t(rule_.intervals); ++m) {
         const double x = rule_.node[m];
@@ -53,28 +37,25 @@ void PackOrbit<L, N>::place_nodes() {
           trajectory_[base + m][n] = from.y[n] + L(x) * (c1[n] + L(x) * (c2[n] + L(x) * c3[n])) +
                                      moved * (c1[n] + L(2.0 * x) * c2[n] + L(3.0 * x * x) * c3[n]);
         }
-        if (m == 0) continue;
-        const double width = x - rule_.node[m - 1], t = x - 0.5 * width;
-        Matrix jacobian;
-        for (std::size_t row = 0; row < N; ++row) {
-          for (std::size_t column = 0; column < N; ++column) {
-            jacobian[row][column] =
-                from.jacobian[0][row][column] + L(t) * (linear[row][column] + L(t - 0.5) * bend[row][column]);
-          }
-        }
-        propagator(jacobian, L(width) * h, step_[base + m]);
-        append(step_[base + m], monodromy_);
       }
     }
   }
 }
 
-/// What the nodes of a segment would each move by if the node before stood still: its rates' integral says so. `end` is
-/// what the node before the segment, and afterwards its last one, moves by if the iterate's start stands still.
+/// What the nodes of a segment would each move by if the node before stood still. `end` is what the node before the
+/// segment, and afterwards its last one, moves by if the iterate's start stands still.
+///
+/// The rates' integral from the segment's start on is off the trajectory by R; a correction is R + w with w' = J (w +
+/// R). R swings from node to node, J does not: over an interval J counts as constant, and R as its mean over the
+/// interval; where J is large against the interval, as the mean of the ends, which damps. `known_intervals` are the
+/// rule's, or 0.
 template <class L, int N>
-void PackOrbit<L, N>::propose(std::size_t base, const L& h, State& end) {
-  const std::size_t intervals = std::size_t(rule_.intervals);
-  for (std::size_t n = 0; n < N; ++n) end[n] = end[n] + correction_[base][n];
+template <int known_intervals>
+void PackOrbit<L, N>::propose_with(std::size_t base, const L& h, State& end) {
+  const std::size_t intervals = std::size_t(known_intervals > 0 ? known_intervals : rule_.intervals);
+  const Mask smooth = resolves(base);
+  std::array<State, nodes_per_segment> off;
+  off[0].fill(L(0.0));
   for (std::size_t m = 1; m <= intervals; ++m) {
     State sum;
     sum.fill(L(0.0));
@@ -82,17 +63,31 @@ void PackOrbit<L, N>::propose(std::size_t base, const L& h, State& end) {
       const L weight(rule_.between[m][j]);
       for (std::size_t n = 0; n < N; ++n) sum[n] = sum[n] + weight * rates_[base + j][n];
     }
-    for (std::size_t n = 0; n < N; ++n) sum[n] = h * sum[n] - (trajectory_[base + m][n] - trajectory_[base + m - 1][n]);
-    // (1 - z)^-1 = (1 + step) / 2
-    const Matrix& step = step_[base + m];
-    const State before = end;
     for (std::size_t n = 0; n < N; ++n) {
-      L along = step[n][0] * sum[0], onward = step[n][0] * before[0];
+      off[m][n] = off[m - 1][n] + (h * sum[n] - (trajectory_[base + m][n] - trajectory_[base + m - 1][n]));
+    }
+  }
+  for (std::size_t n = 0; n < N; ++n) end[n] = end[n] + correction_[base][n];
+  for (std::size_t m = 1; m <= intervals; ++m) {
+    State mean;
+    mean.fill(L(0.0));
+    for (std::size_t j = 1; j <= intervals; ++j) {
+      const L weight(rule_.mean[m][j]);
+      for (std::size_t n = 0; n < N; ++n) mean[n] = mean[n] + weight * off[j][n];
+    }
+    const Matrix& step = step_[base + m];
+    State from, before = end;
+    for (std::size_t n = 0; n < N; ++n) {
+      mean[n] = select<L>(smooth, mean[n], L(0.5) * (off[m - 1][n] + off[m][n]));
+      from[n] = mean[n] - off[m - 1][n];
+    }
+    for (std::size_t n = 0; n < N; ++n) {
+      L along = step[n][0] * from[0], onward = step[n][0] * before[0];
       if constexpr (N == 2) {
-        along = along + step[n][1] * sum[1];
+        along = along + step[n][1] * from[1];
         onward = onward + step[n][1] * before[1];
       }
-      correction_[base + m][n] = L(0.5) * (sum[n] + along);
+      correction_[base + m][n] = off[m][n] - mean[n] + along;
       end[n] = onward + correction_[base + m][n];
     }
   }
@@ -124,31 +119,36 @@ void PackOrbit<L, N>::correct(State end) {
       }
       sum = sum + abs(by[0]) * per_speed;
       if constexpr (N == 2) sum = sum + abs(by[1]) * per_current;
-      for (std::size_t n = 0; n < N; ++n) trajectory_[node][n] = trajectory_[node][n] + by[n];
+      for (std::size_t n = 0; n < N; ++n) {
+        trajectory_[node][n] = select<L>(settled_, trajectory_[node][n], trajectory_[node][n] + by[n]);
+      }
       slowest_ = min(slowest_, trajectory_[node][0]);
     }
   }
-  residual_ = sum * L(1.0 / double(nodes));
+  residual_ = select<L>(settled_, residual_, sum * L(1.0 / double(nodes)));
   y_ = trajectory_[0];
 }
 
-/// The equations at all nodes, and the corrections that follow; the last iteration takes integrals and observables,
-/// too.
+/// The equations at all nodes, and the corrections that follow.
 ///
 /// Where a node stands off the sign change it was meant for by d, the wrong branch has held, or will hold, over d. The
 /// difference of the branches grows linearly from zero there, so that half of d times the difference at the node is the
 /// error left behind, up to O(d^3). Where d is longer than the segment, or where the sign changes are others than those
 /// that the segments were made for, an error of O(d^2) stays.
 template <class L, int N>
-template <bool last>
+template <typename PackOrbit<L, N>::Newton which>
 void PackOrbit<L, N>::newton_iteration() {
+  constexpr bool first = which == Newton::first, last = which == Newton::last;
   const std::size_t intervals = std::size_t(rule_.intervals);
-  solver::Rates<System> rates;
+  NodeRates at_node;
+  Matrix jacobian, jacobian_before, monodromy;
+  for (std::size_t row = 0; row < N; ++row) {
+    for (std::size_t column = 0; column < N; ++column) monodromy[row][column] = L(row == column ? 1.0 : 0.0);
+  }
   State end;
   end.fill(L(0.0));
   correction_[0] = end;
   L overlooked(0.0), highest(0.0), bend_depth(0.0);
-  std::array<std::array<L, nodes_per_segment>, 4> controlled;
   typename System::Quadrature integrands_before;
   if (lags_) lag_current();
   if constexpr (last) {
@@ -168,14 +168,26 @@ void PackOrbit<L, N>::newton_iteration() {
       for (std::size_t m = 0; m <= intervals; ++m) {
         if (lags_) system.drop = drop_[base + m];
         if (bends_) margin_[base + m] = system.pitch_margin_at(configuration_of(base + m), trajectory_[base + m]);
+        solver::Rates<System>& rates = at_node[last ? m : 0];
         if constexpr (last) {
           visit_node(system, base + m, sign, rates);
-          const L weight = L(rule_.weight[m]) * h;
-          for (std::size_t q = 0; q < integrals_.size(); ++q) integrals_[q] = integrals_[q] + weight * rates.dq[q];
-          for (std::size_t c = 0; c < controlled.size(); ++c)
-            controlled[c][m] = rates.dq[System::controlled_integrals[c]];
           highest = max(highest, abs(rates.switches[0]));
           if (m > 0 && m < intervals) overlooked = max(overlooked, -(rates.switches[0] * sign));
+        } else if constexpr (first) {
+          linearise(system, base + m, sign, rates, jacobian);
+          if (m > 0) {
+            Matrix mean;
+            for (std::size_t row = 0; row < N; ++row) {
+              for (std::size_t column = 0; column < N; ++column) {
+                mean[row][column] = L(0.5) * (jacobian_before[row][column] + jacobian[row][column]);
+              }
+            }
+            Matrix step;
+            propagator(mean, L(rule_.node[m] - rule_.node[m - 1]) * h, step);
+            keep_settled(step, step_[base + m]);
+            append(step_[base + m], monodromy);
+          }
+          jacobian_before = jacobian;
         } else {
           evaluate<false>(system, configuration_of(base + m), trajectory_[base + m], sign, rates);
         }
@@ -223,8 +235,13 @@ void PackOrbit<L, N>::newton_iteration() {
       h_before = h;
       propose(base, h, end);
       if constexpr (last) {
-        integrands_before = rates.dq;
-        add_tails(controlled, base, h);
+        for (std::size_t q = 0; q < integrals_.size(); ++q) {
+          L sum(0.0);
+          for (std::size_t m = 0; m <= intervals; ++m) sum = sum + L(rule_.weight[m]) * at_node[m].dq[q];
+          integrals_[q] = integrals_[q] + h * sum;
+        }
+        integrands_before = at_node[intervals].dq;
+        add_tails(at_node, base, h);
         overlooked = max(overlooked, dip_between_nodes(base, sign));
         if (wanted_[std::size_t(Quantity::force)]) {
           const L per_h = inverse_of(max(h, L(1e-12)));
@@ -268,6 +285,7 @@ void PackOrbit<L, N>::newton_iteration() {
       }
     }
   }
+  if constexpr (first) keep_settled(monodromy, monodromy_);
   correct(end);
   if constexpr (last) {
     overlooked_ = max(L(overlooked * inverse_of(max(highest, L(1e-300)))), bend_depth);
@@ -329,24 +347,24 @@ L PackOrbit<L, N>::dip_between_nodes(std::size_t base, const L& sign) const {
     const double x0 = rule_.node[m - 1], x1 = rule_.node[m], x2 = rule_.node[m + 1];
     const L f0 = sign * force_[base + m - 1], f1 = sign * force_[base + m], f2 = sign * force_[base + m + 1];
     const L left = (f1 - f0) * L(1.0 / (x1 - x0)), right = (f2 - f1) * L(1.0 / (x2 - x1));
-    const L curve = (right - left) * L(1.0 / (x2 - x0)), slope = left + curve * L(x1 - x0);
-    const L at = -(L(0.5) * slope * inverse_of(select<L>(curve > L(0.0), curve, L(1.0))));
-    const Mask inside = curve > L(0.0) && at > L(x0 - x1) && at < L(x2 - x1);
-    depth = max(depth, select<L>(inside, -(f1 + L(0.5) * slope * at), L(0.0)));
+    const L curve = (right - left) * L(1.0 / (x2 - x0)), slope = left + curve * L(x1 - x0), back = L(-0.5) * slope;
+    const Mask inside = curve > L(0.0) && back > curve * L(x0 - x1) && back < curve * L(x2 - x1);
+    const Mask dips = inside && square(back) > f1 * curve;
+    if (!any<L>(dips)) continue;
+    depth = max(depth, select<L>(dips, square(back) * inverse_of(select<L>(dips, curve, L(1.0))) - f1, L(0.0)));
   }
   return depth;
 }
 
 /// Adds the last coefficients of a segment's rates of speed and integrals.
 template <class L, int N>
-void PackOrbit<L, N>::add_tails(const std::array<std::array<L, nodes_per_segment>, 4>& controlled, std::size_t base,
-                                const L& h) {
+void PackOrbit<L, N>::add_tails(const NodeRates& rates, std::size_t base, const L& h) {
   const std::size_t n = std::size_t(rule_.intervals);
   const L per_omega = inverse_of(trajectory_[base][0]);
   for (std::size_t c = 0; c < high_.size(); ++c) {
     L tail[4] = {L(0.0), L(0.0), L(0.0), L(0.0)};
     for (std::size_t j = 0; j <= n; ++j) {
-      const L value = c == 0 ? rates_[base + j][0] * per_omega : controlled[c - 1][j];
+      const L value = c == 0 ? rates[j].dy[0] * per_omega : rates[j].dq[System::controlled_integrals[c - 1]];
       for (std::size_t k = 0; k < 4; ++k) tail[k] = tail[k] + L(k <= n ? rule_.legendre[n - k][j] : 0.0) * value;
     }
     high_[c] = high_[c] + h * (abs(tail[0]) + abs(tail[1]));
@@ -354,47 +372,57 @@ void PackOrbit<L, N>::add_tails(const std::array<std::array<L, nodes_per_segment
   }
 }
 
-/// The observables wanted at a state, with the motion there.
+/// A quantity but the rod force, with the motion there.
 template <class L, int N>
-void PackOrbit<L, N>::read(const System& system, const L& u, const State& y, const L& force, const Motion<L>& m,
-                           const State& dy, const L& drop_slope, const std::array<bool, quantity_count>& wanted,
-                           std::array<Observable<L>, quantity_count>& out) const {
-  const auto is_wanted = [&](Quantity q) { return wanted[std::size_t(q)]; };
-  const auto at = [&](Quantity q) -> Observable<L>& { return out[std::size_t(q)]; };
-  if (is_wanted(Quantity::velocity)) {
-    at(Quantity::velocity) = {system.half * m.stroke_velocity, system.half * m.stroke_acceleration * inverse_of(y[0])};
-  }
-  if (is_wanted(Quantity::speed)) at(Quantity::speed) = {y[0], dy[0]};
-  if (is_wanted(Quantity::negated_speed)) at(Quantity::negated_speed) = {-y[0], -dy[0]};
-  if (is_wanted(Quantity::current)) {
-    if constexpr (N == 2) {
-      at(Quantity::current) = {y[1], dy[1]};
-    } else {
-      const L per_resistance = inverse_of(circuit_resistance(vehicle_));
-      at(Quantity::current) = {m.current, lags_ ? system.drop * per_inductance_ * inverse_of(y[0])
-                                                : -(vehicle_.motor.torque_constant * dy[0] * per_resistance)};
+Observable<L> PackOrbit<L, N>::observable(const System& system, const Configuration<L>& place, const State& y,
+                                          const Motion<L>& m, const State& dy, Quantity quantity) const {
+  switch (quantity) {
+    case Quantity::velocity:
+      return {system.half * m.stroke_velocity, system.half * m.stroke_acceleration * inverse_of(y[0])};
+    case Quantity::speed: return {y[0], dy[0]};
+    case Quantity::negated_speed: return {-y[0], -dy[0]};
+    case Quantity::current:
+      if constexpr (N == 2) {
+        return {y[1], dy[1]};
+      } else {
+        return {m.current, lags_ ? system.drop * per_inductance_ * inverse_of(y[0])
+                                 : -(vehicle_.motor.torque_constant * dy[0] * per_resistance_)};
+      }
+    default: {
+      const L kinetic = L(0.5) * vehicle_.wing_count * vehicle_.wing_inertia * square(m.stroke_velocity);
+      // At the dead centres the slope is zero but for rounding; its sign is that of the moment there.
+      const L rising = sign_of(L(system.half * m.stored_moment));
+      const L steepness = max(abs(L(m.stored_moment * m.kinematics.stroke_slope)), L(1e-30));
+      return {kinetic + compliance_ * square(place.spring_moment), rising * steepness};
     }
   }
-  if (is_wanted(Quantity::energy)) {
-    const L energy = wing_energy(vehicle_, m.kinematics, m.stroke_velocity);
-    // At the dead centres the slope is zero but for rounding; its sign is that of the moment there.
-    const L rising = sign_of(L(system.half * m.stored_moment));
-    const L steepness = max(abs(L(m.stored_moment * m.kinematics.stroke_slope)), L(1e-30));
-    at(Quantity::energy) = {energy, rising * steepness};
+}
+
+/// Rates at a node, and their derivatives by the state there. Without added mass the rates are linear in the current.
+template <class L, int N>
+void PackOrbit<L, N>::linearise(const System& system, std::size_t node, const L& force, solver::Rates<System>& rates,
+                                Matrix& jacobian) const {
+  const Configuration<L>& place = configuration_of(node);
+  const State& y = trajectory_[node];
+  evaluate<false>(system, place, y, force, rates);
+  if (N == 1 || every_law_) {
+    jacobian = jacobian_at(system, place, y, rates.dy, force);
+    return;
   }
-  if (is_wanted(Quantity::force)) {
-    // The slope along the solution by central differences.
-    constexpr double by = 1e-4;
-    L ahead[2];
-    for (int side = 0; side < 2; ++side) {
-      const L move(side == 0 ? -by : by);
-      State moved;
-      for (std::size_t n = 0; n < N; ++n) moved[n] = y[n] + move * dy[n];
-      System there = system;
-      if (lags_) there.drop = system.drop + move * drop_slope;
-      ahead[side] = there.motion(there.place(u + move), moved, force).rod_force;
-    }
-    at(Quantity::force) = {force * m.rod_force, force * (ahead[1] - ahead[0]) * L(0.5 / by)};
+  solver::Rates<System> beside;
+  State moved = y;
+  const L by = L(1e-7) * y[0];
+  moved[0] = moved[0] + by;
+  evaluate<false>(system, place, moved, force, beside);
+  const CrankKinematics<L>& k = place.kinematics;
+  const L inertia_g = vehicle_.motor.inertia * k.wing_lever + vehicle_.wing_count * vehicle_.wing_inertia *
+                                                                  k.stroke_slope *
+                                                                  (k.crank_lever + force * vehicle_.friction.radius);
+  const L both = inverse_of(L(inertia_g * y[0])), per_omega = both * inertia_g, per_move = L(1e7) * per_omega;
+  for (std::size_t row = 0; row < N; ++row) jacobian[row][0] = (beside.dy[row] - rates.dy[row]) * per_move;
+  if constexpr (N == 2) {
+    jacobian[0][1] = vehicle_.motor.torque_constant * k.wing_lever * both;
+    jacobian[1][1] = -(circuit_resistance(vehicle_) * per_inductance_ * per_omega);
   }
 }
 
@@ -403,16 +431,22 @@ template <class L, int N>
 template <bool every_law>
 void PackOrbit<L, N>::visit_node_of(const System& system, std::size_t node, const L& force,
                                     solver::Rates<System>& rates) {
-  const Motion<L> motion = system.template motion_of<every_law>(configuration_of(node), trajectory_[node], force);
-  rates = system.template rates_of<true>(motion, trajectory_[node], force);
-  if (!reads_) return;
-  std::array<bool, quantity_count> wanted = wanted_;
-  wanted[std::size_t(Quantity::force)] = false;
-  std::array<Observable<L>, quantity_count> observables;
-  read(system, L(0.0), trajectory_[node], force, motion, rates.dy, L(0.0), wanted, observables);
-  observables[std::size_t(Quantity::force)].value = force * motion.rod_force;
-  for (std::size_t q = 0; q < std::size_t(quantity_count); ++q) {
-    if (wanted_[q]) observables_[q][node] = observables[q];
+  const Configuration<L>& place = configuration_of(node);
+  const State& y = trajectory_[node];
+  const Motion<L> motion = system.template motion_of<every_law>(place, y, force);
+  rates = system.template rates_of<true>(motion, y, force);
+  const auto keep_of = [&](Quantity q) {
+    if (wanted_[std::size_t(q)]) {
+      observables_[std::size_t(q)][node] = observable(system, place, y, motion, rates.dy, q);
+    }
+  };
+  keep_of(Quantity::velocity);
+  keep_of(Quantity::current);
+  keep_of(Quantity::negated_speed);
+  keep_of(Quantity::speed);
+  keep_of(Quantity::energy);
+  if (wanted_[std::size_t(Quantity::force)]) {
+    observables_[std::size_t(Quantity::force)][node].value = force * motion.rod_force;
   }
 }
 

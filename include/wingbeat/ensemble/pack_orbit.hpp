@@ -94,8 +94,9 @@ class PackOrbit {
     per_resistance_ = L(1.0) / circuit_resistance(vehicle);
     current_scale_ = vehicle.voltage * per_resistance_;
     wanted_ = settings.wanted;
-    for (const bool wanted : wanted_) reads_ = reads_ || wanted;
     geometry_ = geometry_of(vehicle.transmission.slider_crank);
+    const L stiffness = vehicle.wing_count * vehicle.spring.stiffness;
+    compliance_ = select<L>(stiffness > L(0.0), L(0.5) / max(stiffness, L(1e-300)), L(0.0));
     bends_ = bends_on_lanes(vehicle.wings);
     every_law_ = bends_ || any<L>(vehicle.wings.added_inertia > L(0.0));
     lags_ = N == 1 && settings.current == PackCurrent::lagging;
@@ -137,8 +138,8 @@ class PackOrbit {
   [[gnu::noinline, gnu::flatten]] void assess_statics();
   [[gnu::noinline, gnu::flatten]] L guess_speed();
   [[gnu::noinline, gnu::flatten]] void start_from_rest();
-  [[gnu::noinline]] void replace_stiff(const System& system, const L& u, const L& h, const State& y, State& end,
-                                       L& force_in_middle, L& force_at_end) const;
+  [[gnu::noinline]] void replace_stiff(const System& system, const Configuration<L>* over, const L& u, const L& h,
+                                       const State& y, State& end, L& force_in_middle, L& force_at_end) const;
   template <bool last>
   [[gnu::noinline, gnu::flatten]] void coarse_iterate();
   [[gnu::noinline, gnu::flatten]] L find_switches(ForceSwitches<L>& known, const L* u, const L* force, int count);
@@ -151,12 +152,24 @@ class PackOrbit {
   [[gnu::noinline]] L error_of_peak_on_bend(const L& peak) const;
   [[gnu::noinline]] void march();
   [[gnu::noinline, gnu::flatten]] void place_nodes();
-  template <bool last>
+  /// The first one takes the derivatives along the trajectory, the last one integrals and observables.
+  enum class Newton { first, middle, last };
+  template <Newton which>
   [[gnu::noinline]] void newton_iteration();
+  void iterate();
   [[gnu::noinline, gnu::flatten]] void follow_switches();
   static L misplaced(const L& by) { return L(0.15) * square(by); }
   [[gnu::noinline, gnu::flatten]] L dip_between_nodes(std::size_t base, const L& sign) const;
-  [[gnu::noinline, gnu::flatten]] void propose(std::size_t base, const L& h, State& end);
+  void propose(std::size_t base, const L& h, State& end) {
+    switch (rule_.intervals) {
+      case 4: return propose_with<4>(base, h, end);
+      case 6: return propose_with<6>(base, h, end);
+      case 8: return propose_with<8>(base, h, end);
+      default: return propose_with<0>(base, h, end);
+    }
+  }
+  template <int known_intervals>
+  [[gnu::noinline, gnu::flatten]] void propose_with(std::size_t base, const L& h, State& end);
   [[gnu::noinline, gnu::flatten]] void correct(State end);
   [[gnu::noinline, gnu::flatten]] void lag_current();
   [[gnu::noinline, gnu::flatten]] solver::Rates<System> relaxation(System system, std::size_t base,
@@ -170,12 +183,13 @@ class PackOrbit {
   template <bool every_law>
   [[gnu::noinline, gnu::flatten]] void visit_node_of(const System& system, std::size_t node, const L& force,
                                                      solver::Rates<System>& rates);
-  [[gnu::noinline, gnu::flatten]] void add_tails(const std::array<std::array<L, nodes_per_segment>, 4>& controlled,
-                                                 std::size_t base, const L& h);
-  [[gnu::noinline, gnu::flatten]] void read(const System& system, const L& u, const State& y, const L& force,
-                                            const Motion<L>& m, const State& dy, const L& drop_slope,
-                                            const std::array<bool, quantity_count>& wanted,
-                                            std::array<Observable<L>, quantity_count>& out) const;
+  [[gnu::noinline]] void linearise(const System& system, std::size_t node, const L& force, solver::Rates<System>& rates,
+                                   Matrix& jacobian) const;
+  using NodeRates = std::array<solver::Rates<System>, nodes_per_segment>;  ///< at a segment's nodes
+  [[gnu::noinline, gnu::flatten]] void add_tails(const NodeRates& rates, std::size_t base, const L& h);
+  [[gnu::always_inline]] inline Observable<L> observable(const System& system, const Configuration<L>& place,
+                                                         const State& y, const Motion<L>& m, const State& dy,
+                                                         Quantity quantity) const;
   [[gnu::noinline, gnu::flatten]] void follow(const L& segment, SegmentTrajectory<L, N>& trajectory) const;
   [[gnu::noinline, gnu::flatten]] Observable<L> observable_inside(Quantity quantity,
                                                                   const SegmentTrajectory<L, N>& trajectory,
@@ -196,9 +210,9 @@ class PackOrbit {
                                        const State& rates, const L& force) const;
   [[gnu::noinline]] Matrix jacobian_at_node(System system, std::size_t node, const L& force) const;
   static Mask is_stiff(const Matrix& jacobian, const L& h);
-  [[gnu::noinline, gnu::flatten]] static void find_rates(const System& system, const L& u, const State& y, State& rates,
-                                                         L& force) {
-    const Motion<L> m = system.motion_on_its_branch(system.place(u), y);
+  [[gnu::noinline, gnu::flatten]] static void find_rates(const System& system, const Configuration<L>& place,
+                                                         const State& y, State& rates, L& force) {
+    const Motion<L> m = system.motion_on_its_branch(place, y);
     force = m.force_switch;
     rates = system.template rates_of<false>(m, y, L(1.0)).dy;
   }
@@ -206,6 +220,18 @@ class PackOrbit {
   [[gnu::noinline]] State implicit_step(const State& y, const L& h, const Rates& rates) const;
   static void propagator(const Matrix& jacobian, const L& h, Matrix& out);
   static void append(const Matrix& step, Matrix& product);
+  void keep_settled(const Matrix& from, Matrix& to) const {
+    for (std::size_t row = 0; row < N; ++row) {
+      for (std::size_t n = 0; n < N; ++n) to[row][n] = select<L>(settled_, to[row][n], from[row][n]);
+    }
+  }
+  /// Whether disturbances last longer than the widest interval of a segment; else propagator() is no more than stable.
+  Mask resolves(std::size_t base) const {
+    const Matrix& step = step_[base + std::size_t(rule_.intervals / 2)];
+    Mask resolved = step[0][0] > L(0.4);
+    if constexpr (N == 2) resolved = resolved && step[1][1] > L(0.4);
+    return resolved;
+  }
   static L largest_modulus(const Matrix& M);
   void close_iterate(State& off) const;
   /// Without springs the first guess is as good as what a coarse iterate would make of it.
@@ -243,14 +269,15 @@ class PackOrbit {
   State y_;         ///< where an iterate starts
   bool every_law_;  ///< HalfCycle::has_every_law
   Mask unresolved_, locked_;
-  Mask lost_;  ///< the crank comes near standstill on the way to the orbit
+  Mask settled_;  ///< on the trajectory that the last iteration will start from
+  Mask lost_;     ///< the crank comes near standstill on the way to the orbit
   std::array<ForceSwitches<L>, 2> switches_{};
   std::array<HalfMesh<L>, 2> mesh_;
 
-  /// Where a segment starts as march() leaves it, and the derivatives of the rates there and in its middle.
+  /// Where a segment starts as march() leaves it.
   struct Subinterval {
     State y, rates;
-    std::array<Matrix, 2> jacobian;
+    Mask stiff;  ///< beyond which the rates at either end say little of what is in between
   };
   std::array<Subinterval, 2 * max_half_segments + 1> subintervals_;
   // At the nodes, segment after segment; where segments meet there is one for either.
@@ -262,10 +289,10 @@ class PackOrbit {
   std::array<Matrix, max_nodes> step_;  ///< derivative of the state by that at the node before
   std::array<std::array<Observable<L>, max_nodes>, quantity_count> observables_;
 
+  L compliance_;  ///< of all springs, half of it: their energy per square of their moment [1/(N m)]; 0 without
   std::array<L, pack_integrals.size()> integrals_;
   std::array<L, 5> high_, low_;  ///< sums of the last and last but two coefficients of what limits the error
   std::array<bool, quantity_count> wanted_;
-  bool reads_ = false;  ///< anything
   // Where the coefficients bend within a half: the switches of the pitch margin, as those of the rod force.
   bool bends_;
   std::array<ForceSwitches<L>, 2> bend_switches_{};
@@ -276,7 +303,7 @@ class PackOrbit {
   L lag_residual_;                 ///< its last change, of the voltage
   L layer_;                        ///< largest relaxation() of the speed, relative
 
-  L slowest_, residual_;
+  L slowest_, residual_ = L(0.0);
   L switch_error_;              ///< of segments that end off the rod force's sign changes
   L step_error_, speed_error_;  ///< of what the segments' polynomials leave out: at all, and of speed and time
   L overlooked_;  ///< depth to which the rod force has the wrong sign inside a segment, of its largest magnitude
@@ -412,6 +439,28 @@ void PackOrbit<L, N>::build_mesh(int half) {
   });
 }
 
+/// Newton's method up to its last iteration. A lane stays where it is once its next correction is expected to be small:
+/// as much smaller than the last one as that was than the one before. What others still need does not move it.
+template <class L, int N>
+void PackOrbit<L, N>::iterate() {
+  settled_ = L(1.0) < L(0.0);
+  for (int n = 0; n < settings_.newton_iterations; ++n) {
+    const L before = residual_;
+    // Where the equations are stiff, the first trajectory is a poor one.
+    if (n == 0 || settings_.implicit) {
+      newton_iteration<Newton::first>();
+    } else {
+      newton_iteration<Newton::middle>();
+    }
+    if (settings_.follow_switches && n == 1) follow_switches();
+    if (lags_ || n < (settings_.follow_switches ? 2 : 1)) continue;
+    const L gain = min(L(residual_ * inverse_of(max(before, L(1e-300)))), L(1.0));
+    settled_ = settled_ || unresolved_ || locked_ || gain * residual_ <= L(settings_.settled);
+    if (all<L>(settled_)) break;
+  }
+  settled_ = L(1.0) < L(0.0);
+}
+
 template <class L, int N>
 Metrics<L> PackOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant) {
   lost_ = L(1.0) < L(0.0);
@@ -435,11 +484,8 @@ Metrics<L> PackOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   march();
   place_nodes();
   if (lags_) drop_.fill(L(0.0));
-  for (int n = 0; n < settings_.newton_iterations; ++n) {
-    newton_iteration<false>();
-    if (n == 1 && settings_.follow_switches) follow_switches();
-  }
-  newton_iteration<true>();
+  iterate();
+  newton_iteration<Newton::last>();
 
   CycleIntegrals<L> integrals;
   integrals.fill(L(0.0));

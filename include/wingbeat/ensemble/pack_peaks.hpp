@@ -67,8 +67,6 @@ void PackOrbit<L, N>::follow(const L& segment, SegmentTrajectory<L, N>& trajecto
 template <class L, int N>
 Observable<L> PackOrbit<L, N>::observable_inside(Quantity quantity, const SegmentTrajectory<L, N>& trajectory,
                                                  const L& x) const {
-  std::array<bool, quantity_count> wanted{};
-  wanted[std::size_t(quantity)] = true;
   System system = {vehicle_, geometry_, per_inductance_, per_resistance_, trajectory.half, every_law_};
   if (bends_) system.pitching = trajectory.pitching;
   const L t = L(2.0) * x * inverse_of(max(trajectory.length, L(1e-12))) - L(1.0);
@@ -94,11 +92,22 @@ Observable<L> PackOrbit<L, N>::observable_inside(Quantity quantity, const Segmen
   }
   drop_slope = drop_slope * L(2.0) * inverse_of(max(trajectory.length, L(1e-12)));
   const L u = trajectory.u + x;
-  const Motion<L> motion = system.motion(system.place(u), y, trajectory.force);
+  const Configuration<L> place = system.place(u);
+  const Motion<L> motion = system.motion(place, y, trajectory.force);
   const State dy = system.template rates_of<false>(motion, y, trajectory.force).dy;
-  std::array<Observable<L>, quantity_count> observables;
-  read(system, u, y, trajectory.force, motion, dy, drop_slope, wanted, observables);
-  return observables[std::size_t(quantity)];
+  if (quantity != Quantity::force) return observable(system, place, y, motion, dy, quantity);
+  // The slope along the solution by central differences.
+  constexpr double by = 1e-4;
+  L ahead[2];
+  for (int side = 0; side < 2; ++side) {
+    const L move(side == 0 ? -by : by);
+    State moved;
+    for (std::size_t n = 0; n < N; ++n) moved[n] = y[n] + move * dy[n];
+    System there = system;
+    if (lags_) there.drop = system.drop + move * drop_slope;
+    ahead[side] = there.motion(there.place(u + move), moved, trajectory.force).rod_force;
+  }
+  return {trajectory.force * motion.rod_force, trajectory.force * (ahead[1] - ahead[0]) * L(0.5 / by)};
 }
 
 /// Calls visit(bracket, mask) for each subinterval of half a cycle, in order: from node to node, and where the cubic

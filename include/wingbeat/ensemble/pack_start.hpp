@@ -5,6 +5,9 @@
 
 namespace wingbeat {
 
+// Of implicit_step(), the other stage being the step's end: 1 - sqrt(1/2).
+inline constexpr double first_stage = 0.29289321881345248;
+
 template <class L, int N>
 void PackOrbit<L, N>::tabulate() {
   for (int half = 0; half < 2; ++half) {
@@ -154,57 +157,64 @@ auto PackOrbit<L, N>::is_stiff(const Matrix& jacobian, const L& h) -> Mask {
 }
 
 /// A step by the L-stable diagonally implicit method of second order with two stages (Alexander 1977), each by a few
-/// Newton steps; rates(part, y) are those at a part of the step.
+/// Newton steps with the derivatives at the first of them; rates(stage, y) are those at a stage's place.
 template <class L, int N>
 template <class Rates>
 auto PackOrbit<L, N>::implicit_step(const State& y, const L& h, const Rates& rates) const -> State {
-  const double gamma = 1.0 - std::sqrt(0.5);
-  const L own = L(gamma) * h;
+  const L own = L(first_stage) * h;
   State known = y, at = y;
-  for (const double part : {gamma, 1.0}) {
-    State slope;
+  for (int stage = 0; stage < 2; ++stage) {
+    Matrix inverse;  // of 1 - first_stage h jacobian
     for (int newton = 0; newton < 4; ++newton) {
-      slope = rates(L(part), at);
-      Matrix reduced = derivatives(at, slope, [&](const State& moved) { return rates(L(part), moved); });
-      for (std::size_t row = 0; row < N; ++row) {  // 1 - gamma h jacobian
-        for (std::size_t n = 0; n < N; ++n) reduced[row][n] = L(row == n ? 1.0 : 0.0) - own * reduced[row][n];
+      const State slope = rates(stage, at);
+      if (newton == 0) {
+        const Matrix jacobian = derivatives(at, slope, [&](const State& moved) { return rates(stage, moved); });
+        if constexpr (N == 1) {
+          inverse[0][0] = inverse_of(L(L(1.0) - own * jacobian[0][0]));
+        } else {
+          // By elimination: of a b - c d, either product may be the fused one, another in each half of a block.
+          const L a = L(1.0) - own * jacobian[0][0], d = L(1.0) - own * jacobian[1][1];
+          const L b = -(own * jacobian[0][1]), c = -(own * jacobian[1][0]);
+          const L per_a = inverse_of(a), factor = c * per_a, per_rest = inverse_of(L(d - factor * b));
+          inverse[1][1] = per_rest;
+          inverse[1][0] = -(factor * per_rest);
+          inverse[0][1] = -(b * per_a * per_rest);
+          inverse[0][0] = per_a - b * per_a * inverse[1][0];
+        }
       }
       State off;
       for (std::size_t n = 0; n < N; ++n) off[n] = known[n] + own * slope[n] - at[n];
-      if constexpr (N == 1) {
-        off[0] = off[0] * inverse_of(reduced[0][0]);
-      } else {
-        // By elimination: of a b - c d, either product may be the fused one, another in each half of a block.
-        const L per_first = inverse_of(reduced[0][0]), factor = reduced[1][0] * per_first;
-        off[1] = (off[1] - factor * off[0]) * inverse_of(L(reduced[1][1] - factor * reduced[0][1]));
-        off[0] = (off[0] - reduced[0][1] * off[1]) * per_first;
-      }
       const L least = L(0.3) * at[0];  // it shall not pass standstill
-      for (std::size_t n = 0; n < N; ++n) at[n] = at[n] + off[n];
+      for (std::size_t n = 0; n < N; ++n) {
+        at[n] = at[n] + inverse[n][0] * off[0];
+        if constexpr (N == 2) at[n] = at[n] + inverse[n][1] * off[1];
+      }
       at[0] = max(at[0], least);
     }
-    // What the first stage leaves to the second: y + (1 - gamma) h slope.
-    for (std::size_t n = 0; n < N; ++n) known[n] = y[n] + L((1.0 - gamma) / gamma) * (at[n] - y[n]);
+    // What the first stage leaves to the second: y + (1 - first_stage) h slope.
+    for (std::size_t n = 0; n < N; ++n) known[n] = y[n] + L((1.0 - first_stage) / first_stage) * (at[n] - y[n]);
   }
   return at;
 }
 
-/// Where a step of coarse_iterate() from y is stiff, takes an implicit one instead: its end, and the rod force's switch
-/// in its middle and at its end.
+/// Where a step of coarse_iterate() from y, over the three places from u on, is stiff, takes an implicit one instead:
+/// its end, and the rod force's switch in its middle and at its end.
 template <class L, int N>
-void PackOrbit<L, N>::replace_stiff(const System& system, const L& u, const L& h, const State& y, State& end,
-                                    L& force_in_middle, L& force_at_end) const {
+void PackOrbit<L, N>::replace_stiff(const System& system, const Configuration<L>* over, const L& u, const L& h,
+                                    const State& y, State& end, L& force_in_middle, L& force_at_end) const {
   State rates, beside;
   L force;
-  find_rates(system, u, y, rates, force);
+  find_rates(system, over[0], y, rates, force);
   const Matrix jacobian = derivatives(y, rates, [&](const State& moved) -> const State& {
-    find_rates(system, u, moved, beside, force);
+    find_rates(system, over[0], moved, beside, force);
     return beside;
   });
   const Mask stiff = is_stiff(jacobian, h);
   if (!any<L>(stiff)) return;
-  const State by_implicit = implicit_step(y, h, [&](const L& part, const State& at) {
-    find_rates(system, u + part * h, at, rates, force);
+  Configuration<L> inside;
+  find_configuration(system, u + L(first_stage) * h, inside);
+  const State by_implicit = implicit_step(y, h, [&](int stage, const State& at) {
+    find_rates(system, stage == 0 ? inside : over[2], at, rates, force);
     return rates;
   });
   State middle;
@@ -212,9 +222,9 @@ void PackOrbit<L, N>::replace_stiff(const System& system, const L& u, const L& h
     end[n] = select<L>(stiff, by_implicit[n], end[n]);
     middle[n] = L(0.5) * (y[n] + end[n]);
   }
-  find_rates(system, u + L(0.5) * h, middle, rates, force);
+  find_rates(system, over[1], middle, rates, force);
   force_in_middle = select<L>(stiff, force, force_in_middle);
-  find_rates(system, u + h, end, rates, force);
+  find_rates(system, over[2], end, rates, force);
   force_at_end = select<L>(stiff, force, force_at_end);
 }
 
@@ -252,7 +262,7 @@ void PackOrbit<L, N>::coarse_iterate() {
       for (std::size_t n = 0; n < N; ++n) {
         next[n] = y_[n] + L(h / 6.0) * (k1[n] + L(2.0) * (k2[n] + k3[n]) + k4[n]);
       }
-      if (settings_.implicit) replace_stiff(system, angles[k], L(h), y_, next, force[k + 1], force[k + 2]);
+      if (settings_.implicit) replace_stiff(system, &table[k], angles[k], L(h), y_, next, force[k + 1], force[k + 2]);
       y_ = next;
       slowest_ = min(slowest_, y_[0]);
     }
@@ -294,25 +304,25 @@ void PackOrbit<L, N>::march() {
       if (bends_) margin[2 * s] = system.pitch_margin_at(start, y_);
       subinterval.y = y_;
       subinterval.rates = k1.dy;
-      subinterval.jacobian[0] = jacobian_at(system, start, y_, k1.dy, sign);
       evaluate<false>(system, middle, moved(y_, k1.dy, half_h), sign, k2);
       const State inside = moved(y_, k2.dy, half_h);
       evaluate<false>(system, middle, inside, sign, k3);
       force[2 * s + 1] = k3.switches[0];
       if (bends_) margin[2 * s + 1] = system.pitch_margin_at(middle, inside);
-      subinterval.jacobian[1] = jacobian_at(system, middle, inside, k3.dy, sign);
       evaluate<false>(system, end, moved(y_, k3.dy, h), sign, k4);
       State next;
       for (std::size_t n = 0; n < N; ++n) {
         next[n] = y_[n] + L(1.0 / 6.0) * h * (k1.dy[n] + L(2.0) * (k2.dy[n] + k3.dy[n]) + k4.dy[n]);
       }
-      if (settings_.implicit) {
-        const Mask stiff = is_stiff(subinterval.jacobian[0], h);
+      Mask stiff = L(1.0) < L(0.0);
+      if (settings_.implicit) stiff = is_stiff(jacobian_at(system, start, y_, k1.dy, sign), h);
+      subinterval.stiff = stiff;
+      if (any<L>(stiff)) {
         solver::Rates<System> rates;
-        const State by_implicit = implicit_step(y_, h, [&](const L& part, const State& y) {
-          Configuration<L> place;
-          find_configuration(system, mesh.u[s] + part * h, place);
-          evaluate<false>(system, place, y, sign, rates);
+        Configuration<L> inside_step;
+        find_configuration(system, mesh.u[s] + L(first_stage) * h, inside_step);
+        const State by_implicit = implicit_step(y_, h, [&](int stage, const State& y) {
+          evaluate<false>(system, stage == 0 ? inside_step : end, y, sign, rates);
           return rates.dy;
         });
         State between;
@@ -323,13 +333,6 @@ void PackOrbit<L, N>::march() {
         evaluate<false>(system, middle, between, sign, rates);
         force[2 * s + 1] = select<L>(stiff, rates.switches[0], force[2 * s + 1]);
         if (bends_) margin[2 * s + 1] = select<L>(stiff, system.pitch_margin_at(middle, between), margin[2 * s + 1]);
-        const Matrix jacobian = jacobian_at(system, middle, between, rates.dy, sign);
-        for (std::size_t row = 0; row < N; ++row) {
-          for (std::size_t column = 0; column < N; ++column) {
-            L& to = subinterval.jacobian[1][row][column];
-            to = select<L>(stiff, jacobian[row][column], to);
-          }
-        }
       }
       y_ = next;
     }

@@ -17,6 +17,7 @@ struct CollocationRule {
   double weight[max_points];                ///< of the integral over [0, 1]
   double between[max_points][max_points];   ///< [m][j]: integral from node m - 1 to m of the polynomial that is 1 at
                                             ///< node j alone; m > 0
+  double mean[max_points][max_points];      ///< [m][j]: that integral over the distance of the two nodes; m > 0
   double slope[max_points][max_points];     ///< [m][j]: derivative of that polynomial at node m
   double legendre[max_points][max_points];  ///< [k][j]: its coefficient of P_k(2 x - 1)
 };
