@@ -206,7 +206,7 @@ class EnsembleRun {
         outcomes_(outcomes),
         plan_(plan_for(options)),
         solver_(solver_for(options.isa)),
-        starts_(std::make_unique_for_overwrite<IterateStart[]>(members.size())),
+        starts_(new IterateStart[members.size()]),  // not cleared
         rotates_(members.size()) {}
 
   /// Solves the members that `takes(vehicle)` says are to be, their motors as they are.

@@ -9,6 +9,8 @@ export interface Sensitivity {
 } // relative change per relative change
 
 interface Row {
+  /** What it shows, so that only what is new is written. */
+  shown?: string;
   key: Key;
   element: HTMLElement;
   slider: HTMLInputElement | null;
@@ -235,13 +237,15 @@ export class Controls {
   }
 
   private move(row: Row, value: Values[string] | undefined, changed: boolean) {
-    row.element.classList.toggle('changed', changed);
     const text =
       typeof value === 'number'
         ? readable(value, row.key.unit ?? '', 5)
         : value === undefined || value === null
           ? ''
           : String(value);
+    if (row.shown === `${text} ${changed}` && row.field.value === text) return;
+    row.shown = `${text} ${changed}`;
+    row.element.classList.toggle('changed', changed);
     if (document.activeElement !== row.field || row.field instanceof HTMLSelectElement) row.field.value = text;
     if (row.slider && row.range && typeof value === 'number' && document.activeElement !== row.slider) {
       row.slider.value = String(placeOf(row.range, value));

@@ -61,6 +61,7 @@ export class Explorer {
   readonly playback: Playback;
   private readonly typical: Record<string, number> = {};
   private settle = 0;
+  private flowRoom = 0;
   abscissa: Abscissa = 'time';
   /** Set by those who show tools and studies. */
   refreshTools: () => void = () => {};
@@ -220,7 +221,7 @@ export class Explorer {
     showHeadline(byId('headline'), solved, this.core.tables.metrics);
     window.firstNumber ??= performance.now();
     const cycle = this.hasCycle() ? solved.columns : null;
-    drawSankey(document.querySelector<SVGSVGElement>('#sankey')!, cycle ? solved.balance : null);
+    this.drawFlows();
     showBalance(byId('balance'), cycle ? solved.balance : null);
     this.showAllMetrics();
     this.drawCycle();
@@ -232,7 +233,14 @@ export class Explorer {
 
   /** Pictures whose letters keep their size follow the width of the page. */
   resized() {
-    drawSankey(document.querySelector<SVGSVGElement>('#sankey')!, this.hasCycle() ? this.current.solved.balance : null);
+    this.flowRoom = 0;
+    this.drawFlows();
+  }
+
+  private drawFlows() {
+    const picture = document.querySelector<SVGSVGElement>('#sankey')!;
+    this.flowRoom ||= picture.clientWidth; // a layout of the page, so not at each change
+    drawSankey(picture, this.hasCycle() ? this.current.solved.balance : null, this.flowRoom);
   }
 
   drawCycle() {

@@ -44,8 +44,9 @@ function network(b: Balance): {nodes: Place[]; links: Flow[]} {
   return {nodes, links};
 }
 
-export function drawSankey(picture: SVGSVGElement, balance: Balance | null) {
-  const width = Math.max(330, Math.min(720, picture.clientWidth || 640)); // letters keep their size
+/** `room` is what the page has for the picture [px]: letters keep their size. */
+export function drawSankey(picture: SVGSVGElement, balance: Balance | null, room: number) {
+  const width = Math.max(330, Math.min(720, room || 640));
   picture.setAttribute('viewBox', `0 0 ${width} ${height}`);
   picture.replaceChildren();
   if (!balance || !(balance.electrical > 0)) {
