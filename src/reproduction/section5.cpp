@@ -15,6 +15,10 @@ CurveStyle springs_style(const TrendCurve& c) { return style_of(c.of, false); }
 std::string springs_label_of(const TrendCurve& c) {
   return c.of.formulation == rod_force ? springs_label(c.of.springs) : "";
 }
+/// Beside the curves that reach the last crank radius.
+std::string springs_label_at_edge(const TrendCurve& c) {
+  return c.of.formulation == virtual_work ? springs_label(c.of.springs) : "";
+}
 bool all(const TrendCurve&) { return true; }
 
 Sheet crank_sheet(const Material& m) {
@@ -26,8 +30,9 @@ Sheet crank_sheet(const Material& m) {
   figure.chart().columns = 2;
   for (const auto& [set, tag] :
        {std::pair(&r.crank_fixed_hinge, readings[0]), std::pair(&r.crank_fixed_stroke, readings[1])}) {
-    figure.panel(*set, Metric::lift_mean, "mean lift (mN)", tag, all, springs_style, springs_label_of, tag);
-    figure.panel(*set, Metric::efficiency_system, efficiency_label, tag, all, springs_style, springs_label_of, tag);
+    figure.panel(*set, Metric::lift_mean, "mean lift (mN)", tag, all, springs_style, springs_label_at_edge, tag);
+    figure.panel(*set, Metric::efficiency_system, efficiency_label, tag, all, springs_style, springs_label_at_edge,
+                 tag);
   }
   for (std::size_t p = 0; p < figure.chart().panels.size(); ++p) {
     // Both published cranks, of lift and of efficiency, are the same.
