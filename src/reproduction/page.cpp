@@ -70,7 +70,7 @@ body[data-shown=virtual-work] [data-formulation=rod-force] { display: none; }
 @media print { body { max-width: none; padding: 0; font-size: 10pt; } h2 { break-after: avoid; }
   figure, tr { break-inside: avoid; }
   .figures { grid-template-columns: 1fr 1fr; }
-  figure.page .drawing svg { min-width: 0; }
+  figure.page .drawing svg { min-width: 0; } .drawing svg { max-height: 205mm; }
   nav, .tools, .tip { display: none !important; }
   .wide, .drawing { overflow: visible; } table, table.laws { width: 100%; font-size: 6.6pt; }
   th, td { padding: .2rem .3rem; } td:first-child { min-width: 9rem; }
