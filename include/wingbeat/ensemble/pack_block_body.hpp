@@ -6,6 +6,7 @@
 #include "wingbeat/ensemble/pack_bends.hpp"
 #include "wingbeat/ensemble/pack_blocks.hpp"
 #include "wingbeat/ensemble/pack_lag.hpp"
+#include "wingbeat/ensemble/pack_mesh.hpp"
 #include "wingbeat/ensemble/pack_multiplier.hpp"
 #include "wingbeat/ensemble/pack_newton.hpp"
 #include "wingbeat/ensemble/pack_orbit.hpp"

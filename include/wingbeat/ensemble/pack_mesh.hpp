@@ -1,0 +1,111 @@
+// The segments of an iterate on SIMD lanes: the part of PackOrbit that finds the sign changes of the rod force between
+// samples and lays the ends of segments onto them.
+#pragma once
+
+#include "wingbeat/ensemble/pack_orbit.hpp"
+
+namespace wingbeat {
+
+/// Sign changes of the rod force, or of the pitch margin, between the samples force[0..count] at u[0..count] of half an
+/// iterate, by parabolas. Returns the largest distance from the switches known before [rad].
+template <class L, int N>
+L PackOrbit<L, N>::find_switches(ForceSwitches<L>& known, const L* u, const L* force, int count) {
+  ForceSwitches<L> found;
+  found.at.fill(L(quarter));
+  found.count = L(0.0);
+  found.first_sign = sign_of(force[0]);
+  for (int k = 0; k < count; ++k) {
+    const L f0 = force[k], f1 = force[k + 1];
+    const Mask changes = (f0 >= L(0.0) && f1 < L(0.0)) || (f0 < L(0.0) && f1 >= L(0.0));
+    if (!any<L>(changes)) continue;
+    // Of the two neighbours the nearer to the switch.
+    const L h = u[k + 1] - u[k];
+    const L rise = f1 - f0, per_rise = inverse_of(rise);
+    const L straight = -(f0 * per_rise);
+    L curve;
+    const auto left = [&] {
+      const L h0 = u[k] - u[k - 1];
+      return (rise - (f0 - force[k - 1]) * h * inverse_of(h0)) * h * inverse_of(L(h + h0));
+    };
+    const auto right = [&] {
+      const L h2 = u[k + 2] - u[k + 1];
+      return ((force[k + 2] - f1) * h * inverse_of(h2) - rise) * h * inverse_of(L(h + h2));
+    };
+    if (k == 0) {
+      curve = right();
+    } else if (k + 1 == count) {
+      curve = left();
+    } else {
+      curve = select<L>(straight < L(0.5), left(), right());
+    }
+    // f0 + rise t - curve t (1 - t) = 0, by two Newton steps.
+    L t = straight + straight * (L(1.0) - straight) * curve * per_rise;
+    for (int n = 0; n < 2; ++n) {
+      const L value = f0 + rise * t - curve * t * (L(1.0) - t);
+      const L slope = rise - curve * (L(1.0) - L(2.0) * t);
+      t = t - value * inverse_of(slope);
+    }
+    t = select<L>(t >= L(0.0) && t <= L(1.0), t, min(max(straight, L(0.0)), L(1.0)));
+    const L at = u[k] + h * t;
+    for (int n = 0; n < max_force_switches; ++n) {
+      found.at[std::size_t(n)] = select<L>(changes && found.count == L(double(n)), at, found.at[std::size_t(n)]);
+    }
+    found.count = select<L>(changes, found.count + L(1.0), found.count);
+  }
+  unresolved_ = unresolved_ || found.count > L(double(max_force_switches));
+  L offset(0.0);
+  for (std::size_t n = 0; n < max_force_switches; ++n) offset = max(offset, abs(found.at[n] - known.at[n]));
+  known = found;
+  return offset;
+}
+
+/// Segments between places, growing, of which lanes have `count`: of equal length between two of them, their number in
+/// proportion to the distance. pass(m, n, where) is called for segment m where it lies beyond place n.
+template <class L, int N>
+template <std::size_t most, class Pass>
+void PackOrbit<L, N>::lay_segments(const std::array<L, most>& place, const L& count, HalfMesh<L>& mesh,
+                                   const Pass& pass) const {
+  const int steps = segments_;
+  const L all(steps);
+  std::array<L, most + 2> node, at, per_step;
+  node[0] = L(0.0);
+  at[0] = L(-quarter);
+  for (std::size_t n = 0; n < most; ++n) {
+    const Mask used = count > L(double(n));
+    const L wanted = nearest_whole(L((place[n] + L(quarter)) * L(steps / pi)));
+    const L within = min(max(wanted, node[n] + L(1.0)), all - (count - L(double(n))));
+    node[n + 1] = select<L>(used, within, all);
+    at[n + 1] = select<L>(used, place[n], L(quarter));
+  }
+  node[most + 1] = all;
+  at[most + 1] = L(quarter);
+  for (std::size_t n = 0; n <= most; ++n) {
+    per_step[n] = (at[n + 1] - at[n]) * inverse_of(max(L(node[n + 1] - node[n]), L(0.5)));
+  }
+  for (int m = 0; m < steps; ++m) {
+    const L here(m);
+    L u = at[0] + per_step[0] * here;
+    for (std::size_t n = 1; n <= most; ++n) {
+      const Mask beyond = here >= node[n] && node[n] < all;
+      u = select<L>(beyond, at[n] + per_step[n] * (here - node[n]), u);
+      pass(std::size_t(m), n - 1, beyond);
+    }
+    mesh.u[std::size_t(m)] = u;
+  }
+  mesh.u[std::size_t(steps)] = L(quarter);
+}
+
+/// The segments of half an iterate, which end at the sign changes of the rod force.
+template <class L, int N>
+void PackOrbit<L, N>::build_mesh(int half) {
+  if (bends_) return build_mesh_with_bends(half);
+  if constexpr (N == 2) return build_mesh_with_layers(half);
+  const ForceSwitches<L>& s = switches_[std::size_t(half)];
+  HalfMesh<L>& mesh = mesh_[std::size_t(half)];
+  mesh.force.fill(s.first_sign);
+  lay_segments(s.at, s.count, mesh, [&](std::size_t m, std::size_t, const Mask& beyond) {
+    mesh.force[m] = select<L>(beyond, -mesh.force[m], mesh.force[m]);
+  });
+}
+
+}  // namespace wingbeat
