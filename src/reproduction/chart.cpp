@@ -52,13 +52,14 @@ std::vector<ChartKey> whole_key(const Chart& chart) {
   return key;
 }
 
-/// Where the drawing's quantities stand on it, for the report's read-out: the box and ranges of each panel in the
-/// units of the drawing, as JSON.
+/// Where a panel stands on the page, and what its axes span.
 struct PanelBox {
-  double x0, x1, y0, y1;  ///< of the page [in], y from above
+  double x0, x1, y0, y1;  ///< [in], y from above
   double x_low, x_high, y_low, y_high;
 };
 
+/// Writes into an SVG where its quantities stand, for the report's read-out: of each panel box and ranges in the
+/// drawing's units, and the published values, as JSON.
 void add_read_out(const Chart& chart, const std::vector<PanelBox>& boxes, const std::filesystem::path& file) {
   constexpr double unit = 192.0;  // of an inch in the SVG
   nlohmann::ordered_json panels = nlohmann::ordered_json::array();
@@ -100,7 +101,7 @@ void draw_marks(Figure& figure, const ChartPanel& panel) {
   }
 }
 
-/// Labels beside the right ends of curves, kept apart. `per_inch`: of y.
+/// Labels beside the right ends of curves, kept apart.
 void draw_labels(Figure& figure, const ChartPanel& panel, double low, double high, double height) {
   struct Label {
     double at;  ///< [in] above the foot

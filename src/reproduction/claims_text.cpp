@@ -39,19 +39,21 @@ Json json_score(const Score& s, std::size_t variants) {
 
 const std::vector<ClaimGroup>& claim_groups() {
   static const std::vector<ClaimGroup> groups = {
-      {"Predictions", [](const Claim& c) { return predicted(c) && c.reading.empty(); }},
-      {"Predictions of section 5, hinge offset held",
+      {"Predictions", "Predictions, sections 3 and 4 and conclusion",
+       [](const Claim& c) { return predicted(c) && c.reading.empty(); }},
+      {"Predictions of section 5, hinge offset held", "Predictions of section 5, hinge offset held",
        [](const Claim& c) { return predicted(c) && c.reading == readings[0]; }},
-      {"Predictions of section 5, stroke held",
+      {"Predictions of section 5, stroke held", "Predictions of section 5, stroke held",
        [](const Claim& c) { return predicted(c) && c.reading == readings[1]; }},
-      {"The same facts stated once more, not counted",
+      {"The same facts stated once more, not counted", "The same facts stated once more, not counted",
        [](const Claim& c) { return c.basis == Basis::predicted && has_outcome(c) && c.restates; }},
-      {"Given: what the published tables say by themselves, not counted",
+      {"Given: what the published tables say by themselves, not counted", "Given by the published tables, not counted",
        [](const Claim& c) { return c.basis == Basis::given && has_outcome(c); }},
-      {"Used in the calibration of S_2 and S_3, listed separately, not counted",
+      {"Used in the calibration of S_2 and S_3, listed separately, not counted", "Used in the calibration, not counted",
        [](const Claim& c) { return c.basis == Basis::calibrated && has_outcome(c); }},
-      {"Not checkable", [](const Claim& c) { return c.outcome == StatementOutcome::not_checkable; }},
-      {"No published value", [](const Claim& c) { return c.outcome == StatementOutcome::no_published_value; }}};
+      {"Not checkable", "Not checkable", [](const Claim& c) { return c.outcome == StatementOutcome::not_checkable; }},
+      {"No published value", "No published value",
+       [](const Claim& c) { return c.outcome == StatementOutcome::no_published_value; }}};
   return groups;
 }
 

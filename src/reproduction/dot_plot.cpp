@@ -95,7 +95,8 @@ void draw(const DotPlot& plot, PlotFormat format, const std::filesystem::path& f
           -panel.band, panel.band);
     }
     if (panel.low < 0.0 && panel.high > 0.0) {
-      figure.add("set arrow 600 from first 0,graph 0 to first 0,graph 1 nohead back dt 1 lw 0.6 lc rgb '#707070'\n");
+      figure.add("set arrow 600 from first 0,graph 0 to first 0,graph 1 nohead back {}\n",
+                 style::stroke(style::grey, style::solid, style::thin_width));
     }
     for (std::size_t n = 0; n < panel.references.size(); ++n) {
       const auto& [at, name] = panel.references[n];

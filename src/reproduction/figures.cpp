@@ -81,12 +81,6 @@ std::vector<Sheet> paper_sheets(const Material& m) {
   const auto by_springs = [](const TrendCurve& c) { return c.of.condition == Condition::air; };
   const auto condition_style = [](const TrendCurve& c) { return style_of(c.of, true); };
   const auto springs_style = [](const TrendCurve& c) { return style_of(c.of, false); };
-  const auto condition_name = [](const TrendCurve& c) {
-    return c.of.formulation == rod_force ? condition_label(c.of.condition) : "";
-  };
-  const auto springs_name = [](const TrendCurve& c) {
-    return c.of.formulation == rod_force ? springs_label(c.of.springs) : "";
-  };
   const auto& j = m.assessment;
 
   const auto frequency_sheet = [&](int number, std::string what, bool conditions, std::string caption,
@@ -98,8 +92,8 @@ std::vector<Sheet> paper_sheets(const Material& m) {
     figure.chart().panel_height = panels.size() == 1 ? 1.9 : 1.5;
     figure.chart().columns = panels.size() < 4 ? 1 : 2;
     for (const auto& [metric, label, title] : panels) {
-      if (conditions) figure.panel(f, metric, label, title, by_condition, condition_style, condition_name);
-      else figure.panel(f, metric, label, title, by_springs, springs_style, springs_name);
+      if (conditions) figure.panel(f, metric, label, title, by_condition, condition_style, condition_label_of);
+      else figure.panel(f, metric, label, title, by_springs, springs_style, springs_label_of);
     }
     if (mark) mark(figure.chart().panels);
     s.caption = std::move(caption);
@@ -137,7 +131,7 @@ std::vector<Sheet> paper_sheets(const Material& m) {
     figure.panel(
         f, Metric::lift_mean, "mean lift (mN)", "",
         [](const TrendCurve& c) { return c.of.condition == Condition::air && !c.of.springs; }, springs_style,
-        springs_name);
+        springs_label_of);
     const double a = at(f, off, Metric::lift_mean, 10.0), b = at(f, off, Metric::lift_mean, 20.0);
     lift.caption = fmt::format(
         "In air, without springs. From 10 to 20 Hz the mean lift grows {:.2f}-fold, more than the square of the "

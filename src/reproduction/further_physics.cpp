@@ -62,7 +62,10 @@ double FurtherVariant::without_friction() const {
   return no_friction[Metric::power_electrical] / off[Metric::power_electrical] - 1.0;
 }
 double FurtherVariant::saved() const { return on[Metric::power_electrical] / off[Metric::power_electrical] - 1.0; }
-double FurtherVariant::lift_gain() const { return on_3_volt[Metric::lift_mean] / off_3_volt[Metric::lift_mean] - 1.0; }
+double FurtherVariant::lift_gain() const {
+  return on_at_voltage[Metric::lift_mean] / off_at_voltage[Metric::lift_mean] - 1.0;
+}
+double FurtherVariant::lift_to_weight() const { return on_at_max_voltage[Metric::lift_to_weight]; }
 double FurtherVariant::efficiency_gain() const {
   return on[Metric::efficiency_system] - off[Metric::efficiency_system];
 }
@@ -82,9 +85,9 @@ std::vector<FurtherVariant> further_physics(const SpringPair& pair, const Reprod
     tasks.push_back({&v, &FurtherVariant::off, false, true, 0.0});
     tasks.push_back({&v, &FurtherVariant::on, true, true, 0.0});
     tasks.push_back({&v, &FurtherVariant::no_friction, false, false, 0.0});
-    tasks.push_back({&v, &FurtherVariant::off_3_volt, false, true, options.voltage});
-    tasks.push_back({&v, &FurtherVariant::on_3_volt, true, true, options.voltage});
-    tasks.push_back({&v, &FurtherVariant::on_5_volt, true, true, options.max_voltage});
+    tasks.push_back({&v, &FurtherVariant::off_at_voltage, false, true, options.voltage});
+    tasks.push_back({&v, &FurtherVariant::on_at_voltage, true, true, options.voltage});
+    tasks.push_back({&v, &FurtherVariant::on_at_max_voltage, true, true, options.max_voltage});
   }
   for_all(for_each, tasks.size(), [&](std::size_t n) {
     const Task& task = tasks[n];
@@ -107,7 +110,7 @@ std::vector<Sheet> further_sheets(const Material& m) {
   s.id = "further-physics";
   s.heading = "The paper's conclusions with more physics";
   s.section = "further";
-  const double f0 = m.computed.options.frequency, weight = total_mass(m.pair[1]).value_or(absent) * standard_gravity;
+  const double f0 = m.computed.options.frequency;
   DotPlot plot;
   plot.width = style::double_column;
   plot.label_width = 1.4;
@@ -118,26 +121,24 @@ std::vector<Sheet> further_sheets(const Material& m) {
       {"springs added", fmt::format("input power at {:g} Hz (%)", f0), -40.0, 0.0, 10.0},
       {"springs added", fmt::format("mean lift at {:g} V (%)", m.computed.options.voltage), 0.0, 60.0, 20.0},
       {"with springs", fmt::format("lift / weight at {:g} V", m.computed.options.max_voltage), 0.0, 1.2, 0.5}};
-  for (const Claim& c : m.assessment.claims) {
-    if (!c.published) continue;
-    if (c.statement.rfind("mean electrical input power, ratio", 0) == 0) {
-      plot.panels[1].references.emplace_back(100.0 * (*c.published - 1.0), "published");
-    }
-    if (c.statement.rfind("mean lift, ratio with / without springs at 3 V", 0) == 0) {
-      plot.panels[2].references.emplace_back(100.0 * (*c.published - 1.0), "published");
-    }
-  }
+  const auto published = [&](DotPanel& panel, const std::string& beginning) {
+    const Claim* c = claim_of(m.assessment, beginning);
+    if (c && c->published) panel.references.emplace_back(100.0 * (*c->published - 1.0), "published");
+  };
+  published(plot.panels[1], "mean electrical input power, ratio");
+  published(plot.panels[2],
+            fmt::format("mean lift, ratio with / without springs at {:g} V", m.computed.options.voltage));
   plot.panels[3].references.emplace_back(1.0, "hover");
   std::vector<double> place, values[5];
   for (const FurtherVariant& v : m.further) {
-    const double five = v.on_5_volt[Metric::lift_mean] / weight;
     DotRow row{v.name};
-    for (const double x : {100.0 * v.without_friction(), 100.0 * v.saved(), 100.0 * v.lift_gain(), five}) {
+    for (const double x :
+         {100.0 * v.without_friction(), 100.0 * v.saved(), 100.0 * v.lift_gain(), v.lift_to_weight()}) {
       row.dots.push_back({Dot{x}});
     }
     plot.rows.push_back(std::move(row));
     place.push_back(double(place.size()));
-    const double of[] = {v.without_friction(), v.saved(), v.lift_gain(), v.efficiency_gain(), five};
+    const double of[] = {v.without_friction(), v.saved(), v.lift_gain(), v.efficiency_gain(), v.lift_to_weight()};
     for (std::size_t k = 0; k < std::size(of); ++k) values[k].push_back(of[k]);
   }
   s.table.add("variant", "1", "row of the figure from above, the paper's model first", place);
@@ -157,7 +158,7 @@ std::vector<Sheet> further_sheets(const Material& m) {
 
 std::string further_html(const Material& m) {
   if (m.further.empty()) return "";
-  const double f0 = m.computed.options.frequency, weight = total_mass(m.pair[1]).value_or(absent) * standard_gravity;
+  const double f0 = m.computed.options.frequency;
   const auto range = [&](auto of) {
     double low = INFINITY, high = -INFINITY;
     for (const FurtherVariant& v : m.further) {
@@ -169,8 +170,7 @@ std::string further_html(const Material& m) {
   const auto [most, least] = range([](const FurtherVariant& v) { return v.without_friction(); });
   const auto [saved_most, saved_least] = range([](const FurtherVariant& v) { return v.saved(); });
   const auto [lift_low, lift_high] = range([](const FurtherVariant& v) { return v.lift_gain(); });
-  const auto lifted = [&](const FurtherVariant& v) { return v.on_5_volt[Metric::lift_mean] / weight; };
-  const auto [five_low, five_high] = range(lifted);
+  const auto [lifted_low, lifted_high] = range([](const FurtherVariant& v) { return v.lift_to_weight(); });
   std::string html = fmt::format(
       "<p>The paper's model has constant motor parameters, no gear loss and no added mass of the air, and its wings "
       "pitch by a law. The program can add each of these. <b>The answer to the title question stays yes:</b> without "
@@ -178,21 +178,22 @@ std::string further_html(const Material& m) {
       "{:+.1f} % and the mean lift at {:g} V by {:+.1f} to {:+.1f} %. Mean lift at {:g} V with springs and the crank "
       "of Table 2 is {:.2f} to {:.2f} of the weight{}.</p>\n",
       -100.0 * least, -100.0 * most, f0, 100.0 * saved_most, 100.0 * saved_least, m.computed.options.voltage,
-      100.0 * lift_low, 100.0 * lift_high, m.computed.options.max_voltage, five_low, five_high,
-      five_high < 1.0 ? ": no variant hovers with this crank" : "");
-  html +=
+      100.0 * lift_low, 100.0 * lift_high, m.computed.options.max_voltage, lifted_low, lifted_high,
+      lifted_high < 1.0 ? ": no variant hovers with this crank" : "");
+  html += fmt::format(
       "<div class=\"wide\"><table class=\"sortable\"><thead><tr><th>model</th><th>input without springs</th><th>with "
       "friction left out</th><th>with springs</th><th>lift gain by springs</th><th>efficiency gain by springs</th>"
-      "<th>lift / weight, 5 V, springs</th><th>winding, 5 V, springs</th></tr></thead><tbody>\n";
+      "<th>lift / weight, {0:g} V, springs</th><th>winding, {0:g} V, springs</th></tr></thead><tbody>\n",
+      m.computed.options.max_voltage);
   for (const FurtherVariant& v : m.further) {
     const auto power = [](const Metrics<double>& x) { return readable(x[Metric::power_electrical], "W"); };
-    const double winding = v.on_5_volt[Metric::winding_temperature];
+    const double winding = v.on_at_max_voltage[Metric::winding_temperature];
     html += fmt::format(
         "<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{} ({})</td><td class=\"n\">{} ({})</td><td "
         "class=\"n\">{}</td><td class=\"n\">{:+.2f} percentage points</td><td class=\"n\">{:.3f}</td><td "
         "class=\"n\">{}</td></tr>\n",
         v.name, power(v.off), power(v.no_friction), percent(v.without_friction()), power(v.on), percent(v.saved()),
-        percent(v.lift_gain()), 100.0 * v.efficiency_gain(), lifted(v),
+        percent(v.lift_gain()), 100.0 * v.efficiency_gain(), v.lift_to_weight(),
         std::isfinite(winding) ? fmt::format("{:.0f} °C", winding) : std::string("-"));
   }
   html += fmt::format(

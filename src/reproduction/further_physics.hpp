@@ -12,15 +12,16 @@ namespace wingbeat::reproduction {
 /// The paper's vehicles with more physics, by rod-force, each quantity as the paper's statements use it.
 struct FurtherVariant {
   std::string name;
-  std::vector<std::string> settings;      ///< of the vehicle file, KEY=VALUE
-  Metrics<double> off, on, no_friction;   ///< at the frequency, without and with springs, without friction or springs
-  Metrics<double> off_3_volt, on_3_volt;  ///< at the voltage of the cycles
-  Metrics<double> on_5_volt;              ///< with springs at the highest voltage
-  DomainStatus domain;                    ///< limits that the cycles with springs at the frequency exceed
+  std::vector<std::string> settings;     ///< of the vehicle file, KEY=VALUE
+  Metrics<double> off, on, no_friction;  ///< at the frequency, without and with springs, without friction or springs
+  Metrics<double> off_at_voltage, on_at_voltage;  ///< at the voltage of the cycles
+  Metrics<double> on_at_max_voltage;              ///< with springs at the highest voltage
+  DomainStatus domain;                            ///< limits that the cycles with springs at the frequency exceed
 
   double without_friction() const;  ///< relative change of the electrical input when friction is left out [1]
   double saved() const;             ///< relative change of the electrical input by springs [1]
   double lift_gain() const;         ///< relative change of the mean lift by springs at the voltage [1]
+  double lift_to_weight() const;    ///< with springs at the highest voltage [1]
   double efficiency_gain() const;   ///< of the system by springs [1]
 };
 

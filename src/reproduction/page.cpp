@@ -174,15 +174,30 @@ addEventListener('beforeprint', () => { for (const d of document.querySelectorAl
 struct PageColour {
   const char *drawn, *name, *dark;
 };
-constexpr PageColour colours[] = {
-    {"#ffffff", "paper", "#181b1f"},    {"#000000", "ink", "#e8e8e6"},      {"#404040", "axis", "#b8bec6"},
-    {"#202020", "edge", "#c8ccd2"},     {"#707070", "grey", "#9aa0a6"},     {"#a0a0a0", "out", "#747a80"},
-    {"#e4e4e4", "met", "#31373e"},      {"#d0d0d0", "flow", "#4a5058"},     {"#c8c8c8", "stored", "#50565e"},
-    {"#ececec", "returned", "#2c3137"}, {"#e0e0e0", "slider", "#4a5058"},   {"#0072b2", "springs", "#5ab4f0"},
-    {"#d55e00", "bare", "#ff8c42"},     {"#44aa99", "vacuum", "#5cc9b7"},   {"#999933", "wingless", "#c6c65a"},
-    {"#b79fd0", "first", "#5f4a7c"},    {"#8d68b5", "second", "#8d68b5"},   {"#653a92", "third", "#b79be0"},
-    {"#35125e", "fourth", "#e3d3ff"},   {"#8f3d6e", "friction", "#e39cc4"}, {"#7a5300", "copper", "#f0bc55"},
-    {"#6b6000", "viscous", "#e6dc6a"},  {"#505050", "residual", "#bbbbbb"}, {"#1f6f9c", "air", "#7cc4ee"}};
+constexpr PageColour colours[] = {{"#ffffff", "paper", "#181b1f"},
+                                  {style::ink, "ink", "#e8e8e6"},
+                                  {"#404040", "axis", "#b8bec6"},
+                                  {"#202020", "edge", "#c8ccd2"},
+                                  {style::grey, "grey", "#9aa0a6"},
+                                  {style::outside_domain, "out", "#747a80"},
+                                  {"#e4e4e4", "met", "#31373e"},
+                                  {"#d0d0d0", "flow", "#4a5058"},
+                                  {"#c8c8c8", "stored", "#50565e"},
+                                  {"#ececec", "returned", "#2c3137"},
+                                  {"#e0e0e0", "slider", "#4a5058"},
+                                  {style::with_springs, "springs", "#5ab4f0"},
+                                  {style::without_springs, "bare", "#ff8c42"},
+                                  {style::in_vacuum, "vacuum", "#5cc9b7"},
+                                  {style::without_wings, "wingless", "#c6c65a"},
+                                  {style::ordered[0], "first", "#5f4a7c"},
+                                  {style::ordered[1], "second", "#8d68b5"},
+                                  {style::ordered[2], "third", "#b79be0"},
+                                  {style::ordered[3], "fourth", "#e3d3ff"},
+                                  {"#8f3d6e", "friction", "#e39cc4"},
+                                  {"#7a5300", "copper", "#f0bc55"},
+                                  {"#6b6000", "viscous", "#e6dc6a"},
+                                  {"#505050", "residual", "#bbbbbb"},
+                                  {"#1f6f9c", "air", "#7cc4ee"}};
 
 void replace_in(std::string& text, std::string_view from, std::string_view to) {
   for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())

@@ -75,11 +75,6 @@ Sheet scorecard(const Material& m) {
   plot.note_title = "rod-force, virtual-work";
   plot.calibrated = true;
   plot.panels = {{"", "deviation / tolerance", -drawn_bands, drawn_bands, 1.0, 1.0}};
-  const std::pair<const char*, const char*> names[] = {
-      {"Predictions", "Predictions, sections 3 and 4 and conclusion"},
-      {"The same facts", "The same facts stated once more, not counted"},
-      {"Given", "Given by the published tables, not counted"},
-      {"Used in the calibration", "Used in the calibration, not counted"}};
   std::vector<double> row_number, columns[2];
   for (const ClaimGroup& group : claim_groups()) {
     std::vector<const Claim*> claims;
@@ -98,14 +93,9 @@ Sheet scorecard(const Material& m) {
       const int a = failures_first(*p), b = failures_first(*q);
       return a != b ? a < b : worst(p) > worst(q);
     });
-    std::string heading = group.name;
-    for (const auto& [begins, name] : names) {
-      const std::string_view start = begins;
-      if (heading == start || (start != "Predictions" && heading.rfind(start, 0) == 0)) heading = name;
-    }
-    plot.rows.push_back({.label = heading, .heading = true});
+    plot.rows.push_back({.label = group.heading, .heading = true});
     for (const Claim* c : claims) {
-      DotRow row{.label = short_statement(*c, heading), .note = deviations(*c)};
+      DotRow row{.label = short_statement(*c, group.heading), .note = deviations(*c)};
       row.dots.emplace_back();
       const double unit = std::isfinite(c->tolerance) && c->tolerance > 0.0 ? c->tolerance : m.file.tolerance;
       for (std::size_t f = 0; f < 2; ++f) {
@@ -133,8 +123,7 @@ Sheet laws_sheet(const Material& m) {
   s.caption = fmt::format(
       "Each law has one coefficient, calibrated without springs. (a) Root mean square of its deviations from the {} "
       "published values with springs that were not used in a calibration. (b) By how much springs then cut "
-      "the electrical "
-      "input at {:g} Hz.",
+      "the electrical input at {:g} Hz.",
       first.tests.size(), m.computed.options.frequency);
   DotPlot plot;
   plot.label_width = 1.05;

@@ -12,9 +12,6 @@ namespace {
 constexpr const char* efficiency_label = "system efficiency (%)";
 
 CurveStyle springs_style(const TrendCurve& c) { return style_of(c.of, false); }
-std::string springs_label_of(const TrendCurve& c) {
-  return c.of.formulation == rod_force ? springs_label(c.of.springs) : "";
-}
 /// Beside the curves that reach the last crank radius.
 std::string springs_label_at_edge(const TrendCurve& c) {
   return c.of.formulation == virtual_work ? springs_label(c.of.springs) : "";

@@ -73,6 +73,14 @@ inline const char* condition_label(Condition condition) {
   return condition == Condition::air ? "air" : condition == Condition::vacuum ? "vacuum" : "no wings";
 }
 
+/// Beside curves of rod-force; those of virtual-work have the same colours.
+inline std::string springs_label_of(const TrendCurve& c) {
+  return c.of.formulation == rod_force ? springs_label(c.of.springs) : "";
+}
+inline std::string condition_label_of(const TrendCurve& c) {
+  return c.of.formulation == rod_force ? condition_label(c.of.condition) : "";
+}
+
 /// A figure of metrics along an axis, one panel for each metric.
 class TrendFigure {
  public:

@@ -105,7 +105,7 @@ std::string outcome_text(const Claim& claim);
 
 /// How the table of statements is divided.
 struct ClaimGroup {
-  const char* name;
+  const char *name, *heading;  ///< in lists; above rows of a figure, shorter
   bool (*holds)(const Claim&);
 };
 const std::vector<ClaimGroup>& claim_groups();
