@@ -389,6 +389,7 @@ Observable<L> PackOrbit<L, N>::observable(const System& system, const Configurat
                                  : -(vehicle_.motor.torque_constant * dy[0] * per_resistance_)};
       }
     default: {
+      // As wing_energy(), with the spring moment that the place has: M^2 / (2 N_w k) is stored in the springs.
       const L kinetic = L(0.5) * vehicle_.wing_count * vehicle_.wing_inertia * square(m.stroke_velocity);
       // At the dead centres the slope is zero but for rounding; its sign is that of the moment there.
       const L rising = sign_of(L(system.half * m.stored_moment));
