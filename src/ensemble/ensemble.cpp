@@ -175,6 +175,7 @@ bool pitches_far(const Vehicle<double>& v) {
 /// peak at a bend; with the knots of a table, means converge with the fourth power of the nodes only.
 PackSettings settings_for(const PackKind& kind, PackSettings settings) {
   settings.current = kind.current;
+  settings.in_one_piece = kind.stiff;
   if (kind.stiff && settings.approach == PackApproach::guess) {
     settings.implicit = true;
     settings.newton_iterations += 1;

@@ -62,6 +62,7 @@ struct PackSettings {
   int coarse_iterates = 2;
   bool implicit =
       false;          ///< where explicit steps would be unstable, iterates before the collocation take implicit ones
+  bool in_one_piece = false;  ///< Newton's method solves a segment's equations as a whole
   int segments = 6;   ///< of half an iterate
   int intervals = 6;  ///< between the nodes of a segment, even
   int newton_iterations = 2;     ///< at most, before the last

@@ -23,6 +23,7 @@
 #include "wingbeat/ensemble/half_cycle.hpp"
 #include "wingbeat/ensemble/pack_blocks.hpp"
 #include "wingbeat/ensemble/pack_lift.hpp"
+#include "wingbeat/ensemble/pack_segment.hpp"
 #include "wingbeat/solve/collocation.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
@@ -99,6 +100,7 @@ class PackOrbit {
     compliance_ = select<L>(stiffness > L(0.0), L(0.5) / max(stiffness, L(1e-300)), L(0.0));
     bends_ = bends_on_lanes(vehicle.wings);
     every_law_ = bends_ || any<L>(vehicle.wings.added_inertia > L(0.0));
+    in_one_piece_ = settings.in_one_piece;
     lags_ = N == 1 && settings.current == PackCurrent::lagging;
     if (N == 2 || lags_) per_inductance_ = L(1.0) / vehicle.motor.armature_inductance;
   }
@@ -160,7 +162,14 @@ class PackOrbit {
   [[gnu::noinline, gnu::flatten]] void follow_switches();
   static L misplaced(const L& by) { return L(0.15) * square(by); }
   [[gnu::noinline, gnu::flatten]] L dip_between_nodes(std::size_t base, const L& sign) const;
-  void propose(std::size_t base, const L& h, State& end) {
+  void propose(std::size_t base, const L& h, State& end, [[maybe_unused]] Matrix& whole) {
+    if (in_one_piece_) {
+      switch (rule_.intervals) {
+        case 6: return propose_in_one_piece<6>(base, h, end, whole);
+        case 8: return propose_in_one_piece<8>(base, h, end, whole);
+        default: return propose_in_one_piece<0>(base, h, end, whole);
+      }
+    }
     switch (rule_.intervals) {
       case 4: return propose_with<4>(base, h, end);
       case 6: return propose_with<6>(base, h, end);
@@ -170,6 +179,8 @@ class PackOrbit {
   }
   template <int known_intervals>
   [[gnu::noinline, gnu::flatten]] void propose_with(std::size_t base, const L& h, State& end);
+  template <int known_intervals>
+  [[gnu::noinline, gnu::flatten]] void propose_in_one_piece(std::size_t base, const L& h, State& end, Matrix& whole);
   [[gnu::noinline, gnu::flatten]] void correct(State end);
   [[gnu::noinline, gnu::flatten]] void lag_current();
   [[gnu::noinline, gnu::flatten]] solver::Rates<System> relaxation(System system, std::size_t base,
@@ -286,7 +297,8 @@ class PackOrbit {
   std::array<L, max_nodes> force_;
   std::array<L, 2 * max_half_segments>
       off_;                             ///< of each segment's start from the sign change before it [rad], 0 without
-  std::array<Matrix, max_nodes> step_;  ///< derivative of the state by that at the node before
+  std::array<Matrix, max_nodes> step_;  ///< derivative of the state by that at the node before, or, where segments
+                                        ///< are solved in one piece, at the segment's start
   std::array<std::array<Observable<L>, max_nodes>, quantity_count> observables_;
 
   L compliance_;  ///< of all springs, half of it: their energy per square of their moment [1/(N m)]; 0 without
@@ -303,6 +315,8 @@ class PackOrbit {
   L lag_residual_;                 ///< its last change, of the voltage
   L layer_;                        ///< largest relaxation() of the speed, relative
 
+  bool in_one_piece_, renews_;          ///< SegmentEquations instead of steps from node to node; with step_ anew
+  std::array<Matrix, max_nodes> jacobian_;  ///< of the rates, for those
   L slowest_, residual_ = L(0.0);
   L switch_error_;              ///< of segments that end off the rod force's sign changes
   L step_error_, speed_error_;  ///< of what the segments' polynomials leave out: at all, and of speed and time
