@@ -95,11 +95,10 @@ void PackOrbit<L, N>::propose_with(std::size_t base, const L& h, State& end) {
 
 /// The same by the segment's equations as a whole. In the last iteration the derivatives are those of the one before.
 template <class L, int N>
-template <int known_intervals>
+template <int known_intervals, bool renews>
 void PackOrbit<L, N>::propose_in_one_piece(std::size_t base, const L& h, State& end, Matrix& whole) {
   const std::size_t intervals = std::size_t(known_intervals > 0 ? known_intervals : rule_.intervals);
-  const SegmentEquations<L, N, known_intervals> equations(rule_, &jacobian_[base], h);
-  typename SegmentEquations<L, N, known_intervals>::Column column;
+  SegmentEquations<L, N, known_intervals, renews> equations;
   for (std::size_t m = 1; m <= intervals; ++m) {
     State sum;
     sum.fill(L(0.0));
@@ -108,23 +107,22 @@ void PackOrbit<L, N>::propose_in_one_piece(std::size_t base, const L& h, State& 
       for (std::size_t n = 0; n < N; ++n) sum[n] = sum[n] + weight * rates_[base + j][n];
     }
     for (std::size_t n = 0; n < N; ++n) {
-      column[m - 1][n] = h * sum[n] - (trajectory_[base + m][n] - trajectory_[base][n]);
+      equations.moved[m - 1][n][0] = h * sum[n] - (trajectory_[base + m][n] - trajectory_[base][n]);
     }
   }
-  equations.solve(column);
-  for (std::size_t m = 1; m <= intervals; ++m) correction_[base + m] = column[m - 1];
-  if (renews_) {
-    for (std::size_t n = 0; n < N; ++n) {
-      equations.from_start(n, column);
-      for (std::size_t m = 1; m <= intervals; ++m) {
-        for (std::size_t row = 0; row < N; ++row) {
+  equations.solve(rule_, &jacobian_[base], h);
+  for (std::size_t m = 1; m <= intervals; ++m) {
+    for (std::size_t row = 0; row < N; ++row) {
+      correction_[base + m][row] = equations.moved[m - 1][row][0];
+      if constexpr (renews) {
+        for (std::size_t n = 0; n < N; ++n) {
           L& step = step_[base + m][row][n];
-          step = select<L>(settled_, step, column[m - 1][row]);
+          step = select<L>(settled_, step, equations.moved[m - 1][row][1 + n]);
         }
       }
     }
-    append(step_[base + intervals], whole);
   }
+  if constexpr (renews) append(step_[base + intervals], whole);
   for (std::size_t n = 0; n < N; ++n) end[n] = end[n] + correction_[base][n];
   const State start = end;
   for (std::size_t n = 0; n < N; ++n) {
@@ -186,7 +184,6 @@ void PackOrbit<L, N>::newton_iteration() {
   for (std::size_t row = 0; row < N; ++row) {
     for (std::size_t column = 0; column < N; ++column) monodromy[row][column] = L(row == column ? 1.0 : 0.0);
   }
-  renews_ = first;
   State end;
   end.fill(L(0.0));
   correction_[0] = end;
@@ -277,7 +274,7 @@ void PackOrbit<L, N>::newton_iteration() {
         }
       }
       h_before = h;
-      propose(base, h, end, monodromy);
+      propose<first>(base, h, end, monodromy);
       if constexpr (last) {
         for (std::size_t q = 0; q < integrals_.size(); ++q) {
           L sum(0.0);

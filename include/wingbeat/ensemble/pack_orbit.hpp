@@ -141,7 +141,10 @@ class PackOrbit {
   [[gnu::noinline, gnu::flatten]] L guess_speed();
   [[gnu::noinline, gnu::flatten]] void start_from_rest();
   [[gnu::noinline]] void replace_stiff(const System& system, const Configuration<L>* over, const L& u, const L& h,
-                                       const State& y, State& end, L& force_in_middle, L& force_at_end) const;
+                                       const State& y, const Matrix& jacobian, const Mask& stiff, State& end,
+                                       L& force_in_middle, L& force_at_end) const;
+  [[gnu::noinline]] Matrix jacobian_on_its_branch(const System& system, const Configuration<L>& place, const State& y,
+                                                  const State& rates) const;
   template <bool last>
   [[gnu::noinline, gnu::flatten]] void coarse_iterate();
   [[gnu::noinline, gnu::flatten]] L find_switches(ForceSwitches<L>& known, const L* u, const L* force, int count);
@@ -162,12 +165,13 @@ class PackOrbit {
   [[gnu::noinline, gnu::flatten]] void follow_switches();
   static L misplaced(const L& by) { return L(0.15) * square(by); }
   [[gnu::noinline, gnu::flatten]] L dip_between_nodes(std::size_t base, const L& sign) const;
+  template <bool renews>
   void propose(std::size_t base, const L& h, State& end, [[maybe_unused]] Matrix& whole) {
     if (in_one_piece_) {
       switch (rule_.intervals) {
-        case 6: return propose_in_one_piece<6>(base, h, end, whole);
-        case 8: return propose_in_one_piece<8>(base, h, end, whole);
-        default: return propose_in_one_piece<0>(base, h, end, whole);
+        case 6: return propose_in_one_piece<6, renews>(base, h, end, whole);
+        case 8: return propose_in_one_piece<8, renews>(base, h, end, whole);
+        default: return propose_in_one_piece<0, renews>(base, h, end, whole);
       }
     }
     switch (rule_.intervals) {
@@ -179,7 +183,7 @@ class PackOrbit {
   }
   template <int known_intervals>
   [[gnu::noinline, gnu::flatten]] void propose_with(std::size_t base, const L& h, State& end);
-  template <int known_intervals>
+  template <int known_intervals, bool renews>
   [[gnu::noinline, gnu::flatten]] void propose_in_one_piece(std::size_t base, const L& h, State& end, Matrix& whole);
   [[gnu::noinline, gnu::flatten]] void correct(State end);
   [[gnu::noinline, gnu::flatten]] void lag_current();
@@ -228,7 +232,7 @@ class PackOrbit {
     rates = system.template rates_of<false>(m, y, L(1.0)).dy;
   }
   template <class Rates>
-  [[gnu::noinline]] State implicit_step(const State& y, const L& h, const Rates& rates) const;
+  [[gnu::noinline]] State implicit_step(const State& y, const L& h, const Matrix& jacobian, const Rates& rates) const;
   static void propagator(const Matrix& jacobian, const L& h, Matrix& out);
   static void append(const Matrix& step, Matrix& product);
   void keep_settled(const Matrix& from, Matrix& to) const {
@@ -315,7 +319,7 @@ class PackOrbit {
   L lag_residual_;                 ///< its last change, of the voltage
   L layer_;                        ///< largest relaxation() of the speed, relative
 
-  bool in_one_piece_, renews_;          ///< SegmentEquations instead of steps from node to node; with step_ anew
+  bool in_one_piece_;                       ///< SegmentEquations instead of steps from node to node
   std::array<Matrix, max_nodes> jacobian_;  ///< of the rates, for those
   L slowest_, residual_ = L(0.0);
   L switch_error_;              ///< of segments that end off the rod force's sign changes

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstddef>
+#include <type_traits>
+#include <utility>
 
 #include "wingbeat/solve/collocation.hpp"
 
@@ -15,144 +17,161 @@ namespace wingbeat {
 ///   d_m - h sum_j a_mj J_j d_j = r_m + d_0
 ///
 /// a_mj being the integral up to node m of the polynomial that is 1 at node j alone, J_j the rates' derivative there.
-/// For one state that is one matrix. For two, the current is eliminated, whose rate falls with the current at every
-/// node: E_j = -h J_j[1][1] > 0 and W = (1 + a E)^-1 give d_1 = W r_1 + (W - 1) (J[1][0] / J[1][1]) d_0. Neither matrix
-/// needs an exchange of rows, because disturbances decay. `known_intervals` are the rule's, or 0.
-template <class L, int N, int known_intervals>
+/// For one state that is one matrix for all nodes. For two, the current is eliminated, whose rate falls with the
+/// current at every node: with J_j = (a b; c d), E = -h d and M = 1 + a_mj E, its nodes move by M^-1 (r + h a_mj c d),
+/// d being what the speed's do, whose matrix is 1 - h a_mj (a - b c / d) - Z c / d with Z M = h a_mj b. Neither matrix
+/// needs an exchange of rows, because disturbances decay. Rows stay in registers while others are subtracted.
+/// `known_intervals` are the rule's, or 0. Solved for r and d_0 = 0 and, where `renews`, for r = 0 and each state of the
+/// start moved by 1.
+template <class L, int N, int known_intervals, bool renews>
 class SegmentEquations {
   static constexpr std::size_t most =
       std::size_t(known_intervals > 0 ? known_intervals : solver::max_collocation_intervals);
+  static constexpr std::size_t sides = renews ? 1 + N : 1;
+  using Row = std::array<L, most>;
+  using Sides = std::array<L, sides>;
 
  public:
   using Matrix = std::array<std::array<L, N>, N>;
-  using State = std::array<L, N>;
-  using Column = std::array<State, most>;  ///< of the nodes but the first
 
-  SegmentEquations(const solver::CollocationRule& rule, const Matrix* jacobian, const L& h)
-      : rule_(rule), jacobian_(jacobian), h_(h) {
-    if constexpr (N == 2) eliminate_current();
-    for (std::size_t m = 0; m < nodes(); ++m) {
-      const auto weight = [&](std::size_t j) { return L(rule_.up_to[m + 1][j + 1]); };
-      for (std::size_t k = 0; k < nodes(); ++k) {
-        L sum;
-        if constexpr (N == 1) {
-          sum = weight(k) * jacobian_[k + 1][0][0];
-        } else {
-          sum = weight(k) * jacobian_[k + 1][0][0];
-          for (std::size_t j = 0; j < nodes(); ++j) {
-            sum = sum + weight(j) * through_current_[at(j, k)];
+  /// [node - 1][state][side]: the right sides, and afterwards what the nodes move by.
+  std::array<std::array<Sides, N>, most> moved;
+
+  /// For moved[.][.][0] as it stands.
+  [[gnu::always_inline]] inline void solve(const solver::CollocationRule& rule, const Matrix* jacobian, const L& h) {
+    const std::size_t count = known_intervals > 0 ? most : std::size_t(rule.intervals);
+    const auto each = [&](const auto& visit) { for_each_index(count, visit); };
+    Row by_speed, by_current, relaxing, follows;
+    for (std::size_t j = 0; j < count; ++j) {
+      by_speed[j] = h * jacobian[j + 1][0][0];
+      if constexpr (N == 2) {
+        by_current[j] = h * jacobian[j + 1][0][1];
+        relaxing[j] = -(h * jacobian[j + 1][1][1]);
+        follows[j] = jacobian[j + 1][1][0] * inverse_of(jacobian[j + 1][1][1]);
+      }
+    }
+    for (std::size_t m = 0; m < count; ++m) {
+      const double* const upto = rule.up_to[m + 1];
+      if constexpr (renews) {
+        const L weight = L(upto[0]) * h;
+        for (std::size_t n = 0; n < N; ++n) {
+          for (std::size_t row = 0; row < N; ++row) {
+            moved[m][row][1 + n] = L(row == n ? 1.0 : 0.0) + weight * jacobian[0][row][n];
           }
         }
-        speed_[at(m, k)] = L(m == k ? 1.0 : 0.0) - h_ * sum;
+      }
+      if constexpr (N == 2) {
+        Row row;
+        each([&](auto j) { row[j] = L(m == j ? 1.0 : 0.0) + L(upto[j + 1]) * relaxing[j]; });
+        each([&](auto k) {
+          if (k >= m) return;
+          row[k] = row[k] * current_pivot_[k];
+          each([&](auto j) {
+            if (j > k) row[j] = row[j] - row[k] * current_[k][j];
+          });
+        });
+        current_[m] = row;
+        current_pivot_[m] = inverse_of(current_[m][m]);
       }
     }
-    factor_speed();
-  }
-
-  /// r := d, for d_0 = 0.
-  void solve(Column& r) const {
+    for (std::size_t m = 0; m < count; ++m) {
+      const double* const upto = rule.up_to[m + 1];
+      Row row;
+      Sides right = moved[m][0];
+      if constexpr (N == 1) {
+        each([&](auto j) { row[j] = L(m == j ? 1.0 : 0.0) - L(upto[j + 1]) * by_speed[j]; });
+      } else {
+        each([&](auto j) { row[j] = L(upto[j + 1]) * by_current[j]; });
+        each([&](auto k) {
+          row[k] = row[k] * current_pivot_[k];
+          each([&](auto j) {
+            if (j > k) row[j] = row[j] - row[k] * current_[k][j];
+          });
+        });
+        each([&](auto back) {
+          const std::size_t k = count - 1 - back;
+          each([&](auto j) {
+            if (j < k) row[j] = row[j] - row[k] * current_[k][j];
+          });
+        });
+        for (std::size_t side = 0; side < sides; ++side) {
+          each([&](auto j) { right[side] = right[side] + row[j] * moved[j][1][side]; });
+        }
+        each([&](auto j) {
+          const L weight(upto[j + 1]);
+          const L straight = L(m == j ? 1.0 : 0.0) - weight * by_speed[j];
+          row[j] = straight - (row[j] - weight * by_current[j]) * follows[j];
+        });
+      }
+      each([&](auto k) {
+        if (k >= m) return;
+        const L factor = row[k] * speed_pivot_[k];
+        each([&](auto j) {
+          if (j > k) row[j] = row[j] - factor * speed_[k][j];
+        });
+        for (std::size_t side = 0; side < sides; ++side) right[side] = right[side] - factor * moved[k][0][side];
+      });
+      speed_[m] = row;
+      speed_pivot_[m] = inverse_of(speed_[m][m]);
+      moved[m][0] = right;
+    }
+    for (std::size_t m = count; m-- > 0;) {
+      Sides sum = moved[m][0];
+      each([&](auto j) {
+        if (j <= m) return;
+        for (std::size_t side = 0; side < sides; ++side) sum[side] = sum[side] - speed_[m][j] * moved[j][0][side];
+      });
+      for (std::size_t side = 0; side < sides; ++side) moved[m][0][side] = sum[side] * speed_pivot_[m];
+    }
     if constexpr (N == 2) {
-      Column own = r;
-      for (std::size_t m = 0; m < nodes(); ++m) {
-        L sum(0.0);
-        for (std::size_t j = 0; j < nodes(); ++j) sum = sum + relaxed_[at(m, j)] * own[j][1];
-        r[m][1] = sum;
+      std::array<Sides, most> driven;
+      for (std::size_t j = 0; j < count; ++j) {
+        const L drives = h * jacobian[j + 1][1][0];
+        for (std::size_t side = 0; side < sides; ++side) driven[j][side] = drives * moved[j][0][side];
       }
-      for (std::size_t m = 0; m < nodes(); ++m) own[m][1] = jacobian_[m + 1][0][1] * r[m][1];
-      for (std::size_t m = 0; m < nodes(); ++m) {
-        L sum(0.0);
-        for (std::size_t j = 0; j < nodes(); ++j) sum = sum + L(rule_.up_to[m + 1][j + 1]) * own[j][1];
-        r[m][0] = own[m][0] + h_ * sum;
+      for (std::size_t m = 0; m < count; ++m) {
+        Sides sum = moved[m][1];
+        each([&](auto j) {
+          const L weight(rule.up_to[m + 1][j + 1]);
+          for (std::size_t side = 0; side < sides; ++side) sum[side] = sum[side] + weight * driven[j][side];
+        });
+        each([&](auto k) {
+          if (k >= m) return;
+          for (std::size_t side = 0; side < sides; ++side) {
+            sum[side] = sum[side] - current_[m][k] * moved[k][1][side];
+          }
+        });
+        moved[m][1] = sum;
       }
-    }
-    for (std::size_t m = 1; m < nodes(); ++m) {
-      L sum = r[m][0];
-      for (std::size_t j = 0; j < m; ++j) sum = sum - speed_[at(m, j)] * r[j][0];
-      r[m][0] = sum;
-    }
-    for (std::size_t m = nodes(); m-- > 0;) {
-      L sum = r[m][0];
-      for (std::size_t j = m + 1; j < nodes(); ++j) sum = sum - speed_[at(m, j)] * r[j][0];
-      r[m][0] = sum * speed_[at(m, m)];
-    }
-    if constexpr (N == 2) {
-      for (std::size_t m = 0; m < nodes(); ++m) {
-        L sum = r[m][1] - follows_[m] * r[m][0];
-        for (std::size_t j = 0; j < nodes(); ++j) sum = sum + relaxed_[at(m, j)] * (follows_[j] * r[j][0]);
-        r[m][1] = sum;
-      }
-    }
-  }
-
-  /// What the nodes move by where state n of the start moves by 1.
-  void from_start(std::size_t n, Column& d) const {
-    for (std::size_t m = 0; m < nodes(); ++m) {
-      const L weight = L(rule_.up_to[m + 1][0]) * h_;
-      for (std::size_t row = 0; row < N; ++row) {
-        d[m][row] = L(row == n ? 1.0 : 0.0) + weight * jacobian_[0][row][n];
+      for (std::size_t m = count; m-- > 0;) {
+        Sides sum = moved[m][1];
+        each([&](auto j) {
+          if (j <= m) return;
+          for (std::size_t side = 0; side < sides; ++side) {
+            sum[side] = sum[side] - current_[m][j] * moved[j][1][side];
+          }
+        });
+        for (std::size_t side = 0; side < sides; ++side) moved[m][1][side] = sum[side] * current_pivot_[m];
       }
     }
-    solve(d);
   }
 
  private:
-  std::size_t nodes() const { return known_intervals > 0 ? most : std::size_t(rule_.intervals); }
-  std::size_t at(std::size_t m, std::size_t j) const { return m * nodes() + j; }
-
-  void eliminate_current() {
-    for (std::size_t m = 0; m < nodes(); ++m) {
-      for (std::size_t j = 0; j < nodes(); ++j) {
-        relaxed_[at(m, j)] =
-            L(m == j ? 1.0 : 0.0) - L(rule_.up_to[m + 1][j + 1]) * h_ * jacobian_[j + 1][1][1];
-      }
-    }
-    for (std::size_t k = 0; k < nodes(); ++k) {
-      const L pivot = inverse_of(relaxed_[at(k, k)]);
-      relaxed_[at(k, k)] = L(1.0);
-      for (std::size_t j = 0; j < nodes(); ++j) relaxed_[at(k, j)] = relaxed_[at(k, j)] * pivot;
-      for (std::size_t m = 0; m < nodes(); ++m) {
-        if (m == k) continue;
-        const L factor = relaxed_[at(m, k)];
-        relaxed_[at(m, k)] = L(0.0);
-        for (std::size_t j = 0; j < nodes(); ++j) {
-          relaxed_[at(m, j)] = relaxed_[at(m, j)] - factor * relaxed_[at(k, j)];
-        }
-      }
-    }
-    for (std::size_t k = 0; k < nodes(); ++k) {
-      follows_[k] = jacobian_[k + 1][1][0] * inverse_of(jacobian_[k + 1][1][1]);
-    }
-    for (std::size_t m = 0; m < nodes(); ++m) {
-      const L by_current = jacobian_[m + 1][0][1];
-      for (std::size_t k = 0; k < nodes(); ++k) {
-        const L relaxed = m == k ? relaxed_[at(m, k)] - L(1.0) : relaxed_[at(m, k)];
-        through_current_[at(m, k)] = by_current * relaxed * follows_[k];
-      }
+  /// visit(n) for n from 0 to count - 1, a constant where the number of intervals is known.
+  template <class Visit>
+  [[gnu::always_inline]] static inline void for_each_index(std::size_t count, const Visit& visit) {
+    if constexpr (known_intervals > 0) {
+      [&]<std::size_t... n>(std::index_sequence<n...>) {
+        (visit(std::integral_constant<std::size_t, n>{}), ...);
+      }(std::make_index_sequence<most>{});
+    } else {
+      for (std::size_t n = 0; n < count; ++n) visit(n);
     }
   }
 
-  /// Lower and upper factor in place, with inverse pivots.
-  void factor_speed() {
-    for (std::size_t k = 0; k < nodes(); ++k) {
-      const L pivot = inverse_of(speed_[at(k, k)]);
-      speed_[at(k, k)] = pivot;
-      for (std::size_t m = k + 1; m < nodes(); ++m) {
-        const L factor = speed_[at(m, k)] * pivot;
-        speed_[at(m, k)] = factor;
-        for (std::size_t j = k + 1; j < nodes(); ++j) {
-          speed_[at(m, j)] = speed_[at(m, j)] - factor * speed_[at(k, j)];
-        }
-      }
-    }
-  }
-
-  const solver::CollocationRule& rule_;
-  const Matrix* jacobian_;  ///< at all nodes
-  L h_;
-  static constexpr std::size_t of_current = N == 2 ? most : 0;
-  std::array<L, most * most> speed_;
-  std::array<L, of_current * of_current> relaxed_, through_current_;  ///< W; J[0][1] (W - 1) J[1][0] / J[1][1]
-  std::array<L, of_current> follows_;                                 ///< J[1][0] / J[1][1]
+  std::array<Row, most> speed_;  ///< upper factor; the pivots' inverses aside
+  std::array<Row, N == 2 ? most : 0> current_;  ///< both factors
+  Row speed_pivot_, current_pivot_;
 };
 
 }  // namespace wingbeat
