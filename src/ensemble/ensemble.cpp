@@ -33,8 +33,12 @@ PackSolver solver_for(InstructionSet isa) {
   }
 }
 
-/// Angle that a crank turns by at the speed without load while its current decays by a factor of e: up to here lanes
-/// take it for a lag, of which they leave out what is of higher order. Segments are forty times as long.
+/// Angle that a crank turns by at the speed without load while its current decays by a factor of e [rad].
+double lag_of(const Vehicle<double>& v) {
+  return v.motor.armature_inductance / circuit_resistance(v) * no_load_speed(v);
+}
+/// Up to here lanes take it for a lag, of which they leave out what is of higher order. Segments are forty times as
+/// long.
 double max_lag(double tolerance) { return 0.007 * std::min(std::sqrt(tolerance / 1e-6), 1.0); }
 
 /// How a tolerance is met.
@@ -257,8 +261,7 @@ class EnsembleRun {
 
   PackCurrent current_of(const Vehicle<double>& v) const {
     if (!(v.motor.armature_inductance > 0.0)) return PackCurrent::algebraic;
-    const double lag = v.motor.armature_inductance / circuit_resistance(v) * no_load_speed(v);
-    return lag < max_lag(options_.tolerance) ? PackCurrent::lagging : PackCurrent::state;
+    return lag_of(v) < max_lag(options_.tolerance) ? PackCurrent::lagging : PackCurrent::state;
   }
 
   /// Few need more than the first attempt: all of a kind together fill the lanes of the others.
@@ -272,13 +275,35 @@ class EnsembleRun {
       unresolved.swap(still_unresolved);
     }
     std::vector<std::size_t> left = std::move(unresolved);
+    if (kind.current == PackCurrent::lagging) {
+      // What the lag leaves out no finer mesh brings back.
+      const auto lags_far = [&](std::size_t n) {
+        return lag_of(members_[n].vehicle) >= 0.3 * max_lag(options_.tolerance);
+      };
+      const auto far = std::stable_partition(inexact.begin(), inexact.end(), [&](std::size_t n) { return !lags_far(n); });
+      const std::vector<std::size_t> with_state(far, inexact.end());
+      inexact.erase(far, inexact.end());
+      for (const std::size_t n : with_state) {
+        const Vehicle<double>& v = members_[n].vehicle;
+        starts_[n].state[1] = algebraic_current(v, v.voltage, starts_[n].state[0]);
+      }
+      PackKind of_state = kind;
+      of_state.current = PackCurrent::state;
+      of_state.stiff = true;
+      refine(of_state, with_state, left);
+    }
+    refine(kind, std::move(inexact), left);
+    for (const std::size_t n : left) solve_by_scalar(n);
+  }
+
+  /// Goes on with inexact ones of a kind; lists in `left` those that stay so.
+  void refine(const PackKind& kind, std::vector<std::size_t> inexact, std::vector<std::size_t>& left) {
     for (const PackSettings& finer : plan_.again) {
       std::vector<std::size_t> still_inexact;
       run(inexact, settings_for(kind, finer), left, still_inexact);
       inexact.swap(still_inexact);
     }
     left.insert(left.end(), inexact.begin(), inexact.end());
-    for (const std::size_t n : left) solve_by_scalar(n);
   }
 
   /// Direct drives of a kind. Where a finer mesh cannot help, the scalar solver does.

@@ -144,6 +144,23 @@ void PackOrbit<L, N>::start_from_rest() {
     margin = min(margin, lock_margin(vehicle_, k, N_k_beta, L(vehicle_.motor.torque_constant * x[2])));
   }
   const Mask rests = stopped || (!started && !(x[1] > L(0.0)));
+  // One that the springs turn back is caught: i_s being the stalled motor's current, kinetic energy, what springs and
+  // stall torque store and L_a (i - i_s)^2 / 2 together only fall, so that it comes neither over the load that has
+  // stopped it nor, backwards, over where it has started from, until friction holds it.
+  constexpr double beyond = 0.05;
+  const auto turns_back = [&](const L& angle) {
+    const CrankKinematics<L> at = crank_kinematics(geometry_, sin(angle), cos(angle));
+    const L F_s = static_rod_force(at, spring_moment(vehicle_, at));
+    return F_s * at.crank_lever + vehicle_.load_torque - stall - holding_torque(vehicle_, F_s);
+  };
+  const L back = min(turns_back(x[0]), turns_back(L(x[0] + L(beyond))));
+  L magnetic = L(0.5) * vehicle_.motor.armature_inductance * square(current_scale_);
+  if constexpr (N == 2) {
+    magnetic = magnetic * select<L>(at_once, L(1.0), square(L(x[2] * inverse_of(current_scale_) - L(1.0))));
+  }
+  const Mask friction = vehicle_.friction.radius > L(0.0) || breakaway_torque(vehicle_) > L(0.0);
+  const Mask caught = stopped && friction && L(beyond) * back > magnetic;
+  margin = select<L>(caught, max(margin, back), margin);
   locked_ = rests && !unresolved_ && margin > L(2.4 / steps_per_cycle) * stall;
   unresolved_ = unresolved_ || slow || !done;
 }
@@ -178,7 +195,7 @@ auto PackOrbit<L, N>::implicit_step(const State& y, const L& h, const Matrix& ja
   }
   State known = y, at = y;
   for (int stage = 0; stage < 2; ++stage) {
-    for (int newton = 0; newton < NEWTONS; ++newton) {
+    for (int newton = 0; newton < 2; ++newton) {
       const State slope = rates(stage, at);
       State off;
       for (std::size_t n = 0; n < N; ++n) off[n] = known[n] + own * slope[n] - at[n];
