@@ -171,6 +171,7 @@ class PackOrbit {
       switch (rule_.intervals) {
         case 6: return propose_in_one_piece<6, renews>(base, h, end, whole);
         case 8: return propose_in_one_piece<8, renews>(base, h, end, whole);
+        case 10: return propose_in_one_piece<10, renews>(base, h, end, whole);
         default: return propose_in_one_piece<0, renews>(base, h, end, whole);
       }
     }
