@@ -218,6 +218,7 @@ class PackOrbit {
   [[gnu::noinline, gnu::flatten]] L peak(Quantity quantity);
   [[gnu::noinline, gnu::flatten]] L exchanged_energy();
   [[gnu::noinline, gnu::flatten]] L floquet_multiplier();
+  [[gnu::noinline, gnu::flatten]] Matrix over_segment(const Matrix* jacobian, const L& h) const;
   [[gnu::noinline]] void lag_with(System system, std::size_t node, const L& by, const L& force,
                                   solver::Rates<System>& below, solver::Rates<System>& above) const;
   template <class RatesAt>
