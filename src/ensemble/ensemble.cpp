@@ -282,7 +282,8 @@ class EnsembleRun {
       const auto lags_far = [&](std::size_t n) {
         return lag_of(members_[n].vehicle) >= 0.3 * max_lag(options_.tolerance);
       };
-      const auto far = std::stable_partition(inexact.begin(), inexact.end(), [&](std::size_t n) { return !lags_far(n); });
+      const auto far =
+          std::stable_partition(inexact.begin(), inexact.end(), [&](std::size_t n) { return !lags_far(n); });
       const std::vector<std::size_t> with_state(far, inexact.end());
       inexact.erase(far, inexact.end());
       for (const std::size_t n : with_state) {

@@ -21,8 +21,8 @@ namespace wingbeat {
 /// current at every node: with J_j = (a b; c d), E = -h d and M = 1 + a_mj E, its nodes move by M^-1 (r + h a_mj c d),
 /// d being what the speed's do, whose matrix is 1 - h a_mj (a - b c / d) - Z c / d with Z M = h a_mj b. Neither matrix
 /// needs an exchange of rows, because disturbances decay. Rows stay in registers while others are subtracted.
-/// `known_intervals` are the rule's, or 0. Solved for r and d_0 = 0 and, where `renews`, for r = 0 and each state of the
-/// start moved by 1.
+/// `known_intervals` are the rule's, or 0. Solved for r and d_0 = 0 and, where `renews`, for r = 0 and each state of
+/// the start moved by 1.
 template <class L, int N, int known_intervals, bool renews>
 class SegmentEquations {
   static constexpr std::size_t most =
@@ -40,7 +40,7 @@ class SegmentEquations {
   /// For moved[.][.][0] as it stands.
   [[gnu::always_inline]] inline void solve(const solver::CollocationRule& rule, const Matrix* jacobian, const L& h) {
     const std::size_t count = known_intervals > 0 ? most : std::size_t(rule.intervals);
-    const auto each = [&](const auto& visit) { for_each_index(count, visit); };
+    const auto each = [&](const auto& visit) __attribute__((always_inline)) { for_each_index(count, visit); };
     Row by_speed, by_current, relaxing, follows;
     for (std::size_t j = 0; j < count; ++j) {
       by_speed[j] = h * jacobian[j + 1][0][0];
@@ -62,11 +62,12 @@ class SegmentEquations {
       }
       if constexpr (N == 2) {
         Row row;
-        each([&](auto j) { row[j] = L(m == j ? 1.0 : 0.0) + L(upto[j + 1]) * relaxing[j]; });
-        each([&](auto k) {
+        each([&](auto j)
+                 __attribute__((always_inline)) { row[j] = L(m == j ? 1.0 : 0.0) + L(upto[j + 1]) * relaxing[j]; });
+        each([&](auto k) __attribute__((always_inline)) {
           if (k >= m) return;
           row[k] = row[k] * current_pivot_[k];
-          each([&](auto j) {
+          each([&](auto j) __attribute__((always_inline)) {
             if (j > k) row[j] = row[j] - row[k] * current_[k][j];
           });
         });
@@ -79,34 +80,35 @@ class SegmentEquations {
       Row row;
       Sides right = moved[m][0];
       if constexpr (N == 1) {
-        each([&](auto j) { row[j] = L(m == j ? 1.0 : 0.0) - L(upto[j + 1]) * by_speed[j]; });
+        each([&](auto j)
+                 __attribute__((always_inline)) { row[j] = L(m == j ? 1.0 : 0.0) - L(upto[j + 1]) * by_speed[j]; });
       } else {
-        each([&](auto j) { row[j] = L(upto[j + 1]) * by_current[j]; });
-        each([&](auto k) {
+        each([&](auto j) __attribute__((always_inline)) { row[j] = L(upto[j + 1]) * by_current[j]; });
+        each([&](auto k) __attribute__((always_inline)) {
           row[k] = row[k] * current_pivot_[k];
-          each([&](auto j) {
+          each([&](auto j) __attribute__((always_inline)) {
             if (j > k) row[j] = row[j] - row[k] * current_[k][j];
           });
         });
-        each([&](auto back) {
+        each([&](auto back) __attribute__((always_inline)) {
           const std::size_t k = count - 1 - back;
-          each([&](auto j) {
+          each([&](auto j) __attribute__((always_inline)) {
             if (j < k) row[j] = row[j] - row[k] * current_[k][j];
           });
         });
         for (std::size_t side = 0; side < sides; ++side) {
-          each([&](auto j) { right[side] = right[side] + row[j] * moved[j][1][side]; });
+          each([&](auto j) __attribute__((always_inline)) { right[side] = right[side] + row[j] * moved[j][1][side]; });
         }
-        each([&](auto j) {
+        each([&](auto j) __attribute__((always_inline)) {
           const L weight(upto[j + 1]);
           const L straight = L(m == j ? 1.0 : 0.0) - weight * by_speed[j];
           row[j] = straight - (row[j] - weight * by_current[j]) * follows[j];
         });
       }
-      each([&](auto k) {
+      each([&](auto k) __attribute__((always_inline)) {
         if (k >= m) return;
         const L factor = row[k] * speed_pivot_[k];
-        each([&](auto j) {
+        each([&](auto j) __attribute__((always_inline)) {
           if (j > k) row[j] = row[j] - factor * speed_[k][j];
         });
         for (std::size_t side = 0; side < sides; ++side) right[side] = right[side] - factor * moved[k][0][side];
@@ -117,7 +119,7 @@ class SegmentEquations {
     }
     for (std::size_t m = count; m-- > 0;) {
       Sides sum = moved[m][0];
-      each([&](auto j) {
+      each([&](auto j) __attribute__((always_inline)) {
         if (j <= m) return;
         for (std::size_t side = 0; side < sides; ++side) sum[side] = sum[side] - speed_[m][j] * moved[j][0][side];
       });
@@ -131,11 +133,11 @@ class SegmentEquations {
       }
       for (std::size_t m = 0; m < count; ++m) {
         Sides sum = moved[m][1];
-        each([&](auto j) {
+        each([&](auto j) __attribute__((always_inline)) {
           const L weight(rule.up_to[m + 1][j + 1]);
           for (std::size_t side = 0; side < sides; ++side) sum[side] = sum[side] + weight * driven[j][side];
         });
-        each([&](auto k) {
+        each([&](auto k) __attribute__((always_inline)) {
           if (k >= m) return;
           for (std::size_t side = 0; side < sides; ++side) {
             sum[side] = sum[side] - current_[m][k] * moved[k][1][side];
@@ -145,7 +147,7 @@ class SegmentEquations {
       }
       for (std::size_t m = count; m-- > 0;) {
         Sides sum = moved[m][1];
-        each([&](auto j) {
+        each([&](auto j) __attribute__((always_inline)) {
           if (j <= m) return;
           for (std::size_t side = 0; side < sides; ++side) {
             sum[side] = sum[side] - current_[m][j] * moved[j][1][side];
@@ -161,7 +163,7 @@ class SegmentEquations {
   template <class Visit>
   [[gnu::always_inline]] static inline void for_each_index(std::size_t count, const Visit& visit) {
     if constexpr (known_intervals > 0) {
-      [&]<std::size_t... n>(std::index_sequence<n...>) {
+      [&]<std::size_t... n>(std::index_sequence<n...>) __attribute__((always_inline)) {
         (visit(std::integral_constant<std::size_t, n>{}), ...);
       }(std::make_index_sequence<most>{});
     } else {
@@ -169,7 +171,7 @@ class SegmentEquations {
     }
   }
 
-  std::array<Row, most> speed_;  ///< upper factor; the pivots' inverses aside
+  std::array<Row, most> speed_;                 ///< upper factor; the pivots' inverses aside
   std::array<Row, N == 2 ? most : 0> current_;  ///< both factors
   Row speed_pivot_, current_pivot_;
 };
