@@ -64,7 +64,7 @@ struct PackKind {
 /// Whether current or speed settle within a part of a coarse step at the speed without load, so that explicit steps
 /// there would be unstable.
 bool is_stiff(const Vehicle<double>& v, PackCurrent current) {
-  constexpr double coarse_step = pi / 8.0, stable = 1.0;
+  constexpr double coarse_step = pi / 8.0, stable = 1.8;
   const double R = circuit_resistance(v), K = v.motor.torque_constant, no_load = no_load_speed(v);
   const double inertia = v.motor.inertia + 0.5 * v.wing_count * v.wing_inertia;
   const double braking = (K * K / R + v.motor.viscous_damping) / inertia;
@@ -172,14 +172,20 @@ class EnsembleRun {
   /// Few need more than the first attempt: all of a kind together fill the lanes of the others.
   void solve_alike(const PackKind& kind, const std::vector<std::size_t>& all) {
     std::vector<std::size_t> unresolved, inexact;
-    run(all, settings_for(kind, plan_.first), unresolved, inexact);
-    // Without springs the third start tells no more than the second.
-    for (std::size_t n = 0; n < (kind.springs ? 3 : 2); ++n) {
+    run(all, settings_for(kind, plan_.first), unresolved, unresolved, inexact);
+    std::vector<std::size_t> left;
+    if (!kind.springs) {
       std::vector<std::size_t> still_unresolved;
-      run(unresolved, settings_for(kind, plan_.from_rest[n]), still_unresolved, inexact);
+      run(unresolved, settings_for(kind, plan_.creeping), still_unresolved, still_unresolved, inexact);
       unresolved.swap(still_unresolved);
     }
-    std::vector<std::size_t> left = std::move(unresolved);
+    // Without springs nothing brings a crank near standstill on its way but a load that hardly lets it start.
+    for (std::size_t n = 0; n < (kind.springs ? plan_.from_rest.size() : 2); ++n) {
+      std::vector<std::size_t> in_doubt;
+      run(unresolved, settings_for(kind, plan_.from_rest[n]), in_doubt, left, inexact);
+      unresolved.swap(in_doubt);
+    }
+    left.insert(left.end(), unresolved.begin(), unresolved.end());
     if (kind.current == PackCurrent::lagging) {
       // What the lag leaves out no finer mesh brings back.
       const auto lags_far = [&](std::size_t n) {
@@ -208,7 +214,7 @@ class EnsembleRun {
     const std::size_t attempts = kind.stiff ? 2 : plan_.again.size();
     for (std::size_t k = 0; k < attempts; ++k) {
       std::vector<std::size_t> still_inexact;
-      run(inexact, settings_for(kind, plan_.again[k]), left, still_inexact);
+      run(inexact, settings_for(kind, plan_.again[k]), left, left, still_inexact);
       inexact.swap(still_inexact);
     }
     left.insert(left.end(), inexact.begin(), inexact.end());
@@ -263,8 +269,8 @@ class EnsembleRun {
   }
 
   /// Solves those members; settles the outcomes of the exact ones, and lists the others.
-  void run(const std::vector<std::size_t>& which, const PackSettings& settings, std::vector<std::size_t>& unresolved,
-           std::vector<std::size_t>& inexact) {
+  void run(const std::vector<std::size_t>& which, const PackSettings& settings, std::vector<std::size_t>& in_doubt,
+           std::vector<std::size_t>& unresolved, std::vector<std::size_t>& inexact) {
     const auto begin = [&](std::size_t n, PackResult& r) {
       if (settings.approach == PackApproach::resume) r.start = starts_[n];
     };
@@ -272,6 +278,8 @@ class EnsembleRun {
       if (settings.approach == PackApproach::from_rest) rotates_[n] = r.assessment == PackAssessment::rotates;
       if (r.assessment == PackAssessment::locked) {
         settle(n, FlappingStatus::locked);
+      } else if (r.assessment == PackAssessment::in_doubt) {
+        in_doubt.push_back(n);
       } else if (r.assessment == PackAssessment::unresolved) {
         unresolved.push_back(n);
       } else if (!(r.error_estimate <= options_.tolerance)) {

@@ -24,7 +24,8 @@ inline double max_lag(double tolerance) { return 0.007 * std::min(std::sqrt(tole
 /// How a tolerance is met.
 struct Plan {
   PackSettings first;
-  std::array<PackSettings, 3> from_rest;  ///< more and more finely
+  PackSettings creeping;                  ///< without springs, where the first attempt comes to nothing
+  std::array<PackSettings, 4> from_rest;  ///< more and more finely
   std::array<PackSettings, 3> again;
   std::vector<DirectPackSettings> direct;  ///< one after the other, until a design is exact enough
 };
@@ -97,16 +98,20 @@ inline Plan plan_for(const EnsembleOptions& options) {
     again = finer;
     finer.intervals = std::min(finer.intervals + 2, solver::max_collocation_intervals);
   }
+  plan.creeping = s;
+  plan.creeping.implicit = true;
+  plan.creeping.newton_iterations += 1;
+  plan.creeping.segments = max_half_segments;
   PackSettings from_rest = s;
   from_rest.approach = PackApproach::from_rest;
   from_rest.newton_iterations += 1;
   from_rest.segments = max_half_segments;
   from_rest.implicit = true;
-  plan.from_rest = {from_rest, from_rest, from_rest};
-  // Cranks near stall take a hundred times as long as one without load.
-  plan.from_rest[1].start_up_steps = 192;
-  plan.from_rest[1].start_up_cycles = 100;
-  plan.from_rest[2].start_up_steps = 768;
+  for (PackSettings& start : plan.from_rest) {
+    start = from_rest;
+    from_rest.start_up_steps *= 4;
+    from_rest.start_up_cycles = 100;  // near stall they take a hundred times as long as without load
+  }
   plan.direct = direct_plan_for(options);
   return plan;
 }
