@@ -293,7 +293,7 @@ void PackOrbit<L, N>::coarse_iterate() {
         stiff = is_stiff(jacobian, L(h));
       }
       State next = y_;
-      if (!all<L>(stiff)) {
+      if (bends_ || !all<L>(stiff)) {  // the margins are those of the explicit stages
         const State k2 = at(k + 1, moved(y_, k1, 0.5 * h));
         const State k3 = at(k + 1, moved(y_, k2, 0.5 * h));
         const State k4 = at(k + 2, moved(y_, k3, h));
