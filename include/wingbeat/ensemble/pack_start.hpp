@@ -76,9 +76,12 @@ void PackOrbit<L, N>::start_from_rest() {
   if constexpr (N == 2) at_once = shortest * circuit_resistance(vehicle_) * per_inductance_ > L(2.0);
   slow_limit = slow_limit + select<L>(at_once, L(2.0) * electrical_to_mechanical_time() * no_load_, L(0.0));
   // A kink leaves an error of the speed of dt^2 times the speed: a slow crank takes longer steps, within what resolves
-  // the motor's time constants and the swing of the crank between the mechanism's torques.
+  // the motor's time constants and the swing of the crank by the motor's and the springs' torque.
   const L braking = square(vehicle_.motor.torque_constant) * per_resistance_ * inverse_of(vehicle_.motor.inertia);
-  L fastest = max(braking, sqrt(L(braking * no_load_)));
+  const L spring =
+      vehicle_.wing_count * vehicle_.spring.stiffness * square(typical_stroke_slope(vehicle_.transmission));
+  const L swinging = max(L(braking * no_load_), L(spring * inverse_of(vehicle_.motor.inertia)));
+  L fastest = max(braking, sqrt(swinging));
   if constexpr (N == 2) {
     fastest = max(fastest, select<L>(at_once, L(0.0), L(circuit_resistance(vehicle_) * per_inductance_)));
   }
