@@ -210,7 +210,7 @@ class EnsembleRun {
 
   /// Goes on with inexact ones of a kind; lists in `left` those that stay so.
   void refine(const PackKind& kind, std::vector<std::size_t> inexact, std::vector<std::size_t>& left) {
-    // Of the stiff ones that two meshes leave inexact, a third one helps one in thirty.
+    // Of the stiff ones that two meshes leave inexact, a third one hardly helps any.
     const std::size_t attempts = kind.stiff ? 2 : plan_.again.size();
     for (std::size_t k = 0; k < attempts; ++k) {
       std::vector<std::size_t> still_inexact;
