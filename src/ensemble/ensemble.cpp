@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "ensemble/plan.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
 #include "wingbeat/cycle/thermal_equilibrium.hpp"
 #include "wingbeat/ensemble/direct_pack_blocks.hpp"
@@ -33,19 +34,6 @@ PackSolver solver_for(InstructionSet isa) {
   }
 }
 
-/// Angle that a crank turns by at the speed without load while its current decays by a factor of e: up to here lanes
-/// take it for a lag, of which they leave out what is of higher order. Segments are forty times as long.
-double max_lag(double tolerance) { return 0.007 * std::min(std::sqrt(tolerance / 1e-6), 1.0); }
-
-/// How a tolerance is met.
-struct Plan {
-  PackSettings first;
-  PackSettings creeping;                  ///< without springs, where the first attempt comes to nothing
-  std::array<PackSettings, 4> from_rest;  ///< more and more finely
-  std::array<PackSettings, 3> again;
-  std::vector<DirectPackSettings> direct;  ///< one after the other, until a design is exact enough
-};
-
 /// Whether the batched solver knows all of a vehicle.
 bool suits_packs(const Vehicle<double>& v) {
   if (has_gear_loss(v.motor) || pitches(v) || v.load_torque != 0.0) return false;
@@ -53,92 +41,6 @@ bool suits_packs(const Vehicle<double>& v) {
   // Where constant friction holds a shaft that swings, the equations jump; where coefficients bend, so do their slopes.
   return v.transmission.type == TransmissionType::direct && breakaway_torque(v) == 0.0 && !v.wings.coefficients.table &&
          !has_pitch_stop(v.wings);
-}
-
-std::vector<DirectPackSettings> direct_plan_for(const EnsembleOptions& options) {
-  const auto wanted = [&](Metric m) { return options.metrics[std::size_t(m)]; };
-  DirectPackSettings s;
-  s.current_peak = wanted(Metric::current_peak);
-  s.exchanged_energy = wanted(Metric::power_reactive);
-  s.lift_peak = wanted(Metric::lift_peak);
-  s.velocity_peak = wanted(Metric::flapping_velocity_peak) || wanted(Metric::angle_of_attack_min);
-  s.closed = std::clamp(0.1 * std::sqrt(options.tolerance), 1e-7, 1e-3);
-  // What is read between the stages converges with the eighth power of the segments.
-  const double segments = 4.0 * std::pow(1e-6 / options.tolerance, 0.125);
-  std::vector<DirectPackSettings> plan;
-  for (int n = std::max(4, int(std::ceil(segments))); n < max_direct_segments / 2; n *= 2) {
-    s.segments = n;
-    plan.push_back(s);
-  }
-  s.segments = max_direct_segments / 2;
-  plan.push_back(s);
-  return plan;
-}
-
-/// Where benchmarks/benchmark_ensemble is fastest on the reference box, for tolerances down to 10^-digits.
-struct MeshOfTolerance {
-  double digits;
-  int segments, intervals, newton_iterations;
-};
-constexpr std::array meshes_by_tolerance = {
-    MeshOfTolerance{3.5, 6, 4, 2},  MeshOfTolerance{4.5, 8, 4, 2},   MeshOfTolerance{5.5, 6, 6, 3},
-    MeshOfTolerance{6.5, 8, 6, 3},  MeshOfTolerance{7.5, 10, 6, 4},  MeshOfTolerance{8.5, 8, 8, 4},
-    MeshOfTolerance{9.5, 10, 8, 5}, MeshOfTolerance{10.5, 8, 10, 6}, MeshOfTolerance{12.0, 8, 12, 7}};
-
-Plan plan_for(const EnsembleOptions& options) {
-  const auto wanted = [&](Metric m) { return options.metrics[std::size_t(m)]; };
-  Plan plan{};
-  PackSettings& s = plan.first;
-  const auto want = [&](Quantity q, bool on) { s.wanted[std::size_t(q)] = on; };
-  const bool velocity =
-      wanted(Metric::lift_peak) || wanted(Metric::flapping_velocity_peak) || wanted(Metric::angle_of_attack_min);
-  want(Quantity::velocity, velocity);
-  want(Quantity::current, wanted(Metric::current_peak));
-  want(Quantity::force, wanted(Metric::rod_force_peak));
-  want(Quantity::negated_speed, wanted(Metric::crank_speed_min));
-  want(Quantity::speed, wanted(Metric::crank_speed_max));
-  want(Quantity::energy, wanted(Metric::power_reactive));
-  s.multipliers = wanted(Metric::floquet_multiplier_max);
-
-  want(Quantity::velocity, velocity || options.domain);
-  s.velocity_aside = options.domain && !velocity;
-  const double digits = -std::log10(options.tolerance);
-  const auto mesh = std::find_if(meshes_by_tolerance.begin(), meshes_by_tolerance.end() - 1,
-                                 [&](const MeshOfTolerance& m) { return digits <= m.digits; });
-  s.segments = mesh->segments;
-  s.intervals = mesh->intervals;
-  s.newton_iterations = mesh->newton_iterations;
-  s.settled = 0.1 * options.tolerance;
-  // The error of a segment's end off its sign change is of third order: at 1e-6 it does not count.
-  s.follow_switches = digits > 6.5;
-  s.coarse_iterates = 2;
-  s.peak_tolerance = 0.5 * options.tolerance;
-
-  PackSettings finer = s;
-  finer.approach = PackApproach::resume;
-  finer.implicit = true;
-  for (PackSettings& again : plan.again) {
-    ++finer.newton_iterations;
-    finer.segments = std::min(finer.segments + 2, max_half_segments);
-    again = finer;
-    finer.intervals = std::min(finer.intervals + 2, solver::max_collocation_intervals);
-  }
-  plan.creeping = s;
-  plan.creeping.implicit = true;
-  plan.creeping.newton_iterations += 1;
-  plan.creeping.segments = max_half_segments;
-  PackSettings from_rest = s;
-  from_rest.approach = PackApproach::from_rest;
-  from_rest.newton_iterations += 1;
-  from_rest.segments = max_half_segments;
-  from_rest.implicit = true;
-  for (PackSettings& start : plan.from_rest) {
-    start = from_rest;
-    from_rest.start_up_steps *= 4;
-    from_rest.start_up_cycles = 100;  // near stall they take a hundred times as long as without load
-  }
-  plan.direct = direct_plan_for(options);
-  return plan;
 }
 
 void keep_wanted(const MetricSet& wanted, Metrics<double>& metrics) {
@@ -180,6 +82,7 @@ bool pitches_far(const Vehicle<double>& v) {
 /// peak at a bend; with the knots of a table, means converge with the fourth power of the nodes only.
 PackSettings settings_for(const PackKind& kind, PackSettings settings) {
   settings.current = kind.current;
+  settings.in_one_piece = kind.stiff;
   if (kind.stiff && settings.approach == PackApproach::guess) {
     settings.implicit = true;
     settings.newton_iterations += 1;
@@ -188,6 +91,8 @@ PackSettings settings_for(const PackKind& kind, PackSettings settings) {
     settings.segments = max_half_segments;
     settings.intervals = std::min(settings.intervals + 2, solver::max_collocation_intervals);
   }
+  // A rough first trajectory misses the sign changes that the attempt before has found.
+  if (kind.stiff && settings.approach == PackApproach::resume) settings.follow_switches = true;
   settings.follow_switches = settings.follow_switches || (kind.coefficients != Coefficients::waves &&
                                                           settings.wanted[std::size_t(Quantity::force)]);
   if (kind.coefficients == Coefficients::with_stop) {
@@ -261,8 +166,7 @@ class EnsembleRun {
 
   PackCurrent current_of(const Vehicle<double>& v) const {
     if (!(v.motor.armature_inductance > 0.0)) return PackCurrent::algebraic;
-    const double lag = v.motor.armature_inductance / circuit_resistance(v) * no_load_speed(v);
-    return lag < max_lag(options_.tolerance) ? PackCurrent::lagging : PackCurrent::state;
+    return lag_of(v) < max_lag(options_.tolerance) ? PackCurrent::lagging : PackCurrent::state;
   }
 
   /// Few need more than the first attempt: all of a kind together fill the lanes of the others.
@@ -281,15 +185,39 @@ class EnsembleRun {
       run(unresolved, settings_for(kind, plan_.from_rest[n]), in_doubt, left, inexact);
       unresolved.swap(in_doubt);
     }
-    for (const PackSettings& finer : plan_.again) {
+    left.insert(left.end(), unresolved.begin(), unresolved.end());
+    if (kind.current == PackCurrent::lagging) {
+      // What the lag leaves out no finer mesh brings back.
+      const auto lags_far = [&](std::size_t n) {
+        return lag_of(members_[n].vehicle) >= 0.3 * max_lag(options_.tolerance);
+      };
+      const auto far =
+          std::stable_partition(inexact.begin(), inexact.end(), [&](std::size_t n) { return !lags_far(n); });
+      const std::vector<std::size_t> with_state(far, inexact.end());
+      inexact.erase(far, inexact.end());
+      for (const std::size_t n : with_state) {
+        const Vehicle<double>& v = members_[n].vehicle;
+        starts_[n].state[1] = algebraic_current(v, v.voltage, starts_[n].state[0]);
+      }
+      PackKind of_state = kind;
+      of_state.current = PackCurrent::state;
+      of_state.stiff = true;
+      refine(of_state, with_state, left);
+    }
+    refine(kind, std::move(inexact), left);
+    for (const std::size_t n : left) solve_by_scalar(n);
+  }
+
+  /// Goes on with inexact ones of a kind; lists in `left` those that stay so.
+  void refine(const PackKind& kind, std::vector<std::size_t> inexact, std::vector<std::size_t>& left) {
+    // Of the stiff ones that two meshes leave inexact, a third one hardly helps any.
+    const std::size_t attempts = kind.stiff ? 2 : plan_.again.size();
+    for (std::size_t k = 0; k < attempts; ++k) {
       std::vector<std::size_t> still_inexact;
-      run(inexact, settings_for(kind, finer), left, left, still_inexact);
+      run(inexact, settings_for(kind, plan_.again[k]), left, left, still_inexact);
       inexact.swap(still_inexact);
     }
-    for (const std::vector<std::size_t>* rest : {&unresolved, &inexact}) {
-      left.insert(left.end(), rest->begin(), rest->end());
-    }
-    for (const std::size_t n : left) solve_by_scalar(n);
+    left.insert(left.end(), inexact.begin(), inexact.end());
   }
 
   /// Direct drives of a kind. Where a finer mesh cannot help, the scalar solver does.

@@ -57,6 +57,7 @@ CollocationRule make_rule(int n) {
     }
   }
   for (int m = 1; m <= n; ++m) {
+    for (int j = 0; j <= n; ++j) rule.up_to[m][j] = rule.up_to[m - 1][j] + rule.between[m][j];
     for (int j = 0; j <= n; ++j) rule.mean[m][j] = rule.between[m][j] / (rule.node[m] - rule.node[m - 1]);
   }
   return rule;

@@ -61,9 +61,10 @@ struct PackSettings {
   PackCurrent current = PackCurrent::state;
   int coarse_iterates = 2;
   bool implicit =
-      false;          ///< where explicit steps would be unstable, iterates before the collocation take implicit ones
-  int segments = 6;   ///< of half an iterate
-  int intervals = 6;  ///< between the nodes of a segment, even
+      false;  ///< where explicit steps would be unstable, iterates before the collocation take implicit ones
+  bool in_one_piece = false;     ///< Newton's method solves a segment's equations as a whole
+  int segments = 6;              ///< of half an iterate
+  int intervals = 6;             ///< between the nodes of a segment, even
   int newton_iterations = 2;     ///< at most, before the last
   double settled = 1e-7;         ///< fewer where the next correction is expected below, relative
   bool follow_switches = false;  ///< the segments' ends move onto the sign changes after the second one

@@ -90,6 +90,23 @@ auto PackOrbit<L, N>::jacobian_at_node(System system, std::size_t node, const L&
   return jacobian;
 }
 
+/// Derivative of the state at a segment's end by that at its start, from the rates' derivatives at its nodes.
+template <class L, int N>
+auto PackOrbit<L, N>::over_segment(const Matrix* jacobian, const L& h) const -> Matrix {
+  SegmentEquations<L, N, 0, true> equations;
+  for (auto& node : equations.moved) {
+    for (auto& state : node) state[0] = L(0.0);
+  }
+  equations.solve(rule_, jacobian, h);
+  Matrix step;
+  for (std::size_t row = 0; row < N; ++row) {
+    for (std::size_t n = 0; n < N; ++n) {
+      step[row][n] = equations.moved[std::size_t(rule_.intervals - 1)][row][1 + n];
+    }
+  }
+  return step;
+}
+
 /// The largest modulus of the eigenvalues of the return map's derivative, by collocation of the variational equation.
 template <class L, int N>
 L PackOrbit<L, N>::floquet_multiplier() {
@@ -126,8 +143,13 @@ L PackOrbit<L, N>::floquet_multiplier() {
           path[0] = M;
           continue;
         }
+        if (in_one_piece_) continue;
         path[m] = path[m - 1];
         append(step_[base + m], path[m]);
+      }
+      if (in_one_piece_) {
+        append(over_segment(jacobian.data(), h), M);
+        continue;
       }
       // As propose() corrects the trajectory.
       for (int repeat = 0; repeat < std::max(2, settings_.newton_iterations - 1); ++repeat) {

@@ -93,12 +93,50 @@ void PackOrbit<L, N>::propose_with(std::size_t base, const L& h, State& end) {
   }
 }
 
+/// The same by the segment's equations as a whole. In the last iteration the derivatives are those of the one before.
+template <class L, int N>
+template <int known_intervals, bool renews>
+void PackOrbit<L, N>::propose_in_one_piece(std::size_t base, const L& h, State& end, Matrix& whole) {
+  const std::size_t intervals = std::size_t(known_intervals > 0 ? known_intervals : rule_.intervals);
+  SegmentEquations<L, N, known_intervals, renews> equations;
+  for (std::size_t m = 1; m <= intervals; ++m) {
+    State sum;
+    sum.fill(L(0.0));
+    for (std::size_t j = 0; j <= intervals; ++j) {
+      const L weight(rule_.up_to[m][j]);
+      for (std::size_t n = 0; n < N; ++n) sum[n] = sum[n] + weight * rates_[base + j][n];
+    }
+    for (std::size_t n = 0; n < N; ++n) {
+      equations.moved[m - 1][n][0] = h * sum[n] - (trajectory_[base + m][n] - trajectory_[base][n]);
+    }
+  }
+  equations.solve(rule_, &jacobian_[base], h);
+  for (std::size_t m = 1; m <= intervals; ++m) {
+    for (std::size_t row = 0; row < N; ++row) {
+      correction_[base + m][row] = equations.moved[m - 1][row][0];
+      if constexpr (renews) {
+        for (std::size_t n = 0; n < N; ++n) {
+          L& step = step_[base + m][row][n];
+          step = select<L>(settled_, step, equations.moved[m - 1][row][1 + n]);
+        }
+      }
+    }
+  }
+  if constexpr (renews) append(step_[base + intervals], whole);
+  for (std::size_t n = 0; n < N; ++n) end[n] = end[n] + correction_[base][n];
+  const State start = end;
+  for (std::size_t n = 0; n < N; ++n) {
+    end[n] = correction_[base + intervals][n];
+    for (std::size_t k = 0; k < N; ++k) end[n] = end[n] + step_[base + intervals][n][k] * start[k];
+  }
+}
+
 /// Newton's step from the proposed corrections, along the iterate, which is to end where it started; `end` as propose()
 /// leaves it.
 template <class L, int N>
 void PackOrbit<L, N>::correct(State end) {
   const std::size_t per_segment = std::size_t(rule_.intervals + 1), nodes = first_node(2, 0);
-  State by;
+  State by, start;
   for (std::size_t n = 0; n < N; ++n) by[n] = end[n] + trajectory_[nodes - 1][n] - trajectory_[0][n];
   close_iterate(by);
   L sum(0.0);
@@ -109,9 +147,10 @@ void PackOrbit<L, N>::correct(State end) {
       const std::size_t node = base + m;
       if (m == 0) {
         for (std::size_t n = 0; n < N; ++n) by[n] = by[n] + correction_[node][n];
+        start = by;
       } else {
         const Matrix& step = step_[node];
-        const State before = by;
+        const State before = in_one_piece_ ? start : by;
         for (std::size_t n = 0; n < N; ++n) {
           by[n] = step[n][0] * before[0] + correction_[node][n];
           if constexpr (N == 2) by[n] = by[n] + step[n][1] * before[1];
@@ -175,7 +214,9 @@ void PackOrbit<L, N>::newton_iteration() {
           if (m > 0 && m < intervals) overlooked = max(overlooked, -(rates.switches[0] * sign));
         } else if constexpr (first) {
           linearise(system, base + m, sign, rates, jacobian);
-          if (m > 0) {
+          if (in_one_piece_) {
+            keep_settled(jacobian, jacobian_[base + m]);
+          } else if (m > 0) {
             Matrix mean;
             for (std::size_t row = 0; row < N; ++row) {
               for (std::size_t column = 0; column < N; ++column) {
@@ -233,7 +274,7 @@ void PackOrbit<L, N>::newton_iteration() {
         }
       }
       h_before = h;
-      propose(base, h, end);
+      propose<first>(base, h, end, monodromy);
       if constexpr (last) {
         for (std::size_t q = 0; q < integrals_.size(); ++q) {
           L sum(0.0);

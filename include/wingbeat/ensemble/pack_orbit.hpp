@@ -23,6 +23,7 @@
 #include "wingbeat/ensemble/half_cycle.hpp"
 #include "wingbeat/ensemble/pack_blocks.hpp"
 #include "wingbeat/ensemble/pack_lift.hpp"
+#include "wingbeat/ensemble/pack_segment.hpp"
 #include "wingbeat/solve/collocation.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
@@ -99,6 +100,7 @@ class PackOrbit {
     compliance_ = select<L>(stiffness > L(0.0), L(0.5) / max(stiffness, L(1e-300)), L(0.0));
     bends_ = bends_on_lanes(vehicle.wings);
     every_law_ = bends_ || any<L>(vehicle.wings.added_inertia > L(0.0));
+    in_one_piece_ = settings.in_one_piece;
     lags_ = N == 1 && settings.current == PackCurrent::lagging;
     if (N == 2 || lags_) per_inductance_ = L(1.0) / vehicle.motor.armature_inductance;
   }
@@ -141,7 +143,10 @@ class PackOrbit {
   [[gnu::noinline, gnu::flatten]] L guess_speed();
   [[gnu::noinline, gnu::flatten]] void start_from_rest();
   [[gnu::noinline]] void replace_stiff(const System& system, const Configuration<L>* over, const L& u, const L& h,
-                                       const State& y, State& end, L& force_in_middle, L& force_at_end) const;
+                                       const State& y, const Matrix& jacobian, const Mask& stiff, State& end,
+                                       L& force_in_middle, L& force_at_end) const;
+  [[gnu::noinline]] Matrix jacobian_on_its_branch(const System& system, const Configuration<L>& place, const State& y,
+                                                  const State& rates) const;
   template <bool last>
   [[gnu::noinline, gnu::flatten]] void coarse_iterate();
   [[gnu::noinline, gnu::flatten]] L find_switches(ForceSwitches<L>& known, const L* u, const L* force, int count);
@@ -162,7 +167,16 @@ class PackOrbit {
   [[gnu::noinline, gnu::flatten]] void follow_switches();
   static L misplaced(const L& by) { return L(0.15) * square(by); }
   [[gnu::noinline, gnu::flatten]] L dip_between_nodes(std::size_t base, const L& sign) const;
-  void propose(std::size_t base, const L& h, State& end) {
+  template <bool renews>
+  void propose(std::size_t base, const L& h, State& end, [[maybe_unused]] Matrix& whole) {
+    if (in_one_piece_) {
+      switch (rule_.intervals) {
+        case 6: return propose_in_one_piece<6, renews>(base, h, end, whole);
+        case 8: return propose_in_one_piece<8, renews>(base, h, end, whole);
+        case 10: return propose_in_one_piece<10, renews>(base, h, end, whole);
+        default: return propose_in_one_piece<0, renews>(base, h, end, whole);
+      }
+    }
     switch (rule_.intervals) {
       case 4: return propose_with<4>(base, h, end);
       case 6: return propose_with<6>(base, h, end);
@@ -172,6 +186,8 @@ class PackOrbit {
   }
   template <int known_intervals>
   [[gnu::noinline, gnu::flatten]] void propose_with(std::size_t base, const L& h, State& end);
+  template <int known_intervals, bool renews>
+  [[gnu::noinline, gnu::flatten]] void propose_in_one_piece(std::size_t base, const L& h, State& end, Matrix& whole);
   [[gnu::noinline, gnu::flatten]] void correct(State end);
   [[gnu::noinline, gnu::flatten]] void lag_current();
   [[gnu::noinline, gnu::flatten]] solver::Rates<System> relaxation(System system, std::size_t base,
@@ -204,6 +220,7 @@ class PackOrbit {
   [[gnu::noinline, gnu::flatten]] L peak(Quantity quantity);
   [[gnu::noinline, gnu::flatten]] L exchanged_energy();
   [[gnu::noinline, gnu::flatten]] L floquet_multiplier();
+  [[gnu::noinline, gnu::flatten]] Matrix over_segment(const Matrix* jacobian, const L& h) const;
   [[gnu::noinline]] void lag_with(System system, std::size_t node, const L& by, const L& force,
                                   solver::Rates<System>& below, solver::Rates<System>& above) const;
   template <class RatesAt>
@@ -219,7 +236,7 @@ class PackOrbit {
     rates = system.template rates_of<false>(m, y, L(1.0)).dy;
   }
   template <class Rates>
-  [[gnu::noinline]] State implicit_step(const State& y, const L& h, const Rates& rates) const;
+  [[gnu::noinline]] State implicit_step(const State& y, const L& h, const Matrix& jacobian, const Rates& rates) const;
   static void propagator(const Matrix& jacobian, const L& h, Matrix& out);
   static void append(const Matrix& step, Matrix& product);
   void keep_settled(const Matrix& from, Matrix& to) const {
@@ -288,7 +305,8 @@ class PackOrbit {
   std::array<L, max_nodes> force_;
   std::array<L, 2 * max_half_segments>
       off_;                             ///< of each segment's start from the sign change before it [rad], 0 without
-  std::array<Matrix, max_nodes> step_;  ///< derivative of the state by that at the node before
+  std::array<Matrix, max_nodes> step_;  ///< derivative of the state by that at the node before, or, where segments
+                                        ///< are solved in one piece, at the segment's start
   std::array<std::array<Observable<L>, max_nodes>, quantity_count> observables_;
 
   L compliance_;  ///< of all springs, half of it: their energy per square of their moment [1/(N m)]; 0 without
@@ -305,6 +323,8 @@ class PackOrbit {
   L lag_residual_;                 ///< its last change, of the voltage
   L layer_;                        ///< largest relaxation() of the speed, relative
 
+  bool in_one_piece_;                       ///< SegmentEquations instead of steps from node to node
+  std::array<Matrix, max_nodes> jacobian_;  ///< of the rates, for those
   L slowest_, residual_ = L(0.0);
   L switch_error_;              ///< of segments that end off the rod force's sign changes
   L step_error_, speed_error_;  ///< of what the segments' polynomials leave out: at all, and of speed and time

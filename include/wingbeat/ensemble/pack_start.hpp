@@ -157,6 +157,23 @@ void PackOrbit<L, N>::start_from_rest() {
     margin = min(margin, lock_margin(vehicle_, k, N_k_beta, L(vehicle_.motor.torque_constant * x[2])));
   }
   const Mask rests = stopped || (!started && !(x[1] > L(0.0)));
+  // One that the springs turn back is caught: i_s being the stalled motor's current, kinetic energy, what springs and
+  // stall torque store and L_a (i - i_s)^2 / 2 together only fall, so that it comes neither over the load that has
+  // stopped it nor, backwards, over where it has started from, until friction holds it.
+  constexpr double beyond = 0.05;
+  const auto turns_back = [&](const L& angle) {
+    const CrankKinematics<L> at = crank_kinematics(geometry_, sin(angle), cos(angle));
+    const L F_s = static_rod_force(at, spring_moment(vehicle_, at));
+    return F_s * at.crank_lever + vehicle_.load_torque - stall - holding_torque(vehicle_, F_s);
+  };
+  const L back = min(turns_back(x[0]), turns_back(L(x[0] + L(beyond))));
+  L magnetic = L(0.5) * vehicle_.motor.armature_inductance * square(current_scale_);
+  if constexpr (N == 2) {
+    magnetic = magnetic * select<L>(at_once, L(1.0), square(L(x[2] * inverse_of(current_scale_) - L(1.0))));
+  }
+  const Mask friction = vehicle_.friction.radius > L(0.0) || breakaway_torque(vehicle_) > L(0.0);
+  const Mask caught = stopped && friction && L(beyond) * back > magnetic;
+  margin = select<L>(caught, max(margin, back), margin);
   locked_ = rests && !unresolved_ && margin > L(2.4 / steps_per_cycle) * stall;
   in_doubt_ = !locked_ && (slow || !done);
 }
@@ -170,31 +187,29 @@ auto PackOrbit<L, N>::is_stiff(const Matrix& jacobian, const L& h) -> Mask {
 }
 
 /// A step by the L-stable diagonally implicit method of second order with two stages (Alexander 1977), each by a few
-/// Newton steps with the derivatives at the first of them; rates(stage, y) are those at a stage's place.
+/// Newton steps with the derivatives at the step's start; rates(stage, y) are those at a stage's place.
 template <class L, int N>
 template <class Rates>
-auto PackOrbit<L, N>::implicit_step(const State& y, const L& h, const Rates& rates) const -> State {
+auto PackOrbit<L, N>::implicit_step(const State& y, const L& h, const Matrix& jacobian, const Rates& rates) const
+    -> State {
   const L own = L(first_stage) * h;
+  Matrix inverse;  // of 1 - first_stage h jacobian
+  if constexpr (N == 1) {
+    inverse[0][0] = inverse_of(L(L(1.0) - own * jacobian[0][0]));
+  } else {
+    // By elimination: of a b - c d, either product may be the fused one, another in each half of a block.
+    const L a = L(1.0) - own * jacobian[0][0], d = L(1.0) - own * jacobian[1][1];
+    const L b = -(own * jacobian[0][1]), c = -(own * jacobian[1][0]);
+    const L per_a = inverse_of(a), factor = c * per_a, per_rest = inverse_of(L(d - factor * b));
+    inverse[1][1] = per_rest;
+    inverse[1][0] = -(factor * per_rest);
+    inverse[0][1] = -(b * per_a * per_rest);
+    inverse[0][0] = per_a - b * per_a * inverse[1][0];
+  }
   State known = y, at = y;
   for (int stage = 0; stage < 2; ++stage) {
-    Matrix inverse;  // of 1 - first_stage h jacobian
-    for (int newton = 0; newton < 4; ++newton) {
+    for (int newton = 0; newton < 2; ++newton) {
       const State slope = rates(stage, at);
-      if (newton == 0) {
-        const Matrix jacobian = derivatives(at, slope, [&](const State& moved) { return rates(stage, moved); });
-        if constexpr (N == 1) {
-          inverse[0][0] = inverse_of(L(L(1.0) - own * jacobian[0][0]));
-        } else {
-          // By elimination: of a b - c d, either product may be the fused one, another in each half of a block.
-          const L a = L(1.0) - own * jacobian[0][0], d = L(1.0) - own * jacobian[1][1];
-          const L b = -(own * jacobian[0][1]), c = -(own * jacobian[1][0]);
-          const L per_a = inverse_of(a), factor = c * per_a, per_rest = inverse_of(L(d - factor * b));
-          inverse[1][1] = per_rest;
-          inverse[1][0] = -(factor * per_rest);
-          inverse[0][1] = -(b * per_a * per_rest);
-          inverse[0][0] = per_a - b * per_a * inverse[1][0];
-        }
-      }
       State off;
       for (std::size_t n = 0; n < N; ++n) off[n] = known[n] + own * slope[n] - at[n];
       const L least = L(0.3) * at[0];  // it shall not pass standstill
@@ -210,23 +225,29 @@ auto PackOrbit<L, N>::implicit_step(const State& y, const L& h, const Rates& rat
   return at;
 }
 
+/// Derivatives of the rates at a sample, each on the branch that holds there.
+template <class L, int N>
+auto PackOrbit<L, N>::jacobian_on_its_branch(const System& system, const Configuration<L>& place, const State& y,
+                                             const State& rates) const -> Matrix {
+  State beside;
+  L force;
+  return derivatives(y, rates, [&](const State& moved) -> const State& {
+    find_rates(system, place, moved, beside, force);
+    return beside;
+  });
+}
+
 /// Where a step of coarse_iterate() from y, over the three places from u on, is stiff, takes an implicit one instead:
 /// its end, and the rod force's switch in its middle and at its end.
 template <class L, int N>
 void PackOrbit<L, N>::replace_stiff(const System& system, const Configuration<L>* over, const L& u, const L& h,
-                                    const State& y, State& end, L& force_in_middle, L& force_at_end) const {
-  State rates, beside;
+                                    const State& y, const Matrix& jacobian, const Mask& stiff, State& end,
+                                    L& force_in_middle, L& force_at_end) const {
+  State rates;
   L force;
-  find_rates(system, over[0], y, rates, force);
-  const Matrix jacobian = derivatives(y, rates, [&](const State& moved) -> const State& {
-    find_rates(system, over[0], moved, beside, force);
-    return beside;
-  });
-  const Mask stiff = is_stiff(jacobian, h);
-  if (!any<L>(stiff)) return;
   Configuration<L> inside;
   find_configuration(system, u + L(first_stage) * h, inside);
-  const State by_implicit = implicit_step(y, h, [&](int stage, const State& at) {
+  const State by_implicit = implicit_step(y, h, jacobian, [&](int stage, const State& at) {
     find_rates(system, stage == 0 ? inside : over[2], at, rates, force);
     return rates;
   });
@@ -268,14 +289,24 @@ void PackOrbit<L, N>::coarse_iterate() {
         return system.template rates_of<false>(m, y, L(1.0)).dy;
       };
       const State k1 = at(k, y_);
-      const State k2 = at(k + 1, moved(y_, k1, 0.5 * h));
-      const State k3 = at(k + 1, moved(y_, k2, 0.5 * h));
-      const State k4 = at(k + 2, moved(y_, k3, h));
-      State next;
-      for (std::size_t n = 0; n < N; ++n) {
-        next[n] = y_[n] + L(h / 6.0) * (k1[n] + L(2.0) * (k2[n] + k3[n]) + k4[n]);
+      Mask stiff = L(1.0) < L(0.0);
+      Matrix jacobian;
+      if (settings_.implicit) {
+        jacobian = jacobian_on_its_branch(system, table[k], y_, k1);
+        stiff = is_stiff(jacobian, L(h));
       }
-      if (settings_.implicit) replace_stiff(system, &table[k], angles[k], L(h), y_, next, force[k + 1], force[k + 2]);
+      State next = y_;
+      if (bends_ || !all<L>(stiff)) {  // the margins are those of the explicit stages
+        const State k2 = at(k + 1, moved(y_, k1, 0.5 * h));
+        const State k3 = at(k + 1, moved(y_, k2, 0.5 * h));
+        const State k4 = at(k + 2, moved(y_, k3, h));
+        for (std::size_t n = 0; n < N; ++n) {
+          next[n] = y_[n] + L(h / 6.0) * (k1[n] + L(2.0) * (k2[n] + k3[n]) + k4[n]);
+        }
+      }
+      if (any<L>(stiff)) {
+        replace_stiff(system, &table[k], angles[k], L(h), y_, jacobian, stiff, next, force[k + 1], force[k + 2]);
+      }
       y_ = next;
       slowest_ = min(slowest_, y_[0]);
     }
@@ -317,24 +348,30 @@ void PackOrbit<L, N>::march() {
       if (bends_) margin[2 * s] = system.pitch_margin_at(start, y_);
       subinterval.y = y_;
       subinterval.rates = k1.dy;
-      evaluate<false>(system, middle, moved(y_, k1.dy, half_h), sign, k2);
-      const State inside = moved(y_, k2.dy, half_h);
-      evaluate<false>(system, middle, inside, sign, k3);
-      force[2 * s + 1] = k3.switches[0];
-      if (bends_) margin[2 * s + 1] = system.pitch_margin_at(middle, inside);
-      evaluate<false>(system, end, moved(y_, k3.dy, h), sign, k4);
-      State next;
-      for (std::size_t n = 0; n < N; ++n) {
-        next[n] = y_[n] + L(1.0 / 6.0) * h * (k1.dy[n] + L(2.0) * (k2.dy[n] + k3.dy[n]) + k4.dy[n]);
-      }
       Mask stiff = L(1.0) < L(0.0);
-      if (settings_.implicit) stiff = is_stiff(jacobian_at(system, start, y_, k1.dy, sign), h);
+      Matrix jacobian;
+      if (settings_.implicit) {
+        jacobian = jacobian_at(system, start, y_, k1.dy, sign);
+        stiff = is_stiff(jacobian, h);
+      }
       subinterval.stiff = stiff;
+      State next = y_;
+      if (!all<L>(stiff)) {
+        evaluate<false>(system, middle, moved(y_, k1.dy, half_h), sign, k2);
+        const State inside = moved(y_, k2.dy, half_h);
+        evaluate<false>(system, middle, inside, sign, k3);
+        force[2 * s + 1] = k3.switches[0];
+        if (bends_) margin[2 * s + 1] = system.pitch_margin_at(middle, inside);
+        evaluate<false>(system, end, moved(y_, k3.dy, h), sign, k4);
+        for (std::size_t n = 0; n < N; ++n) {
+          next[n] = y_[n] + L(1.0 / 6.0) * h * (k1.dy[n] + L(2.0) * (k2.dy[n] + k3.dy[n]) + k4.dy[n]);
+        }
+      }
       if (any<L>(stiff)) {
         solver::Rates<System> rates;
         Configuration<L> inside_step;
         find_configuration(system, mesh.u[s] + L(first_stage) * h, inside_step);
-        const State by_implicit = implicit_step(y_, h, [&](int stage, const State& y) {
+        const State by_implicit = implicit_step(y_, h, jacobian, [&](int stage, const State& y) {
           evaluate<false>(system, stage == 0 ? inside_step : end, y, sign, rates);
           return rates.dy;
         });

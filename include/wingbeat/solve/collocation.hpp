@@ -17,7 +17,8 @@ struct CollocationRule {
   double weight[max_points];                ///< of the integral over [0, 1]
   double between[max_points][max_points];   ///< [m][j]: integral from node m - 1 to m of the polynomial that is 1 at
                                             ///< node j alone; m > 0
-  double mean[max_points][max_points];      ///< [m][j]: that integral over the distance of the two nodes; m > 0
+  double up_to[max_points][max_points];     ///< [m][j]: sum of that from node 1 to m
+  double mean[max_points][max_points];      ///< [m][j]: between over the distance of the two nodes; m > 0
   double slope[max_points][max_points];     ///< [m][j]: derivative of that polynomial at node m
   double legendre[max_points][max_points];  ///< [k][j]: its coefficient of P_k(2 x - 1)
 };
