@@ -199,6 +199,9 @@ class PackOrbit {
   static void keep(const PeakBracket<L>& from, const Mask& where, PeakBracket<L>& to);
   static L estimate_peak(PeakBracket<L>& b);
   [[gnu::noinline, gnu::flatten]] L refine(Quantity quantity, const L& sign, PeakBracket<L> b);
+  [[gnu::noinline, gnu::flatten]] L error_inside(Quantity quantity, const SegmentTrajectory<L, N>& trajectory,
+                                                 const L& x, const L& value) const;
+  void refresh(Quantity quantity);
   [[gnu::noinline, gnu::flatten]] L peak(Quantity quantity);
   [[gnu::noinline, gnu::flatten]] L exchanged_energy();
   [[gnu::noinline, gnu::flatten]] L floquet_multiplier();
@@ -304,6 +307,8 @@ class PackOrbit {
   L layer_;                        ///< largest relaxation() of the speed, relative
 
   L slowest_, residual_ = L(0.0);
+  L moved_most_;    ///< by Newton's last correction, of all nodes: the speed [rad/s]
+  L lift_opposed_;  ///< what the lift's integral is smaller by than that of its magnitude, relative to it
   L switch_error_;              ///< of segments that end off the rod force's sign changes
   L step_error_, speed_error_;  ///< of what the segments' polynomials leave out: at all, and of speed and time
   L overlooked_;  ///< depth to which the rod force has the wrong sign inside a segment, of its largest magnitude
@@ -417,14 +422,20 @@ Metrics<L> PackOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   seek(Quantity::speed, Extreme::crank_speed_max);
   const L multiplier = settings_.multipliers ? floquet_multiplier() : L(0.0);
 
+  // Integrals belong to the trajectory before the last correction: powers change with up to the third power of the
+  // speed, and their ratios with the fifth.
+  const L of_correction = L(5.0) * residual_;
   error_estimate_ =
-      L(1.5) * (step_error_ + L(2.0) * residual_ + peak_error_) + switch_error_ + overlooked_ * sqrt(overlooked_);
+      L(1.5) * (step_error_ + of_correction + peak_error_) + switch_error_ + overlooked_ * sqrt(overlooked_);
+  error_estimate_ = error_estimate_ + lift_opposed_ * (switch_error_ + L(1.5) * of_correction);
   // A motor near its speed without load draws the small difference of two large voltages.
   const L back_emf = L(two_pi) * vehicle_.motor.torque_constant;
   const L resistive = circuit_resistance(vehicle_) * abs(integrals_[pack_integral(Integral::current)]);
   const L difference = max(L(back_emf * inverse_of(max(resistive, L(1e-300))) - L(1.0)), L(0.0));
   error_estimate_ = error_estimate_ + L(1.5) * difference * (speed_error_ + L(2.0) * residual_);
-  if (lags_) error_estimate_ = error_estimate_ + L(1.5) * (difference + L(2.0)) * lag_residual_ + lag_left_out();
+  if (lags_) {
+    error_estimate_ = error_estimate_ + L(1.5) * (difference + L(2.0)) * lag_residual_ + lag_left_out();
+  }
   lost_ = lost_ || !(slowest_ > floor_);
   if (settings_.approach == PackApproach::guess) unresolved_ = unresolved_ || lost_;
   unresolved_ = unresolved_ || (!lost_ && hardly_returns(vehicle_, largest_modulus(monodromy_), total(Integral::time)));
