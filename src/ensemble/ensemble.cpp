@@ -363,6 +363,13 @@ class EnsembleRun {
     outcomes_[n].metrics.values.fill(absent);
   }
 
+  /// Of what lanes leave to the scalar solver. Its steps do not see all that the kinks of a table cost, and nothing of
+  /// what a speed that is the small difference of two torques makes of their errors.
+  double scalar_tolerance(const Vehicle<double>& v) const {
+    const bool hard = v.wings.coefficients.table || breakaway_torque(v) > 0.4 * stall_torque(v);
+    return hard ? std::max(0.1 * options_.tolerance, 1e-12) : options_.tolerance;
+  }
+
   /// Whether it rotates from rest is known, and that its orbit is the only one.
   bool start_up_is_known(std::size_t n) const {
     const Vehicle<double>& v = members_[n].vehicle;
@@ -371,7 +378,7 @@ class EnsembleRun {
 
   void solve_by_scalar(std::size_t n) {
     SteadyOptions steady;
-    steady.tolerance = options_.tolerance;
+    steady.tolerance = options_.scalar_only ? options_.tolerance : scalar_tolerance(members_[n].vehicle);
     steady.stability = options_.metrics[std::size_t(Metric::floquet_multiplier_max)];
     steady.reporting = members_[n].reporting;
     const StartUp known = [](const Vehicle<double>&) { return StartUpOutcome{}; };
