@@ -416,7 +416,7 @@ void PackOrbit<L, N>::linearise(const System& system, std::size_t node, const L&
   const Configuration<L>& place = configuration_of(node);
   const State& y = trajectory_[node];
   evaluate<false>(system, place, y, force, rates);
-  if (N == 1 || every_law_) {
+  if (N == 1 || adds_mass_) {
     jacobian = jacobian_at(system, place, y, rates.dy, force);
     return;
   }

@@ -98,7 +98,8 @@ class PackOrbit {
     const L stiffness = vehicle.wing_count * vehicle.spring.stiffness;
     compliance_ = select<L>(stiffness > L(0.0), L(0.5) / max(stiffness, L(1e-300)), L(0.0));
     bends_ = bends_on_lanes(vehicle.wings);
-    every_law_ = bends_ || any<L>(vehicle.wings.added_inertia > L(0.0));
+    adds_mass_ = any<L>(vehicle.wings.added_inertia > L(0.0));
+    every_law_ = bends_ || adds_mass_;
     lags_ = N == 1 && settings.current == PackCurrent::lagging;
     if (N == 2 || lags_) per_inductance_ = L(1.0) / vehicle.motor.armature_inductance;
   }
@@ -271,6 +272,7 @@ class PackOrbit {
   std::array<std::array<Configuration<L>, coarse_samples>, 2> table_;
   State y_;         ///< where an iterate starts
   bool every_law_;  ///< HalfCycle::has_every_law
+  bool adds_mass_;  ///< of the air
   Mask unresolved_, locked_;
   Mask settled_;  ///< on the trajectory that the last iteration will start from
   Mask lost_;     ///< the crank comes near standstill on the way to the orbit
