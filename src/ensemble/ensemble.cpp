@@ -188,7 +188,7 @@ PackSettings settings_for(const PackKind& kind, PackSettings settings) {
   if (kind.coefficients == Coefficients::with_stop) {
     settings.segments = std::min(settings.segments + 2, max_half_segments);
   } else if (kind.coefficients == Coefficients::table) {
-    const int more = settings.approach == PackApproach::resume ? 4 : 2;
+    const int more = settings.approach == PackApproach::resume ? 6 : 2;
     settings.segments = max_half_segments;
     settings.intervals = std::min(settings.intervals + more, solver::max_collocation_intervals);
   }

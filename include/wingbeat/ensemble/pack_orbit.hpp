@@ -309,8 +309,8 @@ class PackOrbit {
   L layer_;                        ///< largest relaxation() of the speed, relative
 
   L slowest_, residual_ = L(0.0);
-  L moved_most_;    ///< by Newton's last correction, of all nodes: the speed [rad/s]
-  L lift_opposed_;  ///< what the lift's integral is smaller by than that of its magnitude, relative to it
+  L moved_most_;                ///< by Newton's last correction, of all nodes: the speed [rad/s]
+  L lift_opposed_;              ///< what the lift's integral is smaller by than that of its magnitude, relative to it
   L switch_error_;              ///< of segments that end off the rod force's sign changes
   L step_error_, speed_error_;  ///< of what the segments' polynomials leave out: at all, and of speed and time
   L overlooked_;  ///< depth to which the rod force has the wrong sign inside a segment, of its largest magnitude

@@ -184,8 +184,8 @@ L PackOrbit<L, N>::estimate_peak(PeakBracket<L>& b) {
 }
 
 /// Relative error of an extreme at distance x from the start of a segment: what the trajectory's polynomial leaves out
-/// there, by its first coefficients left out, as the last ones fall, and what Newton's last correction left stale, times
-/// what the quantity makes of a change of the speed.
+/// there, by its first coefficients left out, as the last ones fall, and what Newton's last correction left stale,
+/// times what the quantity makes of a change of the speed.
 template <class L, int N>
 L PackOrbit<L, N>::error_inside(Quantity quantity, const SegmentTrajectory<L, N>& trajectory, const L& x,
                                 const L& value) const {
@@ -204,7 +204,9 @@ L PackOrbit<L, N>::error_inside(Quantity quantity, const SegmentTrajectory<L, N>
     case Quantity::negated_speed: return L(2.0) * of_speed * per_value;
     case Quantity::current:
       if constexpr (N == 2) return L(2.0) * max(L(of_speed * inverse_of(speed)), L(left_out(1) * per_value));
-      else return L(2.0) * of_speed * max(inverse_of(speed), L(vehicle_.motor.torque_constant * per_resistance_ * per_value));
+      else
+        return L(2.0) * of_speed *
+               max(inverse_of(speed), L(vehicle_.motor.torque_constant * per_resistance_ * per_value));
     case Quantity::force: {
       constexpr double by = 1e-5;
       L error(0.0);

@@ -103,7 +103,7 @@ template <Scalar S>
 struct LaneTables {
   CoefficientLookup of[std::size_t(ScalarTraits<S>::lanes)];
   S front, steps_per_angle, last_step;  ///< of them, where they have steps
-  S bend;                                   ///< angle of attack below which the coefficients are those there [rad]
+  S bend;                               ///< angle of attack below which the coefficients are those there [rad]
   bool from_tables = false, bends = false;
 
   LaneTables(std::nullptr_t = nullptr) {}  // NOLINT: of lanes without
