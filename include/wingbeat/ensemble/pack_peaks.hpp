@@ -228,6 +228,7 @@ L PackOrbit<L, N>::error_inside(Quantity quantity, const SegmentTrajectory<L, N>
 /// Takes the values that follow from the state at once from the nodes that the last correction has moved.
 template <class L, int N>
 void PackOrbit<L, N>::refresh(Quantity quantity) {
+  if (quantity == Quantity::velocity || quantity == Quantity::force) return;
   auto& observables = observables_[std::size_t(quantity)];
   for (std::size_t n = 0; n < first_node(2, 0); ++n) {
     const State& y = trajectory_[n];
