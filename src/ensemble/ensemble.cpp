@@ -40,7 +40,8 @@ double max_lag(double tolerance) { return 0.007 * std::min(std::sqrt(tolerance /
 /// How a tolerance is met.
 struct Plan {
   PackSettings first;
-  std::array<PackSettings, 3> from_rest;  ///< more and more finely
+  PackSettings creeping;                  ///< without springs, where the first attempt comes to nothing
+  std::array<PackSettings, 4> from_rest;  ///< more and more finely
   std::array<PackSettings, 3> again;
   std::vector<DirectPackSettings> direct;  ///< one after the other, until a design is exact enough
 };
@@ -122,16 +123,20 @@ Plan plan_for(const EnsembleOptions& options) {
     again = finer;
     finer.intervals = std::min(finer.intervals + 2, solver::max_collocation_intervals);
   }
+  plan.creeping = s;
+  plan.creeping.implicit = true;
+  plan.creeping.newton_iterations += 1;
+  plan.creeping.segments = max_half_segments;
   PackSettings from_rest = s;
   from_rest.approach = PackApproach::from_rest;
   from_rest.newton_iterations += 1;
   from_rest.segments = max_half_segments;
   from_rest.implicit = true;
-  plan.from_rest = {from_rest, from_rest, from_rest};
-  // Cranks near stall take a hundred times as long as one without load.
-  plan.from_rest[1].start_up_steps = 192;
-  plan.from_rest[1].start_up_cycles = 100;
-  plan.from_rest[2].start_up_steps = 768;
+  for (PackSettings& start : plan.from_rest) {
+    start = from_rest;
+    from_rest.start_up_steps *= 4;
+    from_rest.start_up_cycles = 100;  // near stall they take a hundred times as long as without load
+  }
   plan.direct = direct_plan_for(options);
   return plan;
 }
@@ -157,7 +162,7 @@ struct PackKind {
 /// Whether current or speed settle within a part of a coarse step at the speed without load, so that explicit steps
 /// there would be unstable.
 bool is_stiff(const Vehicle<double>& v, PackCurrent current) {
-  constexpr double coarse_step = pi / 8.0, stable = 1.0;
+  constexpr double coarse_step = pi / 8.0, stable = 1.8;
   const double R = circuit_resistance(v), K = v.motor.torque_constant, no_load = no_load_speed(v);
   const double inertia = v.motor.inertia + 0.5 * v.wing_count * v.wing_inertia;
   const double braking = (K * K / R + v.motor.viscous_damping) / inertia;
@@ -263,20 +268,27 @@ class EnsembleRun {
   /// Few need more than the first attempt: all of a kind together fill the lanes of the others.
   void solve_alike(const PackKind& kind, const std::vector<std::size_t>& all) {
     std::vector<std::size_t> unresolved, inexact;
-    run(all, settings_for(kind, plan_.first), unresolved, inexact);
-    // Without springs the third start tells no more than the second.
-    for (std::size_t n = 0; n < (kind.springs ? 3 : 2); ++n) {
+    run(all, settings_for(kind, plan_.first), unresolved, unresolved, inexact);
+    std::vector<std::size_t> left;
+    if (!kind.springs) {
       std::vector<std::size_t> still_unresolved;
-      run(unresolved, settings_for(kind, plan_.from_rest[n]), still_unresolved, inexact);
+      run(unresolved, settings_for(kind, plan_.creeping), still_unresolved, still_unresolved, inexact);
       unresolved.swap(still_unresolved);
     }
-    std::vector<std::size_t> left = std::move(unresolved);
+    // Without springs nothing brings a crank near standstill on its way but a load that hardly lets it start.
+    for (std::size_t n = 0; n < (kind.springs ? plan_.from_rest.size() : 2); ++n) {
+      std::vector<std::size_t> in_doubt;
+      run(unresolved, settings_for(kind, plan_.from_rest[n]), in_doubt, left, inexact);
+      unresolved.swap(in_doubt);
+    }
     for (const PackSettings& finer : plan_.again) {
       std::vector<std::size_t> still_inexact;
-      run(inexact, settings_for(kind, finer), left, still_inexact);
+      run(inexact, settings_for(kind, finer), left, left, still_inexact);
       inexact.swap(still_inexact);
     }
-    left.insert(left.end(), inexact.begin(), inexact.end());
+    for (const std::vector<std::size_t>* rest : {&unresolved, &inexact}) {
+      left.insert(left.end(), rest->begin(), rest->end());
+    }
     for (const std::size_t n : left) solve_by_scalar(n);
   }
 
@@ -329,8 +341,8 @@ class EnsembleRun {
   }
 
   /// Solves those members; settles the outcomes of the exact ones, and lists the others.
-  void run(const std::vector<std::size_t>& which, const PackSettings& settings, std::vector<std::size_t>& unresolved,
-           std::vector<std::size_t>& inexact) {
+  void run(const std::vector<std::size_t>& which, const PackSettings& settings, std::vector<std::size_t>& in_doubt,
+           std::vector<std::size_t>& unresolved, std::vector<std::size_t>& inexact) {
     const auto begin = [&](std::size_t n, PackResult& r) {
       if (settings.approach == PackApproach::resume) r.start = starts_[n];
     };
@@ -338,6 +350,8 @@ class EnsembleRun {
       if (settings.approach == PackApproach::from_rest) rotates_[n] = r.assessment == PackAssessment::rotates;
       if (r.assessment == PackAssessment::locked) {
         settle(n, FlappingStatus::locked);
+      } else if (r.assessment == PackAssessment::in_doubt) {
+        in_doubt.push_back(n);
       } else if (r.assessment == PackAssessment::unresolved) {
         unresolved.push_back(n);
       } else if (!(r.error_estimate <= options_.tolerance)) {

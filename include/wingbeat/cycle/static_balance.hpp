@@ -172,21 +172,30 @@ S largest_pitch(const V<S>& v, std::span<const LoadPlace<S>> places, const S& om
   return v.wings.pitch_coefficient * steepest * omega;
 }
 
-/// Balances between 2 % of the speed without load and that speed, on a grid. A surplus that is almost used up counts as
-/// a balance, too.
+/// Balances between 2 % of the speed without load and that speed, on a grid, without springs from standstill on. A
+/// surplus that is almost used up counts as a balance, too.
 template <int speeds, template <Scalar> class V, Scalar S>
 BalancedSpeed<S> balanced_on_grid(const V<S>& v, std::span<const LoadPlace<S>> places) {
   const S no_load = no_load_speed(v), near = S(0.1) * stall_torque(v);
   BalancedSpeed<S> balanced{no_load, S(0.0), S(0.0)};
   S before = S(0.02) * no_load, surplus_before = torque_surplus(v, places, before), surplus_earlier = surplus_before;
-  for (int n = 1; n <= speeds; ++n) {
-    const S omega = no_load * S(double(n) / speeds), at = torque_surplus(v, places, omega);
-    const auto crossed = surplus_before > S(0.0) && at <= S(0.0);
-    const S root = before + (omega - before) * surplus_before / (surplus_before - at);
+  const auto note_balance = [&](const S& below, const S& surplus_below, const S& omega, const S& at) {
+    const auto crossed = surplus_below > S(0.0) && at <= S(0.0);
+    const S root = below + (omega - below) * surplus_below / (surplus_below - at);
     const auto first = crossed && balanced.count == S(0.0);
     balanced.slowest = select<S>(first, root, balanced.slowest);
-    balanced.slope = select<S>(first, (at - surplus_before) / (omega - before), balanced.slope);
+    balanced.slope = select<S>(first, (at - surplus_below) / (omega - below), balanced.slope);
     balanced.count = select<S>(crossed, balanced.count + S(1.0), balanced.count);
+  };
+  // What keeps a slow crank turning against springs is not their mean torque.
+  const auto creeps = v.spring.stiffness == S(0.0) && surplus_before <= S(0.0);
+  if (any<S>(creeps)) {
+    const S from_standstill = select<S>(creeps, torque_surplus(v, places, S(0.0)), S(0.0));
+    note_balance(S(0.0), from_standstill, before, surplus_before);
+  }
+  for (int n = 1; n <= speeds; ++n) {
+    const S omega = no_load * S(double(n) / speeds), at = torque_surplus(v, places, omega);
+    note_balance(before, surplus_before, omega, at);
     if (n > 1) {
       const auto touches =
           surplus_before > S(0.0) && surplus_before < near && surplus_before < surplus_earlier && surplus_before < at;

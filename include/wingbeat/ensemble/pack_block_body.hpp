@@ -61,12 +61,15 @@ void solve_block(const EnsembleMember* const* members, int count, const PackSett
       scatter(found.values[m], [m](PackResult& r) -> double& { return r.metrics.values[m]; });
     }
     scatter(orbit.error_estimate(), [](PackResult& r) -> double& { return r.error_estimate; });
-    select<L>(orbit.locked(), L(2.0), select<L>(orbit.unresolved(), L(1.0), L(0.0))).store(numbers);
-    for (int lane = 0; lane < count; ++lane) {
-      results[lane]->assessment = numbers[lane] == 0.0   ? PackAssessment::rotates
-                                  : numbers[lane] == 1.0 ? PackAssessment::unresolved
-                                                         : PackAssessment::locked;
-    }
+    L assessment(double(PackAssessment::rotates));
+    const auto assess = [&](const Mask<L>& where, PackAssessment as) {
+      assessment = select<L>(where, L(double(as)), assessment);
+    };
+    assess(orbit.in_doubt(), PackAssessment::in_doubt);
+    assess(orbit.unresolved(), PackAssessment::unresolved);
+    assess(orbit.locked(), PackAssessment::locked);
+    assessment.store(numbers);
+    for (int lane = 0; lane < count; ++lane) results[lane]->assessment = PackAssessment(int(numbers[lane]));
     orbit.visit_start(
         [&](L& from, const auto& to) { scatter(from, [&](PackResult& r) -> double& { return to(r.start); }); });
   };

@@ -75,6 +75,7 @@ struct PackSettings {
 
 enum class PackAssessment {
   rotates,
+  in_doubt,    ///< from rest it comes near standstill: finer steps must tell
   unresolved,  ///< may lock, stall, jam or have several orbits, or is beyond this solver's means
   locked       ///< from rest it has come to a stop, in time, where it stays
 };

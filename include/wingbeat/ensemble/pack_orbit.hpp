@@ -112,6 +112,8 @@ class PackOrbit {
   const L& error_estimate() const { return error_estimate_; }
   const Mask& unresolved() const { return unresolved_; }
   const Mask& locked() const { return locked_; }
+  /// A start from rest that comes so near to standstill that finer steps must tell what follows.
+  const Mask& in_doubt() const { return in_doubt_; }
   /// Calls visit(lanes, place), place(IterateStart&) being where the number stands there, for all of where the next
   /// iterate starts: to set it before solve(), or to keep it afterwards.
   template <class Visit>
@@ -273,7 +275,7 @@ class PackOrbit {
   State y_;         ///< where an iterate starts
   bool every_law_;  ///< HalfCycle::has_every_law
   bool adds_mass_;  ///< of the air
-  Mask unresolved_, locked_;
+  Mask unresolved_, locked_, in_doubt_;
   Mask settled_;  ///< on the trajectory that the last iteration will start from
   Mask lost_;     ///< the crank comes near standstill on the way to the orbit
   std::array<ForceSwitches<L>, 2> switches_{};
@@ -360,7 +362,7 @@ void PackOrbit<L, N>::iterate() {
     if (settings_.follow_switches && n == 1) follow_switches();
     if (lags_ || n < (settings_.follow_switches ? 2 : 1)) continue;
     const L gain = min(L(residual_ * inverse_of(max(before, L(1e-300)))), L(1.0));
-    settled_ = settled_ || unresolved_ || locked_ || gain * residual_ <= L(settings_.settled);
+    settled_ = settled_ || unresolved_ || locked_ || in_doubt_ || gain * residual_ <= L(settings_.settled);
     if (all<L>(settled_)) break;
   }
   settled_ = L(1.0) < L(0.0);
@@ -368,7 +370,7 @@ void PackOrbit<L, N>::iterate() {
 
 template <class L, int N>
 Metrics<L> PackOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant) {
-  lost_ = L(1.0) < L(0.0);
+  lost_ = in_doubt_ = L(1.0) < L(0.0);
   if (settings_.approach == PackApproach::resume) {
     unresolved_ = locked_ = lost_;
   } else {

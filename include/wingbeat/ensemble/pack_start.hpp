@@ -60,7 +60,7 @@ L PackOrbit<L, N>::guess_speed() {
 }
 
 /// From rest at crank angle zero, in time, by the classical fourth-order method: over the lower dead centre twice,
-/// where the cycle may begin. Pack that come near standing still are unresolved, but for those that come to rest and
+/// where the cycle may begin. Lanes that come near standing still are in doubt, but for those that come to rest and
 /// stay.
 template <class L, int N>
 void PackOrbit<L, N>::start_from_rest() {
@@ -69,12 +69,23 @@ void PackOrbit<L, N>::start_from_rest() {
   // The kinks leave an error of the second order, which counts most where the crank almost stands still.
   L slow_limit = L(1.92 / steps_per_cycle) * no_load_;
   constexpr double end = 4.0 * pi - quarter;
-  const L dt = L(two_pi / double(steps_per_cycle)) * inverse_of(no_load_);
+  const L shortest = L(two_pi / double(steps_per_cycle)) * inverse_of(no_load_);
   // A current that settles faster than the method is stable follows the speed. The inductance left out changes the
   // speed by less than its share of the motor's time constant.
   Mask at_once = L(lags_ ? 1.0 : 0.0) > L(0.0);
-  if constexpr (N == 2) at_once = dt * circuit_resistance(vehicle_) * per_inductance_ > L(2.0);
+  if constexpr (N == 2) at_once = shortest * circuit_resistance(vehicle_) * per_inductance_ > L(2.0);
   slow_limit = slow_limit + select<L>(at_once, L(2.0) * electrical_to_mechanical_time() * no_load_, L(0.0));
+  // A kink leaves an error of the speed of dt^2 times the speed: a slow crank takes longer steps, within what resolves
+  // the motor's time constants and the swing of the crank by the motor's and the springs' torque.
+  const L braking = square(vehicle_.motor.torque_constant) * per_resistance_ * inverse_of(vehicle_.motor.inertia);
+  const L spring =
+      vehicle_.wing_count * vehicle_.spring.stiffness * square(typical_stroke_slope(vehicle_.transmission));
+  const L swinging = max(L(braking * no_load_), L(spring * inverse_of(vehicle_.motor.inertia)));
+  L fastest = max(braking, sqrt(swinging));
+  if constexpr (N == 2) {
+    fastest = max(fastest, select<L>(at_once, L(0.0), L(circuit_resistance(vehicle_) * per_inductance_)));
+  }
+  const L longest = max(shortest, L(0.5) * inverse_of(fastest));
   const L start_limit = min(L(1.3) * slow_limit, L(0.05) * no_load_);
   const auto rates = [&](const Moving& x) {
     const L sine = sin(x[0]), cosine = cos(x[0]);
@@ -103,9 +114,11 @@ void PackOrbit<L, N>::start_from_rest() {
   x.fill(L(0.0));
   y_.fill(L(0.0));
   Mask done = L(1.0) < L(0.0), started = done, slow = done, stopped = done;
-  L waited(0.0);  // steps at rest, or since the crank was slow: after a few cycles' worth others must decide
+  L waited(0.0);  // shortest steps at rest, or since the crank was slow: after a few cycles' worth others must decide
   for (int n = 0; n < steps_per_cycle * settings_.start_up_cycles; ++n) {
     if (all<L>(done || stopped || waited > L(2.0 * steps_per_cycle))) break;
+    const L dt =
+        max(shortest, min(longest, L(shortest * sqrt(L(no_load_ * inverse_of(max(x[1], L(1e-6) * no_load_)))))));
     const Moving k1 = rates(x);
     const Moving k2 = rates(moved(x, k1, L(0.5) * dt));
     const Moving k3 = rates(moved(x, k2, L(0.5) * dt));
@@ -120,7 +133,7 @@ void PackOrbit<L, N>::start_from_rest() {
     next[1] = select<L>(held, L(0.0), next[1]);
     started = started || next[1] > start_limit;
     slow = slow || (started && !done && !(next[1] > slow_limit));
-    waited = select<L>(slow || !started, waited + L(1.0), waited);
+    waited = select<L>(slow || !started, waited + dt * inverse_of(shortest), waited);
     const Mask stops = started && !done && !stopped && !(next[1] > L(0.0));
     const Mask arrives = !done && !stopped && next[0] >= L(end);
     const L part = (L(end) - x[0]) * inverse_of(max(L(next[0] - x[0]), L(1e-300)));
@@ -145,7 +158,7 @@ void PackOrbit<L, N>::start_from_rest() {
   }
   const Mask rests = stopped || (!started && !(x[1] > L(0.0)));
   locked_ = rests && !unresolved_ && margin > L(2.4 / steps_per_cycle) * stall;
-  unresolved_ = unresolved_ || slow || !done;
+  in_doubt_ = !locked_ && (slow || !done);
 }
 
 /// Whether an explicit step of fourth order would be near its limit of stability.
