@@ -193,9 +193,9 @@ PackSettings settings_for(const PackKind& kind, PackSettings settings) {
   if (kind.coefficients == Coefficients::with_stop) {
     settings.segments = std::min(settings.segments + 2, max_half_segments);
   } else if (kind.coefficients == Coefficients::table) {
-    const int more = settings.approach == PackApproach::resume ? 6 : 2;
     settings.segments = max_half_segments;
-    settings.intervals = std::min(settings.intervals + more, solver::max_collocation_intervals);
+    settings.intervals += settings.approach == PackApproach::resume ? 6 : 2;
+    settings.intervals = std::min(settings.intervals, solver::max_collocation_intervals);
   }
   return settings;
 }
@@ -377,11 +377,10 @@ class EnsembleRun {
     outcomes_[n].metrics.values.fill(absent);
   }
 
-  /// Of what lanes leave to the scalar solver. Its steps do not see all that the kinks of a table cost, and nothing of
-  /// what a speed that is the small difference of two torques makes of their errors.
+  /// Of what lanes leave to the scalar solver, whose estimate is too low at a table's kinks and near stall.
   double scalar_tolerance(const Vehicle<double>& v) const {
     const bool hard = v.wings.coefficients.table || breakaway_torque(v) > 0.4 * stall_torque(v);
-    return hard ? std::max(0.1 * options_.tolerance, 1e-12) : options_.tolerance;
+    return options_.scalar_only || !hard ? options_.tolerance : std::max(0.1 * options_.tolerance, 1e-12);
   }
 
   /// Whether it rotates from rest is known, and that its orbit is the only one.
@@ -392,7 +391,7 @@ class EnsembleRun {
 
   void solve_by_scalar(std::size_t n) {
     SteadyOptions steady;
-    steady.tolerance = options_.scalar_only ? options_.tolerance : scalar_tolerance(members_[n].vehicle);
+    steady.tolerance = scalar_tolerance(members_[n].vehicle);
     steady.stability = options_.metrics[std::size_t(Metric::floquet_multiplier_max)];
     steady.reporting = members_[n].reporting;
     const StartUp known = [](const Vehicle<double>&) { return StartUpOutcome{}; };
