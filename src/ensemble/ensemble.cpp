@@ -177,7 +177,7 @@ bool pitches_far(const Vehicle<double>& v) {
 
 /// The settings of an attempt for a kind. Stiff designs take at once what others take after a start from rest, and
 /// begin again with more points. Where coefficients bend, segments have more places to end at, and the rod force may
-/// peak at a bend; with the knots of a table, means converge with the fourth power of the nodes only.
+/// peak there; at a table's knots means converge with the fourth power of the nodes.
 PackSettings settings_for(const PackKind& kind, PackSettings settings) {
   settings.current = kind.current;
   if (kind.stiff && settings.approach == PackApproach::guess) {
@@ -194,8 +194,8 @@ PackSettings settings_for(const PackKind& kind, PackSettings settings) {
     settings.segments = std::min(settings.segments + 2, max_half_segments);
   } else if (kind.coefficients == Coefficients::table) {
     settings.segments = max_half_segments;
-    settings.intervals += settings.approach == PackApproach::resume ? 6 : 2;
-    settings.intervals = std::min(settings.intervals, solver::max_collocation_intervals);
+    const int more = settings.approach == PackApproach::resume ? 6 : 2;
+    settings.intervals = std::min(settings.intervals + more, solver::max_collocation_intervals);
   }
   return settings;
 }
@@ -377,10 +377,10 @@ class EnsembleRun {
     outcomes_[n].metrics.values.fill(absent);
   }
 
-  /// Of what lanes leave to the scalar solver, whose estimate is too low at a table's kinks and near stall.
+  /// The scalar solver's estimate is too low at a table's kinks and near stall.
   double scalar_tolerance(const Vehicle<double>& v) const {
     const bool hard = v.wings.coefficients.table || breakaway_torque(v) > 0.4 * stall_torque(v);
-    return options_.scalar_only || !hard ? options_.tolerance : std::max(0.1 * options_.tolerance, 1e-12);
+    return options_.tolerance * (hard && !options_.scalar_only ? 0.1 : 1.0);
   }
 
   /// Whether it rotates from rest is known, and that its orbit is the only one.

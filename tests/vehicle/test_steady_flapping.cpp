@@ -89,6 +89,21 @@ TEST(SteadyFlapping, StartsFromTheEnergyAtTheBalancedSpeed) {
   }
 }
 
+/// Near stall, without springs, the speed is what friction leaves of the motor's torque over its braking.
+TEST(SteadyFlapping, CreepsNearStall) {
+  Vehicle<double> vehicle = reference_vehicle();
+  for (const double left : {1e-2, 3e-3}) {
+    vehicle.motor.friction_torque = (1.0 - left) * stall_torque(vehicle);
+    const SteadyFlapping found = find_steady_flapping(vehicle, {.tolerance = 1e-6});
+    ASSERT_EQ(found.status, FlappingStatus::flapping) << left;
+    const Motor<double>& m = vehicle.motor;
+    const double braking = m.torque_constant * m.torque_constant / circuit_resistance(vehicle) + m.viscous_damping;
+    const double creep = left * stall_torque(vehicle) / braking;
+    EXPECT_NEAR(found.metrics[Metric::frequency] * two_pi / creep, 1.0, 0.05) << left;
+    EXPECT_LT(std::abs(found.metrics[Metric::power_residual]), 1e-6 * found.metrics[Metric::power_electrical]);
+  }
+}
+
 TEST(SteadyFlapping, FloquetMultiplierIsThatOfTheCycleMapByDifferences) {
   const Vehicle<double> vehicle = reference_vehicle(true);
   const SteadyFlapping found = find_steady_flapping(vehicle, {.tolerance = tightest});
