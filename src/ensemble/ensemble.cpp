@@ -286,9 +286,8 @@ class EnsembleRun {
       run(inexact, settings_for(kind, finer), left, left, still_inexact);
       inexact.swap(still_inexact);
     }
-    for (const std::vector<std::size_t>* rest : {&unresolved, &inexact}) {
-      left.insert(left.end(), rest->begin(), rest->end());
-    }
+    left.insert(left.end(), unresolved.begin(), unresolved.end());
+    left.insert(left.end(), inexact.begin(), inexact.end());
     for (const std::size_t n : left) solve_by_scalar(n);
   }
 
