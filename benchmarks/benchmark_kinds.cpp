@@ -6,11 +6,13 @@
 // SECONDS: measure each box for that long (default 1), in turns with the reference box, whose time is the unit of
 // "ratio". N of --count: designs of a box (8192); of --checked: so many of them are compared with the scalar solver at
 // 1e-10 (1024).
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <ctime>
 #include <string>
+#include <string_view>
+#include <type_traits>
 
 #include "ensemble_timing.hpp"
 #include "vehicle/kind_boxes.hpp"
@@ -28,15 +30,60 @@ struct Arguments {
   std::string_view box;
 };
 
+void print_usage() {
+  std::printf(
+      "usage: benchmark_kinds [SECONDS] [--box NAME] [--count N] [--checked N]\n\n"
+      "  SECONDS      measure each box for that long, in turns with the reference box (default 1)\n"
+      "  --box NAME   this box alone, one of");
+  for (const std::string_view name : kind_box_names) std::printf(" %s", std::string(name).c_str());
+  std::printf(
+      "\n  --count N    designs of a box (8192)\n"
+      "  --checked N  so many of them are compared with the scalar solver at 1e-10 (1024)\n");
+}
+
+[[noreturn]] void refuse(const std::string& why) {
+  std::fprintf(stderr, "benchmark_kinds: %s\n", why.c_str());
+  std::exit(2);
+}
+
+/// All of `word` as a number from `least` to 1e9.
+template <class Number>
+Number number_of(std::string_view name, std::string_view word, Number least) {
+  Number value{};
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  const bool whole = std::is_integral_v<Number>;
+  if (error != std::errc() || end != word.data() + word.size() || !(value >= least && value <= Number(1e9))) {
+    refuse(std::string(name) + " takes a " + (whole ? "whole " : "") + "number from " +
+           (least > Number(0) ? "1" : "0") + " to 1e9, not \"" + std::string(word) + "\"");
+  }
+  return value;
+}
+
 Arguments read_arguments(int argc, char** argv) {
   Arguments a;
   for (int k = 1; k < argc; ++k) {
     const std::string_view word = argv[k];
-    const char* value = k + 1 < argc ? argv[k + 1] : "";
-    if (word == "--box") a.box = value, ++k;
-    else if (word == "--count") a.count = std::size_t(std::atol(value)), ++k;
-    else if (word == "--checked") a.checked = std::size_t(std::atol(value)), ++k;
-    else a.seconds = std::atof(argv[k]);
+    const auto value = [&]() -> std::string_view {
+      if (++k == argc) refuse(std::string(word) + " lacks its value");
+      return argv[k];
+    };
+    if (word == "--help" || word == "-h") {
+      print_usage();
+      std::exit(0);
+    } else if (word == "--box") {
+      a.box = value();
+      if (std::find(kind_box_names.begin(), kind_box_names.end(), a.box) == kind_box_names.end()) {
+        refuse("there is no box \"" + std::string(a.box) + "\"; --help names them all");
+      }
+    } else if (word == "--count") {
+      a.count = number_of<std::size_t>(word, value(), 1);
+    } else if (word == "--checked") {
+      a.checked = number_of<std::size_t>(word, value(), 0);
+    } else if (word.starts_with("-")) {
+      refuse("unknown option \"" + std::string(word) + "\"; --help names them all");
+    } else {
+      a.seconds = number_of<double>("SECONDS", word, 0.0);
+    }
   }
   return a;
 }

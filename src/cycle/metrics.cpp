@@ -95,6 +95,7 @@ double error_scale(const Metrics<double>& metrics, Metric which) {
     case Metric::lift_mean: return std::max(size, 1e-3 * metrics[Metric::lift_peak]);
     case Metric::lift_to_weight:
       return std::max(size, 1e-3 * metrics[Metric::lift_peak] * std::abs(metrics[which] / metrics[Metric::lift_mean]));
+    case Metric::crank_speed_min: return std::max(size, 1e-2 * metrics[Metric::crank_speed_max]);
     case Metric::current_mean:
       return std::isnan(metrics[Metric::rod_force_mean]) ? std::max(size, metrics[Metric::current_peak]) : size;
     case Metric::winding_temperature:

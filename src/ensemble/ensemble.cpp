@@ -79,7 +79,7 @@ bool pitches_far(const Vehicle<double>& v) {
 
 /// The settings of an attempt for a kind. Stiff designs take at once what others take after a start from rest, and
 /// begin again with more points. Where coefficients bend, segments have more places to end at, and the rod force may
-/// peak at a bend; with the knots of a table, means converge with the fourth power of the nodes only.
+/// peak there; at a table's knots means converge with the fourth power of the nodes.
 PackSettings settings_for(const PackKind& kind, PackSettings settings) {
   settings.current = kind.current;
   settings.in_one_piece = kind.stiff;
@@ -98,8 +98,8 @@ PackSettings settings_for(const PackKind& kind, PackSettings settings) {
   if (kind.coefficients == Coefficients::with_stop) {
     settings.segments = std::min(settings.segments + 2, max_half_segments);
   } else if (kind.coefficients == Coefficients::table) {
-    const int more = settings.approach == PackApproach::resume ? 4 : 2;
     settings.segments = max_half_segments;
+    const int more = settings.approach == PackApproach::resume ? 6 : 2;
     settings.intervals = std::min(settings.intervals + more, solver::max_collocation_intervals);
   }
   return settings;
@@ -305,6 +305,12 @@ class EnsembleRun {
     outcomes_[n].metrics.values.fill(absent);
   }
 
+  /// The scalar solver's estimate is too low at a table's kinks and near stall.
+  double scalar_tolerance(const Vehicle<double>& v) const {
+    const bool hard = v.wings.coefficients.table || breakaway_torque(v) > 0.4 * stall_torque(v);
+    return options_.tolerance * (hard && !options_.scalar_only ? 0.1 : 1.0);
+  }
+
   /// Whether it rotates from rest is known, and that its orbit is the only one.
   bool start_up_is_known(std::size_t n) const {
     const Vehicle<double>& v = members_[n].vehicle;
@@ -313,7 +319,7 @@ class EnsembleRun {
 
   void solve_by_scalar(std::size_t n) {
     SteadyOptions steady;
-    steady.tolerance = options_.tolerance;
+    steady.tolerance = scalar_tolerance(members_[n].vehicle);
     steady.stability = options_.metrics[std::size_t(Metric::floquet_multiplier_max)];
     steady.reporting = members_[n].reporting;
     const StartUp known = [](const Vehicle<double>&) { return StartUpOutcome{}; };

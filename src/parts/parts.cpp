@@ -142,6 +142,33 @@ CoefficientTable::CoefficientTable(std::vector<double> alpha, std::vector<double
   }
   for (std::size_t b = 1; b < first_.size(); ++b) first_[b] = first_[b - 1] + in_bucket[b - 1];
   most_ = *std::max_element(in_bucket.begin(), in_bucket.end());
+  lay_steps();
+}
+
+/// Fills steps_ where a few hundred steps do.
+void CoefficientTable::lay_steps() {
+  constexpr double rounding = 1e-9;
+  const double range = alpha_.back() - alpha_.front();
+  const auto knots_on_edges = [&](int steps) {
+    return std::all_of(alpha_.begin(), alpha_.end(), [&](double x) {
+      const double at = (x - alpha_.front()) / range * steps;
+      return std::abs(at - std::round(at)) < rounding * steps;
+    });
+  };
+  int steps = int(alpha_.size()) - 1;
+  while (steps <= 512 && !knots_on_edges(steps)) ++steps;
+  if (steps > 512) return;
+  const double width = range / steps;
+  const auto from = [&](const std::array<double, 4>& c, double x) {
+    return std::array{c[0] + x * (c[1] + x * (c[2] + x * c[3])), width * (c[1] + x * (2.0 * c[2] + x * 3.0 * c[3])),
+                      width * width * (c[2] + x * 3.0 * c[3]), width * width * width * c[3]};
+  };
+  std::size_t row = 1;
+  for (int n = 0; n < steps; ++n) {
+    const double x = alpha_.front() + n * width;
+    while (row + 1 < alpha_.size() && alpha_[row] < x + 0.5 * width) ++row;
+    steps_.push_back({from(rows_[row].lift, x - rows_[row].x0), from(rows_[row].drag, x - rows_[row].x0)});
+  }
 }
 
 CoefficientLookup CoefficientTable::lookup() const {
@@ -151,7 +178,10 @@ CoefficientLookup CoefficientTable::lookup() const {
           int(first_.size()),
           most_,
           alpha_.front(),
-          double(first_.size()) / (alpha_.back() - alpha_.front())};
+          double(first_.size()) / (alpha_.back() - alpha_.front()),
+          steps_.empty() ? nullptr : steps_.data(),
+          int(steps_.size()),
+          double(steps_.size()) / (alpha_.back() - alpha_.front())};
 }
 
 CoefficientTable::Cubic CoefficientTable::lift_piece(double alpha) const {

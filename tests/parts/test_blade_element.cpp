@@ -249,6 +249,28 @@ TEST(CoefficientTable, FindsThePieceThatHolds) {
   }
 }
 
+TEST(CoefficientTable, HasTheSamePiecesByEqualSteps) {
+  const std::vector<double> alpha = {0.1, 0.2, 0.5, 0.6, 0.9}, lift = {0.3, 0.1, 0.9, 1.2, 0.8},
+                            drag = {0.5, 0.9, 1.1, 2.1, 2.0};
+  const CoefficientTable table(alpha, lift, drag);
+  const CoefficientLookup found = table.lookup();
+  ASSERT_EQ(found.steps, 8);
+  for (double x = 0.1; x < 0.9; x += 0.013) {
+    const double place = (x - found.front) * found.steps_per_angle, t = place - std::floor(place);
+    const CoefficientLookup::Step& step = found.step[int(place)];
+    for (const auto& [c, piece] :
+         {std::pair{step.lift, table.lift_piece(x)}, std::pair{step.drag, table.drag_piece(x)}}) {
+      const double d = x - piece.x0;
+      EXPECT_NEAR(c[0] + t * (c[1] + t * (c[2] + t * c[3])), piece.a + d * (piece.b + d * (piece.c + d * piece.d)),
+                  1e-14)
+          << x;
+    }
+  }
+  const CoefficientTable uneven({0.1, 0.2, 0.5 + 1e-4 * pi, 0.9}, {0.3, 0.1, 0.9, 1.2}, {0.5, 0.9, 1.1, 2.1});
+  EXPECT_EQ(uneven.lookup().steps, 0);
+  EXPECT_EQ(uneven.lookup().step, nullptr);
+}
+
 TEST(CoefficientTable, ReplacesTheWavesInTheForces) {
   auto w = reference();
   w.coefficients = tabulated({0.0, 1.0, 2.0}, {1.5, 1.5, 1.5}, {2.5, 2.5, 2.5});

@@ -32,6 +32,12 @@ TEST(ErrorScale, IsTheMetricUnlessItMayVanish) {
   m[Metric::power_electrical] = -0.5;
   EXPECT_EQ(error_scale(m, Metric::power_residual), 0.5);
 
+  m[Metric::crank_speed_max] = 50.0;
+  m[Metric::crank_speed_min] = 0.0;
+  EXPECT_EQ(error_scale(m, Metric::crank_speed_min), 0.5);
+  m[Metric::crank_speed_min] = 20.0;
+  EXPECT_EQ(error_scale(m, Metric::crank_speed_min), 20.0);
+
   m[Metric::lift_mean] = 1e-9;
   m[Metric::lift_peak] = 0.04;
   m[Metric::lift_to_weight] = 2e-9;

@@ -127,7 +127,17 @@ CycleExtremes<double> cycle_extremes(const System& system, const solver::Iterate
                            solver::is_little(b.x - x, b.step->h, cycle.tolerance) &&
                            solver::move_a_little<false>(system, x, b.x - x, b.step->signs, rates, y, place);
         if (!moved) {
-          const auto inside = solver::evaluate_inside<false>(system, cycle, *b.step, b.x);
+          auto inside = solver::evaluate_inside<false>(system, cycle, *b.step, b.x);
+          if (!inside.admissible) {
+            // Newton's method may fail for a part of an implicit step, if not for the whole: twice half the part then.
+            const auto half = solver::evaluate_inside<false>(system, cycle, *b.step, 0.5 * (b.step->x + b.x));
+            if (half.admissible) {
+              const auto between = system.template rates<false>(half.end, half.y, b.step->signs);
+              inside = solver::take_step<false>(cycle.method, system, 0.5 * (b.step->x + b.x), half.y,
+                                                0.5 * (b.x - b.step->x), b.step->signs, between);
+            }
+          }
+          if (!inside.admissible) break;
           y = inside.y;
           place = inside.end;
         }

@@ -83,8 +83,8 @@ struct Metrics {
 
 /// What a metric's errors are a part of: its magnitude, or more where it may vanish. The angle of attack to 90 degrees,
 /// the residual power and a gearbox's loss to the input, the mean lift and its ratio to the weight to a thousandth of
-/// the peak lift, the mean current of a direct drive, which alternates, to its peak, temperatures to about the absolute
-/// one. Not a number for a metric that is absent.
+/// the peak lift, the least crank speed to a hundredth of the largest, the mean current of a direct drive, which
+/// alternates, to its peak, temperatures to about the absolute one. Not a number for a metric that is absent.
 double error_scale(const Metrics<double>& metrics, Metric which);
 
 /// Quantities integrated over the TIME of a cycle.

@@ -40,8 +40,8 @@ void solve_block(const EnsembleMember* const* members, int count, const PackSett
       const auto table_of = [](const EnsembleMember& m) { return m.vehicle.wings.coefficients.table->lookup(); };
       for (int lane = 0; lane < L::lanes; ++lane) tables.of[lane] = table_of(member(lane));
       tables.front = gather([&](const EnsembleMember& m) { return table_of(m).front; });
-      tables.buckets_per_angle = gather([&](const EnsembleMember& m) { return table_of(m).buckets_per_angle; });
-      tables.last_bucket = gather([&](const EnsembleMember& m) { return double(table_of(m).buckets - 1); });
+      tables.steps_per_angle = gather([&](const EnsembleMember& m) { return table_of(m).steps_per_angle; });
+      tables.last_step = gather([&](const EnsembleMember& m) { return double(table_of(m).steps - 1); });
     }
     PackOrbit<L, N> orbit(vehicle, settings);
     if (settings.approach == PackApproach::resume) {

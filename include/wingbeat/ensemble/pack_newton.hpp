@@ -141,6 +141,7 @@ void PackOrbit<L, N>::correct(State end) {
   close_iterate(by);
   L sum(0.0);
   slowest_ = trajectory_[0][0];
+  moved_most_ = L(0.0);
   const L per_speed = inverse_of(slowest_), per_current = inverse_of(current_scale_);
   for (std::size_t base = 0; base < nodes; base += per_segment) {
     for (std::size_t m = 0; m < per_segment; ++m) {
@@ -157,6 +158,7 @@ void PackOrbit<L, N>::correct(State end) {
         }
       }
       sum = sum + abs(by[0]) * per_speed;
+      moved_most_ = max(moved_most_, abs(by[0]));
       if constexpr (N == 2) sum = sum + abs(by[1]) * per_current;
       for (std::size_t n = 0; n < N; ++n) {
         trajectory_[node][n] = select<L>(settled_, trajectory_[node][n], trajectory_[node][n] + by[n]);
@@ -187,7 +189,7 @@ void PackOrbit<L, N>::newton_iteration() {
   State end;
   end.fill(L(0.0));
   correction_[0] = end;
-  L overlooked(0.0), highest(0.0), bend_depth(0.0);
+  L overlooked(0.0), highest(0.0), bend_depth(0.0), lift_magnitude(0.0);
   typename System::Quadrature integrands_before;
   if (lags_) lag_current();
   if constexpr (last) {
@@ -281,6 +283,11 @@ void PackOrbit<L, N>::newton_iteration() {
           for (std::size_t m = 0; m <= intervals; ++m) sum = sum + L(rule_.weight[m]) * at_node[m].dq[q];
           integrals_[q] = integrals_[q] + h * sum;
         }
+        L magnitude(0.0);
+        for (std::size_t m = 0; m <= intervals; ++m) {
+          magnitude = magnitude + L(rule_.weight[m]) * abs(at_node[m].dq[pack_integral(Integral::lift)]);
+        }
+        lift_magnitude = lift_magnitude + h * magnitude;
         integrands_before = at_node[intervals].dq;
         add_tails(at_node, base, h);
         overlooked = max(overlooked, dip_between_nodes(base, sign));
@@ -330,6 +337,9 @@ void PackOrbit<L, N>::newton_iteration() {
   correct(end);
   if constexpr (last) {
     overlooked_ = max(L(overlooked * inverse_of(max(highest, L(1e-300)))), bend_depth);
+    // As error_scale(): a mean lift below a thousandth of the lift itself need not be accurate beside itself.
+    const L lift = max(abs(integrals_[pack_integral(Integral::lift)]), max(L(1e-3) * lift_magnitude, L(1e-300)));
+    lift_opposed_ = max(L(lift_magnitude * inverse_of(lift) - L(1.0)), L(0.0));
     // The coefficients fall geometrically, and the sums over the nodes see none below the 2 n-th.
     step_error_ = speed_error_ = L(0.0);
     for (std::size_t c = 0; c < high_.size(); ++c) {
@@ -447,7 +457,7 @@ void PackOrbit<L, N>::linearise(const System& system, std::size_t node, const L&
   const Configuration<L>& place = configuration_of(node);
   const State& y = trajectory_[node];
   evaluate<false>(system, place, y, force, rates);
-  if (N == 1 || every_law_) {
+  if (N == 1 || adds_mass_) {
     jacobian = jacobian_at(system, place, y, rates.dy, force);
     return;
   }

@@ -99,7 +99,8 @@ class PackOrbit {
     const L stiffness = vehicle.wing_count * vehicle.spring.stiffness;
     compliance_ = select<L>(stiffness > L(0.0), L(0.5) / max(stiffness, L(1e-300)), L(0.0));
     bends_ = bends_on_lanes(vehicle.wings);
-    every_law_ = bends_ || any<L>(vehicle.wings.added_inertia > L(0.0));
+    adds_mass_ = any<L>(vehicle.wings.added_inertia > L(0.0));
+    every_law_ = bends_ || adds_mass_;
     in_one_piece_ = settings.in_one_piece;
     lags_ = N == 1 && settings.current == PackCurrent::lagging;
     if (N == 2 || lags_) per_inductance_ = L(1.0) / vehicle.motor.armature_inductance;
@@ -217,6 +218,9 @@ class PackOrbit {
   static void keep(const PeakBracket<L>& from, const Mask& where, PeakBracket<L>& to);
   static L estimate_peak(PeakBracket<L>& b);
   [[gnu::noinline, gnu::flatten]] L refine(Quantity quantity, const L& sign, PeakBracket<L> b);
+  [[gnu::noinline, gnu::flatten]] L error_inside(Quantity quantity, const SegmentTrajectory<L, N>& trajectory,
+                                                 const L& x, const L& value) const;
+  void refresh(Quantity quantity);
   [[gnu::noinline, gnu::flatten]] L peak(Quantity quantity);
   [[gnu::noinline, gnu::flatten]] L exchanged_energy();
   [[gnu::noinline, gnu::flatten]] L floquet_multiplier();
@@ -287,6 +291,7 @@ class PackOrbit {
   std::array<std::array<Configuration<L>, coarse_samples>, 2> table_;
   State y_;         ///< where an iterate starts
   bool every_law_;  ///< HalfCycle::has_every_law
+  bool adds_mass_;  ///< of the air
   Mask unresolved_, locked_, in_doubt_;
   Mask settled_;  ///< on the trajectory that the last iteration will start from
   Mask lost_;     ///< the crank comes near standstill on the way to the orbit
@@ -326,6 +331,8 @@ class PackOrbit {
   bool in_one_piece_;                       ///< SegmentEquations instead of steps from node to node
   std::array<Matrix, max_nodes> jacobian_;  ///< of the rates, for those
   L slowest_, residual_ = L(0.0);
+  L moved_most_;                ///< by Newton's last correction, of all nodes: the speed [rad/s]
+  L lift_opposed_;              ///< what the lift's integral is smaller by than that of its magnitude, relative to it
   L switch_error_;              ///< of segments that end off the rod force's sign changes
   L step_error_, speed_error_;  ///< of what the segments' polynomials leave out: at all, and of speed and time
   L overlooked_;  ///< depth to which the rod force has the wrong sign inside a segment, of its largest magnitude
@@ -439,14 +446,20 @@ Metrics<L> PackOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   seek(Quantity::speed, Extreme::crank_speed_max);
   const L multiplier = settings_.multipliers ? floquet_multiplier() : L(0.0);
 
+  // Integrals belong to the trajectory before the last correction: powers change with up to the third power of the
+  // speed, and their ratios with the fifth.
+  const L of_correction = L(5.0) * residual_;
   error_estimate_ =
-      L(1.5) * (step_error_ + L(2.0) * residual_ + peak_error_) + switch_error_ + overlooked_ * sqrt(overlooked_);
+      L(1.5) * (step_error_ + of_correction + peak_error_) + switch_error_ + overlooked_ * sqrt(overlooked_);
+  error_estimate_ = error_estimate_ + lift_opposed_ * (switch_error_ + L(1.5) * of_correction);
   // A motor near its speed without load draws the small difference of two large voltages.
   const L back_emf = L(two_pi) * vehicle_.motor.torque_constant;
   const L resistive = circuit_resistance(vehicle_) * abs(integrals_[pack_integral(Integral::current)]);
   const L difference = max(L(back_emf * inverse_of(max(resistive, L(1e-300))) - L(1.0)), L(0.0));
   error_estimate_ = error_estimate_ + L(1.5) * difference * (speed_error_ + L(2.0) * residual_);
-  if (lags_) error_estimate_ = error_estimate_ + L(1.5) * (difference + L(2.0)) * lag_residual_ + lag_left_out();
+  if (lags_) {
+    error_estimate_ = error_estimate_ + L(1.5) * (difference + L(2.0)) * lag_residual_ + lag_left_out();
+  }
   lost_ = lost_ || !(slowest_ > floor_);
   if (settings_.approach == PackApproach::guess) unresolved_ = unresolved_ || lost_;
   unresolved_ = unresolved_ || (!lost_ && hardly_returns(vehicle_, largest_modulus(monodromy_), total(Integral::time)));

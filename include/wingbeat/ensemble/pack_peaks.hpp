@@ -183,6 +183,65 @@ L PackOrbit<L, N>::estimate_peak(PeakBracket<L>& b) {
   return t;
 }
 
+/// Relative error of an extreme at distance x from the start of a segment: what the trajectory's polynomial leaves out
+/// there, by its first coefficients left out, as the last ones fall, and what Newton's last correction left stale,
+/// times what the quantity makes of a change of the speed.
+template <class L, int N>
+L PackOrbit<L, N>::error_inside(Quantity quantity, const SegmentTrajectory<L, N>& trajectory, const L& x,
+                                const L& value) const {
+  const std::size_t end = std::size_t(rule_.intervals) + 1;
+  const auto left_out = [&](std::size_t n) {
+    const auto size = [&](std::size_t k) {
+      return abs(trajectory.legendre[k][n]) + abs(trajectory.legendre[k - 1][n]);
+    };
+    const L high = size(end), low = max(size(end - 2), L(1e-300));
+    return high * min(L(high * inverse_of(low)), L(1.0));
+  };
+  const L of_speed = left_out(0), speed = trajectory.legendre[0][0];
+  const L per_value = inverse_of(max(abs(value), L(1e-300)));
+  switch (quantity) {
+    case Quantity::speed:
+    case Quantity::negated_speed: return L(2.0) * of_speed * per_value;
+    case Quantity::current:
+      if constexpr (N == 2) return L(2.0) * max(L(of_speed * inverse_of(speed)), L(left_out(1) * per_value));
+      else
+        return L(2.0) * of_speed *
+               max(inverse_of(speed), L(vehicle_.motor.torque_constant * per_resistance_ * per_value));
+    case Quantity::force: {
+      constexpr double by = 1e-5;
+      L error(0.0);
+      for (std::size_t n = 0; n < N; ++n) {
+        const L size = n == 0 ? speed : current_scale_;
+        SegmentTrajectory<L, N> beside = trajectory;
+        beside.legendre[0][n] = trajectory.legendre[0][n] + L(by) * size;
+        const L change = abs(observable_inside(quantity, beside, x).value - value) * L(1.0 / by) * per_value;
+        L off = left_out(n);
+        if (n == 0) off = off + L(0.5) * moved_most_;
+        error = error + L(2.0) * off * inverse_of(size) * change;
+      }
+      return error;
+    }
+    default: return L(2.0) * of_speed * inverse_of(speed);
+  }
+}
+
+/// Takes the values that follow from the state at once from the nodes that the last correction has moved.
+template <class L, int N>
+void PackOrbit<L, N>::refresh(Quantity quantity) {
+  if (quantity == Quantity::velocity || quantity == Quantity::force) return;
+  auto& observables = observables_[std::size_t(quantity)];
+  for (std::size_t n = 0; n < first_node(2, 0); ++n) {
+    const State& y = trajectory_[n];
+    L& value = observables[n].value;
+    if (quantity == Quantity::speed) value = y[0];
+    if (quantity == Quantity::negated_speed) value = -y[0];
+    if (quantity == Quantity::current) {
+      if constexpr (N == 2) value = y[1];
+      else value = algebraic_current(vehicle_, lags_ ? L(vehicle_.voltage - drop_[n]) : vehicle_.voltage, y[0]);
+    }
+  }
+}
+
 /// The maximum within a bracket: the cubic's, read on the trajectory, and again within the bracket that this leaves.
 /// What the trajectory errs by is added to the error of peaks.
 template <class L, int N>
@@ -193,11 +252,13 @@ L PackOrbit<L, N>::refine(Quantity quantity, const L& sign, PeakBracket<L> b) {
   SegmentTrajectory<L, N> trajectory;
   follow(b.segment, trajectory);
   Mask active = inside;
+  L found = b.x0;
   for (int n = 0; n < 8 && any<L>(active); ++n) {
     const L t = estimate_peak(b);
     const L x = b.x0 + t * (b.x1 - b.x0);
     const Observable<L> at = observable_inside(quantity, trajectory, x);
     const L v = sign * at.value, d = sign * at.slope;
+    found = select<L>(active, x, found);
     const Mask rising = active && d > L(0.0), falling = active && !rising;
     b.x0 = select<L>(rising, x, b.x0);
     b.v0 = select<L>(rising, v, b.v0);
@@ -210,19 +271,7 @@ L PackOrbit<L, N>::refine(Quantity quantity, const L& sign, PeakBracket<L> b) {
     estimate_peak(b);
     active = active && b.estimate - highest > L(settings_.peak_tolerance) * abs(highest);
   }
-  // The first coefficients left out, from how the last ones fall.
-  const std::size_t end = std::size_t(rule_.intervals) + 1;
-  const auto left_out = [&](std::size_t n, const L& scale) {
-    const auto size = [&](std::size_t k) {
-      return abs(trajectory.legendre[k][n]) + abs(trajectory.legendre[k - 1][n]);
-    };
-    const L high = size(end), low = max(size(end - 2), L(1e-300));
-    return high * min(L(high * inverse_of(low)), L(1.0)) * inverse_of(scale);
-  };
-  L error = L(2.0) * left_out(0, trajectory.legendre[0][0]);
-  if constexpr (N == 2) {
-    if (quantity == Quantity::current) error = max(error, L(2.0) * left_out(1, abs(highest)));
-  }
+  const L error = error_inside(quantity, trajectory, found, highest);
   peak_error_ = select<L>(inside, max(peak_error_, error), peak_error_);
   return select<L>(inside, max(highest, b.estimate), highest);
 }
@@ -232,6 +281,7 @@ template <class L, int N>
 L PackOrbit<L, N>::peak(Quantity quantity) {
   L highest_node(-1e300);
   const std::size_t nodes = first_node(2, 0);
+  refresh(quantity);
   for (std::size_t n = 0; n < nodes; ++n)
     highest_node = max(highest_node, observables_[std::size_t(quantity)][n].value);
   PeakBracket<L> best{}, other{};

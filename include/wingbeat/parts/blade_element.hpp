@@ -47,15 +47,19 @@ struct CoefficientLookup {
   int most;      ///< knots in one bucket
   double front;  ///< first angle of the table [rad]
   double buckets_per_angle;
+  /// Where all knots are a whole number of equal steps from the first: of each step, t counted in steps from its start;
+  /// else null.
+  struct Step {
+    std::array<double, 4> lift, drag;
+  };
+  const Step* step;
+  int steps;  ///< 0 without
+  double steps_per_angle;
 
   /// How many knots lie at or below alpha.
   [[gnu::always_inline]] int knots_up_to(double alpha) const {
     const double at = (alpha - front) * buckets_per_angle, last = buckets - 1;
-    return knots_from(!(at > 0.0) ? 0.0 : at < last ? at : last, alpha);
-  }
-  /// The same from the bucket on that alpha is in.
-  [[gnu::always_inline]] int knots_from(double bucket, double alpha) const {
-    int k = first[int(bucket)];
+    int k = first[int(!(at > 0.0) ? 0.0 : at < last ? at : last)];
     k += alpha >= knot[k];
     for (int n = 1; n < most; ++n) k += alpha >= knot[k];
     return k;
@@ -83,9 +87,12 @@ class CoefficientTable {
   CoefficientLookup lookup() const;
 
  private:
+  void lay_steps();
+
   std::vector<double> alpha_, lift_values_, drag_values_, knots_;
   std::vector<CoefficientLookup::Row> rows_;
   std::vector<int> first_;
+  std::vector<CoefficientLookup::Step> steps_;
   int most_ = 0;
 };
 
@@ -95,8 +102,8 @@ class CoefficientTable {
 template <Scalar S>
 struct LaneTables {
   CoefficientLookup of[std::size_t(ScalarTraits<S>::lanes)];
-  S front, buckets_per_angle, last_bucket;  ///< of them
-  S bend;                                   ///< angle of attack below which the coefficients are those there [rad]
+  S front, steps_per_angle, last_step;  ///< of them, where they have steps
+  S bend;                               ///< angle of attack below which the coefficients are those there [rad]
   bool from_tables = false, bends = false;
 
   LaneTables(std::nullptr_t = nullptr) {}  // NOLINT: of lanes without
@@ -179,14 +186,23 @@ S evaluate_table(const Choose& choose, const S& alpha) {
 template <Scalar S>
 [[gnu::always_inline]] inline LiftAndDrag<S> read_tables(const LaneTables<S>& tables, const S& alpha) {
   constexpr int lanes = ScalarTraits<S>::lanes;
-  alignas(64) double at[std::size_t(lanes)], bucket[std::size_t(lanes)], lift[std::size_t(lanes)],
-      drag[std::size_t(lanes)];
+  alignas(64) double at[std::size_t(lanes)], step[std::size_t(lanes)], along[std::size_t(lanes)],
+      lift[std::size_t(lanes)], drag[std::size_t(lanes)];
   alpha.store(at);
-  const S in_order = S((alpha - tables.front) * tables.buckets_per_angle);
-  min(select<S>(in_order > S(0.0), in_order, S(0.0)), tables.last_bucket).store(bucket);
+  const S place = (alpha - tables.front) * tables.steps_per_angle;
+  const S in_order = min(select<S>(place > S(0.5), nearest_whole(S(place - S(0.5))), S(0.0)), tables.last_step);
+  in_order.store(step);
+  S(place - in_order).store(along);
   for (int lane = 0; lane < lanes; ++lane) {
     const CoefficientLookup& table = tables.of[lane];
-    const int k = table.knots_from(bucket[lane], at[lane]);
+    if (table.step) {
+      const CoefficientLookup::Step& s = table.step[int(step[lane])];
+      const double t = along[lane];
+      lift[lane] = s.lift[0] + t * (s.lift[1] + t * (s.lift[2] + t * s.lift[3]));
+      drag[lane] = s.drag[0] + t * (s.drag[1] + t * (s.drag[2] + t * s.drag[3]));
+      continue;
+    }
+    const int k = table.knots_up_to(at[lane]);
     const CoefficientLookup::Row& r = table.row[k > 1 ? k : 1];
     const double t = at[lane] - r.x0;
     lift[lane] = r.lift[0] + t * (r.lift[1] + t * (r.lift[2] + t * r.lift[3]));
