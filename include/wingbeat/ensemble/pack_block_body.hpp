@@ -61,7 +61,7 @@ void solve_block(const EnsembleMember* const* members, int count, const PackSett
       scatter(found.values[m], [m](PackResult& r) -> double& { return r.metrics.values[m]; });
     }
     scatter(orbit.error_estimate(), [](PackResult& r) -> double& { return r.error_estimate; });
-    L assessment(double(PackAssessment::rotates));
+    L assessment = L(double(PackAssessment::rotates));
     const auto assess = [&](const Mask<L>& where, PackAssessment as) {
       assessment = select<L>(where, L(double(as)), assessment);
     };

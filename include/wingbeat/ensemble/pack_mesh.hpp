@@ -1,5 +1,5 @@
 // The segments of an iterate on SIMD lanes: the part of PackOrbit that finds the sign changes of the rod force between
-// samples and lays the ends of segments onto them.
+// samples, lays the ends of segments onto them, and looks for those that a segment hides.
 #pragma once
 
 #include "wingbeat/ensemble/pack_orbit.hpp"
@@ -106,6 +106,24 @@ void PackOrbit<L, N>::build_mesh(int half) {
   lay_segments(s.at, s.count, mesh, [&](std::size_t m, std::size_t, const Mask& beyond) {
     mesh.force[m] = select<L>(beyond, -mesh.force[m], mesh.force[m]);
   });
+}
+
+/// How deep the rod force, times the sign that it has on a segment, dips below zero between the nodes, by parabolas
+/// [N]; 0 where it does not.
+template <class L, int N>
+L PackOrbit<L, N>::dip_between_nodes(std::size_t base, const L& sign) const {
+  L depth(0.0);
+  for (std::size_t m = 1; m < std::size_t(rule_.intervals); ++m) {
+    const double x0 = rule_.node[m - 1], x1 = rule_.node[m], x2 = rule_.node[m + 1];
+    const L f0 = sign * force_[base + m - 1], f1 = sign * force_[base + m], f2 = sign * force_[base + m + 1];
+    const L left = (f1 - f0) * L(1.0 / (x1 - x0)), right = (f2 - f1) * L(1.0 / (x2 - x1));
+    const L curve = (right - left) * L(1.0 / (x2 - x0)), slope = left + curve * L(x1 - x0), back = L(-0.5) * slope;
+    const Mask inside = curve > L(0.0) && back > curve * L(x0 - x1) && back < curve * L(x2 - x1);
+    const Mask dips = inside && square(back) > f1 * curve;
+    if (!any<L>(dips)) continue;
+    depth = max(depth, select<L>(dips, square(back) * inverse_of(select<L>(dips, curve, L(1.0))) - f1, L(0.0)));
+  }
+  return depth;
 }
 
 }  // namespace wingbeat
