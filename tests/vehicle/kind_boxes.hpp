@@ -15,7 +15,6 @@ namespace wingbeat {
 enum class KindBox {
   reference,
   no_inductance,
-  added_mass,
   tables,
   pitch_stop,
   battery,
@@ -24,9 +23,9 @@ enum class KindBox {
   small_inductance,
   near_stall
 };
-inline constexpr std::array<std::string_view, 10> kind_box_names = {
-    "reference", "no_inductance", "added_mass", "tables",           "pitch_stop",
-    "battery",   "pwm",           "coreless",   "small_inductance", "near_stall"};
+inline constexpr std::array<std::string_view, 9> kind_box_names = {"reference",  "no_inductance",    "tables",
+                                                                   "pitch_stop", "battery",          "pwm",
+                                                                   "coreless",   "small_inductance", "near_stall"};
 
 /// Force coefficients in rows of 2.5 to 10 degrees, from -5 to 40 degrees up to 90: waves about the reference's, half
 /// of them with the scatter of measured values.
@@ -65,7 +64,6 @@ inline Design<double> kind_design(KindBox box, std::mt19937_64& random) {
       break;
     }
     case KindBox::no_inductance: m.armature_inductance = 0.0; break;
-    case KindBox::added_mass: d.aerodynamics.added_mass = true; break;
     case KindBox::pitch_stop: d.aerodynamics.angle_of_attack_min = uniform(0.2, 1.4); break;
     case KindBox::battery:
       d.supply.type = SupplyType::battery;
