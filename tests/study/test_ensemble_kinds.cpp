@@ -31,22 +31,30 @@ std::vector<Agreement> agreements(const std::vector<EnsembleMember>& members, do
   return all;
 }
 
+struct ByBoth {
+  std::vector<EnsembleOutcome> batched, scalar;
+};
+
+/// Designs of a box at 1e-6, and by the scalar solver at 1e-9.
+ByBoth by_both(KindBox box, int count) {
+  const StartUp start_up = remembered_start_up();
+  std::mt19937_64 random(41);
+  std::vector<EnsembleMember> members;
+  for (int n = 0; n < count; ++n) members.push_back(member_of(kind_design(box, random)));
+  EnsembleOptions exact;
+  exact.scalar_only = true;
+  exact.tolerance = 1e-9;
+  return {solve(members, {}, start_up), solve(members, exact, start_up)};
+}
+
 /// Boxes of one kind of part each: how many of those that flap go to the scalar solver at most, in a hundred.
 TEST(EnsembleKinds, EveryOneAgreesWithTheScalarSolver) {
   for (const auto& [box, scalars] : {std::pair{KindBox::tables, 3},
                                      {KindBox::pitch_stop, 4},
                                      {KindBox::small_inductance, 3},
                                      {KindBox::battery, 3}}) {
-    const StartUp start_up = remembered_start_up();
-    std::mt19937_64 random(41);
-    std::vector<EnsembleMember> members;
-    for (int n = 0; n < many_members / 80; ++n) members.push_back(member_of(kind_design(box, random)));
-    EnsembleOptions exact;
-    exact.scalar_only = true;
-    exact.tolerance = 1e-9;
-    const auto expected = solve(members, exact, start_up);
-    const auto got = solve(members, {}, start_up);
-    const auto [flapping, by_packs, outside] = agreement(got, expected, 1e-6, 10.0, true);
+    const ByBoth found = by_both(box, many_members / 80);
+    const auto [flapping, by_packs, outside] = agreement(found.batched, found.scalar, 1e-6, 10.0, true);
     const std::string_view name = kind_box_names[std::size_t(box)];
     EXPECT_GT(flapping, many_members / 100) << name;
     EXPECT_GE(by_packs, flapping * (100 - scalars) / 100) << name;
@@ -54,29 +62,21 @@ TEST(EnsembleKinds, EveryOneAgreesWithTheScalarSolver) {
   }
 }
 
+/// Lanes tell lock from slow flapping; few designs are left to the scalar solver.
+TEST(EnsembleKinds, NearStallStatusesAreThoseOfTheScalarSolver) {
+  const ByBoth found = by_both(KindBox::near_stall, 256);
+  const auto [flapping, by_packs, outside] = agreement(found.batched, found.scalar, 1e-6, 10.0, true);
+  EXPECT_GT(flapping, 128);
+  EXPECT_GE(by_packs, flapping * 96 / 100);
+  EXPECT_LE(outside, flapping / 100);
+  EXPECT_LE(std::count_if(found.batched.begin(), found.batched.end(), [](const auto& out) { return out.scalar; }), 10);
+}
+
 /// The table with its knots off any equal steps.
 std::shared_ptr<const CoefficientTable> unevenly(const CoefficientTable& table) {
   std::vector<double> alpha = table.alpha();
   for (std::size_t n = 1; n + 1 < alpha.size(); ++n) alpha[n] += 0.03 * std::sin(double(n)) * (alpha[1] - alpha[0]);
   return std::make_shared<const CoefficientTable>(alpha, table.lift(), table.drag());
-}
-
-/// Lanes tell lock from slow flapping; few designs are left to the scalar solver.
-TEST(EnsembleKinds, NearStallStatusesAreThoseOfTheScalarSolver) {
-  const StartUp start_up = remembered_start_up();
-  std::mt19937_64 random(41);
-  std::vector<EnsembleMember> members;
-  for (int n = 0; n < 256; ++n) members.push_back(member_of(kind_design(KindBox::near_stall, random)));
-  EnsembleOptions exact;
-  exact.scalar_only = true;
-  exact.tolerance = 1e-9;
-  const auto expected = solve(members, exact, start_up);
-  const auto got = solve(members, {}, start_up);
-  const auto [flapping, by_packs, outside] = agreement(got, expected, 1e-6, 10.0, true);
-  EXPECT_GT(flapping, 128);
-  EXPECT_GE(by_packs, flapping * 96 / 100);
-  EXPECT_LE(outside, flapping / 100);
-  EXPECT_LE(std::count_if(got.begin(), got.end(), [](const EnsembleOutcome& out) { return out.scalar; }), 10);
 }
 
 /// Stops that wings just reach, stops beside tables, and added mass beside tables.
