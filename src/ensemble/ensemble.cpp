@@ -174,9 +174,12 @@ class EnsembleRun {
     std::vector<std::size_t> unresolved, inexact;
     run(all, settings_for(kind, plan_.first), unresolved, unresolved, inexact);
     std::vector<std::size_t> left;
-    if (!kind.springs) {
+    if (!kind.springs && !kind.stiff) {
+      // A crank that creeps near stall is stiff, whatever it were at the speed without load.
+      PackKind creeping = kind;
+      creeping.stiff = true;
       std::vector<std::size_t> still_unresolved;
-      run(unresolved, settings_for(kind, plan_.creeping), still_unresolved, still_unresolved, inexact);
+      run(unresolved, settings_for(creeping, plan_.first), still_unresolved, still_unresolved, inexact);
       unresolved.swap(still_unresolved);
     }
     // Without springs nothing brings a crank near standstill on its way but a load that hardly lets it start.

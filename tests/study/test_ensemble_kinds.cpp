@@ -72,6 +72,18 @@ TEST(EnsembleKinds, NearStallStatusesAreThoseOfTheScalarSolver) {
   EXPECT_LE(std::count_if(found.batched.begin(), found.batched.end(), [](const auto& out) { return out.scalar; }), 10);
 }
 
+/// Cranks without springs that creep: neither a simulation's limits nor a search from the speed without load tell.
+TEST(EnsembleKinds, CreepingCranksNeedNoSimulation) {
+  std::mt19937_64 random(20225);
+  for (int n = 0; n <= 325; ++n) {
+    const Design<double> design = kind_design(KindBox::near_stall, random);
+    if (n != 144 && n != 233 && n != 278 && n != 325) continue;
+    const SteadyFlapping found = find_steady_flapping(resolve(design), {.tolerance = 1e-6});
+    EXPECT_EQ(found.status, FlappingStatus::flapping) << n;
+    EXPECT_LT(found.metrics[Metric::crank_speed_max], 0.02 * no_load_speed(resolve(design))) << n;
+  }
+}
+
 /// The table with its knots off any equal steps.
 std::shared_ptr<const CoefficientTable> unevenly(const CoefficientTable& table) {
   std::vector<double> alpha = table.alpha();
