@@ -8,8 +8,8 @@
 // a vehicle gets the same bits in any company.
 //
 // pack_start.hpp holds the way to the first trajectory, pack_mesh.hpp the segments, pack_newton.hpp Newton's method,
-// pack_lag.hpp the current behind an inductance, pack_peaks.hpp the search for extremes, pack_bends.hpp coefficients
-// that bend, pack_multiplier.hpp the return map's derivative.
+// pack_segment.hpp its step on a stiff segment, pack_lag.hpp the current behind an inductance, pack_peaks.hpp the
+// search for extremes, pack_bends.hpp coefficients that bend, pack_multiplier.hpp the return map's derivative.
 #pragma once
 
 #include <array>
@@ -457,9 +457,7 @@ Metrics<L> PackOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   const L resistive = circuit_resistance(vehicle_) * abs(integrals_[pack_integral(Integral::current)]);
   const L difference = max(L(back_emf * inverse_of(max(resistive, L(1e-300))) - L(1.0)), L(0.0));
   error_estimate_ = error_estimate_ + L(1.5) * difference * (speed_error_ + L(2.0) * residual_);
-  if (lags_) {
-    error_estimate_ = error_estimate_ + L(1.5) * (difference + L(2.0)) * lag_residual_ + lag_left_out();
-  }
+  if (lags_) error_estimate_ = error_estimate_ + L(1.5) * (difference + L(2.0)) * lag_residual_ + lag_left_out();
   lost_ = lost_ || !(slowest_ > floor_);
   if (settings_.approach == PackApproach::guess) unresolved_ = unresolved_ || lost_;
   unresolved_ = unresolved_ || (!lost_ && hardly_returns(vehicle_, largest_modulus(monodromy_), total(Integral::time)));

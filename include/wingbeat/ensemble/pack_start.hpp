@@ -160,7 +160,8 @@ void PackOrbit<L, N>::start_from_rest() {
   // One that the springs turn back is caught: i_s being the stalled motor's current, kinetic energy, what springs and
   // stall torque store and L_a (i - i_s)^2 / 2 together only fall, so that it comes neither over the load that has
   // stopped it nor, backwards, over where it has started from, until friction holds it.
-  constexpr double beyond = 0.05;
+  constexpr double beyond = 0.05;  // [rad]
+  // What the springs' torque exceeds the motor's stall torque and friction by [N m].
   const auto turns_back = [&](const L& angle) {
     const CrankKinematics<L> at = crank_kinematics(geometry_, sin(angle), cos(angle));
     const L F_s = static_rod_force(at, spring_moment(vehicle_, at));
