@@ -115,8 +115,14 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
   std::vector<CurveLook> looks;
   for (const std::uint64_t curve : curves) looks.push_back(look_of(sweep, curve));
   const bool named = curves.size() > 1;
+  // Two names beside each other where both fit.
+  constexpr std::size_t half_a_line = 22;
+  std::size_t beside = 2;
+  for (const std::uint64_t curve : curves) {
+    if (curve_name(sweep, curve).size() > half_a_line) beside = 1;
+  }
   const double panel = 1.45, gap = 0.45, foot = 0.74;
-  const double head = 0.58 + (named ? 0.15 * double((curves.size() + 1) / 2) : 0.0);
+  const double head = 0.58 + (named ? 0.15 * double((curves.size() + beside - 1) / beside) : 0.0);
   const double inches = head + double(metrics.size()) * panel + double(metrics.size() - 1) * gap + foot;
   Figure figure(format, 3.5, inches);
   constexpr double left = 0.125, right = 0.965;
@@ -171,8 +177,8 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
   figure.text(title_of(study), 8.0, fmt::format("screen 0.5,{} center", title_y));
   if (named) {
     for (std::size_t c = 0; c < curves.size(); ++c) {
-      figure.key_entry(c % 2 == 0 ? left : 0.56, title_y - (0.2 + 0.15 * double(c / 2)) / inches, looks[c].line(),
-                       curve_name(sweep, curves[c]));
+      figure.key_entry(c % beside == 0 ? left : 0.56, title_y - (0.2 + 0.15 * double(c / beside)) / inches,
+                       looks[c].line(), curve_name(sweep, curves[c]));
     }
   }
   for (std::size_t p = 0; p < metrics.size(); ++p) {
