@@ -1,0 +1,91 @@
+// Six wide boxes of random vehicles on top of wide_boxes.hpp: parts whose losses, events and statuses earlier boxes
+// exercise little.
+#pragma once
+
+#include "vehicle/rungs.hpp"
+#include "vehicle/wide_boxes.hpp"
+
+namespace wingbeat {
+
+enum class FurtherBox {
+  stops,            ///< wings on hinges with stops, on every transmission, behind lossy gears and not
+  gear,             ///< lossy gearboxes, with wings on hinges and not
+  heat,             ///< warm motors on every supply and transmission
+  pwm,              ///< switched supplies
+  tiny_inductance,  ///< electrical lags far below an angle that matters
+  long_cranks       ///< hinges beside a long crank, where levers grow and fall within a few degrees
+};
+inline constexpr std::array<std::string_view, 6> further_box_names = {"stops",           "gear",       "heat", "pwm",
+                                                                      "tiny_inductance", "long_cranks"};
+
+/// A vehicle as drawn, which need not be a valid one.
+inline WideVehicle drawn_further_vehicle(FurtherBox box, std::uint32_t n, std::uint32_t seed = 12) {
+  std::seed_seq sequence{seed, 2000u + std::uint32_t(box), n};
+  std::mt19937_64 random(sequence);
+  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  const auto logarithmic = [&](double a, double b) { return a * std::pow(b / a, uniform(0.0, 1.0)); };
+  const auto chance = [&](double share) { return uniform(0.0, 1.0) < share; };
+  constexpr std::array mechanisms = {FarBox::friction_laws, FarBox::four_bar, FarBox::tabulated, FarBox::direct};
+  const auto base = [&](std::size_t kinds) {
+    return wide_vehicle(mechanisms[std::size_t(uniform(0.0, double(kinds)))], n, seed + 1);
+  };
+  const auto add = [&](WideVehicle& v, Rung rung) { add_rung(v.design, rung, n, seed); };
+
+  WideVehicle drawn;
+  switch (box) {
+    case FurtherBox::stops:
+      drawn = base(4);
+      add(drawn, Rung::pitch);
+      drawn.design.pitch.stop = uniform(0.02, 1.2);
+      if (chance(0.4)) add(drawn, Rung::gear);
+      break;
+    case FurtherBox::gear:
+      drawn = base(3);
+      add(drawn, Rung::gear);
+      if (chance(0.3)) add(drawn, Rung::pitch);
+      break;
+    case FurtherBox::heat:
+      drawn = chance(0.3) ? wide_vehicle(FarBox::supplies, n, seed + 1) : base(4);
+      add(drawn, Rung::heat);
+      if (chance(0.3)) drawn.design.motor.thermal.ambient_temperature = uniform(250.0, 350.0);
+      break;
+    case FurtherBox::pwm: {
+      drawn = base(3);
+      Design<double>& d = drawn.design;
+      const double voltage = d.supply.voltage;
+      d.supply = {SupplyType::pwm, voltage / uniform(0.2, 1.0), logarithmic(1e3, 3e4), 1.0, {}};
+      d.supply.duty = voltage / d.supply.voltage;
+      Motor<double>& m = d.motor.constants;
+      // Switched currents that do not settle between two switchings are another vehicle than one on the mean voltage.
+      m.armature_inductance = std::max(m.armature_inductance, 3.0 * m.armature_resistance / d.supply.frequency);
+      break;
+    }
+    case FurtherBox::tiny_inductance:
+      drawn = base(4);
+      if (chance(0.25)) add(drawn, Rung::pitch);
+      drawn.design.motor.constants.armature_inductance =
+          drawn.design.motor.constants.armature_resistance * logarithmic(1e-17, 1e-6);
+      break;
+    case FurtherBox::long_cranks: {
+      drawn = wide_vehicle(chance(0.5) ? FarBox::crank_near_rod : FarBox::strong_springs, n, seed + 1);
+      auto& t = drawn.design.transmission;
+      t.hinge_offset = t.crank_radius * logarithmic(0.02, 0.4);
+      if (chance(0.5)) drawn.design.supply.voltage *= logarithmic(0.05, 1.0);
+      break;
+    }
+  }
+  return drawn;
+}
+
+/// Vehicle number n of a box, the first valid one that is drawn: it depends on the box, n and the seed alone.
+inline WideVehicle further_vehicle(FurtherBox box, std::uint32_t n, std::uint32_t seed = 12) {
+  for (std::uint32_t k = n;; k += 1000000) {
+    WideVehicle drawn = drawn_further_vehicle(box, k, seed);
+    try {
+      validate(drawn.design);
+      return drawn;
+    } catch (const ParameterError&) {}
+  }
+}
+
+}  // namespace wingbeat
