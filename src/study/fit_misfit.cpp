@@ -4,6 +4,8 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
+#include "study/fit_loss.hpp"
+
 namespace wingbeat {
 namespace {
 
@@ -15,15 +17,12 @@ double median(std::vector<double> values) {
 
 }  // namespace
 
-void assess_misfit(const BenchFit& fit, int fitted_count, FitResult& result) {
+void assess_misfit(const BenchFit& fit, const std::map<MeasuredQuantity, double>& freedom, FitResult& result) {
   std::map<MeasuredQuantity, std::vector<const FitPoint*>> by_quantity;
-  std::size_t reached = 0;
   for (const FitPoint& p : result.points) {
-    if (!std::isfinite(p.fitted)) continue;
-    by_quantity[fit.logs[p.log].columns[p.column]].push_back(&p);
-    ++reached;
+    if (std::isfinite(p.fitted)) by_quantity[fit.logs[p.log].columns[p.column]].push_back(&p);
   }
-  double chi_square = 0.0;
+  double chi_square = 0.0, all_squares = 0.0, left = 0.0;
   std::size_t stated = 0;
   const QuantityResiduals* worst = nullptr;
   result.quantities.clear();
@@ -33,10 +32,11 @@ void assess_misfit(const BenchFit& fit, int fitted_count, FitResult& result) {
     q.quantity = quantity;
     q.values = int(points.size());
     q.estimated = fit.deviations.at(quantity).kind == Deviation::Kind::estimated;
-    double weights = 0.0, squares = 0.0, raw = 0.0, size = 0.0, mean = 0.0, spread = 0.0;
+    double weights = 0.0, squares = 0.0, counted = 0.0, raw = 0.0, size = 0.0, mean = 0.0, spread = 0.0;
     std::vector<double> ratios;
     for (const FitPoint* p : points) {
-      squares += p->weight * p->residual() * p->residual();
+      squares += p->residual() * p->residual();
+      counted += counted_square(fit.loss, p->residual());
       raw += p->weight * (p->measured - p->fitted) * (p->measured - p->fitted);
       size += p->weight * p->measured * p->measured;
       mean += p->weight * p->measured;
@@ -57,24 +57,26 @@ void assess_misfit(const BenchFit& fit, int fitted_count, FitResult& result) {
       const bool missed = q.unexplained > misfit_spread && q.relative > misfit_size;
       if (missed && !result.misfit) result.misfit = Misfit{.worst = q};
     } else {
-      chi_square += squares;
+      chi_square += counted;
+      all_squares += squares;
       stated += points.size();
+      left += freedom.at(quantity);
     }
   }
   for (const QuantityResiduals& q : result.quantities) {
     if (!q.estimated && (!worst || q.rms > worst->rms)) worst = &q;
   }
-  // The parameters fit all values; their share of those with stated deviations counts here.
-  const double freedom =
-      double(stated) - double(fitted_count) * double(stated) / double(std::max<std::size_t>(reached, 1));
-  if (!worst || !(freedom > 0.0)) return;
-  result.p_value =
-      boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedom), std::min(chi_square, 1e300)));
-  if (result.p_value < misfit_probability && chi_square > misfit_variance * freedom) {
+  // Without degrees of freedom there is nothing to compare.
+  if (!worst || !(left > 1e-3)) return;
+  const double information = counted_information(fit.loss);
+  result.p_value = boost::math::cdf(
+      boost::math::complement(boost::math::chi_squared(information * left), std::min(information * chi_square, 1e300)));
+  if (result.p_value < misfit_probability && chi_square > misfit_variance * left) {
     result.misfit = Misfit{.worst = *worst,
                            .chi_square = chi_square,
-                           .freedom = freedom,
-                           .rms_deviations = std::sqrt(chi_square / double(stated))};
+                           .freedom = left,
+                           .spread = std::sqrt(2.0 * left / information),
+                           .rms_deviations = std::sqrt(all_squares / double(stated))};
   }
 }
 
