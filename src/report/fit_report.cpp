@@ -152,8 +152,7 @@ std::string describe(const Misfit& m) {
   return fmt::format(
       "chi square is {:.4g} where {:.4g} degrees of freedom lead to expect {:.4g} +- {:.2g}: the values lie {:.3g} "
       "times their stated deviations from the model on the average; worst is {}, {:.3g} times its deviation{}",
-      m.chi_square, m.freedom, m.freedom, std::sqrt(2.0 * m.freedom), m.rms_deviations, name_of(q.quantity), q.rms,
-      proportion(q));
+      m.chi_square, m.freedom, m.freedom, m.spread, m.rms_deviations, name_of(q.quantity), q.rms, proportion(q));
 }
 
 std::string describe(Undetermined why) {
@@ -212,7 +211,7 @@ std::string text_fit(const BenchFit& fit, const FitResult& r) {
     return p.value && std::isfinite(p.standard_error) &&
            !(std::isfinite(p.profile_lower_95) && std::isfinite(p.profile_upper_95));
   });
-  if (starred) text += "* from the standard error; the others from the likelihood's profile\n";
+  if (starred) text += "* from the standard error; the others from the profile\n";
 
   text += !r.misfit ? identifiability(r) : residuals_by_quantity(r);
   if (!r.estimated_deviations.empty()) {
@@ -308,6 +307,8 @@ std::string json_fit(const BenchFit& fit, const FitResult& r, std::span<const Fr
                                   {"upper_95", number_or_null(p.upper_95)},
                                   {"profile_lower_95", number_or_null(p.profile_lower_95)},
                                   {"profile_upper_95", number_or_null(p.profile_upper_95)},
+                                  {"quantile_95", number_or_null(p.quantile_95)},
+                                  {"profile_rise_95", number_or_null(p.profile_rise_95)},
                                   {"at_bound", p.at_bound},
                                   {"reason", describe(p.undetermined)},
                                   {"profile", profile}});

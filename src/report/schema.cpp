@@ -125,6 +125,8 @@ Json fit_schema() {
                                  {"upper_95", number_if_any},
                                  {"profile_lower_95", number_if_any},
                                  {"profile_upper_95", number_if_any},
+                                 {"quantile_95", number_if_any},
+                                 {"profile_rise_95", number_if_any},
                                  {"at_bound", yes_or_no},
                                  {"reason", any_text},
                                  {"profile", listed(pair_of(number_if_any))}});

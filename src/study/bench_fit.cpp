@@ -6,6 +6,7 @@
 #include <set>
 
 #include "study/bench_fitter.hpp"
+#include "study/fit_covariance.hpp"
 #include "study/fit_identifiability.hpp"
 #include "study/fit_misfit.hpp"
 #include "study/fit_profile.hpp"
@@ -46,6 +47,10 @@ void check_fit(const BenchFit& fit) {
   if (fit.logs.empty()) throw ParameterError("log", "missing: there is nothing to fit to");
   require(fit.starts >= 1 && fit.starts <= max_fit_starts, "fit.starts", "must lie between 1 and 1000", "1",
           fit.starts);
+  if (fit.loss != Loss::none) {
+    require(fit.loss_scale >= least_loss_scale && fit.loss_scale <= most_loss_scale, "fit.loss_scale",
+            "must lie between 1 and 4: elsewhere intervals do not hold what they say", "1", fit.loss_scale);
+  }
   for (const FreeParameter& p : fit.parameters) {
     if (!keys.insert(p.parameter.key).second) throw ParameterError(p.parameter.key, "is given twice");
     if (!(p.lower < p.upper)) throw ParameterError(p.parameter.key, "the lower bound must lie below the upper one");
@@ -97,7 +102,7 @@ void check_fit(const BenchFit& fit) {
   }
 }
 
-FitResult run_fit(const BenchFit& fit, bool reweight, const FitProgress& progress, const ForEach& for_each) {
+FitResult run_fit(const BenchFit& fit, FitPurpose purpose, const FitProgress& progress, const ForEach& for_each) {
   check_fit(fit);
   FitResult result;
   BenchFitter fitter(fit, for_each);
@@ -111,6 +116,7 @@ FitResult run_fit(const BenchFit& fit, bool reweight, const FitProgress& progres
   for (std::size_t k = 0; k < start.size(); ++k) {
     if (bench.jacobian().col(Eigen::Index(k)).cwiseAbs().maxCoeff() > 0.0) free.push_back(k);
   }
+  fitter.use_convex_loss();
   const LatinHypercube samples{std::uint64_t(std::max(fit.starts - 1, 1)), fit.seed};
   std::vector<BenchFitter::Outcome> outcomes(std::size_t(fit.starts));
   result.evaluations += on_copies(fitter, outcomes.size(), "start", progress, for_each, [&](auto& own, std::size_t n) {
@@ -133,14 +139,23 @@ FitResult run_fit(const BenchFit& fit, bool reweight, const FitProgress& progres
     ++(same ? result.starts_converged : result.starts_elsewhere);
   }
   bench.evaluate(best.x, false);
-  for (int round = 0; round < (fitter.has_estimates() ? 12 : reweight ? 2 : 0); ++round) {
-    if (fitter.renew_deviations(free.size()) < 1e-3) break;
+  const bool intervals = purpose == FitPurpose::intervals;
+  const int rounds = fitter.has_estimates() ? 20 : intervals ? 2 : 0;
+  // Deviations that the convex loss leaves serve as a start for the other.
+  if (fit.loss == Loss::cauchy) {
+    if (rounds > 0) fitter.renew_deviations(free);
+    fitter.use_own_loss();
+    best = fitter.solve(best.x, free);
+  }
+  for (int round = 0; round < rounds; ++round) {
+    if (fitter.renew_deviations(free) < 1e-3) break;
     best = fitter.solve(best.x, free);
   }
   result.converged = best.converged;
   result.message = best.message;
 
-  assess_identifiability(fit, fitter, best.x, result);
+  if (intervals) refuse_few_values(fit, fitter, free);
+  assess_identifiability(fit, fitter, best.x, free, result);
   std::vector<double> kept = best.x;
   for (std::size_t k = 0; k < kept.size(); ++k) kept[k] = result.parameters[k].kept;
   result.design = bench.design_at(kept);
@@ -152,7 +167,7 @@ FitResult run_fit(const BenchFit& fit, bool reweight, const FitProgress& progres
     const Observation& at_o = observations[o];
     const bool is_reached = bench.predictions()[at_o.point].reached;
     result.points.push_back({at_o.log, at_o.row, at_o.column, at_o.measured, is_reached ? bench.fitted()[o] : absent,
-                             fitter.deviations()[o], fitter.weight(o)});
+                             fitter.deviations()[o], fitter.loss_at(o).weight});
     if (!is_reached) continue;
     ++reached;
     result.chi_square += fitter.residual(o) * fitter.residual(o);
@@ -172,20 +187,18 @@ FitResult run_fit(const BenchFit& fit, bool reweight, const FitProgress& progres
   const double k = double(free.size()) + double(result.estimated_deviations.size());
   result.aicc = reached > k + 1 ? result.deviance + 2.0 * k + 2.0 * k * (k + 1.0) / (reached - k - 1.0) : infinity;
 
-  assess_misfit(fit, int(free.size()), result);
+  assess_misfit(fit, fitter.freedom(free), result);
   if (result.misfit) withdraw_intervals(result);
   if (fit.profiles && !result.misfit) {
-    const double quantile = quantile_95(fitter, result.degrees_of_freedom);
     std::vector<std::size_t> determined;
     for (const std::size_t f : free) {
       if (result.parameters[f].value) determined.push_back(f);
     }
     std::vector<ProfileSide> sides(2 * determined.size());
-    result.evaluations += on_copies(fitter, sides.size(), "side of the profiles", progress, for_each,
-                                    [&](BenchFitter& own, std::size_t n) {
-                                      sides[n] = profile_likelihood(fit, own, best.x, best.cost, determined, result,
-                                                                    determined[n / 2], n % 2 == 0 ? -1 : 1, quantile);
-                                    });
+    result.evaluations += on_copies(
+        fitter, sides.size(), "side of the profiles", progress, for_each, [&](BenchFitter& own, std::size_t n) {
+          sides[n] = profile_loss(fit, own, best.x, best.cost, free, result, determined[n / 2], n % 2 == 0 ? -1 : 1);
+        });
     for (std::size_t n = 0; n < determined.size(); ++n) {
       add_profile(sides[2 * n], sides[2 * n + 1], best.x[determined[n]], result.parameters[determined[n]]);
     }
@@ -215,7 +228,7 @@ std::string condition_name(Condition condition, bool springs) {
 
 FitResult fit_bench(const BenchFit& fit, const std::function<void(const std::string&)>& progress,
                     const ForEach& for_each) {
-  return run_fit(fit, true, progress, for_each);
+  return run_fit(fit, FitPurpose::intervals, progress, for_each);
 }
 
 }  // namespace wingbeat

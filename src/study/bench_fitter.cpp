@@ -6,6 +6,7 @@
 #endif
 #include <ceres/ceres.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -60,7 +61,7 @@ class BenchFitter::Residual : public ceres::CostFunction {
 };
 
 BenchFitter::BenchFitter(const BenchFit& fit, const ForEach& for_each)
-    : fit_(fit), bench_(fit, for_each), deviations_(bench_.observations().size()) {
+    : fit_(fit), loss_(fit.loss), bench_(fit, for_each), deviations_(bench_.observations().size()) {
   for (std::size_t o = 0; o < deviations_.size(); ++o) estimated_[bench_.observations()[o].quantity] = 0.0;
   first_deviations();
 }
@@ -86,7 +87,7 @@ BenchFitter::Outcome BenchFitter::solve(std::vector<double> x, const std::vector
   problem_options.evaluation_callback = &callback;
   ceres::Problem problem(problem_options);
   for (std::size_t o = 0; o < deviations_.size(); ++o) {
-    problem.AddResidualBlock(new Residual(*this, free, o), loss(), scaled.data());
+    problem.AddResidualBlock(new Residual(*this, free, o), ceres_loss(loss_, fit_.loss_scale).release(), scaled.data());
   }
   for (std::size_t k = 0; k < free.size(); ++k) {
     problem.SetParameterLowerBound(scaled.data(), int(k), 0.0);
@@ -105,22 +106,8 @@ BenchFitter::Outcome BenchFitter::solve(std::vector<double> x, const std::vector
 
 double BenchFitter::cost() const {
   double sum = 0.0;
-  const std::unique_ptr<ceres::LossFunction> rho(loss());
-  for (std::size_t o = 0; o < deviations_.size(); ++o) {
-    const double r = residual(o);
-    double value[3] = {r * r, 1.0, 0.0};
-    if (rho) rho->Evaluate(r * r, value);
-    sum += value[0];
-  }
+  for (std::size_t o = 0; o < deviations_.size(); ++o) sum += loss_at(o).rho;
   return sum;
-}
-
-double BenchFitter::weight(std::size_t o) const {
-  const std::unique_ptr<ceres::LossFunction> rho(loss());
-  if (!rho) return 1.0;
-  double value[3];
-  rho->Evaluate(residual(o) * residual(o), value);
-  return value[1];
 }
 
 bool BenchFitter::has_estimates() const {
@@ -128,18 +115,68 @@ bool BenchFitter::has_estimates() const {
                      [](const auto& d) { return d.second.kind == Deviation::Kind::estimated; });
 }
 
-double BenchFitter::renew_deviations(std::size_t free_count) {
+std::map<MeasuredQuantity, double> BenchFitter::freedom(const std::vector<std::size_t>& free) {
+  bench_.evaluate(bench_.x(), true);
+  std::vector<std::size_t> moved;
+  for (const std::size_t k : free) {
+    const FreeParameter& p = fit_.parameters[k];
+    const double range = p.upper - p.lower, x = bench_.x()[k];
+    if (x - p.lower > 1e-6 * range && p.upper - x > 1e-6 * range) moved.push_back(k);
+  }
+  const Eigen::Index n = Eigen::Index(moved.size());
+  std::map<MeasuredQuantity, double> left;
+  std::map<MeasuredQuantity, Eigen::MatrixXd> information;
+  // In units of half the bounds' distance, within which every parameter is known.
+  Eigen::MatrixXd all = Eigen::MatrixXd::Identity(n, n);
+  for (std::size_t o = 0; o < deviations_.size(); ++o) {
+    const Observation& observation = bench_.observations()[o];
+    if (!bench_.predictions()[observation.point].reached) continue;
+    Eigen::VectorXd row(n);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const FreeParameter& p = fit_.parameters[moved[std::size_t(k)]];
+      row[k] = bench_.jacobian()(Eigen::Index(o), Eigen::Index(moved[std::size_t(k)])) * 0.5 * (p.upper - p.lower) /
+               deviations_[o];
+    }
+    Eigen::MatrixXd& own = information.try_emplace(observation.quantity, Eigen::MatrixXd::Zero(n, n)).first->second;
+    own += row * row.transpose();
+    all += row * row.transpose();
+    left[observation.quantity] += 1.0;
+  }
+  const Eigen::LDLT<Eigen::MatrixXd> factored(all);
+  for (auto& [quantity, count] : left) {
+    if (n > 0) count -= factored.solve(information[quantity]).trace();
+  }
+  return left;
+}
+
+double BenchFitter::estimated_deviation(const std::vector<double>& errors, double freedom) const {
+  double squares = 0.0;
+  for (const double e : errors) squares += e * e;
+  double deviation = std::sqrt(squares / freedom);
+  for (int step = 0; fit_.loss != Loss::none && deviation > 0.0 && step < 200; ++step) {
+    double sum = 0.0;
+    for (const double e : errors) sum += counted_square(fit_.loss, e / deviation);
+    const double change = std::sqrt(sum / freedom);
+    deviation *= change;
+    if (std::abs(change - 1.0) < 1e-6) break;
+  }
+  return deviation;
+}
+
+double BenchFitter::renew_deviations(const std::vector<std::size_t>& free) {
   const auto& observations = bench_.observations();
-  std::map<MeasuredQuantity, std::pair<double, int>> sums;
-  int reached = 0;
+  std::map<MeasuredQuantity, std::vector<double>> errors;
   for (std::size_t o = 0; o < observations.size(); ++o) {
     if (!bench_.predictions()[observations[o].point].reached) continue;
-    ++reached;
-    const double error = bench_.fitted()[o] - observations[o].measured;
-    auto& [sum, count] = sums[observations[o].quantity];
-    // A robust fit's outliers must not widen the rest.
-    sum += weight(o) * error * error;
-    ++count;
+    errors[observations[o].quantity].push_back(bench_.fitted()[o] - observations[o].measured);
+  }
+  std::map<MeasuredQuantity, double> next_estimates;
+  if (has_estimates()) {
+    // Each quantity pays for the parameters what they draw from it.
+    for (const auto& [quantity, left] : freedom(free)) {
+      if (deviation_of(quantity).kind != Deviation::Kind::estimated || !(left > 0.5)) continue;
+      next_estimates[quantity] = estimated_deviation(errors[quantity], left);
+    }
   }
   double change = 0.0;
   for (std::size_t o = 0; o < observations.size(); ++o) {
@@ -148,10 +185,8 @@ double BenchFitter::renew_deviations(std::size_t free_count) {
     if (d.kind == Deviation::Kind::relative && bench_.predictions()[observations[o].point].reached) {
       next = d.value * std::abs(bench_.fitted()[o]);
     } else if (d.kind == Deviation::Kind::estimated) {
-      const auto [sum, count] = sums[observations[o].quantity];
-      // Each quantity pays its part of the parameters.
-      const double freedom = count * (1.0 - double(free_count) / std::max(reached, 1));
-      if (freedom > 0.5) next = std::sqrt(sum / freedom);
+      const auto found = next_estimates.find(observations[o].quantity);
+      if (found != next_estimates.end()) next = found->second;
       estimated_[observations[o].quantity] = next;
     }
     next = std::max(next, 1e-12 * std::abs(observations[o].measured) + 1e-300);
@@ -178,16 +213,6 @@ void BenchFitter::first_deviations() {
       case Deviation::Kind::estimated: deviations_[o] = 0.02 * (typical > 0.0 ? typical : 1.0); break;
     }
   }
-}
-
-ceres::LossFunction* BenchFitter::loss() const {
-  switch (fit_.loss) {
-    case Loss::none: return nullptr;
-    case Loss::huber: return new ceres::HuberLoss(fit_.loss_scale);
-    case Loss::soft_l1: return new ceres::SoftLOneLoss(fit_.loss_scale);
-    case Loss::cauchy: return new ceres::CauchyLoss(fit_.loss_scale);
-  }
-  return nullptr;
 }
 
 }  // namespace wingbeat

@@ -7,10 +7,7 @@
 #include <vector>
 
 #include "study/bench_model.hpp"
-
-namespace ceres {
-class LossFunction;
-}
+#include "study/fit_loss.hpp"
 
 namespace wingbeat {
 
@@ -24,6 +21,9 @@ class BenchFitter {
   /// Standard deviations by observation [SI].
   const std::vector<double>& deviations() const { return deviations_; }
   const std::map<MeasuredQuantity, double>& estimated() const { return estimated_; }
+  /// Far from the least a redescending loss knows no way to it: a convex one leads there.
+  void use_convex_loss() { loss_ = fit_.loss == Loss::cauchy ? Loss::huber : fit_.loss; }
+  void use_own_loss() { loss_ = fit_.loss; }
 
   struct Outcome {
     bool converged = false;
@@ -37,16 +37,18 @@ class BenchFitter {
 
   /// Sum of rho(r^2) at the bench's present state.
   double cost() const;
-  /// Weight of a residual under the robust loss, rho'.
-  double weight(std::size_t o) const;
+  /// The loss at a residual.
+  LossAt loss_at(std::size_t o) const { return wingbeat::loss_at(loss_, fit_.loss_scale, residual(o)); }
   /// In standard deviations.
   double residual(std::size_t o) const {
     return (bench_.fitted()[o] - bench_.observations()[o].measured) / deviations_[o];
   }
 
   bool has_estimates() const;
+  /// Degrees of freedom that the parameters in `free` leave to each quantity's values, by what they draw from them.
+  std::map<MeasuredQuantity, double> freedom(const std::vector<std::size_t>& free);
   /// Deviations from the present predictions; largest relative change of one.
-  double renew_deviations(std::size_t free_count);
+  double renew_deviations(const std::vector<std::size_t>& free);
 
  private:
   struct Callback;
@@ -54,9 +56,11 @@ class BenchFitter {
 
   const Deviation& deviation_of(const MeasuredQuantity& q) const { return fit_.deviations.at(q); }
   void first_deviations();
-  ceres::LossFunction* loss() const;
+  /// The deviation that `errors` show of which the parameters leave so many degrees of freedom.
+  double estimated_deviation(const std::vector<double>& errors, double freedom) const;
 
   const BenchFit& fit_;
+  Loss loss_;
   BenchModel bench_;
   std::vector<double> deviations_;
   std::map<MeasuredQuantity, double> estimated_;

@@ -52,6 +52,8 @@ class BenchModel {
   const std::vector<double>& fitted() const { return fitted_; }
   /// d fitted / d parameter, SI; rows of points not reached are zero.
   const Eigen::MatrixXd& jacobian() const { return jacobian_; }
+  /// The parameters last asked for [SI].
+  const std::vector<double>& x() const { return x_; }
   /// Orbits computed so far.
   int evaluations() const;
 

@@ -2,11 +2,10 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <functional>
 
-#include "wingbeat/study/distribution.hpp"
+#include "study/fit_covariance.hpp"
 
 namespace wingbeat {
 namespace {
@@ -18,9 +17,10 @@ constexpr double free_error = 1.0, rough_error = 0.2;
 /// Scale of relative changes of a parameter.
 double scale_of(const FreeParameter& p, double value) { return value != 0.0 ? std::abs(value) : p.upper - p.lower; }
 
-/// The Fisher information of some observations in relative parameter changes.
-Eigen::MatrixXd information(const BenchFitter& fitter, const BenchModel& bench, const std::vector<double>& scales,
+/// The information of some observations in relative parameter changes.
+Eigen::MatrixXd information(const BenchFitter& fitter, const FitNoise& noise, const std::vector<double>& scales,
                             const std::function<bool(const OperatingPoint&)>& counts) {
+  const BenchModel& bench = fitter.bench();
   const Eigen::Index n = Eigen::Index(scales.size());
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n);
   for (std::size_t o = 0; o < bench.observations().size(); ++o) {
@@ -30,7 +30,7 @@ Eigen::MatrixXd information(const BenchFitter& fitter, const BenchModel& bench, 
     for (Eigen::Index k = 0; k < n; ++k) {
       row[k] = bench.jacobian()(Eigen::Index(o), k) * scales[std::size_t(k)] / fitter.deviations()[o];
     }
-    sum += fitter.weight(o) * row * row.transpose();
+    sum += noise.efficiency(o) * row * row.transpose();
   }
   return sum;
 }
@@ -54,19 +54,16 @@ FitFinding direction_finding(FitFinding::Kind kind, const std::vector<FreeParame
 
 }  // namespace
 
-double quantile_95(const BenchFitter& fitter, int freedom) {
-  if (!fitter.has_estimates()) return normal_quantile(0.975);
-  return boost::math::quantile(boost::math::students_t(std::max(freedom, 3)), 0.975);
-}
-
-void assess_identifiability(const BenchFit& fit, BenchFitter& fitter, const std::vector<double>& x, FitResult& result) {
+void assess_identifiability(const BenchFit& fit, BenchFitter& fitter, const std::vector<double>& x,
+                            const std::vector<std::size_t>& free, FitResult& result) {
   BenchModel& bench = fitter.bench();
   bench.evaluate(x, true);
   const Eigen::Index count = Eigen::Index(fit.parameters.size());
   std::vector<double> scales(fit.parameters.size());
   for (std::size_t k = 0; k < scales.size(); ++k) scales[k] = scale_of(fit.parameters[k], x[k]);
   const auto every = [](const OperatingPoint&) { return true; };
-  const Eigen::MatrixXd all = information(fitter, bench, scales, every);
+  const FitNoise noise(fit, fitter, free);
+  const Eigen::MatrixXd all = information(fitter, noise, scales, every);
 
   // Without influence: even with all others known the bounds say more.
   std::vector<bool> insensitive(std::size_t(count), false), loose(std::size_t(count), false);
@@ -87,15 +84,13 @@ void assess_identifiability(const BenchFit& fit, BenchFitter& fitter, const std:
     }
     return part;
   };
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Constant(count, count, absent);
   std::vector<FitFinding> free_directions, rough_directions;
   if (m > 0) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(restricted(all));
-    Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(m, m);
     for (Eigen::Index d = m - 1; d >= 0; --d) {
       const double lambda = eigen.eigenvalues()[d];
-      const double noise = 1e-14 * std::max(eigen.eigenvalues()[m - 1], 0.0);
-      const double error = lambda > noise ? 1.0 / std::sqrt(lambda) : infinity;
+      const double least = 1e-14 * std::max(eigen.eigenvalues()[m - 1], 0.0);
+      const double error = lambda > least ? 1.0 / std::sqrt(lambda) : infinity;
       Eigen::VectorXd full = Eigen::VectorXd::Zero(count);
       for (Eigen::Index a = 0; a < m; ++a) full[sensitive[std::size_t(a)]] = eigen.eigenvectors()(a, d);
       result.directions.push_back({{full.data(), full.data() + count}, error});
@@ -108,20 +103,19 @@ void assess_identifiability(const BenchFit& fit, BenchFitter& fitter, const std:
         if (error > rough_error) {
           rough_directions.push_back(direction_finding(FindingKind::known_roughly, fit.parameters, full, error));
         }
-        inverse += error * error * eigen.eigenvectors().col(d) * eigen.eigenvectors().col(d).transpose();
-      }
-    }
-    for (Eigen::Index a = 0; a < m; ++a) {
-      for (Eigen::Index b = 0; b < m; ++b) {
-        const Eigen::Index i = sensitive[std::size_t(a)], j = sensitive[std::size_t(b)];
-        covariance(i, j) = inverse(a, b) * scales[std::size_t(i)] * scales[std::size_t(j)];
       }
     }
   }
-  for (Eigen::Index k = 0; k < count; ++k) {
-    if (!loose[std::size_t(k)]) continue;
-    covariance.row(k).setConstant(absent);
-    covariance.col(k).setConstant(absent);
+  // What is not determined widens the rest, as far as its bounds let it.
+  std::vector<bool> unknown(std::size_t(count), false);
+  for (std::size_t k = 0; k < unknown.size(); ++k) unknown[k] = insensitive[k] || loose[k];
+  const FitCovariance errors = fit_covariance(fit, fitter, noise, scales, unknown);
+  Eigen::MatrixXd covariance = errors.covariance;
+  for (Eigen::Index a = 0; a < count; ++a) {
+    for (Eigen::Index b = 0; b < count; ++b) {
+      if (unknown[std::size_t(a)] || unknown[std::size_t(b)]) covariance(a, b) = absent;
+      covariance(a, b) *= scales[std::size_t(a)] * scales[std::size_t(b)];
+    }
   }
 
   int reached = 0;
@@ -129,7 +123,6 @@ void assess_identifiability(const BenchFit& fit, BenchFitter& fitter, const std:
     reached += bench.predictions()[bench.observations()[o].point].reached;
   }
   result.degrees_of_freedom = reached - int(m);
-  const double quantile = quantile_95(fitter, result.degrees_of_freedom);
   for (std::size_t k = 0; k < std::size_t(count); ++k) {
     const FreeParameter& p = fit.parameters[k];
     FittedParameter f;
@@ -146,8 +139,10 @@ void assess_identifiability(const BenchFit& fit, BenchFitter& fitter, const std:
     } else {
       f.value = x[k];
       f.standard_error = std::sqrt(covariance(Eigen::Index(k), Eigen::Index(k)));
-      f.lower_95 = std::max(x[k] - quantile * f.standard_error, p.lower);
-      f.upper_95 = std::min(x[k] + quantile * f.standard_error, p.upper);
+      f.quantile_95 = quantile_95(errors.freedom[k]);
+      f.profile_rise_95 = square(f.quantile_95) * errors.rise[k];
+      f.lower_95 = std::max(x[k] - f.quantile_95 * f.standard_error, p.lower);
+      f.upper_95 = std::min(x[k] + f.quantile_95 * f.standard_error, p.upper);
     }
     result.parameters.push_back(f);
   }
@@ -173,7 +168,7 @@ void assess_identifiability(const BenchFit& fit, BenchFitter& fitter, const std:
     };
     ConditionShare share;
     share.name = condition_name(condition, springs);
-    const Eigen::MatrixXd own = information(fitter, bench, scales, of_this);
+    const Eigen::MatrixXd own = information(fitter, noise, scales, of_this);
     for (Eigen::Index k = 0; k < count; ++k) share.share.push_back(all(k, k) > 0.0 ? own(k, k) / all(k, k) : 0.0);
     share.error_without.assign(std::size_t(count), infinity);
     if (m > 0) {
@@ -182,10 +177,10 @@ void assess_identifiability(const BenchFit& fit, BenchFitter& fitter, const std:
         double variance = 0.0;
         for (Eigen::Index d = 0; d < m; ++d) {
           const double component = rest.eigenvectors()(a, d), lambda = rest.eigenvalues()[d];
-          const double noise = 1e-12 * std::max(rest.eigenvalues()[m - 1], 0.0);
-          if (lambda <= noise ? std::abs(component) > 1e-4 : component * component / lambda > free_error * free_error) {
+          const double least = 1e-12 * std::max(rest.eigenvalues()[m - 1], 0.0);
+          if (lambda <= least ? std::abs(component) > 1e-4 : component * component / lambda > free_error * free_error) {
             variance = infinity;
-          } else if (lambda > noise) {
+          } else if (lambda > least) {
             variance += component * component / lambda;
           }
         }

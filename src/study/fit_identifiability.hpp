@@ -7,12 +7,9 @@
 
 namespace wingbeat {
 
-/// Two-sided 95 % quantile of the residuals' distribution: Student's where deviations are estimated from `freedom`
-/// degrees of freedom, at least three, else the normal one.
-double quantile_95(const BenchFitter& fitter, int freedom);
-
-/// At the fitted parameters x [SI], from the Fisher information: result's parameters, covariance, correlation,
-/// directions, conditions, findings and degrees of freedom.
-void assess_identifiability(const BenchFit& fit, BenchFitter& fitter, const std::vector<double>& x, FitResult& result);
+/// At the fitted parameters x [SI], from the information of the data (Fisher's, and what a robust loss leaves of it):
+/// result's parameters, covariance, correlation, directions, conditions, findings and degrees of freedom.
+void assess_identifiability(const BenchFit& fit, BenchFitter& fitter, const std::vector<double>& x,
+                            const std::vector<std::size_t>& free, FitResult& result);
 
 }  // namespace wingbeat

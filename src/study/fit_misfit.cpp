@@ -4,6 +4,8 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
+#include "study/fit_loss.hpp"
+
 namespace wingbeat {
 namespace {
 
@@ -13,18 +15,38 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+/// Residuals of values with stated deviations.
+struct Residuals {
+  double counted = 0.0, squares = 0.0, freedom = 0.0;
+  int values = 0;
+};
+
+/// Chance of residuals as large, or nothing to compare.
+double chance(Loss loss, const Residuals& r) {
+  if (!(r.freedom > 1e-3)) return absent;
+  const double information = counted_information(loss);
+  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(information * r.freedom),
+                                                  std::min(information * r.counted, 1e300)));
+}
+
+std::optional<Misfit> misfit_of(Loss loss, const Residuals& r, const QuantityResiduals& worst) {
+  if (!(chance(loss, r) < misfit_probability && r.counted > misfit_variance * r.freedom)) return std::nullopt;
+  return Misfit{.worst = worst,
+                .chi_square = r.counted,
+                .freedom = r.freedom,
+                .spread = std::sqrt(2.0 * r.freedom / counted_information(loss)),
+                .rms_deviations = std::sqrt(r.squares / r.values)};
+}
+
 }  // namespace
 
-void assess_misfit(const BenchFit& fit, int fitted_count, FitResult& result) {
+void assess_misfit(const BenchFit& fit, const std::map<MeasuredQuantity, double>& freedom, FitResult& result) {
   std::map<MeasuredQuantity, std::vector<const FitPoint*>> by_quantity;
-  std::size_t reached = 0;
   for (const FitPoint& p : result.points) {
-    if (!std::isfinite(p.fitted)) continue;
-    by_quantity[fit.logs[p.log].columns[p.column]].push_back(&p);
-    ++reached;
+    if (std::isfinite(p.fitted)) by_quantity[fit.logs[p.log].columns[p.column]].push_back(&p);
   }
-  double chi_square = 0.0;
-  std::size_t stated = 0;
+  Residuals all;
+  std::optional<Misfit> of_column;
   const QuantityResiduals* worst = nullptr;
   result.quantities.clear();
   result.quantities.reserve(by_quantity.size());
@@ -33,10 +55,11 @@ void assess_misfit(const BenchFit& fit, int fitted_count, FitResult& result) {
     q.quantity = quantity;
     q.values = int(points.size());
     q.estimated = fit.deviations.at(quantity).kind == Deviation::Kind::estimated;
-    double weights = 0.0, squares = 0.0, raw = 0.0, size = 0.0, mean = 0.0, spread = 0.0;
+    double weights = 0.0, squares = 0.0, counted = 0.0, raw = 0.0, size = 0.0, mean = 0.0, spread = 0.0;
     std::vector<double> ratios;
     for (const FitPoint* p : points) {
-      squares += p->weight * p->residual() * p->residual();
+      squares += p->residual() * p->residual();
+      counted += counted_square(fit.loss, p->residual());
       raw += p->weight * (p->measured - p->fitted) * (p->measured - p->fitted);
       size += p->weight * p->measured * p->measured;
       mean += p->weight * p->measured;
@@ -57,25 +80,19 @@ void assess_misfit(const BenchFit& fit, int fitted_count, FitResult& result) {
       const bool missed = q.unexplained > misfit_spread && q.relative > misfit_size;
       if (missed && !result.misfit) result.misfit = Misfit{.worst = q};
     } else {
-      chi_square += squares;
-      stated += points.size();
+      const Residuals own{counted, squares, freedom.at(quantity), q.values};
+      all = {all.counted + counted, all.squares + squares, all.freedom + own.freedom, all.values + q.values};
+      // A loss that bounds residuals lets the others outvote a column that is wrong as a whole.
+      if (fit.loss != Loss::none && !of_column) of_column = misfit_of(fit.loss, own, q);
     }
   }
   for (const QuantityResiduals& q : result.quantities) {
     if (!q.estimated && (!worst || q.rms > worst->rms)) worst = &q;
   }
-  // The parameters fit all values; their share of those with stated deviations counts here.
-  const double freedom =
-      double(stated) - double(fitted_count) * double(stated) / double(std::max<std::size_t>(reached, 1));
-  if (!worst || !(freedom > 0.0)) return;
-  result.p_value =
-      boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedom), std::min(chi_square, 1e300)));
-  if (result.p_value < misfit_probability && chi_square > misfit_variance * freedom) {
-    result.misfit = Misfit{.worst = *worst,
-                           .chi_square = chi_square,
-                           .freedom = freedom,
-                           .rms_deviations = std::sqrt(chi_square / double(stated))};
-  }
+  if (!worst) return;
+  result.p_value = chance(fit.loss, all);
+  if (const auto found = misfit_of(fit.loss, all, *worst)) result.misfit = found;
+  else if (of_column) result.misfit = of_column;
 }
 
 void withdraw_intervals(FitResult& result) {

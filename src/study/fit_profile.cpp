@@ -5,10 +5,11 @@
 
 namespace wingbeat {
 
-ProfileSide profile_likelihood(const BenchFit& fit, BenchFitter& fitter, const std::vector<double>& best, double least,
-                               const std::vector<std::size_t>& free, const FitResult& result, std::size_t k, int side,
-                               double quantile) {
+ProfileSide profile_loss(const BenchFit& fit, BenchFitter& fitter, const std::vector<double>& best, double least,
+                         const std::vector<std::size_t>& free, const FitResult& result, std::size_t k, int side) {
   const FreeParameter& p = fit.parameters[k];
+  const FittedParameter& found = result.parameters[k];
+  const double wanted = std::sqrt(found.profile_rise_95);
   std::vector<std::size_t> others;
   for (const std::size_t f : free) {
     if (f != k) others.push_back(f);
@@ -35,28 +36,28 @@ ProfileSide profile_likelihood(const BenchFit& fit, BenchFitter& fitter, const s
   };
   const double bound = side < 0 ? p.lower : p.upper;
   double inner = best[k], inner_root = 0.0, outer = absent, outer_root = absent;
-  double next = best[k] + side * quantile * result.parameters[k].standard_error;
+  double next = best[k] + side * found.quantile_95 * found.standard_error;
   for (int iteration = 0; iteration < 12; ++iteration) {
     const bool clipped = side * (next - bound) >= 0.0;
     if (clipped) next = bound;
     const double root = excess(next);
-    if (std::abs(root - quantile) < 0.01 * quantile) {
+    if (std::abs(root - wanted) < 0.01 * wanted) {
       of.end = next;
       break;
     }
-    if (root < quantile) {
+    if (root < wanted) {
       inner = next, inner_root = root;
       if (clipped) {
-        of.end = bound;  // the likelihood does not end the interval, the bound does
+        of.end = bound;  // the loss does not end the interval, the bound does
         break;
       }
     } else {
       outer = next, outer_root = root;
     }
     if (std::isfinite(outer)) {
-      next = inner + (outer - inner) * (quantile - inner_root) / (outer_root - inner_root);
+      next = inner + (outer - inner) * (wanted - inner_root) / (outer_root - inner_root);
     } else {
-      next = best[k] + (inner - best[k]) * std::clamp(quantile / std::max(inner_root, 1e-9), 1.1, 3.0);
+      next = best[k] + (inner - best[k]) * std::clamp(wanted / std::max(inner_root, 1e-9), 1.1, 3.0);
     }
   }
   return of;

@@ -14,7 +14,11 @@ using FitProgress = std::function<void(const std::string&)>;  ///< called by one
 /// Throws ParameterError for what cannot be fitted.
 void check_fit(const BenchFit& fit);
 
-/// As fit_bench; `reweight` lets relative deviations follow the predictions.
-FitResult run_fit(const BenchFit& fit, bool reweight, const FitProgress& progress, const ForEach& for_each);
+/// For intervals relative deviations follow the predictions, and a fit is refused where intervals could not be what
+/// they say. For a comparison of models with each other they stay those of the measured values.
+enum class FitPurpose { intervals, comparison };
+
+/// As fit_bench.
+FitResult run_fit(const BenchFit& fit, FitPurpose purpose, const FitProgress& progress, const ForEach& for_each);
 
 }  // namespace wingbeat

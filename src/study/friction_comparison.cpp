@@ -75,7 +75,7 @@ std::vector<FrictionCandidate> compare_friction(const BenchFit& fit,
     }
     FrictionCandidate candidate;
     candidate.law = law;
-    candidate.result = run_fit(trial, false, {}, for_each);
+    candidate.result = run_fit(trial, FitPurpose::comparison, {}, for_each);
 
     // Every condition predicted from the others.
     std::vector<std::pair<Condition, bool>> conditions;
@@ -92,7 +92,7 @@ std::vector<FrictionCandidate> compare_friction(const BenchFit& fit,
                     [&, c = condition, s = springs](const auto& l) { return l.condition == c && l.springs == s; });
       std::erase_if(left.logs,
                     [&, c = condition, s = springs](const auto& l) { return l.condition != c || l.springs != s; });
-      const FitResult without = run_fit(rest, false, {}, for_each);
+      const FitResult without = run_fit(rest, FitPurpose::comparison, {}, for_each);
       // What the rest cannot determine at all comes from the whole: it is the friction law that is on trial.
       std::vector<double> x;
       for (std::size_t k = 0; k < without.parameters.size(); ++k) {

@@ -73,6 +73,10 @@ template <>
 inline constexpr std::pair<const char*, Loss> names_of<Loss>[] = {
     {"none", Loss::none}, {"huber", Loss::huber}, {"soft-l1", Loss::soft_l1}, {"cauchy", Loss::cauchy}};
 
+/// Where a robust loss may bend [standard deviations]: further in too few values carry the fit, further out outliers
+/// do.
+inline constexpr double least_loss_scale = 1.0, most_loss_scale = 4.0;
+
 struct BenchFit {
   Design<double> design;  ///< with the springs of the logs that have them
   std::vector<BenchLog> logs;
@@ -100,11 +104,14 @@ struct FittedParameter {
   double kept = 0.0;            ///< what the fitted vehicle has
   double standard_error = absent;
   double lower_95 = absent, upper_95 = absent;                  ///< from the standard error
-  double profile_lower_95 = absent, profile_upper_95 = absent;  ///< from the likelihood; absent where not computed
+  double profile_lower_95 = absent, profile_upper_95 = absent;  ///< from the loss's profile; absent where not computed
+  double quantile_95 =
+      absent;  ///< of its error, in standard errors: normal, or Student's where a deviation is estimated
+  double profile_rise_95 = absent;  ///< of the loss, at the ends of the profile's interval
   bool at_bound = false;
   Undetermined undetermined = Undetermined::no;
   struct ProfilePoint {
-    double value, excess;  ///< rise of -2 ln L over its least, the other parameters free
+    double value, excess;  ///< rise of the loss (without a robust one -2 ln L) over its least, the others free
   };
   std::vector<ProfilePoint> profile;
 };
@@ -171,9 +178,12 @@ struct QuantityResiduals {
 
 /// How a fitted model misses the data.
 struct Misfit {
-  QuantityResiduals worst;         ///< the quantity whose residuals say so, or say it most
-  double chi_square = absent;      ///< of the values with stated deviations; absent where `worst.estimated`
+  QuantityResiduals worst;  ///< the quantity whose residuals say so, or say it most
+  /// Of the values with stated deviations, under a robust loss of residuals bounded to 1.5; absent where
+  /// `worst.estimated`.
+  double chi_square = absent;
   double freedom = absent;         ///< degrees of freedom that it is to be compared with
+  double spread = absent;          ///< standard deviation of chi square, of a model that describes the data
   double rms_deviations = absent;  ///< rms of those residuals in their stated deviations
 };
 
