@@ -11,6 +11,8 @@
 #include <cstring>
 #include <limits>
 
+#include "wingbeat/core/text.hpp"
+
 namespace wingbeat {
 
 namespace {
@@ -76,8 +78,13 @@ NetcdfFile::Variable NetcdfFile::define_variable(const std::string& name, const 
   std::vector<int> ids;
   for (const Dimension& d : dimensions) ids.push_back(d.id);
   check(nc_def_var(id_, name.c_str(), NC_DOUBLE, int(ids.size()), ids.data(), &variable.id), "define variable " + name);
+  // A coordinate variable, which has the name of its dimension, holds a value everywhere: CF forbids it a fill value.
+  char along[NC_MAX_NAME + 1] = {};
+  if (ids.size() == 1) check(nc_inq_dimname(id_, ids[0], along), "read the name of a dimension");
+  const bool coordinate = name == along;
   const double fill = std::numeric_limits<double>::quiet_NaN();
-  check(nc_def_var_fill(id_, variable.id, NC_FILL, &fill), "set the fill value of " + name);
+  check(nc_def_var_fill(id_, variable.id, coordinate ? NC_NOFILL : NC_FILL, coordinate ? nullptr : &fill),
+        "set the fill value of " + name);
   set_attribute(variable, "units", unit);
   set_attribute(variable, "long_name", long_name);
   return variable;
@@ -303,8 +310,9 @@ void write_provenance(NetcdfFile& file, const Provenance& provenance) {
   const auto set = [&](const char* name, const std::string& text) {
     if (!text.empty()) file.set_attribute(name, text);
   };
+  // A title may come from a file. Study and vehicle are kept to the byte: they can be computed again.
   set("Conventions", "CF-1.8");
-  set("title", provenance.title);
+  set("title", detail::printable(provenance.title));
   set("source", fmt::format("wingbeat {} {}", provenance.version, provenance.command));
   set("wingbeat_version", provenance.version);
   set("vehicle", provenance.vehicle);
