@@ -22,7 +22,9 @@ namespace {
 constexpr std::size_t largest_text = 4u << 20;
 constexpr int deepest_nesting = 16;
 // toml++ looks through all sections, and all dotted keys, again for each; InputErrors has a sentence for each.
-constexpr int most_sections = 10000, most_keys = 50000;
+constexpr int most_sections = 10000, most_keys = 20000;
+// Which key was meant takes a comparison with every one there is.
+constexpr int most_suggestions = 100;
 
 int line_of(const toml::source_position& p) { return int(p.line); }
 int column_of(const toml::source_position& p) { return int(p.column); }
@@ -287,7 +289,10 @@ class Flattener {
 
   void enter(const toml::node& node, const std::string& path, const Origin& origin) {
     const bool known = find_parameter<double>(path) != nullptr, section = is_section(path);
-    if (!known && !section) {
+    if (!known && !section && ++unknown_ > most_suggestions) {
+      document_.spoiled.push_back(path);
+      offend(path, origin, "unknown key");
+    } else if (!known && !section) {
       const std::string meant = nearest_key(path);
       if (!meant.empty()) document_.spoiled.push_back(meant);
       document_.spoiled.push_back(path);
@@ -323,6 +328,7 @@ class Flattener {
 
   Document& document_;
   Origin base_;
+  int unknown_ = 0;
 };
 
 bool at_or_below(std::string_view path, std::string_view above) {
