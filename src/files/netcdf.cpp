@@ -4,14 +4,18 @@
 #include <fmt/format.h>
 #include <hdf5.h>
 #include <netcdf.h>
+#include <netcdf_mem.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <memory>
 
 #include "wingbeat/core/text.hpp"
+#include "wingbeat/files/stored_file.hpp"
 
 namespace wingbeat {
 
@@ -52,18 +56,36 @@ std::string reason_of(int status, const std::string& file) {
 
 void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
-NetcdfFile::NetcdfFile(const std::filesystem::path& file) : file_(file.string()) {
+NetcdfFile::NetcdfFile(const std::filesystem::path& file, Place place) : file_(file.string()), place_(place) {
   // Nor would it survive the files that an error left open, at the end of the program.
   static const auto once = H5dont_atexit();
   (void)once;
+  const auto refuse = [&](const std::string& reason) {
+    throw NetcdfError(fmt::format("{}: cannot create the file: {}", file_, reason));
+  };
+  if (place == Place::memory) {
+    constexpr std::size_t first_size = 65536;
+    const int there = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+    if (there < 0) refuse(std::strerror(errno));
+    ::close(there);
+    const int status = nc_create_mem(file_.c_str(), NC_NETCDF4, first_size, &id_);
+    if (status != NC_NOERR) refuse(nc_strerror(status));
+    return;
+  }
   const PlainName name(file_, O_RDWR | O_CREAT);
   const int status = nc_create(name.get(), NC_NETCDF4 | NC_CLOBBER, &id_);
-  if (status != NC_NOERR)
-    throw NetcdfError(fmt::format("{}: cannot create the file: {}", file_, reason_of(status, file_)));
+  if (status != NC_NOERR) refuse(reason_of(status, file_));
 }
 
 NetcdfFile::~NetcdfFile() {
-  if (id_ >= 0 && !failed_) nc_close(id_);
+  if (id_ < 0) return;
+  if (place_ == Place::disk) {
+    if (!failed_) nc_close(id_);
+    return;
+  }
+  NC_memio content{};
+  nc_close_memio(id_, &content);
+  std::free(content.memory);
 }
 
 NetcdfFile::Dimension NetcdfFile::define_dimension(const std::string& name, std::size_t length) {
@@ -221,7 +243,19 @@ void NetcdfFile::write_run(const Variable& variable, std::size_t first, std::spa
 void NetcdfFile::close() {
   const int id = id_;
   id_ = -1;
-  check(nc_close(id), "finish the file");
+  if (place_ == Place::disk) {
+    check(nc_close(id), "finish the file");
+    return;
+  }
+  NC_memio content{};
+  const int status = nc_close_memio(id, &content);
+  const std::unique_ptr<void, void (*)(void*)> memory(content.memory, std::free);
+  check(status, "finish the file");
+  try {
+    store(file_, {static_cast<const char*>(content.memory), content.size});
+  } catch (const std::runtime_error& error) {
+    throw NetcdfError(error.what());
+  }
 }
 
 void NetcdfFile::check(int status, const std::string& action) const {

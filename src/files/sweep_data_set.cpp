@@ -132,7 +132,8 @@ std::uint64_t fingerprint(const Study& study, std::string_view version) {
 std::vector<std::uint64_t> prepare_data_set(const fs::path& path, const Study& study, std::string_view version) {
   const Sweep& sweep = study.sweep;
   using Storage = NetcdfFile::Storage;
-  NetcdfFile file(path);
+  // Its room is reserved.
+  NetcdfFile file(path, NetcdfFile::Place::disk);
   write_input(file, study, version);
   file.set_attribute(fingerprint_attribute, fmt::format("{:016x}", fingerprint(study, version)));
 
