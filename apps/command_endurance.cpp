@@ -48,7 +48,7 @@ int run(const EnduranceArguments& arguments) {
   if (flies && output) {
     write_endurance(result,
                     {.title = fmt::format("Flight to the end of the battery of {}",
-                                          design.name.empty() ? arguments.vehicle : design.name),
+                                          design.name.empty() ? written_name(arguments.vehicle) : design.name),
                      .command = "endurance",
                      .version = version,
                      .vehicle = write_design(design),

@@ -1,6 +1,5 @@
 // wingbeat export-fmu VEHICLE: the vehicle for other simulators.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -31,21 +30,18 @@ struct ExportArguments {
 
 std::string bytes_of(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  if (in.bad() || bytes.empty()) throw std::runtime_error(file.string() + ": cannot be read");
+  return bytes;
 }
 
 /// A drawing of the mechanism; empty where gnuplot is not installed.
 std::string icon_of(const Design<double>& design) {
-  const fs::path folder = fs::temp_directory_path();
-  const fs::path file = folder / fmt::format("wingbeat-icon-{}.png", ::getpid());
-  std::string icon;
   try {
-    plot_mechanism(design, 1.0, PlotFormat::png, file);
-    icon = bytes_of(file);
-  } catch (const std::runtime_error&) {}
-  std::error_code ignored;
-  fs::remove(file, ignored);
-  return icon;
+    return drawn_mechanism(design, 1.0, PlotFormat::png);
+  } catch (const std::runtime_error&) {
+    return {};
+  }
 }
 
 int run(const ExportArguments& arguments) {

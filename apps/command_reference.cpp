@@ -59,10 +59,8 @@ int write_new(const NewArguments& a) {
   if (std::filesystem::exists(std::filesystem::symlink_status(file, error))) {
     throw InputError(one_line(file.string()), 0, 0, "", "is there already and is never overwritten; give another name");
   }
-  const std::string stem = one_line(file.stem().string());
-  const bool plain = stem.find_first_of("\"\\") == std::string::npos;
   OutputFile output("new", file, {".toml", false});
-  output.write(starting_vehicle(*type, plain ? stem : "new vehicle"));
+  output.write(starting_vehicle(*type, file.stem().string()));
   output.commit();
   return done;
 }

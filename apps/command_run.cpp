@@ -100,7 +100,8 @@ int run(const RunArguments& arguments) {
       } else {
         write_waveforms_netcdf(
             waveforms->temporary(), result.cycle,
-            {.title = fmt::format("One flapping cycle of {}", design.name.empty() ? arguments.at.vehicle : design.name),
+            {.title = fmt::format("One flapping cycle of {}",
+                                  design.name.empty() ? written_name(arguments.at.vehicle) : design.name),
              .command = "run",
              .version = version,
              .vehicle = write_design(result.design),

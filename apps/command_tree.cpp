@@ -6,12 +6,14 @@
 #include <cstring>
 
 #include "command.hpp"
+#include "wingbeat/core/text.hpp"
 
 namespace wingbeat::app {
 
 const char* const version = WINGBEAT_VERSION;
 
-void print(std::string_view text) {
+void print(std::string_view from_files) {
+  const std::string text = detail::printable(from_files);
   errno = 0;
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
     throw std::runtime_error(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
@@ -20,7 +22,7 @@ void print(std::string_view text) {
 
 void complain(std::string_view sentence) {
   std::string line = "wingbeat: ";
-  for (const char c : sentence) line += c == '\n' ? ' ' : c;
+  for (const char c : detail::printable(sentence)) line += c == '\n' ? ' ' : c;
   line += '\n';
   std::fputs(line.c_str(), stderr);
 }

@@ -5,6 +5,8 @@
 
 #include <utility>
 
+#include "wingbeat/core/text.hpp"
+
 namespace wingbeat::app {
 
 ProgressLine::ProgressLine(std::string name) : name_(std::move(name)), terminal_(::isatty(STDERR_FILENO) == 1) {}
@@ -12,7 +14,7 @@ ProgressLine::ProgressLine(std::string name) : name_(std::move(name)), terminal_
 void ProgressLine::show(const std::string& text) {
   if (!terminal_) return;
   const std::lock_guard<std::mutex> lock(mutex_);
-  fmt::print(stderr, "\r{:<78}", name_ + text);
+  fmt::print(stderr, "\r{:<78}", name_ + detail::printable(text));
   shown_ = true;
 }
 

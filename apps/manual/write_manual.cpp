@@ -7,18 +7,26 @@
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 
 #include "../command.hpp"
 #include "command_facts.hpp"
+#include "wingbeat/files/stored_file.hpp"
 
 namespace {
 
 void write(const std::filesystem::path& file, const std::string& text) {
   std::filesystem::create_directories(file.parent_path());
-  std::ofstream out(file, std::ios::binary);
-  if (!(out << text).flush()) throw std::runtime_error("cannot write " + file.string());
+  std::filesystem::path beside = file;
+  beside += ".part";
+  try {
+    wingbeat::store(beside, text);
+    std::filesystem::rename(beside, file);
+  } catch (...) {
+    std::error_code ignored;
+    std::filesystem::remove(beside, ignored);
+    throw;
+  }
 }
 
 }  // namespace

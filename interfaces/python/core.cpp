@@ -120,14 +120,13 @@ void require_tolerance(double tolerance) {
 
 // ---- one vehicle
 
-/// The mechanism as SVG, drawn into that file and read back; empty where it cannot be drawn.
-std::string mechanism_svg(const Design<double>& design, double stroke_amplitude, const std::string& file) {
+/// The mechanism as SVG; empty where it cannot be drawn.
+std::string mechanism_svg(const Design<double>& design, double stroke_amplitude) {
   try {
-    plot_mechanism(design, stroke_amplitude, PlotFormat::svg, file);
+    return drawn_mechanism(design, stroke_amplitude, PlotFormat::svg);
   } catch (const std::runtime_error&) {
     return {};
   }
-  return read_text_file(file);
 }
 
 /// A search that ended short of its aim is no flapping of the kind asked for.
@@ -278,8 +277,7 @@ PYBIND11_MODULE(_core, m) {
   m.def("run", &run, "design"_a, "condition"_a, "method"_a, "tolerance"_a, "frequency"_a, "lift"_a,
         "allow_extrapolation"_a, "points"_a, "endurance"_a);
   m.def("gradient", &differentiate, "design"_a, "keys"_a, "condition"_a, "tolerance"_a, "frequency"_a, "endurance"_a);
-  m.def("mechanism_svg", &mechanism_svg, "design"_a, "stroke_amplitude"_a, "file"_a,
-        py::call_guard<py::gil_scoped_release>());
+  m.def("mechanism_svg", &mechanism_svg, "design"_a, "stroke_amplitude"_a, py::call_guard<py::gil_scoped_release>());
   m.def("energy_balance", &balance);
   m.def("simulate", &start_up);
   add_motion(m);

@@ -2,9 +2,14 @@
 #include <fmt/format.h>
 #include <matio.h>
 
+#include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <memory>
+#include <span>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "wingbeat/files/control_file.hpp"
@@ -71,23 +76,60 @@ struct CloseMat {
   void operator()(mat_t* file) const { Mat_Close(file); }
 };
 
+/// True if both hold the same values, cells and fields.
+bool are_equal(const matvar_t* a, const matvar_t* b) {
+  if (!a || !b) return a == b;
+  if (a->class_type != b->class_type || a->rank != b->rank || a->nbytes != b->nbytes ||
+      !std::equal(a->dims, a->dims + a->rank, b->dims)) {
+    return false;
+  }
+  if (a->nbytes == 0) return true;
+  if (!a->data || !b->data) return false;
+  if (a->class_type != MAT_C_CELL && a->class_type != MAT_C_STRUCT) {
+    return std::memcmp(a->data, b->data, a->nbytes) == 0;
+  }
+  const auto parts = [](const matvar_t* of) {
+    return std::span(static_cast<matvar_t* const*>(of->data), of->nbytes / sizeof(matvar_t*));
+  };
+  return std::equal(parts(a).begin(), parts(a).end(), parts(b).begin(), are_equal);
+}
+
+/// libmatio does not look at what its writes come to: what was written is read again.
 class MatFile {
  public:
   MatFile(const std::filesystem::path& path, const std::string& header)
       : path_(path.string()), file_(Mat_CreateVer(path_.c_str(), header.c_str(), MAT_FT_MAT5)) {
     if (!file_) fail();
   }
-  void write(const MatVariable& variable) {
+  void write(MatVariable variable) {
+    errno = 0;
     if (Mat_VarWrite(file_.get(), variable.get(), MAT_COMPRESSION_NONE) != 0) fail();
+    if (errno != 0) reason_ = errno;
+    written_.push_back(std::move(variable));
   }
   void close() {
-    if (Mat_Close(file_.release()) != 0) fail();
+    errno = 0;
+    const bool closed = Mat_Close(file_.release()) == 0;
+    if (errno != 0) reason_ = errno;
+    if (!closed) fail();
+    file_.reset(Mat_Open(path_.c_str(), MAT_ACC_RDONLY));
+    if (!file_) fail();
+    for (const MatVariable& variable : written_) {
+      const MatVariable there(Mat_VarReadNext(file_.get()));
+      if (!there || !are_equal(variable.get(), there.get())) fail();
+    }
+    file_.reset();
   }
 
  private:
-  [[noreturn]] void fail() const { throw std::runtime_error(path_ + ": the MAT-file cannot be written"); }
+  [[noreturn]] void fail() const {
+    throw std::runtime_error(path_ + ": the MAT-file cannot be written" +
+                             (reason_ != 0 ? std::string(": ") + std::strerror(reason_) : ""));
+  }
   std::string path_;
   std::unique_ptr<mat_t, CloseMat> file_;
+  std::vector<MatVariable> written_;
+  int reason_ = 0;
 };
 
 void write_signals(MatFile& file, const std::string& kind, const std::vector<CycleSignal>& signals) {

@@ -16,6 +16,7 @@
 #include "files/input_errors.hpp"
 #include "files/table_csv.hpp"
 #include "files/toml_document.hpp"
+#include "wingbeat/core/text.hpp"
 #include "wingbeat/files/file_record.hpp"
 #include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/units.hpp"
@@ -30,7 +31,7 @@ std::string message_text(const std::string& file, int line, int column, const st
   std::string text = file;
   if (line > 0) text += fmt::format(":{}:{}", line, column);
   if (!key.empty()) text += (text.empty() ? "" : ": ") + key;
-  return text.empty() ? message : text + ": " + message;
+  return detail::printable(text.empty() ? message : text + ": " + message);
 }
 
 constexpr std::string_view wave_coefficients[] = {"aerodynamics.coefficients.lift", "aerodynamics.coefficients.drag"};

@@ -49,22 +49,6 @@ std::string coefficient_rows(const CoefficientTable& table) {
 
 }  // namespace
 
-std::string toml_text(std::string_view text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      result += '\\';
-      result += c;
-    } else if (byte < 0x20 || byte == 0x7F) {
-      result += fmt::format("\\u{:04X}", byte);
-    } else {
-      result += c;
-    }
-  }
-  return result + '"';
-}
-
 std::string toml_quantity(double x, std::string_view unit) {
   return unit == "1" ? toml_number(x) : fmt::format("\"{} {}\"", x, unit);
 }

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "wingbeat/files/toml_text.hpp"
 #include "wingbeat/vehicle/design.hpp"
 
 namespace wingbeat {
@@ -18,9 +19,6 @@ struct WrittenKey {
 
 /// In the order of the key table.
 std::vector<WrittenKey> written_keys(const Design<double>& design);
-
-/// A TOML string.
-std::string toml_text(std::string_view text);
 
 /// A number, or a string with its unit, that reads back to the same double.
 std::string toml_quantity(double x, std::string_view unit);

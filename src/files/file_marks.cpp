@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <boost/crc.hpp>
-#include <cerrno>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -12,6 +11,7 @@
 
 #include "wingbeat/files/file_record.hpp"
 #include "wingbeat/files/netcdf.hpp"
+#include "wingbeat/files/stored_file.hpp"
 #include "wingbeat/files/waveform_file.hpp"
 #include "wingbeat/files/zip_file.hpp"
 
@@ -151,7 +151,7 @@ bool written_by_wingbeat(const fs::path& file) {
   return text_is_own(head);
 }
 
-void mark_drawing(const fs::path& file) {
+void mark_drawing(const fs::path& file, const std::string& shown) {
   const std::string extension = file.extension().string();
   void (*const mark)(std::string&) = extension == ".svg"   ? mark_svg
                                      : extension == ".pdf" ? mark_pdf
@@ -163,11 +163,7 @@ void mark_drawing(const fs::path& file) {
   in.close();
   if (text.find(drawn) != std::string::npos) return;
   mark(text);
-  errno = 0;
-  std::ofstream out(file, std::ios::binary | std::ios::trunc);
-  out.write(text.data(), std::streamsize(text.size()));
-  out.close();
-  if (!out) throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
+  store(file, text, shown);
 }
 
 }  // namespace wingbeat

@@ -118,4 +118,6 @@ fs::path find_vehicle(const fs::path& folder, const std::string& name) {
 
 std::string input_name(const fs::path& file) { return file == "-" ? "standard input" : file.string(); }
 
+std::string written_name(const fs::path& file) { return input_name(file == "-" ? file : file.filename()); }
+
 }  // namespace wingbeat

@@ -4,12 +4,18 @@
 #include <fmt/format.h>
 #include <hdf5.h>
 #include <netcdf.h>
+#include <netcdf_mem.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <memory>
+
+#include "wingbeat/core/text.hpp"
+#include "wingbeat/files/stored_file.hpp"
 
 namespace wingbeat {
 
@@ -50,18 +56,36 @@ std::string reason_of(int status, const std::string& file) {
 
 void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
-NetcdfFile::NetcdfFile(const std::filesystem::path& file) : file_(file.string()) {
+NetcdfFile::NetcdfFile(const std::filesystem::path& file, Place place) : file_(file.string()), place_(place) {
   // Nor would it survive the files that an error left open, at the end of the program.
   static const auto once = H5dont_atexit();
   (void)once;
+  const auto refuse = [&](const std::string& reason) {
+    throw NetcdfError(fmt::format("{}: cannot create the file: {}", file_, reason));
+  };
+  if (place == Place::memory) {
+    constexpr std::size_t first_size = 65536;
+    const int there = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+    if (there < 0) refuse(std::strerror(errno));
+    ::close(there);
+    const int status = nc_create_mem(file_.c_str(), NC_NETCDF4, first_size, &id_);
+    if (status != NC_NOERR) refuse(nc_strerror(status));
+    return;
+  }
   const PlainName name(file_, O_RDWR | O_CREAT);
   const int status = nc_create(name.get(), NC_NETCDF4 | NC_CLOBBER, &id_);
-  if (status != NC_NOERR)
-    throw NetcdfError(fmt::format("{}: cannot create the file: {}", file_, reason_of(status, file_)));
+  if (status != NC_NOERR) refuse(reason_of(status, file_));
 }
 
 NetcdfFile::~NetcdfFile() {
-  if (id_ >= 0 && !failed_) nc_close(id_);
+  if (id_ < 0) return;
+  if (place_ == Place::disk) {
+    if (!failed_) nc_close(id_);
+    return;
+  }
+  NC_memio content{};
+  nc_close_memio(id_, &content);
+  std::free(content.memory);
 }
 
 NetcdfFile::Dimension NetcdfFile::define_dimension(const std::string& name, std::size_t length) {
@@ -76,8 +100,13 @@ NetcdfFile::Variable NetcdfFile::define_variable(const std::string& name, const 
   std::vector<int> ids;
   for (const Dimension& d : dimensions) ids.push_back(d.id);
   check(nc_def_var(id_, name.c_str(), NC_DOUBLE, int(ids.size()), ids.data(), &variable.id), "define variable " + name);
+  // A coordinate variable, which has the name of its dimension, holds a value everywhere: CF forbids it a fill value.
+  char along[NC_MAX_NAME + 1] = {};
+  if (ids.size() == 1) check(nc_inq_dimname(id_, ids[0], along), "read the name of a dimension");
+  const bool coordinate = name == along;
   const double fill = std::numeric_limits<double>::quiet_NaN();
-  check(nc_def_var_fill(id_, variable.id, NC_FILL, &fill), "set the fill value of " + name);
+  check(nc_def_var_fill(id_, variable.id, coordinate ? NC_NOFILL : NC_FILL, coordinate ? nullptr : &fill),
+        "set the fill value of " + name);
   set_attribute(variable, "units", unit);
   set_attribute(variable, "long_name", long_name);
   return variable;
@@ -214,7 +243,19 @@ void NetcdfFile::write_run(const Variable& variable, std::size_t first, std::spa
 void NetcdfFile::close() {
   const int id = id_;
   id_ = -1;
-  check(nc_close(id), "finish the file");
+  if (place_ == Place::disk) {
+    check(nc_close(id), "finish the file");
+    return;
+  }
+  NC_memio content{};
+  const int status = nc_close_memio(id, &content);
+  const std::unique_ptr<void, void (*)(void*)> memory(content.memory, std::free);
+  check(status, "finish the file");
+  try {
+    store(file_, {static_cast<const char*>(content.memory), content.size});
+  } catch (const std::runtime_error& error) {
+    throw NetcdfError(error.what());
+  }
 }
 
 void NetcdfFile::check(int status, const std::string& action) const {
@@ -303,8 +344,9 @@ void write_provenance(NetcdfFile& file, const Provenance& provenance) {
   const auto set = [&](const char* name, const std::string& text) {
     if (!text.empty()) file.set_attribute(name, text);
   };
+  // A title may come from a file. Study and vehicle are kept to the byte: they can be computed again.
   set("Conventions", "CF-1.8");
-  set("title", provenance.title);
+  set("title", detail::printable(provenance.title));
   set("source", fmt::format("wingbeat {} {}", provenance.version, provenance.command));
   set("wingbeat_version", provenance.version);
   set("vehicle", provenance.vehicle);

@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "wingbeat/files/design_file.hpp"
+#include "wingbeat/files/stored_file.hpp"
 #include "wingbeat/files/written_files.hpp"
 
 namespace wingbeat {
@@ -22,16 +23,15 @@ OutputFile::OutputFile(std::string option, const fs::path& path, const OutputRul
   if (const auto other = FileRecord::of_this_program().add_output(target_, option)) {
     refuse(fmt::format("is also the file of {}; give another name", *other));
   }
-  mode_t mode = 0666;
   struct stat existing{};
-  const bool exists = ::stat(target_.c_str(), &existing) == 0;
-  if (exists) mode = existing.st_mode & 07777;
+  if (::stat(target_.c_str(), &existing) == 0) mode_ = existing.st_mode & 07777;
+  const fs::path folder = target_.parent_path();
+  remove_leftovers(folder);
   int file = -1;
   for (int attempt = 0; file < 0; ++attempt) {
     // The extension stays: some writers choose the format by it.
-    temporary_ =
-        target_.parent_path() / fmt::format(".{}-{}.part{}", ::getpid(), attempt, target_.extension().string());
-    file = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+    temporary_ = folder / temporary_name(attempt, target_.extension().string());
+    file = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode_.value_or(0666));
     if (file < 0 && (errno != EEXIST || attempt > 1000)) {
       const int reason = errno;
       FileRecord::of_this_program().withdraw(target_);
@@ -40,7 +40,6 @@ OutputFile::OutputFile(std::string option, const fs::path& path, const OutputRul
   }
   remembered_ = remember_temporary(temporary_);
   FileRecord::of_this_program().add_temporary(temporary_, option_);
-  if (exists) (void)::fchmod(file, mode);
   ::close(file);
 }
 
@@ -52,31 +51,27 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::write(std::string_view content) {
-  const auto failed = [&] { throw std::runtime_error(fmt::format("{}: {}", option_, std::strerror(errno))); };
-  const int file = ::open(temporary_.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC);
-  if (file < 0) failed();
-  while (!content.empty()) {
-    const ssize_t written = ::write(file, content.data(), content.size());
-    if (written < 0) {
-      if (errno == EINTR) continue;
-      const int reason = errno;
-      ::close(file);
-      errno = reason;
-      failed();
-    }
-    content.remove_prefix(std::size_t(written));
-  }
-  if (::close(file) != 0) failed();
+  expected_ = content.size();
+  store(temporary_, content, option_);
 }
 
 void OutputFile::commit() {
   FileRecord& record = FileRecord::of_this_program();
+  const auto fail = [&](const std::string& reason) {
+    throw std::runtime_error(fmt::format("{}: {}", option_, reason));
+  };
   // Read since the place was reserved.
-  if (record.name_read(target_)) throw std::runtime_error(option_ + ": is a file that this command has read");
-  mark_drawing(temporary_);
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
-    throw std::runtime_error(fmt::format("{}: {}", option_, std::strerror(errno)));
-  }
+  if (record.name_read(target_)) fail("is a file that this command has read");
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(temporary_, error);
+  if (error) fail("cannot be written: " + error.message());
+  if (expected_ && size != *expected_) fail(fmt::format("{} of {} bytes were written", size, *expected_));
+  if (const auto missing = missing_end(temporary_))
+    fail(fmt::format("cannot be written whole: {} is missing", *missing));
+  mark_drawing(temporary_, option_);
+  if (mode_) (void)::chmod(temporary_.c_str(), *mode_);
+  settle(temporary_, option_);
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(std::strerror(errno));
   committed_ = true;
   forget_temporary(remembered_);
   record.written(target_);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "wingbeat/files/input_file.hpp"
+#include "wingbeat/files/toml_text.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/vehicle/drive.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
@@ -26,25 +27,18 @@ std::vector<std::string_view> with(std::initializer_list<std::string_view> commo
 
 }  // namespace
 
-std::string toml_text(const TomlNode& node) {
+std::string toml_value(const TomlNode& node) {
   std::string text;
   switch (node.kind) {
-    case Kind::text:
-      text = "\"";
-      for (const char c : node.text) {
-        if (c == '"' || c == '\\') text += '\\';
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) text += fmt::format("\\u{:04X}", int(c));
-        else text += c;
-      }
-      return text + "\"";
+    case Kind::text: return toml_text(node.text);
     case Kind::number: return node.whole ? fmt::format("{:.0f}", node.number) : fmt::format("{:#}", node.number);
     case Kind::boolean: return node.number != 0.0 ? "true" : "false";
     case Kind::array:
-      for (const TomlNode& item : node.items) text += (text.empty() ? "" : ", ") + toml_text(item);
+      for (const TomlNode& item : node.items) text += (text.empty() ? "" : ", ") + toml_value(item);
       return "[" + text + "]";
     case Kind::table:
       for (const auto& [key, value] : node.members) {
-        text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", key, toml_text(value));
+        text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", toml_key(key), toml_value(value));
       }
       return "{" + text + "}";
     case Kind::other: break;
@@ -85,7 +79,7 @@ std::string StudySections::vehicle_text(const std::filesystem::path& vehicle) co
   std::vector<std::string> overrides;
   std::vector<std::pair<SourceLocation, std::string>> origins;
   const auto set = [&](const std::string& key, const TomlNode& value, const std::string& shown) {
-    overrides.push_back(fmt::format("{}={}", key, toml_text(value)));
+    overrides.push_back(fmt::format("{}={}", key, toml_value(value)));
     origins.emplace_back(place_of(value), shown);
   };
   for (const auto& [key, value] : set_) set(key, *value, "set." + key);

@@ -24,7 +24,7 @@ namespace wingbeat::detail {
 using Kind = TomlNode::Kind;
 
 /// A node as a TOML value on one line.
-std::string toml_text(const TomlNode& node);
+std::string toml_value(const TomlNode& node);
 
 /// What an error of a vehicle says, without its place: `key: reason`.
 std::string reason_of(const InputError& error);

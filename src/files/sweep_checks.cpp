@@ -106,7 +106,7 @@ class SweepChecks {
           value.kind = q.labels.empty() ? Kind::number : Kind::text;
           if (q.labels.empty()) value.number = q.values[n];
           else value.text = q.labels[n];
-          overrides.push_back(fmt::format("{}={}", q.key, toml_text(value)));
+          overrides.push_back(fmt::format("{}={}", q.key, toml_value(value)));
           keys.push_back(q.key);
         }
       }

@@ -8,7 +8,9 @@
 #include <cstdlib>
 #include <utility>
 
+#include "wingbeat/core/text.hpp"
 #include "wingbeat/files/file_record.hpp"
+#include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/netcdf.hpp"
 #include "wingbeat/files/units.hpp"
 
@@ -100,8 +102,9 @@ void write_input(NetcdfFile& file, const Study& study, std::string_view version)
                           .vehicle = study.input.vehicle,
                           .study = study.input.study,
                           .tolerance = sweep.options.tolerance});
-  file.set_attribute("study_name", study.input.study_name);
-  if (!study.input.table.empty()) file.set_attribute("samples_name", study.input.table_name);
+  const auto name_in = [](const std::string& path) { return detail::printable(written_name(path)); };
+  file.set_attribute("study_name", name_in(study.input.study_name));
+  if (!study.input.table.empty()) file.set_attribute("samples_name", name_in(study.input.table_name));
   for (const auto& [name, isa] : instruction_sets) {
     if (isa == sweep.options.isa) file.set_attribute("instruction_set", name);
   }
@@ -129,7 +132,8 @@ std::uint64_t fingerprint(const Study& study, std::string_view version) {
 std::vector<std::uint64_t> prepare_data_set(const fs::path& path, const Study& study, std::string_view version) {
   const Sweep& sweep = study.sweep;
   using Storage = NetcdfFile::Storage;
-  NetcdfFile file(path);
+  // Its room is reserved.
+  NetcdfFile file(path, NetcdfFile::Place::disk);
   write_input(file, study, version);
   file.set_attribute(fingerprint_attribute, fmt::format("{:016x}", fingerprint(study, version)));
 

@@ -21,6 +21,10 @@ namespace {
 
 constexpr std::size_t largest_text = 4u << 20;
 constexpr int deepest_nesting = 16;
+// toml++ looks through all sections, and all dotted keys, again for each; InputErrors has a sentence for each.
+constexpr int most_sections = 10000, most_keys = 20000;
+// Which key was meant takes a comparison with every one there is.
+constexpr int most_suggestions = 100;
 
 int line_of(const toml::source_position& p) { return int(p.line); }
 int column_of(const toml::source_position& p) { return int(p.column); }
@@ -38,6 +42,7 @@ struct Complaint {
 /// Keeps from toml++ 3.3 what it meets with undefined behaviour instead of an error:
 /// - deep nesting: it builds and destroys nested tables recursively and does not limit dotted keys;
 /// - a table header that does not begin with a key, "[=" (its issue 294);
+/// - more sections or keys than any file has, for which it takes minutes;
 /// - letters beyond ASCII where it looks for white space (is_non_ascii_horizontal_whitespace).
 class Gatekeeper {
  public:
@@ -60,7 +65,11 @@ class Gatekeeper {
         limit(++dots_);
       } else if (c == '[' || c == '{') {
         dots_ = 0;
-        if (c == '[' && brackets_ == 0 && !in_value_) check_header();
+        if (c == '[' && brackets_ == 0 && !in_value_) {
+          check_header();
+          if (++sections_ > most_sections)
+            complain(fmt::format("more than {} sections, which no file has", most_sections));
+        }
         limit(++brackets_);
       } else if (c == ']' || c == '}') {
         dots_ = 0;
@@ -68,6 +77,7 @@ class Gatekeeper {
       } else if (c == '=' || c == ',') {
         dots_ = 0;
         in_value_ = true;
+        if (c == '=' && ++keys_ > most_keys) complain(fmt::format("more than {} keys, which no file has", most_keys));
       } else if (!is_ascii(c)) {
         complain("not TOML: a letter outside ASCII belongs in quotes");
       }
@@ -146,7 +156,7 @@ class Gatekeeper {
 
   std::string_view text_;
   std::size_t at_ = 0, line_begin_ = 0;
-  int line_ = 1, dots_ = 0, brackets_ = 0;
+  int line_ = 1, dots_ = 0, brackets_ = 0, sections_ = 0, keys_ = 0;
   bool in_value_ = false;  ///< after the = of a key
   std::optional<Complaint> complaint_;
 };
@@ -279,7 +289,10 @@ class Flattener {
 
   void enter(const toml::node& node, const std::string& path, const Origin& origin) {
     const bool known = find_parameter<double>(path) != nullptr, section = is_section(path);
-    if (!known && !section) {
+    if (!known && !section && ++unknown_ > most_suggestions) {
+      document_.spoiled.push_back(path);
+      offend(path, origin, "unknown key");
+    } else if (!known && !section) {
       const std::string meant = nearest_key(path);
       if (!meant.empty()) document_.spoiled.push_back(meant);
       document_.spoiled.push_back(path);
@@ -315,6 +328,7 @@ class Flattener {
 
   Document& document_;
   Origin base_;
+  int unknown_ = 0;
 };
 
 bool at_or_below(std::string_view path, std::string_view above) {

@@ -167,17 +167,10 @@ std::string one_line(std::string_view text, std::size_t longest) {
     text = text.substr(0, end);
   }
   std::string result;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '\n') {
-      result += "\\n";
-    } else if (c == '\t') {
-      result += "\\t";
-    } else if (byte < 0x20 || byte == 0x7F) {
-      result += fmt::format("\\x{:02x}", byte);
-    } else {
-      result += c;
-    }
+  for (const char c : detail::printable(text)) {
+    if (c == '\n') result += "\\n";
+    else if (c == '\t') result += "\\t";
+    else result += c;
   }
   return result + (cut ? "..." : "");
 }

@@ -5,31 +5,46 @@
 #include <memory>
 #include <stdexcept>
 
+#include "wingbeat/files/stored_file.hpp"
+
 namespace wingbeat {
 
 void write_zip(const std::filesystem::path& file, const std::vector<std::pair<std::string, std::string>>& content) {
-  const auto fail = [&](const std::string& reason) {
-    throw std::runtime_error(file.string() + ": the archive cannot be written: " + reason);
+  // Made in memory: libzip itself would write beside the file under a name of its own.
+  zip_error_t error;
+  zip_error_init(&error);
+  const auto fail = [&](zip_error_t* why) {
+    throw std::runtime_error(file.string() + ": the archive cannot be made: " + zip_error_strerror(why));
   };
-  int code = 0;
-  zip_t* const archive = zip_open(file.c_str(), ZIP_CREATE | ZIP_TRUNCATE, &code);
-  if (!archive) fail("libzip error " + std::to_string(code));
+  const std::unique_ptr<zip_source_t, void (*)(zip_source_t*)> buffer(zip_source_buffer_create(nullptr, 0, 0, &error),
+                                                                      zip_source_free);
+  if (!buffer) fail(&error);
+  zip_source_keep(buffer.get());
+  std::unique_ptr<zip_t, void (*)(zip_t*)> archive(zip_open_from_source(buffer.get(), ZIP_TRUNCATE, &error),
+                                                   zip_discard);
+  if (!archive) {
+    zip_source_free(buffer.get());
+    fail(&error);
+  }
   for (const auto& [name, bytes] : content) {
-    zip_source_t* const source = zip_source_buffer(archive, bytes.data(), bytes.size(), 0);
-    const zip_int64_t place = source ? zip_file_add(archive, name.c_str(), source, ZIP_FL_ENC_UTF_8) : -1;
+    zip_source_t* const source = zip_source_buffer(archive.get(), bytes.data(), bytes.size(), 0);
+    const zip_int64_t place = source ? zip_file_add(archive.get(), name.c_str(), source, ZIP_FL_ENC_UTF_8) : -1;
     if (place < 0) {
-      const std::string reason = zip_strerror(archive);
       if (source) zip_source_free(source);
-      zip_discard(archive);
-      fail(reason);
+      fail(zip_get_error(archive.get()));
     }
-    zip_file_set_dostime(archive, zip_uint64_t(place), 0, 0x21, 0);  // 1 January 1980, the first that a ZIP knows
+    zip_file_set_dostime(archive.get(), zip_uint64_t(place), 0, 0x21, 0);  // 1 January 1980, the first a ZIP knows
   }
-  if (zip_close(archive) != 0) {
-    const std::string reason = zip_strerror(archive);
-    zip_discard(archive);
-    fail(reason);
-  }
+  if (zip_close(archive.get()) != 0) fail(zip_get_error(archive.get()));
+  (void)archive.release();
+  zip_stat_t about;
+  zip_error_t* const why = zip_source_error(buffer.get());
+  if (zip_source_stat(buffer.get(), &about) != 0 || zip_source_open(buffer.get()) != 0) fail(why);
+  std::string bytes(std::size_t(about.size), '\0');
+  const zip_int64_t got = zip_source_read(buffer.get(), bytes.data(), bytes.size());
+  zip_source_close(buffer.get());
+  if (got != zip_int64_t(bytes.size())) fail(why);
+  store(file, bytes);
 }
 
 std::vector<std::pair<std::string, std::string>> read_zip(const std::filesystem::path& file) {

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "report/report_tools.hpp"
+#include "wingbeat/files/toml_text.hpp"
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/report/report.hpp"
 
@@ -135,6 +136,7 @@ std::string value_in_toml(const Json& of) {
     const std::string text = fmt::format("{}", of.get<double>());
     return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
   }
+  if (of.is_string()) return toml_text(of.get<std::string>());
   if (!of.is_array()) return of.dump();
   std::string text = "[";
   for (const Json& x : of) text += fmt::format("{}{}", &x == &of.front() ? "" : ", ", value_in_toml(x));
@@ -229,7 +231,7 @@ void put_map(std::string& text, const AllocationMap& map) {
 }  // namespace
 
 std::string json_control(const ControlModels& models, const std::string& version) {
-  return tree_of(models, version).dump(2) + "\n";
+  return detail::dumped(tree_of(models, version));
 }
 
 std::string toml_control(const ControlModels& models, const std::string& version) {

@@ -13,9 +13,11 @@
 
 namespace wingbeat {
 
-/// Runs gnuplot on a script; what it draws goes to `output`. The script comes in, and the drawing goes out, through
-/// open files: no name and no label ever passes a shell or gnuplot's own parser of file names. Throws
-/// std::runtime_error.
+/// What gnuplot draws by a script, complete. The script goes in, and the drawing comes out, through pipes: no name and
+/// no label ever passes a shell or gnuplot's own parser of file names, and no disk can cut it off. gnuplot sees nothing
+/// of the user's own settings. Throws std::runtime_error.
+std::string drawing_of(const std::string& script);
+/// The same into a file.
 void run_gnuplot(const std::string& script, const std::filesystem::path& output);
 
 /// A string for gnuplot: nothing in it is special but the quote.

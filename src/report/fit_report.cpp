@@ -369,7 +369,7 @@ std::string json_fit(const BenchFit& fit, const FitResult& r, std::span<const Fr
                                 {"power_springs_off_w", number_or_null(c.power_springs_off)},
                                 {"power_springs_on_w", number_or_null(c.power_springs_on)}});
   }
-  return json.dump(2) + "\n";
+  return detail::dumped(json);
 }
 
 std::string fitted_vehicle_head(const BenchFit& fit, const FitResult& r, const std::string& made_by) {
@@ -399,8 +399,8 @@ std::string covariance_file(const FitResult& r, const std::string& vehicle_name,
                   one_line(made_by, 200), toml_text(vehicle_name));
   for (const std::size_t k : known) {
     const FittedParameter& p = r.parameters[k];
-    text += fmt::format("\n[[parameter]]\nkey = \"{}\"\nunit = \"{}\"\nvalue = {:#}\nstandard_error = {:#}\n", p.key,
-                        p.unit, *p.value, p.standard_error);
+    text += fmt::format("\n[[parameter]]\nkey = {}\nunit = {}\nvalue = {:#}\nstandard_error = {:#}\n", toml_text(p.key),
+                        toml_text(p.unit), *p.value, p.standard_error);
   }
   text += "\n[covariance]\nmatrix = [\n";
   for (const std::size_t a : known) {

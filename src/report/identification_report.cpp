@@ -139,7 +139,7 @@ std::string json_identification(const MotorIdentification& motor, const MotorDat
   }
   json["remarks"] = motor.remarks;
   json["missing"] = motor.missing;
-  return json.dump(2) + "\n";
+  return detail::dumped(json);
 }
 
 }  // namespace wingbeat

@@ -8,8 +8,7 @@
 
 namespace wingbeat {
 
-void plot_mechanism(const Design<double>& design, double stroke_amplitude, PlotFormat format,
-                    const std::filesystem::path& file) {
+std::string drawn_mechanism(const Design<double>& design, double stroke_amplitude, PlotFormat format) {
   const Vehicle<double> vehicle = resolve(design);
   StrokeRange stroke{-stroke_amplitude, stroke_amplitude};
   if (drive_of(vehicle).stroke_is_fixed) {
@@ -33,7 +32,7 @@ void plot_mechanism(const Design<double>& design, double stroke_amplitude, PlotF
                         .page_width = width,
                         .page_height = height});
   figure.add("unset multiplot\n");
-  run_gnuplot(figure.script(), file);
+  return drawing_of(figure.script());
 }
 
 }  // namespace wingbeat

@@ -239,7 +239,7 @@ std::string text_motors(const OptimiseFile& file, std::span<const MotorTrial> tr
 }
 
 std::string json_optimum(const OptimiseFile& file, const OptimiseResult& result) {
-  return result_json(file, result).dump(2) + "\n";
+  return detail::dumped(result_json(file, result));
 }
 
 std::string json_motors(const OptimiseFile& file, std::span<const MotorTrial> trials) {
@@ -258,7 +258,7 @@ std::string json_motors(const OptimiseFile& file, std::span<const MotorTrial> tr
     }
     json[file.motors.empty() ? "choices" : "motors"].push_back(entry);
   }
-  return json.dump(2) + "\n";
+  return detail::dumped(json);
 }
 
 }  // namespace wingbeat

@@ -225,7 +225,7 @@ std::string json_front(const OptimiseFile& file, const ParetoStudy& study, const
   }
   if (r.outcome != ParetoResult::Outcome::found) {
     json["reason"] = describe(nothing_found(study, r));
-    return json.dump(2) + "\n";
+    return detail::dumped(json);
   }
   json["evaluations"] = r.evaluated.size();
   for (std::size_t m = 0; m < study.objectives.size(); ++m) {
@@ -245,7 +245,7 @@ std::string json_front(const OptimiseFile& file, const ParetoStudy& study, const
     entry["domain"] = name_of(d.domain);
     json["front"].push_back(std::move(entry));
   }
-  return json.dump(2) + "\n";
+  return detail::dumped(json);
 }
 
 void write_front(const ParetoStudy& study, const ParetoResult& r, const std::string& title, const std::string& input,

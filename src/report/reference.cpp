@@ -11,6 +11,7 @@
 
 #include "files/toml_document.hpp"
 #include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/files/toml_text.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/report/report.hpp"
 #include "wingbeat/vehicle/drive.hpp"
@@ -284,7 +285,7 @@ std::string starting_vehicle(TransmissionType transmission, const std::string& n
     const std::string_view leaf = key.path.substr(key.path.rfind('.') + 1);
     const std::string_view* value = stated(statements, key.path);
     const bool is_stated = value || key.path == "vehicle.name";
-    std::string line = key.path == "vehicle.name" ? fmt::format("{} = \"{}\"", leaf, name)
+    std::string line = key.path == "vehicle.name" ? fmt::format("{} = {}", leaf, toml_text(name))
                        : value                    ? fmt::format("{} = {}", leaf, toml_value(key, *value))
                                                   : fmt::format("# {} = {}", leaf, example_of(key));
     const std::string comment = comment_on(key, is_stated, statements);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "report/report_tools.hpp"
+#include "wingbeat/core/text.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/report/describe.hpp"
 
@@ -175,7 +176,7 @@ std::string wrapped(std::string_view text, int width, int indent) {
   for (std::size_t at = 0; at < text.size();) {
     std::size_t end = at;
     while (end < text.size() && static_cast<unsigned char>(text[end]) > 0x20 && text[end] != 0x7F) ++end;
-    const std::string_view word = text.substr(at, end - at);
+    const std::string word = detail::printable(text.substr(at, end - at));
     if (!word.empty()) {
       if (column > 0 && column + 1 + columns(word) > width) {
         out += '\n' + std::string(std::size_t(indent), ' ');

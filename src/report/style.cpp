@@ -3,14 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
-#include <fstream>
-#include <iterator>
-#include <memory>
-#include <stdexcept>
 #include <string_view>
 
 namespace wingbeat::style {
@@ -86,9 +79,7 @@ std::vector<Phase> phases(std::span<const WaveformRow> rows) {
   return order;
 }
 
-void tidy_svg(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
+std::string tidied_svg(std::string text) {
   text = replaced(text, "<title>Gnuplot</title>", "</desc>", [](auto) { return ""; });
   text = replaced(text, "<g id=\"gnuplot_plot_", "</title>", [](std::string_view plot) {
     const std::string_view title = plot.substr(plot.find("<title>") + 7);
@@ -100,11 +91,7 @@ void tidy_svg(const std::filesystem::path& file) {
     const auto begin = text.find("<defs>");
     text.erase(begin, defined + 7 - begin);
   }
-  text = without_empty_groups(text);
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> out(std::fopen(file.c_str(), "we"), std::fclose);
-  if (!out || std::fwrite(text.data(), 1, text.size(), out.get()) != text.size() || std::fflush(out.get()) != 0) {
-    throw std::runtime_error(fmt::format("{}: {}", file.string(), std::strerror(errno)));
-  }
+  return without_empty_groups(text);
 }
 
 }  // namespace wingbeat::style

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -63,8 +62,8 @@ struct Phase {
 };
 std::vector<Phase> phases(std::span<const WaveformRow> rows);
 
-/// Tidies an SVG that gnuplot wrote, in place: its commands do not stay as tooltips, what it defines and does not use
-/// goes. A plot titled "curve|..." becomes a group with that text as its attribute data-curve.
-void tidy_svg(const std::filesystem::path& file);
+/// An SVG that gnuplot wrote, tidied: its commands do not stay as tooltips, what it defines and does not use goes. A
+/// plot titled "curve|..." becomes a group with that text as its attribute data-curve.
+std::string tidied_svg(std::string text);
 
 }  // namespace wingbeat::style

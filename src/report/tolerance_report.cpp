@@ -228,7 +228,7 @@ std::string json_tolerance(const ToleranceStudy& study, const ToleranceResult& r
     }
     if (o.indices) entry["rows"] = o.indices->rows;
   }
-  return json.dump(2) + "\n";
+  return detail::dumped(json);
 }
 
 void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns, const ToleranceOutput& output,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -10,6 +9,7 @@
 #include "reproduction/sheet.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/files/design_file.hpp"
+#include "wingbeat/files/stored_file.hpp"
 
 namespace wingbeat::reproduction {
 namespace {
@@ -79,10 +79,7 @@ void add_read_out(const Chart& chart, const std::vector<PanelBox>& boxes, const 
   }
   std::string text = read_text_file(file);
   text.insert(text.find("<svg ") + 5, fmt::format("data-panels=\"{}\" ", detail::markup_escaped(panels.dump())));
-  std::ofstream out(file, std::ios::binary | std::ios::trunc);
-  if (!out.write(text.data(), std::streamsize(text.size()))) {
-    throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
-  }
+  store(file, text);
 }
 
 void draw_marks(Figure& figure, const ChartPanel& panel) {

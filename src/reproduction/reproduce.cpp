@@ -16,6 +16,7 @@
 #include "reproduction/sheet.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/output_file.hpp"
+#include "wingbeat/files/stored_file.hpp"
 #include "wingbeat/files/units.hpp"
 
 namespace wingbeat {
@@ -44,11 +45,7 @@ void remove_date(const fs::path& file) {
   if (at == std::string::npos) return;
   for (std::size_t n = 0; n < 14 && at + key.size() + n < text.size(); ++n)
     text[at + key.size() + n] = "20220101000000"[n];
-  std::FILE* out = std::fopen(file.c_str(), "wb");
-  const bool written = out && std::fwrite(text.data(), 1, text.size(), out) == text.size();
-  if (!out || std::fclose(out) != 0 || !written) {
-    throw std::runtime_error(fmt::format("{}: {}", file.string(), std::strerror(errno)));
-  }
+  store(file, text);
 }
 
 SpringPair pair_of(const PublishedFile& file) {

@@ -77,6 +77,19 @@ SweepJournal::~SweepJournal() {
   close();
 }
 
+void SweepJournal::remove_finished(const std::filesystem::path& journal, const std::filesystem::path& data_set,
+                                   std::uint64_t fingerprint) {
+  std::error_code error;
+  const int file = ::open(journal.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return;
+  Header there{};
+  const bool same = ::flock(file, LOCK_EX | LOCK_NB) == 0 &&
+                    read_at(file, &there, sizeof there, 0) == ssize_t(sizeof there) &&
+                    std::memcmp(there.magic, magic, sizeof magic) == 0 && there.fingerprint == fingerprint;
+  if (same && !std::filesystem::exists(data_set, error)) ::unlink(journal.c_str());
+  ::close(file);
+}
+
 void SweepJournal::close() {
   if (data_file_ >= 0) ::close(data_file_);
   if (journal_file_ >= 0) ::close(journal_file_);

@@ -67,7 +67,7 @@ std::string setup_message(const Study& study) {
                         {"table", study.input.table},
                         {"tolerance", o.tolerance},
                         {"isa", int(o.isa)}}
-      .dump();
+      .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 Study study_in(const Ranks::Message& message) {
@@ -251,6 +251,7 @@ SweepResult run_sweep(const Study& study, const SweepRunOptions& options) {
   // A data set may be named as study and output: it is not written where it holds that very sweep.
   const bool is_input = record.name_read(output).has_value();
   if (standing_of(output, print, "-o", options.force || is_input) == Standing::same_sweep) {
+    SweepJournal::remove_finished(journal_file(output), unfinished_file(output), print);
     result.outcome = SweepResult::Outcome::was_finished;
     result.progress.designs = result.progress.done = study.sweep.size();
     result.digest = digest_of(output, study);

@@ -159,6 +159,11 @@ TEST_F(Files, NetcdfHoldsWhatCsvHolds) {
     EXPECT_FALSE(text(id, "units").empty());
     EXPECT_FALSE(text(id, "long_name").empty());
   }
+  // CF: a coordinate has a value everywhere, and no fill value.
+  ASSERT_EQ(nc_inq_varid(file, "time_s", &id), NC_NOERR);
+  EXPECT_EQ(nc_inq_attid(file, id, "_FillValue", nullptr), NC_ENOTATT);
+  ASSERT_EQ(nc_inq_varid(file, "lift_n", &id), NC_NOERR);
+  EXPECT_EQ(nc_inq_attid(file, id, "_FillValue", nullptr), NC_NOERR);
   EXPECT_THAT(text(NC_GLOBAL, "title"), HasSubstr("One flapping cycle"));
   EXPECT_THAT(run({"--version"}).out, HasSubstr(text(NC_GLOBAL, "wingbeat_version")));
   // The input can be run again as it stands, overrides included.

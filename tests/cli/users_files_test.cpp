@@ -7,7 +7,7 @@
 
 #include <fstream>
 
-#include "program.hpp"
+#include "users_folder.hpp"
 #include "wingbeat/files/netcdf.hpp"
 
 namespace {
@@ -19,31 +19,8 @@ using testing::IsEmpty;
 const std::string reads = "which is never overwritten; give another name";
 const std::string foreign = "exists and was not written by wingbeat; give another name, or --force to replace it";
 
-class UsersFiles : public Program {
+class UsersFiles : public UsersFolder {
  protected:
-  void write(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
-
-  /// A bench, a study of each kind, and all that they name, in the folder.
-  void fill() const {
-    fs::copy_file(springs, path("vehicle.toml"));
-    for (const char* name : {"air.csv", "vacuum.csv", "wingless.csv"})
-      fs::copy_file(data + "/bench/" + name, path(name));
-    std::string bench = read(data + "/bench/flapper.toml");
-    const std::string named = "../designs/friction2022-springs.toml";
-    bench.replace(bench.find(named), named.size(), "vehicle.toml");
-    write("bench.toml", bench);
-    write(
-        "optimise.toml",
-        "[study]\nvehicle = \"vehicle.toml\"\n[objective]\nminimise = \"power_electrical_w\"\nstarts = 2\nscreen = 32\n"
-        "[[parameter]]\nkey = \"supply.voltage\"\nlower = \"3 V\"\nupper = \"8 V\"\n"
-        "[[constraint]]\nmetric = \"lift_to_weight\"\nat_least = 1\n");
-    write("tolerance.toml",
-          "[study]\nvehicle = \"vehicle.toml\"\n[samples]\ncount = 64\n"
-          "[[parameter]]\nkey = \"friction.radius\"\ndistribution = \"normal\"\nrelative_deviation = 0.03\n");
-    write("sweep.toml",
-          "[study]\nvehicle = \"vehicle.toml\"\n[[axis]]\nkey = \"supply.voltage\"\nfrom = 2\nto = 4\ncount = 3\n");
-  }
-
   /// Exit status 2, one sentence that holds the option with the path and the reason, and the file as it was.
   void expect_refused(const std::vector<std::string>& arguments, const std::string& file, const std::string& option,
                       const std::string& reason) const {
@@ -117,6 +94,15 @@ TEST_F(UsersFiles, NoInputIsWrittenByAnyCommand) {
                  reads);
   expect_refused({"compare", in("compare.svg"), "--plot-power", in("vehicle.svg")}, "vehicle.toml", "--plot-power ",
                  other);
+  for (const char* name : {"vehicle.json", "vehicle.mat", "vehicle.fmu", "same.toml"})
+    fs::create_hard_link(path("vehicle.toml"), path(name));
+  for (const char* name : {"vehicle.nc", "vehicle.json", "vehicle.mat", "same.toml"}) {
+    expect_refused({"linearise", in("vehicle.toml"), "-o", in(name)}, "vehicle.toml", "-o ", other);
+  }
+  expect_refused({"linearise", in("vehicle.toml"), "--plot", in("vehicle.svg")}, "vehicle.toml", "--plot ", other);
+  expect_refused({"export-fmu", in("vehicle.toml"), "-o", in("vehicle.fmu")}, "vehicle.toml", "-o ", other);
+  fs::create_symlink("battery.toml", path("battery.svg"));
+  expect_refused({"endurance", in("battery.toml"), "--plot", in("battery.svg")}, "battery.toml", "--plot ", other);
 }
 
 TEST_F(UsersFiles, WhatAnInputNamesIsAnInputToo) {

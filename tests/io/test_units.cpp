@@ -162,7 +162,7 @@ TEST(Units, SpeedConstantsAreTorqueConstantsWhereAskedFor) {
 }
 
 TEST(Units, MessagesStayOnOneLine) {
-  EXPECT_EQ(in_quotes("a\nb\x01"), "\"a\\nb\\x01\"");
+  EXPECT_EQ(in_quotes("a\nb\x01"), "\"a\\nb\\u0001\"");
   EXPECT_EQ(in_quotes(std::string(59, 'a') + "éb"), "\"" + std::string(59, 'a') + "...\"");
 }
 

@@ -79,6 +79,15 @@ class Vehicles(unittest.TestCase):
         name = 'Flügel "zwei" \\ 翼\n\x7f'
         self.assertEqual(reference().replace({"vehicle.name": name}).name, name)
 
+    def test_a_name_with_what_toml_escapes_or_cannot_hold(self):
+        name = "a\x7f\x9b\u202e\u2028\ufeff\U0001f600\x00\x1b"
+        vehicle = reference().replace({"vehicle.name": name})
+        self.assertEqual(vehicle.name, name)
+        self.assertEqual(wb.Vehicle.from_toml(vehicle.to_toml()).name, name)
+        for hidden in "\x7f\x9b\u202e\u2028\ufeff":
+            self.assertNotIn(hidden, vehicle.to_toml())
+        self.assertEqual(reference().replace({"vehicle.name": "half \ud83d"}).name, "half \ufffd")
+
 
     def test_keys_and_metrics_explain_themselves(self):
         inertia = type(reference().motor).inertia

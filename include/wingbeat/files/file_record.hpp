@@ -73,7 +73,8 @@ std::filesystem::path followed(const std::string& option, const std::filesystem:
 /// file, with which nothing is lost.
 bool written_by_wingbeat(const std::filesystem::path& file);
 
-/// Enters that into a drawing (SVG, PDF or PNG by the file's extension), which the program that drew it did not.
-void mark_drawing(const std::filesystem::path& file);
+/// Enters that into a drawing (SVG, PDF or PNG by the file's extension), which the program that drew it did not. Throws
+/// std::runtime_error that begins with `shown` where it cannot be stored.
+void mark_drawing(const std::filesystem::path& file, const std::string& shown);
 
 }  // namespace wingbeat

@@ -35,12 +35,16 @@ class NetcdfFile {
     std::vector<Dimension> dimensions;
   };
 
+  /// Where a file is made: in memory, to be stored as a whole by close(), or, of one that may not fit there, on the
+  /// disk, which must have room for it (HDF5 does not survive a full one).
+  enum class Place { memory, disk };
+
   /// Creates the file, replacing an existing one.
-  explicit NetcdfFile(const std::filesystem::path& file);
+  explicit NetcdfFile(const std::filesystem::path& file, Place place = Place::memory);
   NetcdfFile(const NetcdfFile&) = delete;
   NetcdfFile& operator=(const NetcdfFile&) = delete;
-  /// Closes without a word; call close() to learn whether everything was written. After an error nothing is closed:
-  /// HDF5 does not survive the second meeting with a full disk.
+  /// Closes without a word, in memory without storing anything; call close() to have everything written. On the disk
+  /// nothing is closed after an error: HDF5 does not survive the second meeting with a full disk.
   ~NetcdfFile();
 
   Dimension define_dimension(const std::string& name, std::size_t length);
@@ -81,6 +85,7 @@ class NetcdfFile {
   void check(int status, const std::string& action) const;
 
   std::string file_;
+  Place place_;
   int id_ = -1;
   mutable bool failed_ = false;
 };

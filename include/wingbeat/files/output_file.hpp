@@ -1,7 +1,11 @@
 // A file that appears under its name only when it is complete.
 #pragma once
 
+#include <sys/types.h>
+
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -11,8 +15,9 @@
 namespace wingbeat {
 
 /// Reserves a place for an output file at once, so that a path that cannot be written, or must not be, is refused
-/// before any computing, and gives it its name in commit(). Without commit() nothing is left behind and an existing
-/// file stays as it was.
+/// before any computing, and gives it its name in commit(), once it is known to be complete and on the disk. Without
+/// commit() nothing is left behind and an existing file stays as it was; what processes that were killed have left in
+/// the folder goes.
 class OutputFile {
  public:
   /// `option` is what the path was given for ("--plot"). Throws InputError if no file can be written there, if the
@@ -32,6 +37,8 @@ class OutputFile {
   std::string option_;
   std::filesystem::path target_;
   std::filesystem::path temporary_;
+  std::optional<mode_t> mode_;              ///< of the file that is replaced
+  std::optional<std::uintmax_t> expected_;  ///< size of what write() has written
   TemporaryFile* remembered_ = nullptr;
   bool committed_ = false;
 };

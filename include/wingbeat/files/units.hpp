@@ -46,7 +46,7 @@ double unit_factor(std::string_view unit, std::string_view expected_unit);
 /// What to write for a quantity in an SI unit, for messages: `a length such as "5 mm"` for "m".
 std::string quantity_example(std::string_view unit);
 
-/// Text fit for a message: control characters escaped, cut after `longest` bytes.
+/// Text fit for a message: one line, hidden characters escaped (core/text.hpp), cut after `longest` bytes.
 std::string one_line(std::string_view text, std::size_t longest = 60);
 
 /// The same in double quotes.

@@ -26,9 +26,8 @@ void plot_cycle(std::span<const WaveformRow> rows, const Design<double>& design,
                 PlotFormat format, const std::filesystem::path& file);
 
 /// The mechanism that the design has, alone, as it stands above a plotted cycle. `stroke_amplitude` [rad] is that of a
-/// direct drive; cranks have their own. Throws like plot_cycle.
-void plot_mechanism(const Design<double>& design, double stroke_amplitude, PlotFormat format,
-                    const std::filesystem::path& file);
+/// direct drive; cranks have their own. The content of a file; throws like plot_cycle.
+std::string drawn_mechanism(const Design<double>& design, double stroke_amplitude, PlotFormat format);
 
 /// One case of a power breakdown.
 struct PowerBar {

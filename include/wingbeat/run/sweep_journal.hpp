@@ -31,6 +31,11 @@ class SweepJournal {
   SweepJournal& operator=(const SweepJournal&) = delete;
   ~SweepJournal();
 
+  /// Removes the journal of a sweep whose data set has got its name: what a process that was killed between the two has
+  /// left. A journal of another sweep, or of a running process, stays.
+  static void remove_finished(const std::filesystem::path& journal, const std::filesystem::path& data_set,
+                              std::uint64_t fingerprint);
+
   bool holds(std::uint64_t chunk) const { return held_[chunk]; }
   std::uint64_t chunks_held() const { return records_; }
   std::uint64_t designs_held() const;

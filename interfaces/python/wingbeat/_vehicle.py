@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
+import re
 import tomllib
 from collections.abc import Iterator, Mapping
 from typing import IO, TYPE_CHECKING, Any
@@ -26,14 +26,21 @@ if TYPE_CHECKING:
     from ._studies import Flight
 
 
+def _toml_text(text: str) -> str:
+    """A TOML string: JSON's, with all that TOML wants escaped. Half of a surrogate pair has no place in it."""
+    hidden = re.compile("[\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff\ufff9-\ufffb\ufffe\uffff]")
+    whole = re.sub("[\ud800-\udfff]", "\ufffd", text)
+    return hidden.sub(lambda c: f"\\u{ord(c[0]):04x}", json.dumps(whole, ensure_ascii=False))
+
+
 def _toml(value: Any) -> str:
     """A value of Python as a TOML value."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+        return _toml_text(value)
     if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{json.dumps(str(k))} = {_toml(v)}" for k, v in value.items()) + "}"
+        return "{" + ", ".join(f"{_toml_text(str(k))} = {_toml(v)}" for k, v in value.items()) + "}"
     if hasattr(value, "tolist"):  # an array or a number of NumPy
         return _toml(value.tolist())
     if isinstance(value, (list, tuple)):
@@ -183,8 +190,7 @@ class Vehicle(Sections):
 
         `stroke_amplitude` [rad] is that of a direct drive; a crank has its own.
         """
-        with tempfile.TemporaryDirectory(prefix="wingbeat-") as folder:
-            svg = _core.mechanism_svg(self._design, stroke_amplitude, os.path.join(folder, "mechanism.svg"))
+        svg = _core.mechanism_svg(self._design, stroke_amplitude)
         return svg[max(0, svg.find("<svg")) :]
 
     def _repr_html_(self) -> str:

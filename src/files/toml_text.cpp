@@ -1,0 +1,37 @@
+#include "wingbeat/files/toml_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "wingbeat/core/text.hpp"
+
+namespace wingbeat {
+
+std::string toml_text(std::string_view text) {
+  std::string result = "\"";
+  for (std::size_t at = 0; at < text.size();) {
+    const detail::Utf8Character c = detail::utf8_at(text, at);
+    if (!c.valid) {
+      result += "\\uFFFD";
+    } else if (c.code == '"' || c.code == '\\') {
+      result += '\\';
+      result += char(c.code);
+    } else if (detail::is_hidden(c.code)) {
+      result += fmt::format("\\u{:04X}", c.code);
+    } else {
+      result += text.substr(at, c.length);
+    }
+    at += c.length;
+  }
+  return result + '"';
+}
+
+std::string toml_key(std::string_view key) {
+  const auto bare = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  };
+  return !key.empty() && std::all_of(key.begin(), key.end(), bare) ? std::string(key) : toml_text(key);
+}
+
+}  // namespace wingbeat
