@@ -28,7 +28,8 @@ std::vector<std::string> shipped_names(InputKind kind);
 /// The name of an input file in messages: "standard input" for "-".
 std::string input_name(const std::filesystem::path& file);
 
-/// What standard input holds, up to 4 MB. It is read once; whoever asks again gets the same text.
+/// What standard input holds, up to the largest file that anything reads. It is read once; whoever asks again gets the
+/// same text.
 const std::string& standard_input();
 
 }  // namespace wingbeat
