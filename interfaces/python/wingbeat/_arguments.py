@@ -146,7 +146,7 @@ def number(name: str, value: Any, unit: str) -> float:
             raise wrong_type(name, f"{other}{_core.quantity_example(unit)}", value)
         found = as_real
     if not math.isfinite(found):
-        raise refused(name, f"must be finite, got {value}")
+        raise refused(name, f"must be finite, got {value if isinstance(value, str) else found}")
     return found
 
 
@@ -167,8 +167,9 @@ def array(name: str, values: Any, unit: str = "") -> npt.NDArray[np.float64]:
     if is_masked(values):
         first = int(np.flatnonzero(np.broadcast_to(values.mask, np.shape(values)))[0])
         raise refused(name, f"value {first} is masked; fill masked values, or leave them out")
+    texts = isinstance(values, (list, tuple)) and any(isinstance(value, str) for value in values)
     try:
-        found = np.asarray(values)
+        found = np.array(values, dtype=object) if texts else np.asarray(values)
     except ValueError:
         raise refused(name, "rows of different lengths are no array") from None
     kind = found.dtype.kind

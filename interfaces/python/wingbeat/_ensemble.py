@@ -147,6 +147,9 @@ def solve_columns(
     varied = {
         key: array(key, values, _unit(key)) for key, values in given.items() if _unit(key) and _is_column(values)
     }
+    for key, column in varied.items():
+        if len(column) == 0:
+            raise refused(key, "expected a value for each design, got none")
     held = {key: values for key, values in given.items() if key not in varied}
     frequency = held.pop("frequency", frequency)
     tolerance, held_frequency = number("tolerance", tolerance, "1"), optional_number("frequency", frequency, "Hz")
@@ -158,9 +161,6 @@ def solve_columns(
         vehicle = vehicle.replace(held)
     if not varied:
         raise ValueError("no key has an array of values; wingbeat.solve takes a single vehicle")
-    for key, values in varied.items():
-        if len(values) == 0:
-            raise refused(key, "expected a value for each design, got none")
     lengths = {key: len(values) for key, values in varied.items()}
     count = next(iter(lengths.values()))
     for key, length in lengths.items():

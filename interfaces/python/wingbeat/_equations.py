@@ -48,6 +48,10 @@ class EquationsOfMotion:
             number("time", time, "s"), array("state", state), optional_number("voltage", voltage, "V")
         )
 
+    def __repr__(self) -> str:
+        vehicle, condition = self._made_of
+        return f"<wingbeat.EquationsOfMotion of {vehicle.name!r} in {condition}: {', '.join(self.states)}>"
+
     def __reduce__(self) -> tuple[Any, tuple[Vehicle, str]]:
         return _restored, self._made_of
 
