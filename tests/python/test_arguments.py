@@ -72,7 +72,7 @@ class Types(Refusals):
                 with self.subTest(name=name, value=str(wrong)[:10]):
                     self.refused(lambda: call(wrong), f"{name}: must be finite")
         self.refused(lambda: vehicle.solve(frequency=[3]),
-                     'frequency: expected a number [[]Hz[]] or a frequency such as "22 Hz", got list$', TypeError)
+                     r'frequency: expected a number \[Hz\] or a frequency such as "22 Hz", got list$', TypeError)
 
     def test_numbers_of_every_kind(self):
         vehicle = reference()

@@ -12,8 +12,8 @@ import numpy as np
 import wingbeat as wb
 from shared import CASES, DATA, reference
 
-#: Seconds after which a call must have ended, on a machine that does other things as well.
-SOON = 1.0
+#: Seconds of this process's work after which a call must have ended: a machine may do other things meanwhile.
+SOON = 0.5
 
 
 def design(name):
@@ -30,7 +30,7 @@ class Interrupts(unittest.TestCase):
         sent = []
 
         def interrupt():
-            sent.append(time.monotonic())
+            sent.append(time.process_time())
             os.kill(os.getpid(), signal.SIGINT)
 
         timer = threading.Timer(after, interrupt)
@@ -41,7 +41,7 @@ class Interrupts(unittest.TestCase):
                     act()
         finally:
             timer.join()
-        self.assertLess(time.monotonic() - sent[0], SOON)
+        self.assertLess(time.process_time() - sent[0], SOON)
         self.assertEqual(threading.active_count(), 1)
 
     def test_solves(self):
