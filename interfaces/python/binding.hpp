@@ -13,6 +13,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -50,6 +51,54 @@ E choice(const char* name, const std::string& text) {
   if (const auto value = from_name<E>(text)) return *value;
   throw InputError("", 0, 0, name, "must be " + std::string(listed_names<E>()) + ", got " + in_quotes(text));
 }
+
+// ---- with and without the GIL
+
+/// Does what makes the calling thread enter Python. Where Python is being shut down, the thread stops there for good,
+/// as Python 3.14 does itself: earlier ones unwind the thread's stack, which destructors do not survive.
+template <class Enter>
+void entering(const Enter& enter) noexcept {
+  const auto for_ever = [] {
+    while (true) std::this_thread::sleep_for(std::chrono::hours(1));
+  };
+#if PY_VERSION_HEX >= 0x030D0000
+  if (Py_IsFinalizing()) for_ever();
+#else
+  if (_Py_IsFinalizing()) for_ever();
+#endif
+  try {
+    enter();
+  } catch (...) {
+    for_ever();
+  }
+}
+
+/// With the GIL, on a thread that may be without it.
+class Entered {
+ public:
+  Entered() {
+    entering([this] { own_.emplace(); });
+  }
+
+ private:
+  std::optional<py::gil_scoped_acquire> own_;
+};
+
+/// Without the GIL, so that other threads of Python run.
+class Left {
+ public:
+  Left() : state_(PyEval_SaveThread()) {}
+  Left(const Left&) = delete;
+  Left& operator=(const Left&) = delete;
+  ~Left() {
+    entering([this] { PyEval_RestoreThread(state_); });
+  }
+
+ private:
+  PyThreadState* state_;
+};
+
+// ---- computations
 
 /// A computation that Python waits for: where one of its signal handlers raises, as that of Ctrl-C does, or the user's
 /// progress function, the computation is asked to stop, and the exception goes on once it has.
@@ -105,7 +154,7 @@ class WatchWithin : public Watch {
     if (++looks_ % 64 != 0) return;
     const auto now = std::chrono::steady_clock::now();
     if (now - listened_ < interval) return;
-    const py::gil_scoped_acquire own;
+    const Entered own;
     listen();
     listened_ = std::chrono::steady_clock::now();
   }
@@ -121,7 +170,7 @@ auto listening(const Work& work) {
   WatchWithin watch;
   try {
     const CancellationScope scope(&watch);
-    const py::gil_scoped_release others;
+    const Left others;
     return work();
   } catch (...) {
     watch.raise_again();
@@ -140,7 +189,7 @@ auto watched(const py::object& progress, const Work& work) {
   });
   while (true) {
     {
-      const py::gil_scoped_release others;
+      const Left others;
       if (found.wait_for(Watch::interval) == std::future_status::ready) break;
     }
     watch.listen();

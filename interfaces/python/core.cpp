@@ -269,8 +269,7 @@ PYBIND11_MODULE(_core, m) {
   m.def("run", &run, "design"_a, "condition"_a, "method"_a, "tolerance"_a, "frequency"_a, "lift"_a,
         "allow_extrapolation"_a, "points"_a, "endurance"_a);
   m.def("gradient", &differentiate, "design"_a, "keys"_a, "condition"_a, "tolerance"_a, "frequency"_a, "endurance"_a);
-  m.def("mechanism_svg", &mechanism_svg, "design"_a, "stroke_amplitude"_a, "file"_a,
-        py::call_guard<py::gil_scoped_release>());
+  m.def("mechanism_svg", &mechanism_svg, "design"_a, "stroke_amplitude"_a, "file"_a, py::call_guard<Left>());
   m.def("energy_balance", &balance);
   m.def("simulate", &start_up);
   add_motion(m);

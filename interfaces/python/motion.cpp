@@ -112,7 +112,7 @@ class Stepped {
     if (voltage.is_none()) return idle().release();
     if (!PyCallable_Check(voltage.ptr())) return idle().command(voltage.cast<double>());
     idle().command([voltage](double time) {
-      const py::gil_scoped_acquire own;
+      const Entered own;
       return voltage(time).cast<double>();
     });
   }

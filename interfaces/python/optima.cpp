@@ -107,7 +107,7 @@ py::dict find_own(const std::string& name, const std::vector<std::string>& overr
   OwnTerms terms;
   terms.constraints = constraints;
   terms.evaluate = [&](const Design<double>& design, const DesignPoint& point) {
-    const py::gil_scoped_acquire own;
+    const Entered own;
     const Vehicle<double> vehicle = resolve(design, file.study.options.condition);
     RunResult run;
     run.status = FlappingStatus::flapping;

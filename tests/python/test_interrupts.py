@@ -1,8 +1,10 @@
-"""Ctrl-C ends every long call at once."""
+"""Ctrl-C ends every long call at once; threads and processes."""
 
 import os
 import pathlib
 import signal
+import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -10,6 +12,7 @@ import unittest
 
 import numpy as np
 import wingbeat as wb
+import xarray  # noqa: F401, an import that is interrupted would be no call of ours
 from shared import CASES, DATA, reference
 
 #: Seconds of this process's work after which a call must have ended: a machine may do other things meanwhile.
@@ -40,6 +43,7 @@ class Interrupts(unittest.TestCase):
                 while True:
                     act()
         finally:
+            timer.cancel()
             timer.join()
         self.assertLess(time.process_time() - sent[0], SOON)
         self.assertEqual(threading.active_count(), 1)
@@ -121,6 +125,34 @@ class Interrupts(unittest.TestCase):
         self.ends(lambda: wb.optimise(own, vehicle=reference()), after=1.0)
         flights = {**optimum, "objective": {"maximise": "endurance_s", "starts": 4}, "parameter": parameters[1:]}
         self.ends(lambda: wb.optimise(flights, vehicle=design("friction2022-battery")), after=1.0)
+
+
+class Processes(unittest.TestCase):
+    def run_script(self, text):
+        head = "from shared import *\nimport numpy as np, threading, time\n"
+        return subprocess.run([sys.executable, "-c", head + text], capture_output=True, text=True, timeout=60)
+
+    def test_a_daemon_thread_does_not_outlive_python(self):
+        for act in (
+            "reference().simulation(tolerance=1e-10).step_to(1e5)",
+            "reference().simulation(tolerance=1e-10, voltage=lambda time: 3.0).step_to(1e5)",
+            "reference().solve_columns({'supply.voltage': np.linspace(2, 5, 400_000)}, tolerance=1e-10)",
+        ):
+            script = f"threading.Thread(target=lambda: {act}, daemon=True).start()\ntime.sleep(0.3)\nprint('ends')"
+            found = self.run_script(script)
+            self.assertEqual((found.returncode, found.stdout, found.stderr), (0, "ends\n", ""), act)
+
+    def test_processes_that_are_forked(self):
+        script = """
+import multiprocessing
+def best(voltages):
+    return float(reference().solve_columns({"supply.voltage": voltages}, threads=2).lift_mean.max())
+here = best(np.linspace(2, 4, 2000))
+with multiprocessing.get_context("fork").Pool(2) as pool:
+    print(pool.map(best, [np.linspace(2, 4, 2000)] * 2) == [here, here])
+"""
+        found = self.run_script(script)
+        self.assertEqual((found.returncode, found.stdout), (0, "True\n"), found.stderr)
 
 
 if __name__ == "__main__":
