@@ -7,6 +7,7 @@
 #include "wingbeat/core/cancellation.hpp"
 #include "wingbeat/files/bench_file.hpp"
 #include "wingbeat/files/design_file.hpp"
+#include "wingbeat/files/file_record.hpp"
 #include "wingbeat/files/optimise_file.hpp"
 #include "wingbeat/files/study_file.hpp"
 #include "wingbeat/run/parallel.hpp"
@@ -111,7 +112,8 @@ TEST(Cancelling, ReachesAllThreads) {
   options.output = folder / "sweep.nc";
   EXPECT_TRUE(ends_after(20, [&] { run_sweep(study, options); }));
   EXPECT_FALSE(std::filesystem::exists(options.output));
-  // What was interrupted can be taken up again.
+  // What was interrupted can be taken up again, as by another command.
+  FileRecord::of_this_program().clear();
   EXPECT_EQ(run_sweep(study, options).outcome, SweepResult::Outcome::finished);
   std::filesystem::remove_all(folder);
 }

@@ -33,12 +33,6 @@ class Section:
     def __hash__(self) -> int:
         return hash((self._path, repr(self._values())))
 
-    def __copy__(self) -> Section:
-        return self
-
-    def __deepcopy__(self, memo: dict[int, Any]) -> Section:
-        return self
-
     def __reduce__(self) -> tuple[type[Section], tuple[Any]]:
         return type(self), (self._vehicle,)
 
