@@ -10,6 +10,7 @@
 #include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/waveform_file.hpp"
 #include "wingbeat/report/plot.hpp"
+#include "wingbeat/report/report.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat::python {
@@ -97,17 +98,9 @@ py::list described(const Rows& table) {
   return rows;
 }
 
-double quantity(const std::string& name, const py::object& value, const std::string& unit) {
-  if (!py::isinstance<py::str>(value)) {
-    try {
-      return value.cast<double>();
-    } catch (const py::cast_error&) {
-      throw InputError("", 0, 0, name,
-                       "expected " + quantity_example(unit) + ", got " + one_line(std::string(py::repr(value))));
-    }
-  }
+double quantity(const std::string& name, const std::string& text, const std::string& unit) {
   try {
-    return parse_quantity(value.cast<std::string>(), unit);
+    return parse_quantity(text, unit);
   } catch (const UnitError& error) {
     throw InputError("", 0, 0, name, error.what());
   }
@@ -147,17 +140,8 @@ py::dict run(const Design<double>& design, const std::string& condition, const s
   options.allow_extrapolation = allow_extrapolation;
   options.waveform_rows = points;
   options.endurance = endurance;
-  RunResult found;
-  {
-    const py::gil_scoped_release others;
-    found = solve(design, options);
-  }
-  py::dict result;
-  result["status"] = unreached(found) ? name_of(SweepStatus::unreached) : name_of(found.status);
-  result["evidence"] = describe(found);
-  result["settled"] = found.settled;
-  result["domain"] = name_of(found.domain);
-  result["metrics"] = array_of(found.metrics.values);
+  RunResult found = listening([&] { return solve(design, options); });
+  py::dict result = outcome_of(found);
   if (points > 0) result["cycle"] = columns_of(found.cycle);
   result["design"] = std::move(found.design);
   return result;
@@ -180,11 +164,7 @@ py::dict differentiate(const Design<double>& design, const std::vector<std::stri
   require_tolerance(options.tolerance = tolerance);
   options.frequency = frequency;
   options.endurance = endurance;
-  DesignPoint found;
-  {
-    const py::gil_scoped_release others;
-    found = gradient(design, keys, options);
-  }
+  const DesignPoint found = listening([&] { return gradient(design, keys, options); });
   py::array_t<double> slopes({keys.size(), std::size_t(metric_count)});
   for (std::size_t k = 0; k < keys.size(); ++k) {
     for (std::size_t m = 0; m < std::size_t(metric_count); ++m) {
@@ -210,10 +190,7 @@ py::dict start_up(const Design<double>& design, const std::string& condition, do
   options.current = current;
   options.record = true;
   options.record_interval = record_interval;
-  TransientResult found = watched(py::none(), [&](const Watch& watch) {
-    options.cancel = [&watch] { return watch.stopped(); };
-    return simulate(design, options, environment);
-  });
+  const TransientResult found = listening([&] { return simulate(design, options, environment); });
   const auto column = [&](double TransientSample::* member) {
     std::vector<double> numbers;
     numbers.reserve(found.samples.size());
@@ -243,6 +220,19 @@ py::dict start_up(const Design<double>& design, const std::string& condition, do
 }
 
 }  // namespace
+
+py::dict outcome_of(const RunResult& found) {
+  py::dict result;
+  result["status"] = unreached(found) ? name_of(SweepStatus::unreached) : name_of(found.status);
+  result["evidence"] = describe(found);
+  result["settled"] = found.settled;
+  result["domain"] = name_of(found.domain);
+  result["domain_detail"] =
+      found.domain_evidence.empty() ? py::object(py::none()) : py::object(py::str(describe(found.domain_evidence)));
+  result["warnings"] = warnings_of(found);
+  result["metrics"] = array_of(found.metrics.values);
+  return result;
+}
 
 py::list columns_of(const std::vector<WaveformRow>& rows) {
   py::list columns;
@@ -274,10 +264,11 @@ PYBIND11_MODULE(_core, m) {
   });
   m.def("domain_name", [](int bits) { return name_of(DomainStatus(std::uint64_t(bits))); });
   m.def("quantity", &quantity);
+  m.def("quantity_example", [](const std::string& unit) { return quantity_example(unit); });
   m.def("run", &run, "design"_a, "condition"_a, "method"_a, "tolerance"_a, "frequency"_a, "lift"_a,
         "allow_extrapolation"_a, "points"_a, "endurance"_a);
   m.def("gradient", &differentiate, "design"_a, "keys"_a, "condition"_a, "tolerance"_a, "frequency"_a, "endurance"_a);
-  m.def("mechanism_svg", &mechanism_svg, "design"_a, "stroke_amplitude"_a, py::call_guard<py::gil_scoped_release>());
+  m.def("mechanism_svg", &mechanism_svg, "design"_a, "stroke_amplitude"_a, py::call_guard<Left>());
   m.def("energy_balance", &balance);
   m.def("simulate", &start_up);
   add_motion(m);

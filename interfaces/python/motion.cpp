@@ -1,6 +1,6 @@
 // Vehicles in time for Python: equations of motion, and simulations that are stepped. Nothing is computed here.
 #include <array>
-#include <chrono>
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <string>
@@ -31,12 +31,15 @@ py::array_t<double> rates(const EquationsOfMotion& equations, double time,
   }
   const auto from = state.unchecked<2>();
   auto to = derivatives.mutable_unchecked<2>();
-  std::array<double, 5> column, slopes;
-  for (py::ssize_t n = 0; n < state.shape(1); ++n) {
-    for (std::size_t r = 0; r < rows; ++r) column[r] = from(py::ssize_t(r), n);
-    equations.rates(time, column.data(), slopes.data(), voltage);
-    for (std::size_t r = 0; r < rows; ++r) to(py::ssize_t(r), n) = slopes[r];
-  }
+  listening([&] {
+    std::array<double, 5> column, slopes;
+    for (py::ssize_t n = 0; n < from.shape(1); ++n) {
+      check_cancellation();
+      for (std::size_t r = 0; r < rows; ++r) column[r] = from(py::ssize_t(r), n);
+      equations.rates(time, column.data(), slopes.data(), voltage);
+      for (std::size_t r = 0; r < rows; ++r) to(py::ssize_t(r), n) = slopes[r];
+    }
+  });
   return derivatives;
 }
 
@@ -62,30 +65,54 @@ class Stepped {
   }
   Simulation& idle() { return const_cast<Simulation&>(std::as_const(*this).idle()); }
 
-  /// Without the GIL; now and then signals reach Python.
-  std::vector<TransientEvent> step_to(double until, const std::string& event) {
-    using namespace std::chrono_literals;
+  std::vector<TransientEvent> step_to(double until, const std::optional<std::string>& event) {
     Simulation& simulation = idle();
     StepOptions options;
-    if (!event.empty()) options.until_event = event_kind(event);
-    auto listened = std::chrono::steady_clock::now();
-    options.check = [&] {
-      const auto now = std::chrono::steady_clock::now();
-      if (now - listened < 50ms) return;
-      listened = now;
-      const py::gil_scoped_acquire own;
-      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    };
+    if (event) options.until_event = event_kind(*event);
     const Busy stepping(busy_);
-    const py::gil_scoped_release others;
-    return simulation.step_to(until, options);
+    return listening([&] { return simulation.step_to(until, options); });
+  }
+
+  /// Steps to each of the times: what acts there, absent behind a jam, and the events on the way. Where that ends
+  /// early, the simulation stands where it began.
+  std::vector<WaveformRow> record(const std::vector<double>& times, std::vector<TransientEvent>& events) {
+    Simulation& simulation = idle();
+    double last = simulation.time();
+    for (const double time : times) {
+      if (!(time >= last) || !std::isfinite(time)) {
+        throw InputError("", 0, 0, "times", "must not fall, nor begin in the past, and must be finite");
+      }
+      last = time;
+    }
+    const SimulationState before = simulation.save();
+    const Busy stepping(busy_);
+    std::vector<WaveformRow> rows;
+    rows.reserve(times.size());
+    try {
+      listening([&] {
+        for (const double time : times) {
+          check_cancellation();
+          if (!simulation.ended()) {
+            for (const TransientEvent& event : simulation.step_to(time)) events.push_back(event);
+          }
+          rows.push_back(simulation.now());
+          if (rows.back().time >= time) continue;
+          for (const WaveformColumn& column : waveform_columns()) rows.back().*column.value = absent;
+          rows.back().time = time;
+        }
+      });
+    } catch (...) {
+      simulation.restore(before);
+      throw;
+    }
+    return rows;
   }
 
   void command(const py::object& voltage) {
     if (voltage.is_none()) return idle().release();
     if (!PyCallable_Check(voltage.ptr())) return idle().command(voltage.cast<double>());
     idle().command([voltage](double time) {
-      const py::gil_scoped_acquire own;
+      const Entered own;
       return voltage(time).cast<double>();
     });
   }
@@ -118,21 +145,11 @@ Stepped simulation_of(const Design<double>& design, const std::string& condition
   return Stepped(simulation(design, options, choice<Condition>("condition", condition)));
 }
 
-/// Steps to each of the times. What acts there as columns, NaN behind a jam; and the events.
+/// What acts at each of the times, as columns, and the events on the way.
 py::tuple recorded(Stepped& stepped, const std::vector<double>& times) {
-  std::vector<WaveformRow> rows;
   std::vector<TransientEvent> events;
-  for (const double time : times) {
-    if (time < stepped.idle().time()) throw InputError("", 0, 0, "times", "must not fall, nor begin in the past");
-    for (const TransientEvent& event : stepped.step_to(time, "")) events.push_back(event);
-    WaveformRow row = stepped.idle().now();
-    if (row.time < time) {
-      for (const WaveformColumn& column : waveform_columns()) row.*column.value = absent;
-      row.time = time;
-    }
-    rows.push_back(row);
-  }
-  return py::make_tuple(columns_of(rows), events_of(events));
+  const py::list columns = columns_of(stepped.record(times, events));
+  return py::make_tuple(columns, events_of(events));
 }
 
 py::list acting(const Stepped& stepped) {
@@ -167,8 +184,8 @@ void add_motion(py::module_& m) {
            [](Stepped& of, std::vector<double> times, std::vector<double> voltages) {
              of.idle().command(std::move(times), std::move(voltages));
            })
-      .def("step_to",
-           [](Stepped& of, double until, const std::string& event) { return events_of(of.step_to(until, event)); })
+      .def("step_to", [](Stepped& of, double until,
+                         const std::optional<std::string>& event) { return events_of(of.step_to(until, event)); })
       .def("record", &recorded)
       .def("save", [](const Stepped& of) { return py::tuple(py::cast(of.idle().save().numbers)); })
       .def("restore", [](Stepped& of, std::vector<double> numbers) { of.idle().restore({std::move(numbers)}); });

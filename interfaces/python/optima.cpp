@@ -17,8 +17,8 @@ namespace {
 /// Of one objective.
 py::dict find_best(OptimiseFile study, int threads) {
   std::vector<MotorTrial> trials = trials_of(study);
-  watched(py::none(), [&](const Watch& watch) {
-    const ForEach for_each = until_stopped(watch, threads);
+  watched(py::none(), [&](const Watch&) {
+    const ForEach for_each = side_by_side(threads);
     for (MotorTrial& trial : trials) {
       if (!trial.refused()) trial.result = optimise(trial_study(study, trial), start_up_in_time(), for_each);
     }
@@ -40,7 +40,7 @@ py::dict find_front(const OptimiseFile& file, int threads, const std::vector<std
   const ParetoStudy study = pareto_study(file);
   const ParetoResult found = watched(progress, [&](Watch& watch) {
     const auto tell = [&](std::uint64_t done, std::uint64_t designs) { watch.report({designs, done, done, 0.0}); };
-    return pareto_front(study, evolve, start_up_in_time(), until_stopped(watch, threads), tell);
+    return pareto_front(study, evolve, start_up_in_time(), side_by_side(threads), tell);
   });
   py::dict result = told(json_front(file, study, found), text_front(file, study, found));
   py::list vehicles, picks, metrics, parameters, keys;
@@ -107,24 +107,22 @@ py::dict find_own(const std::string& name, const std::vector<std::string>& overr
   OwnTerms terms;
   terms.constraints = constraints;
   terms.evaluate = [&](const Design<double>& design, const DesignPoint& point) {
-    const py::gil_scoped_acquire own;
-    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    py::dict found;
-    found["status"] = name_of(point.status);
-    found["evidence"] = describe(point);
-    found["settled"] = true;
-    found["domain"] = name_of(point.domain);
-    found["metrics"] = array_of(point.metrics.values);
+    const Entered own;
+    const Vehicle<double> vehicle = resolve(design, file.study.options.condition);
+    RunResult run;
+    run.status = FlappingStatus::flapping;
+    run.evidence = point.evidence;
+    run.metrics = point.metrics;
+    run.domain = point.domain;
+    run.domain_evidence = domain_evidence(vehicle, point.metrics);
+    run.residual_share = notable_residual(vehicle, point.metrics);
+    const py::dict found = outcome_of(run);
     std::vector<OwnTerm> made;
     for (const py::handle term : evaluate(design, found).cast<py::list>()) made.push_back(term_of(term));
     if (made.size() != constraints + 1) throw py::value_error("expected a term for the objective and each constraint");
     return made;
   };
-  OwnOptimum found;
-  {
-    const py::gil_scoped_release others;
-    found = optimise_own(file.study, terms, start_up_in_time());
-  }
+  const OwnOptimum found = listening([&] { return optimise_own(file.study, terms, start_up_in_time()); });
   py::list searches, keys;
   for (const OptimisedParameter& p : file.study.parameters) keys.append(p.parameter.key);
   for (const SearchEnd& s : found.searches) {

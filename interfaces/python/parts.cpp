@@ -27,6 +27,10 @@ void append_row(Columns& columns, std::initializer_list<double> row) {
   for (const double value : row) columns[column++].push_back(value);
 }
 
+void require_finite(const char* name, double angle) {
+  if (!std::isfinite(angle)) throw InputError("", 0, 0, name, "must be finite");
+}
+
 Vehicle<double> resolved(const Design<double>& design) {
   validate(design);
   return switched_on(resolve(design));
@@ -37,17 +41,21 @@ Vehicle<double> resolved(const Design<double>& design) {
 py::tuple motor_curves(const Design<double>& design, std::optional<double> voltage, std::vector<double> speeds) {
   const Vehicle<double> vehicle = resolved(design);
   const double v = voltage.value_or(vehicle.voltage), free = free_speed(vehicle.motor, v);
-  if (!(v >= 0.0)) throw InputError("", 0, 0, "voltage", "must be >= 0 V");
+  if (!(v >= 0.0) || !std::isfinite(v)) throw InputError("", 0, 0, "voltage", "must be >= 0 V and finite");
   if (speeds.empty()) {
     constexpr int intervals = 100;
     for (int n = 0; n <= intervals; ++n) speeds.push_back(free * n / intervals);
   }
   Columns columns(4);
-  for (const double speed : speeds) {
-    if (!(speed >= 0.0)) throw InputError("", 0, 0, "speed", "must be >= 0 rad/s");
-    const SteadyMotor<double> at = steady_motor(vehicle.motor, v, speed);
-    append_row(columns, {at.current, at.torque, at.power_electrical, at.power_mechanical});
-  }
+  listening([&] {
+    for (const double speed : speeds) {
+      check_cancellation();
+      if (!(speed >= 0.0) || !std::isfinite(speed))
+        throw InputError("", 0, 0, "speed", "must be >= 0 rad/s and finite");
+      const SteadyMotor<double> at = steady_motor(vehicle.motor, v, speed);
+      append_row(columns, {at.current, at.torque, at.power_electrical, at.power_mechanical});
+    }
+  });
   const SteadyMotor<double> stalled = steady_motor(vehicle.motor, v, 0.0), idle = steady_motor(vehicle.motor, v, free);
   columns.push_back(std::move(speeds));
   return py::make_tuple(v, free, idle.current, stalled.current, stalled.torque, arrays_of(std::move(columns)));
@@ -58,11 +66,15 @@ py::list coefficient_curves(const Design<double>& design, const std::vector<doub
   const Vehicle<double> vehicle = resolved(design);
   const ForceCoefficients<double>& c = vehicle.wings.coefficients;
   Columns columns(4);
-  for (const double alpha : angles) {
-    append_row(columns, {lift_coefficient(c, alpha), drag_coefficient(c, alpha),
-                         normal_force_coefficient(vehicle.wings, vehicle.pitch, alpha),
-                         pitches(vehicle) ? centre_of_pressure(alpha) : absent});
-  }
+  listening([&] {
+    for (const double alpha : angles) {
+      check_cancellation();
+      require_finite("angle_of_attack", alpha);
+      append_row(columns, {lift_coefficient(c, alpha), drag_coefficient(c, alpha),
+                           normal_force_coefficient(vehicle.wings, vehicle.pitch, alpha),
+                           pitches(vehicle) ? centre_of_pressure(alpha) : absent});
+    }
+  });
   return arrays_of(std::move(columns));
 }
 
@@ -73,10 +85,14 @@ py::tuple kinematics(const Design<double>& design, const std::vector<double>& an
   }
   const Vehicle<double> vehicle = resolved(design);
   Columns columns(5);
-  for (const double theta : angles) {
-    const CrankKinematics<double> k = crank_kinematics(vehicle.transmission, std::sin(theta), std::cos(theta));
-    append_row(columns, {stroke_angle(k), k.stroke_slope, k.stroke_curve, k.crank_lever, k.wing_lever});
-  }
+  listening([&] {
+    for (const double theta : angles) {
+      check_cancellation();
+      require_finite("crank_angle", theta);
+      const CrankKinematics<double> k = crank_kinematics(vehicle.transmission, std::sin(theta), std::cos(theta));
+      append_row(columns, {stroke_angle(k), k.stroke_slope, k.stroke_curve, k.crank_lever, k.wing_lever});
+    }
+  });
   const Reversals found = reversals(vehicle.transmission);
   std::vector<double> turns(found.angle.begin(), found.angle.begin() + std::ptrdiff_t(found.count));
   return py::make_tuple(stroke_amplitude(vehicle.transmission), turns, arrays_of(std::move(columns)));

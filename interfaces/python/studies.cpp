@@ -68,17 +68,16 @@ py::dict solve_columns(const std::string& study, const Design<double>& base,
 void write_sweep(const std::string& study, const Design<double>& vehicle, const std::string& output, int threads,
                  bool force, const py::object& progress) {
   forget_files();
-  const Study parsed = parse_study(study_input("sweep", study, vehicle));
   silence_hdf5();  // here xarray will open the file
   watched(progress, [&](Watch& watch) {
     silence_hdf5();
+    const Study parsed = parse_study(study_input("sweep", study, vehicle));
     SweepRunOptions options;
     options.output = output;
     options.version = WINGBEAT_VERSION;
     options.threads = threads;
     options.force = force;
-    options.progress = [&watch](const SweepProgress& now) { watch.note(now); };
-    options.stop = [&watch] { return watch.stopped(); };
+    options.progress = [&watch](const SweepProgress& now) { watch.report(now); };
     return run_sweep(parsed, options);
   });
 }
@@ -91,11 +90,7 @@ py::dict endurance(const Design<double>& design, bool allow_extrapolation) {
   }
   EnduranceOptions options;
   options.allow_extrapolation = allow_extrapolation;
-  EnduranceResult found;
-  {
-    const py::gil_scoped_release others;
-    found = simulate_discharge(design, options);
-  }
+  const EnduranceResult found = listening([&] { return simulate_discharge(design, options); });
   py::dict result = told(json_endurance(found), text_endurance(design, found));
   const auto column = [&](const auto& value) {
     std::vector<double> numbers;
@@ -120,7 +115,7 @@ py::dict identify(const std::string& file, std::optional<double> frequency, bool
   MotorDatasheet sheet = read_datasheet(file);
   sheet.assume_steel_cylinder |= assume_steel_cylinder;
   sheet.assume_typical_damping |= assume_typical_damping;
-  const MotorIdentification found = identify_motor(sheet, frequency);
+  const MotorIdentification found = listening([&] { return identify_motor(sheet, frequency); });
   py::dict result = told(json_identification(found, sheet), text_identification(found, sheet));
   result["motor"] =
       found.complete()
@@ -136,8 +131,8 @@ py::dict fit(const std::string& file, const std::vector<std::string>& overrides,
   bench.profiles = profiles;
   FitResult found;
   std::vector<FrictionCandidate> candidates;
-  watched(py::none(), [&](const Watch& watch) {
-    const ForEach for_each = until_stopped(watch, threads);
+  watched(py::none(), [&](const Watch&) {
+    const ForEach for_each = side_by_side(threads);
     found = fit_bench(bench, {}, for_each);
     if (compare_friction_laws) candidates = compare_friction(bench, design_parameter, {}, for_each);
     return true;
@@ -171,7 +166,7 @@ py::dict linearise(const Design<double>& design, const std::string& condition, s
   options.step_cycles = cycles;
   options.hinge_offset = hinge_offset;
   options.allocation_maps = maps;
-  const ControlModels found = watched(py::none(), [&](const Watch&) { return control_models(design, options); });
+  const ControlModels found = listening([&] { return control_models(design, options); });
   return told(json_control(found, WINGBEAT_VERSION), text_control(found));
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "wingbeat/core/cancellation.hpp"
 #include "wingbeat/cycle/orbit_search.hpp"
 #include "wingbeat/cycle/thermal_equilibrium.hpp"
 
@@ -165,6 +166,7 @@ void detail::fill_simulated(const StartUpOutcome& outcome, const SteadyOptions& 
 
 SteadyFlapping detail::find_flapping_as_it_is(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                               const StartUp& start_up) {
+  check_cancellation();
   if (pitches(vehicle)) {
     return drive_of(vehicle).rotates ? detail::find_pitching_crank_flapping(vehicle, options, start_up)
                                      : detail::find_pitching_flapping(vehicle, options, start_up);

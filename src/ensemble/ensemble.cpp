@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ensemble/plan.hpp"
+#include "wingbeat/core/cancellation.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
 #include "wingbeat/cycle/thermal_equilibrium.hpp"
 #include "wingbeat/ensemble/direct_pack_blocks.hpp"
@@ -252,6 +253,7 @@ class EnsembleRun {
     std::array<Result, lanes_avx512> results;
     std::array<Result*, lanes_avx512> of_members;
     for (std::size_t start = 0; start < which.size(); start += std::size_t(solver_.lanes)) {
+      check_cancellation();
       const std::size_t count = std::min(which.size() - start, std::size_t(solver_.lanes));
       for (std::size_t lane = 0; lane < count; ++lane) {
         members[lane] = &members_[which[start + lane]];

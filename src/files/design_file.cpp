@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "files/input_errors.hpp"
+#include "files/read_stream.hpp"
 #include "files/table_csv.hpp"
 #include "files/toml_document.hpp"
 #include "wingbeat/core/text.hpp"
@@ -433,8 +434,7 @@ InputError::InputError(std::string file, int line, int column, std::string key, 
       column_(column),
       key_(std::move(key)) {}
 
-std::string read_text_file(const std::filesystem::path& file) {
-  constexpr std::size_t largest = 4u << 20;
+std::string read_text_file(const std::filesystem::path& file, std::size_t largest) {
   if (file == "-") return standard_input();
   const std::string name = file.string();
   const auto refuse = [&](const std::string& message) { throw InputError(name, 0, 0, "", message); };
@@ -449,11 +449,12 @@ std::string read_text_file(const std::filesystem::path& file) {
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   if (!stream) refuse(fmt::format("cannot be read: {}", std::strerror(errno)));
-  std::string text(largest + 1, '\0');
-  stream.read(text.data(), std::streamsize(text.size()));
+  std::string text = detail::read_stream(stream, largest);
   if (stream.bad()) refuse("cannot be read");
-  text.resize(std::size_t(stream.gcount()));
-  if (text.size() > largest) refuse("larger than 4 MB, which no vehicle file or table is");
+  if (text.size() > largest) {
+    refuse(fmt::format("larger than {} MB, which no {} is", largest >> 20,
+                       largest == largest_text ? "vehicle file or table" : "study file"));
+  }
   FileRecord::of_this_program().add_read(file);
   return text;
 }

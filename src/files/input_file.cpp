@@ -6,6 +6,7 @@
 #include <iostream>
 #include <system_error>
 
+#include "files/read_stream.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
@@ -41,12 +42,13 @@ bool is_readable_file(const fs::path& file) {
 
 const std::string& standard_input() {
   static const std::string text = [] {
-    constexpr std::size_t largest = 4u << 20;
-    std::string all(largest + 1, '\0');
-    std::cin.read(all.data(), std::streamsize(all.size()));
+    constexpr std::size_t largest = largest_study;  // whoever reads it may know a lower one
+    std::string all = detail::read_stream(std::cin, largest);
     if (std::cin.bad()) throw InputError("standard input", 0, 0, "", "cannot be read");
-    all.resize(std::size_t(std::cin.gcount()));
-    if (all.size() > largest) throw InputError("standard input", 0, 0, "", "larger than 4 MB, which no input file is");
+    if (all.size() > largest) {
+      throw InputError("standard input", 0, 0, "",
+                       fmt::format("larger than {} MB, which no input file is", largest >> 20));
+    }
     return all;
   }();
   return text;

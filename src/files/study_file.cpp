@@ -344,7 +344,7 @@ Study parse_study(const StudyInput& input) { return StudyReader(input.study_name
 Study read_study(const fs::path& file, std::span<const std::string> overrides) {
   StudyInput input;
   input.study_name = input_name(file);
-  input.study = read_text_file(file);
+  input.study = read_text_file(file, largest_study);
   StudyReader reader(input.study_name, input.study, overrides);
   const fs::path folder = file.parent_path();
   reader.attempt([&] {

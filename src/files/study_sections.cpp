@@ -50,7 +50,7 @@ StudySections::StudySections(std::string name, std::string_view text, std::span<
                              std::initializer_list<std::string_view> sections,
                              std::initializer_list<std::string_view> keys)
     : TomlReader(std::move(name)),
-      root_(parse_toml_tree(text, file())),
+      root_(parse_toml_tree(text, file(), largest_study)),
       overrides_(overrides.begin(), overrides.end()) {
   known_keys(root_, "", with({"study", "set"}, sections));
   attempt([&] {

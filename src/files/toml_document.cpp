@@ -19,7 +19,6 @@ namespace wingbeat {
 
 namespace {
 
-constexpr std::size_t largest_text = 4u << 20;
 constexpr int deepest_nesting = 16;
 // toml++ looks through all sections, and all dotted keys, again for each; InputErrors has a sentence for each.
 constexpr int most_sections = 10000, most_keys = 20000;
@@ -187,11 +186,15 @@ std::string reason_in(const toml::parse_error& error) {
 }
 
 /// Parses TOML; refuses with `origin` moved to the place of the error unless the origin is an override.
-toml::table parse_toml(std::string_view text, const Origin& origin) {
+toml::table parse_toml(std::string_view text, const Origin& origin, std::size_t largest = largest_text) {
   const auto refuse = [&](int line, int column, const std::string& message) {
     throw InputError(origin.file, origin.overridden ? 0 : line, origin.overridden ? 0 : column, "", message);
   };
-  if (text.size() > largest_text) refuse(0, 0, "larger than 4 MB, which no vehicle file is");
+  if (text.size() > largest) {
+    refuse(0, 0,
+           fmt::format("larger than {} MB, which no {} file is", largest >> 20,
+                       largest == largest_text ? "vehicle" : "study"));
+  }
   if (const auto complaint = Gatekeeper(text).complaint()) {
     refuse(complaint->line, complaint->column, complaint->message);
   }
@@ -433,8 +436,8 @@ const TomlNode* TomlNode::find(std::string_view key) const {
   return nullptr;
 }
 
-TomlNode parse_toml_tree(std::string_view text, std::string_view file_name) {
-  return tree_of(parse_toml(text, Origin{std::string(file_name), 0, 0, false}));
+TomlNode parse_toml_tree(std::string_view text, std::string_view file_name, std::size_t largest) {
+  return tree_of(parse_toml(text, Origin{std::string(file_name), 0, 0, false}, largest));
 }
 
 std::string kind_of(const TomlNode& node) {

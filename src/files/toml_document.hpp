@@ -71,8 +71,8 @@ struct TomlMember {
   TomlNode node;
 };
 
-/// A whole file as a table. Throws InputError for text that is not TOML.
-TomlNode parse_toml_tree(std::string_view text, std::string_view file_name);
+/// A whole file as a table. Throws InputError for text that is not TOML, or longer than that.
+TomlNode parse_toml_tree(std::string_view text, std::string_view file_name, std::size_t largest = largest_text);
 
 /// "a number", "an array": what a node is, for messages.
 std::string kind_of(const TomlNode& node);

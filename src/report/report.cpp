@@ -193,6 +193,12 @@ std::string wrapped(std::string_view text, int width, int indent) {
   return out;
 }
 
+std::vector<std::string> warnings_of(const RunResult& result) {
+  std::vector<std::string> warnings;
+  if (result.residual_share) warnings.push_back(residual_warning(*result.residual_share));
+  return warnings;
+}
+
 std::string json_report(const RunResult& result) {
   Json json;
   json["status"] = result.status == FlappingStatus::undecided ? Json(nullptr) : Json(name_of(result.status));
@@ -200,8 +206,7 @@ std::string json_report(const RunResult& result) {
   const bool assessed = result.status == FlappingStatus::flapping && std::isfinite(result.metrics[Metric::frequency]);
   json["domain"] = assessed ? Json(name_of(result.domain)) : Json(nullptr);
   json["domain_detail"] = result.domain_evidence.empty() ? Json(nullptr) : Json(describe(result.domain_evidence));
-  json["warnings"] = Json::array();
-  if (result.residual_share) json["warnings"].push_back(residual_warning(*result.residual_share));
+  json["warnings"] = warnings_of(result);
   const auto& table = metric_table();
   for (std::size_t m = 0; m < table.size(); ++m) json[table[m].key] = number_or_null(result.metrics.values[m]);
   if (result.design.supply.type == SupplyType::pwm) json["supply_duty"] = result.design.supply.duty;

@@ -4,7 +4,6 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
 
 #include <atomic>
@@ -19,9 +18,11 @@
 #include <stdexcept>
 #include <thread>
 
+#include "wingbeat/core/cancellation.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/file_record.hpp"
 #include "wingbeat/report/report.hpp"
+#include "wingbeat/run/parallel.hpp"
 #include "wingbeat/run/sweep_journal.hpp"
 #include "wingbeat/study/run.hpp"
 
@@ -46,7 +47,7 @@ void solve_chunk(Solvers& solvers, const ChunkLayout& layout, std::uint64_t chun
   columns.first = layout.first(chunk);
   columns.resize(size, std::size_t(layout.metrics));
   const std::size_t blocks = (size + sweep_block - 1) / sweep_block;
-  tbb::parallel_for(std::size_t(0), blocks, [&](std::size_t b) {
+  for_each_in_parallel(blocks, [&](std::size_t b) {
     const std::size_t begin = b * sweep_block, end = std::min(size, begin + sweep_block);
     solvers.local().solve(columns, begin, end);
     block_done(end - begin);
@@ -162,7 +163,9 @@ class Run {
       work->chunk = *chunk;
       return work;
     };
+    Cancellation* const cancellation = current_cancellation();
     const auto solve = [&](Work* work) {
+      const CancellationScope scope(cancellation);
       solve_chunk(solvers_, layout_, work->chunk, work->columns, [&](std::size_t designs) { count(designs); });
       pack(layout_, work->columns, work->bytes);
       return work;
@@ -192,7 +195,9 @@ class Run {
       for (int r = 1; r < ranks.count(); ++r) hand_out(r);
     }
     std::atomic<bool> at_work = true;
+    Cancellation* const cancellation = current_cancellation();
     std::thread here([&] {
+      const CancellationScope scope(cancellation);
       try {
         compute_here();
       } catch (...) {

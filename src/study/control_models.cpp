@@ -1,5 +1,7 @@
 #include "wingbeat/study/control_models.hpp"
 
+#include <cmath>
+
 #include "wingbeat/core/status.hpp"
 
 namespace wingbeat {
@@ -8,6 +10,8 @@ ControlModels control_models(const Design<double>& design, const ControlOptions&
   require(options.hinge_offset >= 0.0, "hinge_offset", "must be >= 0", "m", options.hinge_offset);
   require(options.step_cycles >= 0 && options.step_cycles <= 100000, "cycles", "must be 0 to 100000", "1",
           options.step_cycles);
+  require(options.hinge_offset >= 0.0 && std::isfinite(options.hinge_offset), "hinge_offset", "must be >= 0", "m",
+          options.hinge_offset);
   ControlModels models;
   models.options = options;
   models.linear = linearise(design, options.at, options.step_cycles);

@@ -1,5 +1,6 @@
 #include "study/local_search.hpp"
 
+#include <exception>
 #include <nlopt.hpp>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct Memory {
   OptimiseProblem::Evaluation evaluation;
   double scale;
   int walls = 0;
+  std::exception_ptr raised{};  ///< by an evaluation: it must not pass through NLopt, which is C
 
   const OptimiseProblem::Evaluation& at(const double* u) {
     const Eigen::Map<const Vector> x(u, function.size);
@@ -22,7 +24,7 @@ struct Memory {
       try {
         evaluation = function.evaluate(last);
       } catch (...) {
-        search.raised = std::current_exception();
+        raised = std::current_exception();
         throw nlopt::forced_stop();
       }
       ++search.evaluations;
@@ -61,7 +63,7 @@ void LocalSearch::run(const SearchedFunction& function, const Vector& start) {
   try {
     memory.at(u.data());
   } catch (const nlopt::forced_stop&) {
-    return;
+    std::rethrow_exception(memory.raised);
   }
   const OptimiseProblem::Evaluation& first = memory.evaluation;
   if (!first.flaps) return;
@@ -95,8 +97,9 @@ void LocalSearch::run(const SearchedFunction& function, const Vector& start) {
     } catch (const std::exception&) {
       // What was reached until then counts.
     }
+    if (memory.raised) std::rethrow_exception(memory.raised);
     // Where gradients lack, a second search, from where the first ended, shows that it had not merely become slow.
-    if (raised || (function.gradients && memory.walls == 0 && (converged || !feasible))) break;
+    if (function.gradients && memory.walls == 0 && (converged || !feasible)) break;
     memory.walls = 0;
     if (feasible) u.assign(end.data(), end.data() + end.size());
     else u.assign(start.data(), start.data() + start.size());

@@ -1,7 +1,6 @@
 // One local search for the best design.
 #pragma once
 
-#include <exception>
 #include <functional>
 
 #include "study/optimise_problem.hpp"
@@ -21,8 +20,8 @@ struct LocalSearch {
   double objective = HUGE_VAL, began = absent;
   bool feasible = false;
   int evaluations = 0;
-  std::exception_ptr raised;  ///< what an evaluation threw, which ended the search
 
+  /// Throws what an evaluation does.
   void run(const SearchedFunction& function, const Vector& start);
   void run(const OptimiseProblem& problem, const Vector& start) {
     run({problem.size(), problem.constraints(), true, [&](const Vector& u) { return problem.evaluate(u); }}, start);

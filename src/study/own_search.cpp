@@ -107,7 +107,6 @@ OwnOptimum optimise_own(const OptimiseStudy& study, const OwnTerms& terms, const
   for (std::size_t n = 0; n < starts.size(); ++n) {
     LocalSearch& s = searches[n];
     s.run(function, starts[n]);
-    if (s.raised) std::rethrow_exception(s.raised);
     result.evaluations += s.evaluations;
     result.searches.push_back({values(starts[n]), s.feasible ? values(s.end) : std::vector<double>(), s.began,
                                s.feasible ? s.objective : absent, s.evaluations});

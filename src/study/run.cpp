@@ -223,6 +223,9 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
     require(*options.frequency > 0.0 && std::isfinite(*options.frequency), "frequency", "must be > 0 and finite", "Hz",
             *options.frequency);
   }
+  if (options.lift) {
+    require(*options.lift > 0.0 && std::isfinite(*options.lift), "lift", "must be > 0 and finite", "N", *options.lift);
+  }
   if (options.frequency && drive.voltage_sets_frequency) require_choice_of_voltage(supply, "flapping frequency", false);
   if (options.lift && !drive.alternating) require_choice_of_voltage(supply, "lift", true);
   if (supply.type == SupplyType::sine && !drive.alternating && options.method == Method::orbit) {

@@ -7,6 +7,7 @@
 #include "time/integrator.hpp"
 #include "time/pitch_direct_model.hpp"
 #include "time/transient_tools.hpp"
+#include "wingbeat/core/cancellation.hpp"
 #include "wingbeat/core/root.hpp"
 #include "wingbeat/solve/explicit_step.hpp"
 #include "wingbeat/solve/implicit_step.hpp"
@@ -88,6 +89,7 @@ class OwnIntegrator : public Integrator {
   }
 
   Outcome advance() override {
+    check_cancellation();
     if (at_root_) look_here();  // what is done at a root may move other root functions
     from_ = t_;
     start_ = y_;

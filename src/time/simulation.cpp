@@ -11,6 +11,7 @@
 #include "time/direct_model.hpp"
 #include "time/pitch_direct_model.hpp"
 #include "time/simulation.hpp"
+#include "wingbeat/core/text.hpp"
 #include "wingbeat/vehicle/drive.hpp"
 
 namespace wingbeat {
@@ -225,6 +226,10 @@ void Simulation::release() {
 
 std::vector<TransientEvent> Simulation::step_to(double until, const StepOptions& options) {
   if (!std::isfinite(until)) throw ParameterError("time", "must be a finite number");
+  if (until < time()) {
+    throw ParameterError(
+        "time", detail::format("must not lie in the past: the simulation is at %.10g s, got %.10g s", time(), until));
+  }
   EventWatch watch{{}, options};
   std::visit(
       [&](auto& model) {

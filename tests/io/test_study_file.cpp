@@ -107,6 +107,23 @@ TEST_F(StudyFile, ListedAndZippedValues) {
   EXPECT_EQ(second.design.transmission.formulation, Formulation::virtual_work);
 }
 
+TEST_F(StudyFile, AxesOfVeryManyValues) {
+  std::string text = "[[axis]]\nkey = \"supply.voltage\"\nvalues = [\n";
+  for (int n = 0; n < 300000; ++n) text += std::to_string(2.0 + 1e-5 * n) + "000000000000,\n";
+  ASSERT_GT(text.size(), std::size_t(6) << 20);
+  const Study study = read(text + "]\n");
+  EXPECT_EQ(study.sweep.size(), 300000U);
+  EXPECT_NEAR(study.sweep.axes[0].quantities[0].values.back(), 4.99999, 1e-9);
+  // A file that is no study is not read to its end.
+  write("large.toml", std::string(largest_study + 1, '\n'));
+  try {
+    read_study(folder_ / "large.toml");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("large.toml: larger than 64 MB, which no study file is"));
+  }
+}
+
 TEST_F(StudyFile, ChoicesMakeVariants) {
   const Study study = read(
       "[[axis]]\nkey = \"springs\"\nvalues = [false, true]\n"

@@ -5,7 +5,8 @@ import pathlib
 
 import wingbeat as wb
 
-DATA = pathlib.Path(__file__).resolve().parents[2] / "data"
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+DATA, CASES = ROOT / "data", ROOT / "tests" / "cases"
 PROGRAM = os.environ.get("WINGBEAT_PROGRAM")
 
 

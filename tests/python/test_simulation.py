@@ -148,7 +148,6 @@ class Simulations(unittest.TestCase):
             (lambda: reference().simulation(condition="water"), "^condition: must be air"),
             (lambda: reference().simulation(tolerance=1), "^tolerance: must be a number between"),
             (lambda: reference().simulation(voltage="3 kg"), "^voltage: expected a voltage such as"),
-            (lambda: setattr(simulation, "voltage", [1, 2, 3]), "^voltage: expected a voltage such as"),
             (lambda: simulation.step_to("3 V"), "^time: expected a time such as"),
             (lambda: simulation.step(1, until="lunch"), "^until: must be revolution, .* or jam, got \"lunch\"$"),
             (lambda: simulation.record([1.0, 0.5]), "^times: must not fall"),
@@ -160,6 +159,8 @@ class Simulations(unittest.TestCase):
         ):
             with self.assertRaisesRegex(wb.InputError, text):
                 act()
+        with self.assertRaisesRegex(TypeError, r'^voltage: expected a number \[V\] or a voltage such as "3 V", got list$'):
+            simulation.voltage = [1, 2, 3]
 
     def test_ctrl_c_ends_a_step(self):
         # A test started in the background ignores it.

@@ -86,8 +86,8 @@ class Vehicles(unittest.TestCase):
         self.assertEqual(wb.Vehicle.from_toml(vehicle.to_toml()).name, name)
         for hidden in "\x7f\x9b\u202e\u2028\ufeff":
             self.assertNotIn(hidden, vehicle.to_toml())
-        self.assertEqual(reference().replace({"vehicle.name": "half \ud83d"}).name, "half \ufffd")
-
+        with self.assertRaisesRegex(wb.InputError, "vehicle.name: is not a text in Unicode"):
+            reference().replace({"vehicle.name": "half \ud83d"})
 
     def test_keys_and_metrics_explain_themselves(self):
         inertia = type(reference().motor).inertia
@@ -119,7 +119,6 @@ class Errors(unittest.TestCase):
                      'supply.voltage: expected a voltage such as "3 V", got "3 kg"')
         self.refused(lambda: vehicle.solve(frequency="3 V"),
                      'frequency: expected a frequency such as "22 Hz", got "3 V"')
-        self.refused(lambda: vehicle.solve(frequency=[3]), 'frequency: expected a frequency such as "22 Hz", got [3]')
         self.refused(lambda: vehicle.solve(tolerance=1.0), "tolerance: must be a number between 1e-12 and 1e-2")
         self.refused(lambda: vehicle.solve(condition="water"),
                      'condition: must be air, vacuum or wingless, got "water"')
@@ -151,7 +150,7 @@ class Errors(unittest.TestCase):
         self.assertEqual((caught.exception.file, caught.exception.line), ("vehicle", 1))
         with open(path, "rb") as file, self.assertRaisesRegex(TypeError, "open for reading text, got BufferedReader"):
             wb.read(file)
-        with self.assertRaisesRegex(TypeError, "^expected a path or a file open for reading text, got int$"):
+        with self.assertRaisesRegex(TypeError, "^file: expected a path or a file open for reading text, got int$"):
             wb.read(1)
 
     def test_what_is_no_value_at_all(self):

@@ -237,6 +237,10 @@ TEST(SteppedSimulation, WhatIsRefused) {
             "voltage: must have as many samples as times, at least one");
   EXPECT_EQ(refused([&] { simulation.command({1.0, 0.0}, {3.0, 3.0}); }), "voltage: has times that fall");
   EXPECT_EQ(refused([&] { simulation.command(std::nan("")); }), "voltage: must be a finite number");
+  simulation.step_to(0.02);
+  EXPECT_EQ(refused([&] { simulation.step_to(0.01); }),
+            "time: must not lie in the past: the simulation is at 0.02 s, got 0.01 s");
+  EXPECT_TRUE(simulation.step_to(0.02).empty());
   EXPECT_EQ(refused([&] { simulation.restore(Simulation(pitching_vehicle(2e-4)).save()); }),
             "state: is that of another kind of vehicle");
   EXPECT_EQ(refused([&] { Simulation(reference_vehicle(), three_volts, {.tolerance = 1.0}); }),

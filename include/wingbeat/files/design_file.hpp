@@ -46,9 +46,12 @@ class InputError : public std::runtime_error {
 /// Gives the text of a table file (chord or coefficient CSV) that a vehicle file names. May throw std::runtime_error.
 using TableLoader = std::function<std::string(const std::string& name)>;
 
+/// Bytes of a vehicle file, and of most others, at most; of a study file, whose axes may have a million values each.
+inline constexpr std::size_t largest_text = std::size_t(4) << 20, largest_study = std::size_t(64) << 20;
+
 /// The whole text of a file, of standard input for "-"; throws InputError if it is missing, unreadable, a directory, or
-/// above 4 MB.
-std::string read_text_file(const std::filesystem::path& file);
+/// larger than so many bytes.
+std::string read_text_file(const std::filesystem::path& file, std::size_t largest = largest_text);
 
 /// The design in a vehicle file, validated. CSV files that it names are sought beside it.
 ///

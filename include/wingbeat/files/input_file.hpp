@@ -31,7 +31,8 @@ std::string input_name(const std::filesystem::path& file);
 /// The same in what is written, without the folder: where a file is on this machine is nobody else's.
 std::string written_name(const std::filesystem::path& file);
 
-/// What standard input holds, up to 4 MB. It is read once; whoever asks again gets the same text.
+/// What standard input holds, up to the largest file that anything reads. It is read once; whoever asks again gets the
+/// same text.
 const std::string& standard_input();
 
 }  // namespace wingbeat

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "wingbeat/study/run.hpp"
 
@@ -11,6 +12,9 @@ namespace wingbeat {
 /// One JSON object with the keys of `wingbeat run --json` in their order, SI, absent metrics null; numbers read back to
 /// the same double. With Method::transient it ends with an object `start_up`.
 std::string json_report(const RunResult& result);
+
+/// What else a user should know about a run: `warnings` of json_report, a sentence each.
+std::vector<std::string> warnings_of(const RunResult& result);
 
 /// A table of at most 90 columns with units chosen for reading. `options` are those of the run.
 std::string text_report(const RunResult& result, const RunOptions& options);

@@ -20,8 +20,8 @@
 namespace wingbeat::solver {
 
 /// Integrates one iterate from `start` at x = 0. `iterate.switches` may hold expected positions (those of the iterate
-/// before), which saves finding them again. With `quadratures`, every step records its integrals. Never throws, never
-/// loops for ever.
+/// before), which saves finding them again. With `quadratures`, every step records its integrals. Throws nothing but
+/// Cancelled, never loops for ever.
 template <bool quadratures, class System>
 void run_iterate(const System& system, const typename System::State& start, const IterateOptions& options,
                  Iterate<System>& iterate) {

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "wingbeat/core/cancellation.hpp"
 #include "wingbeat/solve/explicit_step.hpp"
 #include "wingbeat/solve/implicit_step.hpp"
 
@@ -67,11 +68,12 @@ struct IterateOptions {
   int switches = 1000;      ///< end steps on the first so many switches only; the others are noted in passing
 };
 
-/// One step by either method.
+/// One step by either method. Throws Cancelled.
 template <bool quadratures, class System>
 StepResult<System> take_step(Method method, const System& system, const typename System::Real& x,
                              const typename System::State& y, const typename System::Real& h,
                              const typename System::Signs& branch, const Rates<System>& first) {
+  check_cancellation();
   return method == Method::explicit_pair ? explicit_step<quadratures>(system, x, y, h, branch, first)
                                          : implicit_step<quadratures>(system, x, y, h, branch, first);
 }
@@ -82,6 +84,7 @@ StepResult<Jets> take_step(Method method, const Jets& jets, const System& system
                            const typename Jets::State& y, const typename Jets::Real& h,
                            const typename Jets::Signs& branch,
                            const detail::AtStages<typename System::State>* near = nullptr) {
+  check_cancellation();
   if (method == Method::radau) return implicit_step<quadratures>(jets, system, x, y, h, branch, near);
   const Rates<Jets> first = jets.template rates<quadratures>(x, y, branch);
   return explicit_step<quadratures>(jets, x, y, h, branch, first);

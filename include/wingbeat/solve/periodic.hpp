@@ -188,7 +188,8 @@ double cancellation(const System& system, const Iterate<System>& iterate) {
 }  // namespace detail
 
 /// Finds a periodic orbit from the state `guess` at x = 0. On success `iterate` holds the orbit's iterate with its
-/// integrals. `system.cast<Jet<states>>()` must give it dual numbers for Newton steps and stability. Never throws.
+/// integrals. `system.cast<Jet<states>>()` must give it dual numbers for Newton steps and stability. Throws nothing but
+/// Cancelled.
 template <class System>
 PeriodicSummary solve_periodic(const System& system, const typename System::State& guess,
                                const PeriodicOptions& options, Iterate<System>& iterate) {

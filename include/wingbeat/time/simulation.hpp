@@ -77,7 +77,7 @@ class Simulation {
   /// Goes on to the time `until` [s], or stops before. Returns what has happened on the way: force_sign_change,
   /// standstill, breakaway, jam, supply_switch, stop_impact and, of a crank, revolution. From a saved state the same
   /// calls give the same bits. Throws std::runtime_error where steps fail, and what the commanding function or `check`
-  /// throws; the simulation then stands where the call began.
+  /// throws; the simulation then stands where the call began. Throws ParameterError for a time in the past.
   std::vector<TransientEvent> step_to(double until, const StepOptions& options = {});
 
   SimulationState save() const;

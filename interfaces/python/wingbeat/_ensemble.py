@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
+from ._arguments import (
+    array, callback, mapping, number, optional_number, refused, text, threads_of, vehicle_of, wrong_type,
+)
 from ._progress import shown
-from ._result import quantity
 from ._study import study_of_columns, without_place
 from ._tables import metric_called, metric_rows, parameters, statuses
 from ._tables import metrics as metric_table
@@ -88,13 +90,23 @@ class Ensemble:
         return f"<{len(self)} designs: " + ", ".join(f"{n} {s}" for n, s in zip(counts, statuses) if n) + ">"
 
 
-def _column(key: str, values: Any) -> npt.NDArray[np.float64]:
-    """SI numbers of a column; texts are read with their units."""
-    unit = "Hz" if key == "frequency" else parameters[key].unit
-    array = np.asarray(values)
-    if array.dtype.kind in "OU":
-        array = np.array([_core.quantity(key, value, unit) for value in array.ravel()]).reshape(array.shape)
-    return np.ascontiguousarray(array, dtype=np.float64)
+def is_columns(value: Any) -> bool:
+    """Whether that is a dict or DataFrame."""
+    return isinstance(value, Mapping) or (hasattr(value, "columns") and hasattr(value, "__getitem__"))
+
+
+def _unit(key: str) -> str:
+    """That of a column of numbers; "" for what is no column of numbers."""
+    return "Hz" if key == "frequency" else parameters[key].unit if key in parameters else ""
+
+
+def _is_column(values: Any) -> bool:
+    """Whether there is a value for each design. Rows of a table are no column."""
+    if isinstance(values, (str, bytes, Mapping)):
+        return False
+    if isinstance(values, (list, tuple)):
+        return not any(isinstance(value, (list, tuple, np.ndarray)) for value in values)
+    return np.ndim(values) == 1
 
 
 def solve_columns(
@@ -125,14 +137,23 @@ def solve_columns(
     A design out of its physical range has the status "invalid". Other Python threads run meanwhile; Ctrl-C ends it.
     Raises InputError for a key that is unknown or has no place in the vehicle.
     """
-    given = {str(key): columns[key] for key in columns}
+    if not is_columns(columns):
+        raise wrong_type("columns", "a dict or DataFrame of columns", columns)
+    given = mapping("columns", {key: columns[key] for key in columns})
+    if vehicle is not None:
+        vehicle_of(vehicle)
+    if frequency is not None and given.get("frequency") is not None:
+        raise refused("frequency", "is given in the columns and beside them")
     varied = {
-        key: _column(key, values)
-        for key, values in given.items()
-        if np.ndim(values) == 1 and (key == "frequency" or (key in parameters and parameters[key].unit))
+        key: array(key, values, _unit(key)) for key, values in given.items() if _unit(key) and _is_column(values)
     }
+    for key, column in varied.items():
+        if len(column) == 0:
+            raise refused(key, "expected a value for each design, got none")
     held = {key: values for key, values in given.items() if key not in varied}
     frequency = held.pop("frequency", frequency)
+    tolerance, held_frequency = number("tolerance", tolerance, "1"), optional_number("frequency", frequency, "Hz")
+    condition, threads = text("condition", condition), threads_of(threads)
     if vehicle is None:
         first_row = {key: values[0] for key, values in varied.items() if key != "frequency"}
         vehicle = Vehicle({**held, **first_row})
@@ -146,13 +167,12 @@ def solve_columns(
         if length != count:
             first = next(iter(lengths))
             raise ValueError(f"{key} has {length} values, {first} has {count}")
-    held_frequency = quantity("frequency", frequency, "Hz")
     # The checks of a study are made at values that the vehicle allows: a row may be invalid.
     row = {}
     for key, values in varied.items():
         own = vehicle[key] if key in parameters else None
         row[key] = float(values[0]) if own is None else float(own)
     study = study_of_columns(row, tolerance=tolerance, metrics=metrics, frequency=held_frequency)
-    with without_place("columns"), shown(progress, count) as tell:
+    with without_place("columns"), shown(callback(progress), count) as tell:
         found = _core.solve_columns(study, vehicle._design, list(varied.values()), count, condition, threads, tell)
     return Ensemble(found)

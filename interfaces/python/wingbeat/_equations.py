@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from . import _core
-from ._result import quantity
+from ._arguments import array, number, optional_number, text, vehicle_of
 from ._vehicle import Vehicle
 
 if TYPE_CHECKING:
@@ -32,6 +32,7 @@ class EquationsOfMotion:
     states: tuple[str, ...]
 
     def __init__(self, vehicle: Vehicle, *, condition: str = "air") -> None:
+        self._made_of = (vehicle_of(vehicle), text("condition", condition))
         self._equations = _core.EquationsOfMotion(vehicle._design, condition)
         self.states = tuple(self._equations.state_names())
 
@@ -43,4 +44,17 @@ class EquationsOfMotion:
         state : a number for each of `states`, or an array with a column for each of many states
         voltage : what drives the motor in place of the supply [V], through the same resistance
         """
-        return self._equations.rates(time, state, quantity("voltage", voltage, "V"))
+        return self._equations.rates(
+            number("time", time, "s"), array("state", state), optional_number("voltage", voltage, "V")
+        )
+
+    def __repr__(self) -> str:
+        vehicle, condition = self._made_of
+        return f"<wingbeat.EquationsOfMotion of {vehicle.name!r} in {condition}: {', '.join(self.states)}>"
+
+    def __reduce__(self) -> tuple[Any, tuple[Vehicle, str]]:
+        return _restored, self._made_of
+
+
+def _restored(vehicle: Vehicle, condition: str) -> EquationsOfMotion:
+    return EquationsOfMotion(vehicle, condition=condition)

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._result import quantity
+from ._arguments import flag, number, optional_number, text, vehicle_of, whole
+from ._result import one_of
 from ._studies import StudyResult
 from ._vehicle import Vehicle
 
@@ -111,14 +112,15 @@ def linearise(
 
     Raises InputError.
     """
+    one_of(frequency=frequency, lift=lift)
     found = _core.linearise(
-        vehicle._design,
-        condition,
-        quantity("frequency", frequency, "Hz"),
-        quantity("lift", lift, "N"),
-        allow_extrapolation,
-        cycles,
-        quantity("hinge_offset", hinge_offset, "m") or 0.0,
-        maps,
+        vehicle_of(vehicle)._design,
+        text("condition", condition),
+        optional_number("frequency", frequency, "Hz"),
+        optional_number("lift", lift, "N"),
+        flag("allow_extrapolation", allow_extrapolation),
+        whole("cycles", cycles, 0, 100_000),
+        number("hinge_offset", hinge_offset, "m"),
+        flag("maps", maps),
     )
     return ControlModels(found)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import pathlib
 import shutil
@@ -12,12 +13,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._errors import InputError
+from ._arguments import callback, flag, number, real, refused, text, threads_of, wrong_type
 from ._progress import shown
 from ._result import RunResult
-from ._studies import Found, Study, _file_of
+from ._studies import Found, Study, _file_of, values_of
 from ._tables import metric_called, metric_index, metric_rows, parameters
-from ._vehicle import Vehicle, _assignments
+from ._vehicle import Vehicle
 
 if TYPE_CHECKING:
     import xarray
@@ -36,7 +37,7 @@ class Front(Found):
         self.all_vehicles = tuple(Vehicle._of(design) for design in found["vehicles"])
         self.vehicles = {name: self.all_vehicles[place] for name, place in found["picks"]}
         self.vehicle = self.vehicles.get("knee")
-        self._found = found
+        self._columns = {name: found[name] for name in ("metrics", "keys", "parameters")}
 
     @property
     def designs(self) -> xarray.Dataset:
@@ -45,10 +46,10 @@ class Front(Found):
 
         made: dict[str, Any] = {
             row.name: ("design", column, {"units": row.unit, "long_name": row.long_name})
-            for row, column in zip(metric_rows, self._found["metrics"])
+            for row, column in zip(metric_rows, self._columns["metrics"])
             if not np.all(np.isnan(column))
         }
-        for key, column in zip(self._found["keys"], self._found["parameters"]):
+        for key, column in zip(self._columns["keys"], self._columns["parameters"]):
             made[key] = ("design", column, {"units": parameters[key].unit, "long_name": parameters[key].meaning})
         return xarray.Dataset(made)
 
@@ -92,16 +93,18 @@ def optimise(
     (COBYLA) and takes more designs. Such a search starts from the vehicle and from the best of `screen` designs (default
     32 a parameter), `starts` times (default 4), on one thread. None or NaN: the design does not count.
 
-    Returns a Found; of several objectives a Front, by functions an OwnOptimum. Ctrl-C ends it within a design. Raises
+    Returns a Found; of several objectives a Front, by functions an OwnOptimum. Ctrl-C ends it. Raises
     InputError, and what a function raises.
     """
+    overrides, extrapolate = values_of(values), flag("allow_extrapolation", allow_extrapolation)
+    threads, tells = threads_of(threads), callback(progress)
     if isinstance(study, Mapping):
         own = _OwnProblem(study)
         if own.functions:
             with _file_of(own.study, vehicle) as file:
-                return own.solved(file, _assignments(values or {}), allow_extrapolation)
-    with _file_of(study, vehicle) as file, shown(progress, 0) as tell:
-        found = _core.optimise(file, _assignments(values or {}), allow_extrapolation, threads, _module_folders(), tell)
+                return own.solved(file, overrides, extrapolate)
+    with _file_of(study, vehicle) as file, shown(tells, 0) as tell:
+        found = _core.optimise(file, overrides, extrapolate, threads, _module_folders(), tell)
         return Front(found) if "picks" in found else Found(found)
 
 
@@ -121,7 +124,7 @@ class _OwnProblem:
     def __init__(self, study: Mapping[str, Any]) -> None:
         objective = study.get("objective")
         constraints = study.get("constraint", [])
-        terms = [c for c in constraints if callable(c.get("metric"))] if isinstance(constraints, (list, tuple)) else []
+        terms = [c for c in constraints if _is_function(c)] if isinstance(constraints, (list, tuple)) else []
         wanted = dict(objective) if isinstance(objective, Mapping) else {}
         self.goal = next((goal for goal in ("minimise", "maximise") if goal in wanted), "minimise")
         self.functions = bool(terms) or callable(wanted.get(self.goal))
@@ -133,29 +136,36 @@ class _OwnProblem:
             wanted[self.goal] = "frequency_hz"  # in its place, not used
         elif isinstance(self.objective, str):
             self.objective = _metric_term(self.objective)
-        count = len(study.get("parameter", []))
+        parameters_given = study.get("parameter", [])
+        count = len(parameters_given) if isinstance(parameters_given, (list, tuple)) else 0
         self.study = {
             **study,
             "objective": {"starts": 4, "screen": 32 * max(1, count), **wanted},
-            "constraint": [c for c in constraints if not callable(c.get("metric"))],
+            "constraint": [c for c in constraints if not _is_function(c)],
         }
         self.constraints: list[tuple[Callable[[RunResult], Any], float, float]] = []
         for term in terms:
             unknown = set(term) - {"metric", "at_least", "at_most"}
             if unknown or not ({"at_least", "at_most"} & set(term)):
-                raise InputError(f"constraint: a function has at_least, at_most or both, got {', '.join(map(str, term))}")
+                told = ", ".join(map(str, term))
+                raise refused("constraint", f"a function has at_least, at_most or both, got {told}")
             for key, sign in (("at_least", -1.0), ("at_most", 1.0)):
                 if key in term:
-                    limit = float(term[key])
+                    limit = real(term[key])
+                    if limit is None:
+                        raise wrong_type(f"constraint.{key}", "a number, of what a function gives", term[key])
+                    if not math.isfinite(limit):
+                        raise refused(f"constraint.{key}", f"must be finite, got {limit}")
                     self.constraints.append((term["metric"], sign / (abs(limit) or 1.0), limit))
 
-    def solved(self, file: str, overrides: list[str], allow_extrapolation: bool) -> OwnOptimum:
+    def solved(self, file: bytes, overrides: list[str], allow_extrapolation: bool) -> OwnOptimum:
         """The search, and what it found."""
         settings = self.study.get("study", {})
+        tolerance = settings.get("tolerance", 1e-8)
         options: dict[str, Any] = {
             "condition": settings.get("condition", "air"),
             "method": "orbit",
-            "tolerance": settings.get("tolerance", 1e-8),
+            "tolerance": number("tolerance", tolerance, "1"),
             "frequency": None,
             "lift": None,
             "allow_extrapolation": allow_extrapolation,
@@ -175,6 +185,10 @@ class _OwnProblem:
         return _own_optimum(found, sign, options)
 
 
+def _is_function(constraint: Any) -> bool:
+    return isinstance(constraint, Mapping) and callable(constraint.get("metric"))
+
+
 def _metric_term(name: str) -> Callable[[RunResult], Any]:
     row = metric_rows[metric_called(name)]
     return lambda result: (result.metrics[row.name], {row.name: 1.0})
@@ -185,18 +199,26 @@ def _term(function: Any, result: RunResult, factor: float, limit: float, keys: l
     value = function(result)
     slopes: Mapping[str, float] | None = None
     if isinstance(value, tuple):
+        if len(value) != 2 or not isinstance(value[1], Mapping):
+            raise TypeError("objective: expected a number, or a number and a dict of its derivatives, from a function")
         value, slopes = value
-    number = float("nan") if value is None else factor * (float(value) - limit)
+    as_real = math.nan if value is None else real(value)
+    if as_real is None:
+        raise wrong_type("objective", "a number, or a number and a dict of its derivatives, from a function", value)
+    term = factor * (as_real - limit)
     if slopes is None:
-        return (number,)
+        return (term,)
     by_metric: dict[int, float] = {}
     by_parameter = [0.0] * len(keys)
     for name, slope in slopes.items():
+        along = real(slope)
+        if along is None:
+            raise wrong_type(f"objective: the derivative by {name}", "a number", slope)
         if name in keys:
-            by_parameter[keys.index(name)] = factor * float(slope)
+            by_parameter[keys.index(name)] = factor * along
         elif name in metric_index or name not in parameters:
-            by_metric[metric_called(name)] = factor * float(slope)
-    return number, by_metric, by_parameter
+            by_metric[metric_called(text("derivative", name))] = factor * along
+    return term, by_metric, by_parameter
 
 
 def _own_optimum(found: dict[str, Any], sign: float, options: dict[str, Any]) -> OwnOptimum:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._result import quantity
+from ._arguments import array, mapping, optional_number, refused, wrong_type
 from ._tables import parameters
 from ._vehicle import Vehicle
 
@@ -33,7 +33,8 @@ def _vehicle_with(section: str, part: Vehicle | Mapping[str, Any]) -> Vehicle:
         return part
     around = {key: parameters[key].example for key in _KEYS} | _CHOICES
     kept: dict[str, Any] = {key: value for key, value in around.items() if not key.startswith(f"{section}.")}
-    return Vehicle({**kept, section: dict(part)})
+    keys = mapping(section, part, f"a wingbeat.Vehicle, or a dict of the keys of [{section}]")
+    return Vehicle({**kept, section: dict(keys)})
 
 
 def _column(dimension: str | tuple[()], values: Any, unit: str, long_name: str) -> Any:
@@ -61,9 +62,11 @@ def motor_curves(
     vehicle = _vehicle_with("motor", motor)
     if voltage is None and not isinstance(motor, Vehicle):
         raise TypeError("a motor without a vehicle needs a voltage")
-    speeds = [] if speed is None else np.asarray(speed, dtype=float).ravel().tolist()
+    speeds = [] if speed is None else array("speed", speed, "rad/s").ravel().tolist()
+    if speed is not None and not speeds:
+        raise refused("speed", "expected speeds, got none")
     v, free, idle, stalled, torque, columns = _core.motor_curves(
-        vehicle._design, quantity("voltage", voltage, "V"), speeds
+        vehicle._design, optional_number("voltage", voltage, "V"), speeds
     )
     current, shaft_torque, electrical, mechanical, omega = columns
     efficiency = np.divide(
@@ -104,10 +107,14 @@ def coefficient_curves(
 
     if isinstance(aerodynamics, Vehicle):
         vehicle = aerodynamics
+    elif not isinstance(aerodynamics, (str, Mapping)):
+        expected = "a wingbeat.Vehicle, or the name or the dict of a set of coefficients"
+        raise wrong_type("aerodynamics", expected, aerodynamics)
     else:
         own = {name.split(".")[1]: parameters[name].example for name in _KEYS if name.startswith("aerodynamics.")}
         vehicle = _vehicle_with("aerodynamics", {**own, "coefficients": aerodynamics})
-    alpha = np.radians(np.linspace(0, 90, 181)) if angle_of_attack is None else np.asarray(angle_of_attack, dtype=float)
+    given = np.radians(np.linspace(0, 90, 181)) if angle_of_attack is None else angle_of_attack
+    alpha = array("angle_of_attack", given, "rad")
     lift, drag, normal, pressure = _core.coefficient_curves(vehicle._design, alpha.ravel().tolist())
     made = {
         "lift": _column("angle_of_attack", lift, "1", "lift coefficient"),
@@ -136,7 +143,7 @@ def kinematics(transmission: Vehicle | Mapping[str, Any], *, crank_angle: Any = 
     import xarray
 
     vehicle = _vehicle_with("transmission", transmission)
-    theta = np.linspace(0, 2 * np.pi, 361) if crank_angle is None else np.asarray(crank_angle, dtype=float).ravel()
+    theta = np.linspace(0, 2 * np.pi, 361) if crank_angle is None else array("crank_angle", crank_angle, "rad").ravel()
     amplitude, reversals, columns = _core.kinematics(vehicle._design, theta.tolist())
     stroke, slope, curve, crank_lever, wing_lever = columns
     return xarray.Dataset(

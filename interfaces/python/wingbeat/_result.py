@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple, overload
 import numpy as np
 
 from . import _core
+from ._arguments import (
+    flag, names, number, numbers_of, optional_number, refused, text, vehicle_of, wrong_type,
+)
 from ._metrics import WithMetrics
 from ._quantity import Quantity
 from ._tables import metric_called, metric_rows, waveforms
@@ -21,16 +24,6 @@ if TYPE_CHECKING:
 
 #: Instants of `RunResult.cycle`, both ends included, as `wingbeat run --waveforms` writes them.
 CYCLE_POINTS = 361
-
-
-def quantity(name: str, value: Any, unit: str) -> float | None:
-    """The SI number of an option."""
-    return None if value is None else _core.quantity(name, value, unit)
-
-
-def quantities(**given: tuple[Any, str]) -> tuple[float, ...]:
-    """The SI numbers of options, each its value and its unit, in their order."""
-    return tuple(_core.quantity(name, value, unit) for name, (value, unit) in given.items())
 
 
 class Event(NamedTuple):
@@ -74,6 +67,10 @@ class RunResult(WithMetrics):
     settled: bool
     #: "inside", or the limits of the model that the cycle exceeds; "" unless flapping.
     domain: str
+    #: The same in a sentence with numbers; None where no limit is exceeded.
+    domain_detail: str | None
+    #: What else the program warns of, a sentence each.
+    warnings: list[str]
     #: The vehicle as computed: with the voltage or duty that was found.
     vehicle: Vehicle
 
@@ -82,6 +79,8 @@ class RunResult(WithMetrics):
         self.evidence = found["evidence"]
         self.settled = found["settled"]
         self.domain = found["domain"] if self.status == "flapping" else ""
+        self.domain_detail = found["domain_detail"]
+        self.warnings = found["warnings"]
         self.vehicle = vehicle
         self._metrics = found["metrics"]
         self._options = options
@@ -118,11 +117,11 @@ class RunResult(WithMetrics):
         and for metrics without derivatives (floquet_multiplier_max). Raises InputError for an unknown key and for one
         without a value in the vehicle.
         """
-        index = metric_called(metric)
+        index = metric_called(text("metric", metric))
         options = self._options
         found = _core.gradient(
             self.vehicle._design,
-            [keys] if isinstance(keys, str) else list(keys),
+            [text("keys", keys)] if isinstance(keys, str) else names("keys", keys),
             condition=options["condition"],
             tolerance=options["tolerance"],
             frequency=options["frequency"],
@@ -133,6 +132,9 @@ class RunResult(WithMetrics):
 
     def __repr__(self) -> str:
         lines = [f"{self.status}: {self.evidence}"]
+        if self.domain_detail:
+            lines.append(f"outside the model's domain: {self.domain_detail}")
+        lines += [f"warning: {warning}" for warning in self.warnings]
         for name, value in self.metrics.items():
             if value is not None:
                 lines.append(f"  {name:<28}{value:>14.6g} {'' if value.unit == '1' else value.unit}".rstrip())
@@ -149,7 +151,10 @@ class RunResult(WithMetrics):
         )
         drawing = self.vehicle.drawing(self.stroke_amplitude or np.radians(60))
         shown = f"<div style='max-width: 28em'>{drawing}</div>" if drawing else ""
-        return f"<p><b>{escape(self.status)}</b>: {escape(self.evidence)}</p>{shown}<table>{rows}</table>"
+        told = [f"outside the model's domain: {self.domain_detail}"] if self.domain_detail else []
+        told += [f"warning: {warning}" for warning in self.warnings]
+        remarks = "".join(f"<p>{escape(remark)}</p>" for remark in told)
+        return f"<p><b>{escape(self.status)}</b>: {escape(self.evidence)}</p>{remarks}{shown}<table>{rows}</table>"
 
 
 def _waveform(columns: Sequence[Any]) -> xarray.Dataset:
@@ -185,8 +190,8 @@ def solve(vehicle: Vehicle | Mapping[str, Any], /, **options: Any) -> RunResult 
     ----------
     vehicle : a Vehicle; or a dict or DataFrame of columns, one design a row: see wingbeat.solve_columns
     voltage : the supply's [V], in place of the vehicle's
-    frequency : [Hz], given: the voltage is found that yields it (a direct drive's supply has it)
-    lift : [N], given: the voltage (pwm: the duty) is found that yields this mean lift
+    frequency : [Hz], in place of a voltage: the voltage is found that yields it (a direct drive's supply has it)
+    lift : [N], in place of either: the voltage (pwm: the duty) is found that yields this mean lift
     condition : "air", "vacuum" or "wingless"
     method : "orbit", or "transient": simulated from rest
     tolerance : wanted relative accuracy of every metric, 1e-12 to 1e-2
@@ -197,11 +202,20 @@ def solve(vehicle: Vehicle | Mapping[str, Any], /, **options: Any) -> RunResult 
     """
     from ._vehicle import Vehicle
 
-    if not isinstance(vehicle, Vehicle):
-        from ._ensemble import solve_columns
+    if isinstance(vehicle, Vehicle):
+        return _solve(vehicle, **options)
+    from ._ensemble import is_columns, solve_columns
 
-        return solve_columns(vehicle, **options)
-    return _solve(vehicle, **options)
+    if not is_columns(vehicle):
+        raise wrong_type("vehicle", "a wingbeat.Vehicle, or a dict or DataFrame of columns", vehicle)
+    return solve_columns(vehicle, **options)
+
+
+def one_of(**asked: Any) -> None:
+    """Refuses all but the first of options that exclude each other; None: not asked for."""
+    given = [name for name, value in asked.items() if value is not None]
+    if len(given) > 1:
+        raise refused(given[1], f"cannot be asked for beside {given[0]}; give one of {', '.join(asked)}")
 
 
 def _solve(
@@ -216,18 +230,19 @@ def _solve(
     allow_extrapolation: bool = False,
     endurance: bool = False,
 ) -> RunResult:
+    one_of(voltage=voltage, frequency=frequency, lift=lift)
+    options: dict[str, Any] = {
+        "condition": text("condition", condition),
+        "method": text("method", method),
+        "tolerance": number("tolerance", tolerance, "1"),
+        "frequency": optional_number("frequency", frequency, "Hz"),
+        "lift": optional_number("lift", lift, "N"),
+        "allow_extrapolation": flag("allow_extrapolation", allow_extrapolation),
+        "points": 0,
+        "endurance": flag("endurance", endurance),
+    }
     if voltage is not None:
         vehicle = vehicle.replace({"supply.voltage": voltage})
-    options: dict[str, Any] = {
-        "condition": condition,
-        "method": method,
-        "tolerance": tolerance,
-        "frequency": quantity("frequency", frequency, "Hz"),
-        "lift": quantity("lift", lift, "N"),
-        "allow_extrapolation": allow_extrapolation,
-        "points": 0,
-        "endurance": endurance,
-    }
     found = _core.run(vehicle._design, **options)
     if frequency is not None or lift is not None:
         vehicle = type(vehicle)._of(found["design"])
@@ -299,12 +314,15 @@ def simulate(
 
     Raises InputError.
     """
+    for name, value in (("max_time", max_time), ("record_interval", record_interval)):
+        if number(name, value, "s") < 0.0:
+            raise refused(name, f"must be >= 0 s, got {value}")
     return StartUp(
         _core.simulate(
-            vehicle._design,
-            condition,
-            tolerance,
-            *quantities(
+            vehicle_of(vehicle)._design,
+            text("condition", condition),
+            number("tolerance", tolerance, "1"),
+            *numbers_of(
                 max_time=(max_time, "s"),
                 crank_angle=(crank_angle, "rad"),
                 crank_speed=(crank_speed, "rad/s"),

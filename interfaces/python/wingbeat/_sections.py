@@ -25,6 +25,20 @@ class Section:
     def __dir__(self) -> list[str]:
         return list(self._names)
 
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Section):
+            return NotImplemented
+        return self._path == other._path and self._values() == other._values()
+
+    def __hash__(self) -> int:
+        return hash((self._path, repr(self._values())))
+
+    def __reduce__(self) -> tuple[type[Section], tuple[Any]]:
+        return type(self), (self._vehicle,)
+
+    def _values(self) -> list[Any]:
+        return [getattr(self, name) for name in self._names]
+
     def __repr__(self) -> str:
         values = ((name, getattr(self, name)) for name in self._names)
         shown = ", ".join(f"{name}={value!r}" for name, value in values if value is not None)

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from . import _core
+from ._arguments import array, number, numbers_of, refused, text, vehicle_of, wrong_type
 from ._quantity import Quantity
-from ._result import Event, _waveform, quantities, quantity
+from ._result import Event, _waveform
 from ._tables import waveforms
 from ._vehicle import Vehicle
 
@@ -71,15 +73,15 @@ class Simulation:
         pitch_angle: float | str = 0.0,
         pitch_velocity: float | str = 0.0,
     ) -> None:
-        self.vehicle = vehicle
-        state = quantities(
+        self.vehicle = vehicle_of(vehicle)
+        state = numbers_of(
             angle=(angle, "rad"),
             speed=(speed, "rad/s"),
             current=(current, "A"),
             pitch_angle=(pitch_angle, "rad"),
             pitch_velocity=(pitch_velocity, "rad/s"),
         )
-        self._start: tuple[Any, ...] = (condition, tolerance, *state)
+        self._start: tuple[Any, ...] = (text("condition", condition), number("tolerance", tolerance, "1"), *state)
         self._simulation = _core.Simulation(vehicle._design, *self._start)
         self.states = tuple(self._simulation.state_names())
         self._voltage: Any = None
@@ -127,14 +129,19 @@ class Simulation:
     @voltage.setter
     def voltage(self, voltage: float | str | Callable[[float], float] | tuple[Any, Any] | None) -> None:
         if isinstance(voltage, (tuple, list)) and len(voltage) == 2:
-            times, volts = (np.array(samples, dtype=float) for samples in voltage)
+            times, volts = (array("voltage", samples, unit) for samples, unit in zip(voltage, ("s", "V")))
+            if times.ndim != 1 or volts.ndim != 1:
+                raise refused("voltage", "expected an array of times and one of voltages")
             self._simulation.command_samples(times.tolist(), volts.tolist())
             self._voltage = tuple(times.tolist()), tuple(volts.tolist())
-        elif voltage is None or callable(voltage):
-            self._simulation.command(voltage)
+        elif voltage is None:
+            self._simulation.command(None)
+            self._voltage = None
+        elif callable(voltage):
+            self._simulation.command(_asked(voltage))
             self._voltage = voltage
         else:
-            held = quantity("voltage", voltage, "V")
+            held = number("voltage", voltage, "V")
             self._simulation.command(held)
             self._voltage = held
 
@@ -146,15 +153,19 @@ class Simulation:
         until : stops behind the first event of this kind: "revolution" (the crank angle passes a multiple of 2 pi
             forwards), "force-sign-change" (of the rod), "standstill", "breakaway", "supply-switch", "stop-impact", "jam"
 
-        A time in the past changes nothing. It ends early where the mechanism jams. Other Python threads run meanwhile.
-        What a commanding function raises, and Ctrl-C, leave the simulation where the call began.
+        It ends early where the mechanism jams. Other Python threads run meanwhile. What a commanding function raises,
+        and Ctrl-C, leave the simulation where the call began. Raises InputError for a time in the past.
         """
-        end = _core.quantity("time", time, "s")
-        return [Event(*event) for event in self._simulation.step_to(end, until or "")]
+        end = number("time", time, "s")
+        kind = None if until is None else text("until", until)
+        return [Event(*event) for event in self._simulation.step_to(end, kind)]
 
     def step(self, duration: float | str, *, until: str | None = None) -> list[Event]:
-        """Goes on for a time [s]: see step_to."""
-        return self.step_to(self.time + _core.quantity("duration", duration, "s"), until=until)
+        """Goes on for a time [s], which is not negative: see step_to."""
+        span = number("duration", duration, "s")
+        if span < 0.0:
+            raise refused("duration", f"must be >= 0 s, got {duration}")
+        return self.step_to(self.time + span, until=until)
 
     def record(self, times: Any) -> xarray.Dataset:
         """Steps to each of these moments [s], which must not fall, and returns everything that acts there over time.
@@ -162,7 +173,7 @@ class Simulation:
         The variables are those of `RunResult.cycle`, with units and long names, NaN behind a jam; over the dimension
         `event`: `event`, `event_time` and `event_crank_angle` of what has happened on the way.
         """
-        columns, events = self._simulation.record(np.asarray(times, dtype=float).ravel().tolist())
+        columns, events = self._simulation.record(array("times", times, "s").ravel().tolist())
         made = _waveform(columns)
         made["time"].attrs["long_name"] = "time since the start"
         time, angle, kind = zip(*events) if events else ((), (), ())
@@ -178,7 +189,9 @@ class Simulation:
 
     def restore(self, state: SimulationState) -> None:
         """Goes back, or on, to a saved state. Raises InputError for one of another kind of vehicle."""
-        self._simulation.restore(state.numbers)
+        if not isinstance(state, SimulationState):
+            raise wrong_type("state", "a wingbeat.SimulationState", state)
+        self._simulation.restore(array("state", state.numbers).ravel().tolist())
         self.voltage = state.voltage
 
     def __copy__(self) -> Simulation:
@@ -196,6 +209,18 @@ class Simulation:
     def __repr__(self) -> str:
         shown = ", ".join(f"{name}={value:.6g}" for name, value in zip(self.states, self.state))
         return f"<wingbeat.Simulation of {self.vehicle.name!r} at {self.time:.6g} s: {shown}>"
+
+
+def _asked(voltage: Callable[[float], Any]) -> Callable[[float], float]:
+    """A commanding function, whose result is looked at."""
+
+    def command(time: float) -> float:
+        volts = voltage(time)
+        if isinstance(volts, float) and math.isfinite(volts):
+            return volts
+        return number("voltage, what the function returns", volts, "V")
+
+    return command
 
 
 def _restored(vehicle: Vehicle, start: tuple[Any, ...], state: SimulationState) -> Simulation:

@@ -13,11 +13,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
+from ._arguments import (
+    callback, flag, mapping, optional_number, path, refused, text, threads_of, vehicle_of, wrong_type,
+)
 from ._progress import shown
-from ._result import quantity
 from ._study import without_place
 from ._tables import metric_rows
-from ._vehicle import Vehicle, _assignments, _toml
+from ._vehicle import Vehicle, _assignments, _toml, _toml_key
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -101,24 +103,35 @@ class Found(StudyResult):
 Study = str | os.PathLike[str] | Mapping[str, Any]
 
 
+def values_of(values: Mapping[str, Any] | None) -> list[str]:
+    """Keys of the vehicle with other values, as a study takes them."""
+    return [] if values is None else _assignments(mapping("values", values))
+
+
 @contextmanager
-def _file_of(study: Study, vehicle: Vehicle | None) -> Iterator[str]:
+def _file_of(study: Study, vehicle: Vehicle | None) -> Iterator[bytes]:
     """The study as a file; of a dict, beside its vehicle in a temporary folder."""
     if not isinstance(study, Mapping):
+        if not isinstance(study, (str, bytes, os.PathLike)):
+            raise wrong_type("study", "the path of a study file, or a dict of its tables", study)
         if vehicle is not None:
             raise TypeError("a study file names its vehicle; a vehicle can be given with a dict")
-        yield os.fspath(study)
+        yield path("study", study)
         return
-    tables: dict[str, Any] = {**study, "study": dict(study.get("study", {}))}
+    tables: dict[str, Any] = {**mapping("study", study)}
+    tables["study"] = dict(mapping("study.study", study.get("study", {})))
     with tempfile.TemporaryDirectory(prefix="wingbeat-") as folder:
         if vehicle is not None:
+            if "vehicle" in tables["study"]:
+                raise refused("study.vehicle", "is given in the study and beside it")
             file = pathlib.Path(folder) / "vehicle.toml"
-            file.write_text(vehicle.to_toml(), encoding="utf-8")
+            file.write_text(vehicle_of(vehicle).to_toml(), encoding="utf-8")
             tables["study"]["vehicle"] = str(file)
         name = pathlib.Path(folder) / "study.toml"
-        name.write_text("".join(f"{key} = {_toml(value)}\n" for key, value in tables.items()), encoding="utf-8")
+        lines = (f"{_toml_key(key)} = {_toml(value, key)}\n" for key, value in tables.items())
+        name.write_text("".join(lines), encoding="utf-8")
         with without_place(str(name)):
-            yield str(name)
+            yield os.fsencode(name)
 
 
 def endurance(vehicle: Vehicle, *, allow_extrapolation: bool = False) -> Flight:
@@ -130,7 +143,7 @@ def endurance(vehicle: Vehicle, *, allow_extrapolation: bool = False) -> Flight:
 
     Raises InputError for a vehicle without a battery.
     """
-    return Flight(_core.endurance(vehicle._design, allow_extrapolation))
+    return Flight(_core.endurance(vehicle_of(vehicle)._design, flag("allow_extrapolation", allow_extrapolation)))
 
 
 def identify_motor(
@@ -152,9 +165,14 @@ def identify_motor(
 
     A sheet that does not determine the motor is a result. Raises InputError.
     """
-    held = quantity("frequency", frequency, "Hz")
     return Identification(
-        _core.identify_motor(os.fspath(sheet), held, assume_steel_cylinder, assume_typical_damping, shaft)
+        _core.identify_motor(
+            path("sheet", sheet),
+            optional_number("frequency", frequency, "Hz"),
+            flag("assume_steel_cylinder", assume_steel_cylinder),
+            flag("assume_typical_damping", assume_typical_damping),
+            text("shaft", shaft),
+        )
     )
 
 
@@ -178,7 +196,15 @@ def fit(
 
     Other Python threads run meanwhile; Ctrl-C ends it. Raises InputError.
     """
-    return Found(_core.fit(os.fspath(bench), _assignments(values or {}), profiles, compare_friction, threads))
+    return Found(
+        _core.fit(
+            path("bench", bench),
+            values_of(values),
+            flag("profiles", profiles),
+            flag("compare_friction", compare_friction),
+            threads_of(threads),
+        )
+    )
 
 
 def tolerance(
@@ -203,6 +229,7 @@ def tolerance(
 
     Raises InputError.
     """
-    with _file_of(study, vehicle) as file, shown(progress, 0) as tell:
-        return StudyResult(_core.tolerance(file, _assignments(values or {}), allow_extrapolation, threads, tell))
+    overrides, extrapolate = values_of(values), flag("allow_extrapolation", allow_extrapolation)
+    with _file_of(study, vehicle) as file, shown(callback(progress), 0) as tell:
+        return StudyResult(_core.tolerance(file, overrides, extrapolate, threads_of(threads), tell))
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from ._errors import InputError
 from ._tables import metric_called, metric_rows
+from ._arguments import names, text
 from ._vehicle import _toml
 
 
@@ -22,7 +23,7 @@ def study_of(
     """The study file of a sweep over all combinations of values of keys."""
     lines = _study(title, tolerance, metrics, frequency)
     for key, values in axes.items():
-        lines += ["", "[[axis]]", f"key = {_toml(key)}", f"values = {_toml(values)}"]
+        lines += ["", "[[axis]]", f"key = {_toml(key)}", f"values = {_toml(values, key)}"]
     return "\n".join(lines) + "\n"
 
 
@@ -39,10 +40,11 @@ def study_of_columns(
 
 def _study(title: str, tolerance: float, metrics: Iterable[str] | None, frequency: float | None) -> list[str]:
     lines = ["[study]", 'vehicle = "vehicle"', f"tolerance = {_toml(tolerance)}"]
-    if title:
+    if text("title", title):
         lines.append(f"title = {_toml(title)}")
     if metrics is not None:
-        lines.append(f"metrics = {_toml([metric_rows[metric_called(name)].key for name in metrics])}")
+        wanted = [metric_rows[metric_called(name)].key for name in names("metrics", metrics)]
+        lines.append(f"metrics = {_toml(wanted)}")
     if frequency is not None:
         lines.append(f"hold = {{ frequency = {_toml(frequency)} }}")
     return lines

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import math
 import os
 import tempfile
 import threading
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from . import _core
+from ._arguments import (
+    axis_values, callback, flag, mapping, number, optional_number, path, refused, text, threads_of, vehicle_of,
+)
 from ._progress import shown
-from ._result import quantity
 from ._study import study_of, without_place
+from ._tables import parameters
 from ._vehicle import Vehicle
 
 if TYPE_CHECKING:
@@ -54,21 +56,34 @@ def sweep(
 
     Returns the data set of docs/sweep.md: what the program writes, loaded. Its variables have the names of data sets,
     `data["lift_mean_n"]`, and `data["status"]` is a number; as attributes they are as here: `data.lift_mean`,
-    `data.status == "flapping"`. Other Python threads run meanwhile; Ctrl-C ends it within a chunk. Raises
+    `data.status == "flapping"`. Other Python threads run meanwhile; Ctrl-C ends it. Raises
     InputError.
     """
+    design, threads, replaces = vehicle_of(vehicle)._design, threads_of(threads), flag("force", force)
+    values = {key: axis_values(key, along, _is_number(key)) for key, along in mapping("axes", axes).items()}
+    if frequency is not None and "frequency" in values:
+        raise refused("frequency", "is an axis, and held beside it")
     study = study_of(
-        axes, title=title, tolerance=tolerance, metrics=metrics, frequency=quantity("frequency", frequency, "Hz")
+        values,
+        title=text("title", title),
+        tolerance=number("tolerance", tolerance, "1"),
+        metrics=metrics,
+        frequency=optional_number("frequency", frequency, "Hz"),
     )
-    total = int(np.prod([len(values) for values in axes.values()]))
-    with _writing, without_place("sweep"), shown(progress, total) as tell:
-        if output is not None:
-            _core.sweep(study, vehicle._design, os.fspath(output), threads, force, tell)
-            return open_dataset(output)
+    total = math.prod(len(along) for along in values.values())
+    kept = None if output is None else path("output", output)
+    with _writing, without_place("sweep"), shown(callback(progress), total) as tell:
+        if kept is not None:
+            _core.sweep(study, design, kept, threads, replaces, tell)
+            return open_dataset(os.fsdecode(kept))
         with tempfile.TemporaryDirectory(prefix="wingbeat-") as folder:
             file = os.path.join(folder, "sweep.nc")
-            _core.sweep(study, vehicle._design, file, threads, False, tell)
+            _core.sweep(study, design, os.fsencode(file), threads, False, tell)
             return open_dataset(file)
+
+
+def _is_number(key: str) -> bool:
+    return key == "frequency" or (key in parameters and bool(parameters[key].unit))
 
 
 def open_dataset(file: str | os.PathLike[str]) -> SweepData:
@@ -77,5 +92,5 @@ def open_dataset(file: str | os.PathLike[str]) -> SweepData:
 
     from ._accessor import SweepData
 
-    with xarray.open_dataset(file, decode_timedelta=False) as data:
+    with xarray.open_dataset(os.fsdecode(path("file", file)), decode_timedelta=False) as data:
         return SweepData.of(data.load())

@@ -9,7 +9,10 @@ import tomllib
 from collections.abc import Iterator, Mapping
 from typing import IO, TYPE_CHECKING, Any
 
+import numpy as np
+
 from . import _core
+from ._arguments import array, mapping, number, path, real, refused, text, wrong_type
 from ._quantity import Quantity
 from ._sections import Sections, sections
 from ._tables import parameters
@@ -26,41 +29,59 @@ if TYPE_CHECKING:
     from ._studies import Flight
 
 
-def _toml_text(text: str) -> str:
-    """A TOML string: JSON's, with all that TOML wants escaped. Half of a surrogate pair has no place in it."""
+def _toml_text(value: str, key: str) -> str:
+    """A TOML string: JSON's, with all that TOML wants escaped."""
     hidden = re.compile("[\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff\ufff9-\ufffb\ufffe\uffff]")
-    whole = re.sub("[\ud800-\udfff]", "\ufffd", text)
-    return hidden.sub(lambda c: f"\\u{ord(c[0]):04x}", json.dumps(whole, ensure_ascii=False))
+    return hidden.sub(lambda c: f"\\u{ord(c[0]):04x}", json.dumps(text(key, value), ensure_ascii=False))
 
 
-def _toml(value: Any) -> str:
-    """A value of Python as a TOML value."""
-    if isinstance(value, bool):
+def _toml_key(key: str) -> str:
+    """A key of a table."""
+    return key if re.fullmatch("[A-Za-z0-9_-]+", key) else _toml_text(key, "key")
+
+
+def _toml(value: Any, key: str = "value") -> str:
+    """A value of Python, of that key, as a TOML value."""
+    if type(value) is float:  # most of long arrays
+        return float.__repr__(value)
+    if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
     if isinstance(value, str):
-        return _toml_text(value)
+        return _toml_text(value, key)
     if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{_toml_text(str(k))} = {_toml(v)}" for k, v in value.items()) + "}"
-    if hasattr(value, "tolist"):  # an array or a number of NumPy
-        return _toml(value.tolist())
-    if isinstance(value, (list, tuple)):
-        return "[" + ", ".join(map(_toml, value)) + "]"
+        return "{" + ", ".join(f"{_toml_key(k)} = {_toml(v, key)}" for k, v in mapping(key, value).items()) + "}"
     if isinstance(value, int) and abs(value) < 2**53:
         return str(value)
-    if isinstance(value, (int, float)):
-        return float.__repr__(float(value))
-    raise TypeError(f"expected a number, a text with a unit, a table or rows, got {type(value).__name__}")
+    as_real = real(value)
+    if as_real is not None:
+        return float.__repr__(as_real)
+    if isinstance(value, np.ma.MaskedArray):
+        value = array(key, value)
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join([_toml(each, key) for each in value]) + "]"
+    raise wrong_type(key, "a number, a text with a unit, a table or rows", value)
 
 
 def _assignments(values: Mapping[str, Any]) -> list[str]:
     """KEY=VALUE of each key; sections may be given as tables, {"motor": {"inertia": ...}}."""
-    made = []
+    made: dict[str, str] = {}
+
+    def assign(key: str, value: Any) -> None:
+        if not re.fullmatch("[A-Za-z0-9_.-]+", key):
+            raise refused(ascii(key), "unknown key")
+        if key in made:
+            raise refused(key, "is given twice")
+        made[key] = _toml(value, key)
+
     for key, value in values.items():
         if isinstance(value, Mapping) and "." not in key:
-            made += [f"{key}.{name}={_toml(inner)}" for name, inner in value.items()]
+            for name, inner in mapping(key, value).items():
+                assign(f"{key}.{name}", inner)
         else:
-            made.append(f"{key}={_toml(value)}")
-    return made
+            assign(key, value)
+    return [f"{key}={value}" for key, value in made.items()]
 
 
 class Vehicle(Sections):
@@ -80,8 +101,8 @@ class Vehicle(Sections):
 
     def __init__(self, values: Mapping[str, Any]) -> None:
         if not isinstance(values, Mapping):
-            raise TypeError(f"expected a dict of keys, got {type(values).__name__}; wingbeat.read reads files")
-        self._take(_core.with_values(_assignments(values), None))
+            raise TypeError(f"values: expected a dict of keys, got {type(values).__name__}; wingbeat.read reads files")
+        self._take(_core.with_values(_assignments(mapping("values", values)), None))
 
     def _take(self, design: _core.Design) -> None:
         object.__setattr__(self, "_design", design)
@@ -94,9 +115,9 @@ class Vehicle(Sections):
         return made
 
     @classmethod
-    def from_toml(cls, text: str, name: str = "vehicle") -> Vehicle:
+    def from_toml(cls, toml: str, name: str = "vehicle") -> Vehicle:
         """The vehicle in the text of a vehicle file, in which tables stand in place. `name` stands in messages."""
-        return cls._of(_core.parse(text, name))
+        return cls._of(_core.parse(text("toml", toml), text("name", name)))
 
     def to_toml(self) -> str:
         """The vehicle file, complete in itself, that reads back to the equal vehicle."""
@@ -114,7 +135,7 @@ class Vehicle(Sections):
 
         Raises InputError.
         """
-        return Vehicle._of(_core.with_values(_assignments(values), self._design))
+        return Vehicle._of(_core.with_values(_assignments(mapping("values", values)), self._design))
 
     __replace__ = replace
 
@@ -190,7 +211,7 @@ class Vehicle(Sections):
 
         `stroke_amplitude` [rad] is that of a direct drive; a crank has its own.
         """
-        svg = _core.mechanism_svg(self._design, stroke_amplitude)
+        svg = _core.mechanism_svg(self._design, number("stroke_amplitude", stroke_amplitude, "rad"))
         return svg[max(0, svg.find("<svg")) :]
 
     def _repr_html_(self) -> str:
@@ -200,8 +221,8 @@ class Vehicle(Sections):
             value = self[key]
             if isinstance(value, Quantity):
                 return f"{value:.6g} {'' if value.unit == '1' else value.unit}"
-            text = str(value)
-            return text if len(text) < 80 else f"{text[:76]} ..."
+            told = str(value)
+            return told if len(told) < 80 else f"{told[:76]} ..."
 
         rows = "".join(
             f"<tr><td style='text-align:left'><code>{escape(key)}</code></td>"
@@ -292,10 +313,10 @@ def read(file: str | os.PathLike[str] | IO[str]) -> Vehicle:
     CSV files that it names are sought beside it; in an open file, tables stand in place. Raises InputError with file,
     line and column of all that is wrong.
     """
-    if isinstance(file, (str, os.PathLike)):
-        return Vehicle._of(_core.read(os.fspath(file)))
-    text = file.read() if hasattr(file, "read") else None
-    if not isinstance(text, str):
-        raise TypeError(f"expected a path or a file open for reading text, got {type(file).__name__}")
+    if isinstance(file, (str, bytes, os.PathLike)):
+        return Vehicle._of(_core.read(path("file", file)))
+    toml = file.read() if hasattr(file, "read") else None
+    if not isinstance(toml, str):
+        raise wrong_type("file", "a path or a file open for reading text", file)
     name = getattr(file, "name", None)
-    return Vehicle.from_toml(text, name if isinstance(name, str) else "vehicle")
+    return Vehicle.from_toml(toml, name if isinstance(name, str) else "vehicle")

@@ -12,6 +12,7 @@
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 #include "time/integrator.hpp"
+#include "wingbeat/core/cancellation.hpp"
 
 namespace wingbeat::detail {
 namespace {
@@ -71,6 +72,7 @@ class Cvode : public Integrator {
   }
 
   Outcome advance() override {
+    check_cancellation();
     realtype t = time_;
     const int flag = CVode(memory_, time_ + horizon_, y_, &t, CV_ONE_STEP);
     time_ = t;
