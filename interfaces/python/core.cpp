@@ -180,7 +180,7 @@ py::dict differentiate(const Design<double>& design, const std::vector<std::stri
   options.condition = choice<Condition>("condition", condition);
   require_tolerance(options.tolerance = tolerance);
   options.frequency = frequency;
-  options.endurance = endurance;
+  options.flight = {endurance, endurance, false};
   DesignPoint found;
   {
     const py::gil_scoped_release others;
