@@ -43,8 +43,9 @@ std::string describe(const DomainEvidence& e) {
       return format("thermal runaway: the losses do not settle before copper melts at %.4g degC (at most %.4g degC)",
                     copper_melting_point - zero_celsius, e.highest);
     case Quantity::reynolds_number:
-      return format("the Reynolds number is %.4g (the coefficients hold from %.4g to %.4g)", e.value, e.lowest,
-                    e.highest);
+      return format(e.value < 10.0 ? "the Reynolds number is %.3g (the coefficients hold from %.6g to %.6g)"
+                                   : "the Reynolds number is %.0f (the coefficients hold from %.6g to %.6g)",
+                    e.value, e.lowest, e.highest);
   }
   return "";
 }

@@ -183,7 +183,7 @@ std::string describe(const EnduranceResult& r) {
   switch (r.hover) {
     case Hover::unknown: return "the vehicle file gives no mass, so that hover is unknown; " + end;
     case Hover::never:
-      return fmt::format("it does not hover, lift is {:.4g} of the weight at the start; {}", lift_to_weight, end);
+      return fmt::format("it does not hover: lift is {:.4g} of the weight at the start; {}", lift_to_weight, end);
     case Hover::outside:
       return fmt::format("it does not hover inside the model's domain ({}), though lift is {:.4g} times the weight; {}",
                          name_of(first.domain), lift_to_weight, end);

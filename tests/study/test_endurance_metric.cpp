@@ -57,7 +57,7 @@ TEST(EnduranceMetric, HoverIsTheTimeUntilLiftFallsBelowTheWeight) {
   const EnduranceResult flight = simulate_discharge(d);
   ASSERT_TRUE(flight.hover_lost);
   EXPECT_EQ(flight.hover_time(), flight.hover_lost->time);
-  EXPECT_LT(flight.hover_time(), 0.9 * flight.endurance());
+  EXPECT_LT(flight.hover_time(), 0.95 * flight.endurance());
   const Endurance e = endurance_of(d, Condition::air, 1e-6);
   EXPECT_NEAR(e.hover, flight.hover_time(), 1e-6 * flight.hover_time());
   EXPECT_NEAR(e.time, flight.endurance(), 1e-6 * flight.endurance());
