@@ -89,7 +89,9 @@ TEST(DomainOfEnsembles, LimitsOfTheWingsAreTheSameInBatches) {
     EXPECT_EQ(narrow[n].domain, exact[n].domain) << n;
     const double Re = exact[n].metrics[Metric::reynolds_number];
     EXPECT_EQ(std::isnan(Re), n >= 24);
-    if (n < 24) EXPECT_NEAR(batched[n].metrics[Metric::reynolds_number] / Re, 1.0, 1e-6) << n;
+    if (n < 24) {
+      EXPECT_NEAR(batched[n].metrics[Metric::reynolds_number] / Re, 1.0, 1e-6) << n;
+    }
     by_reynolds += exact[n].domain[std::size_t(DomainLimit::reynolds_number)];
     by_stroke += exact[n].domain[std::size_t(DomainLimit::stroke)];
     inside += exact[n].domain.none();
