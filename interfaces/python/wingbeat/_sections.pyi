@@ -592,12 +592,12 @@ class AerodynamicsSection(Section):
     @property
     def reynolds_number_min(self) -> Quantity | None:
         """lowest Reynolds number for which the coefficients hold.
-        [1] Range: >= 0. Default: 100 of a named set of coefficients, else none.
+        Number. Range: >= 0. Default: of a named set of coefficients 100, else none.
         """
     @property
     def reynolds_number_max(self) -> Quantity | None:
         """highest Reynolds number for which the coefficients hold.
-        [1] Range: > 0. Default: 26000 of a named set of coefficients, else none.
+        Number. Range: > 0. Default: of a named set of coefficients 26000, else none.
         """
     @property
     def coefficients(self) -> str | None:
