@@ -1,4 +1,4 @@
-// wingbeat endurance VEHICLE: how long its battery flies a vehicle.
+// wingbeat endurance VEHICLE: how long a vehicle hovers and flaps on its battery.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -46,16 +46,16 @@ int run(const EnduranceArguments& arguments) {
   const EnduranceResult result = simulate_discharge(design, options);
   const bool flies = result.endurance() > 0.0;
   if (flies && output) {
-    write_endurance(result,
-                    {.title = fmt::format("Flight to the end of the battery of {}",
-                                          design.name.empty() ? written_name(arguments.vehicle) : design.name),
-                     .command = "endurance",
-                     .version = version,
-                     .vehicle = write_design(design),
-                     .condition = "air",
-                     .method = "orbit",
-                     .tolerance = options.tolerance},
-                    output->temporary());
+    write_endurance(
+        result,
+        {.title = fmt::format("Discharge of the battery of {}", design.name.empty() ? written_name(arguments.vehicle) : design.name),
+         .command = "endurance",
+         .version = version,
+         .vehicle = write_design(design),
+         .condition = "air",
+         .method = "orbit",
+         .tolerance = options.tolerance},
+        output->temporary());
     output->commit();
   }
   if (flies && plot) {
@@ -63,27 +63,28 @@ int run(const EnduranceArguments& arguments) {
     plot->commit();
   }
   print(arguments.json ? json_endurance(result) : text_endurance(design, result));
-  if (!flies && (output || plot)) complain("the vehicle does not fly: no file was written");
+  if (!flies && (output || plot)) complain("the vehicle does not flap on this battery: no file was written");
   return result.end == EnduranceEnd::never_starts ? does_not_flap : done;
 }
 
 }  // namespace
 
 void add_endurance(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("endurance", "How long its battery flies a vehicle");
+  CLI::App* command = program.add_subcommand("endurance", "How long a vehicle hovers and flaps on its battery");
   const auto a = std::make_shared<EnduranceArguments>();
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
                     "Flight outside the model's domain may hover (docs/domain.md)");
   add_input(command, a->vehicle, InputKind::vehicle, "vehicle", "Vehicle file (TOML) with a battery", "VEHICLE");
   add_set(command, a->overrides);
   add_json(command, a->json);
-  add_file(command, "-o,--output", a->output, ".nc", "Write the trajectory of the flight (NetCDF-4)", "FILE.nc");
-  add_file(command, "--plot", a->plot, plot_extensions, "Plot the flight to FILE.svg, .pdf or .png");
+  add_file(command, "-o,--output", a->output, ".nc", "Write the discharge (NetCDF-4)", "FILE.nc");
+  add_file(command, "--plot", a->plot, plot_extensions, "Plot the discharge to FILE.svg, .pdf or .png");
   add_force(*command, a->force);
   command->footer(
       "Example:\n  wingbeat endurance friction2022-battery --plot flight.svg\n\n"
       "The battery drains from supply.charge through steady flapping until it is empty, its terminals fall to\n"
-      "supply.cutoff_voltage, or it no longer turns the crank.\n\n"
+      "supply.cutoff_voltage, or it no longer turns the crank. The vehicle hovers until its lift falls below the\n"
+      "weight or it leaves the model's domain.\n\n"
       "Exit status: 0 done, 2 bad input or usage, 3 the battery cannot start the vehicle, 1 anything else.");
   command->callback([a, &action] {
     action = [a] {

@@ -29,7 +29,7 @@ struct RunArguments {
   OperatingPointArguments at;
   std::string method = "orbit";
   std::string tolerance = "1e-6";
-  bool json = false, force = false;
+  bool json = false, force = false, endurance = false;
   std::string waveforms, plot, plot_power;
 };
 
@@ -85,7 +85,12 @@ int run(const RunArguments& arguments) {
   auto power_plot = reserved("--plot-power", arguments.plot_power, drawing);
   if (waveforms || cycle_plot) options.waveform_rows = waveform_rows;
 
-  options.endurance = arguments.json;
+  options.endurance = arguments.endurance;
+  if (arguments.endurance && !has_battery(design.supply.type)) {
+    throw InputError("--endurance", 0, 0, "",
+                     "only a battery runs down: supply.type is " + std::string(name_of(design.supply.type)) +
+                         "; expected battery or battery-sine");
+  }
   const RunResult result = run_design(design, options);
   require_reached(arguments.at, result);
   const bool flaps = result.status == FlappingStatus::flapping;
@@ -144,6 +149,9 @@ void add_run(CLI::App& program, Action& action) {
       ->type_name("NUMBER");
   command->add_flag("--allow-extrapolation", a->at.allow_extrapolation,
                     "Search for a frequency or a lift outside the model's domain too (docs/targets.md)");
+  command->add_flag("--endurance", a->endurance,
+                    "How long it hovers and flaps on its battery, too (docs/endurance.md): takes some fifty times as "
+                    "long");
   add_json(command, a->json);
   add_file(command, "--waveforms", a->waveforms, ".csv .nc", "Write one cycle to FILE.csv or FILE.nc");
   add_file(command, "--plot", a->plot, plot_extensions, "Plot one cycle to FILE.svg, .pdf or .png");

@@ -163,7 +163,7 @@ py::dict differentiate(const Design<double>& design, const std::vector<std::stri
   options.condition = choice<Condition>("condition", condition);
   require_tolerance(options.tolerance = tolerance);
   options.frequency = frequency;
-  options.endurance = endurance;
+  options.flight = {endurance, endurance, false};
   const DesignPoint found = listening([&] { return gradient(design, keys, options); });
   py::array_t<double> slopes({keys.size(), std::size_t(metric_count)});
   for (std::size_t k = 0; k < keys.size(); ++k) {

@@ -24,6 +24,8 @@ std::string describe(const DomainEvidence& e) {
       return format("the stroke angle reaches %.4g deg (the mechanism's law holds to %.4g deg)", e.value, e.highest);
     case Quantity::stroke_amplitude:
       return format("the stroke amplitude is %.4g deg (at most %.4g deg)", e.value, e.highest);
+    case Quantity::wings_meet:
+      return format("the stroke angle reaches %.4g deg (two wings on one body meet at %.4g deg)", e.value, e.highest);
     case Quantity::residual_share:
       return format("the formulation fails to conserve %.3g %% of the input power (at most %.3g %%)", 100.0 * e.value,
                     100.0 * e.highest);
@@ -40,6 +42,10 @@ std::string describe(const DomainEvidence& e) {
     case Quantity::thermal_runaway:
       return format("thermal runaway: the losses do not settle before copper melts at %.4g degC (at most %.4g degC)",
                     copper_melting_point - zero_celsius, e.highest);
+    case Quantity::reynolds_number:
+      return format(e.value < 10.0 ? "the Reynolds number is %.3g (the coefficients hold from %.6g to %.6g)"
+                                   : "the Reynolds number is %.0f (the coefficients hold from %.6g to %.6g)",
+                    e.value, e.lowest, e.highest);
   }
   return "";
 }
@@ -55,6 +61,11 @@ std::string describe(std::span<const DomainEvidence> evidence) {
 std::string residual_warning(double share) {
   return format("the formulation rod-force fails to conserve %.3g %% of the input power; virtual-work conserves it",
                 100.0 * share);
+}
+
+std::string winding_warning(double temperature, double allowed) {
+  return format("the winding heats up to %.4g degC, above motor.winding_temperature_max = %.4g degC", temperature,
+                allowed);
 }
 
 }  // namespace wingbeat

@@ -38,9 +38,14 @@ double stroke_reach_deg(const Vehicle<double>& v) { return degrees_per_radian * 
 /// Radius at which the speed of the wings is compared [m].
 double reference_radius(const Vehicle<double>& v) { return v.wings.s2 > 0.0 ? v.wings.s3 / v.wings.s2 : 0.0; }
 
-/// Largest temperature allowed to the winding [K]; what the vehicle does not limit, copper does.
-double winding_temperature_max(const MotorThermal<double>& t) {
-  return std::isnan(t.winding_temperature_max) ? copper_melting_point : t.winding_temperature_max;
+/// Where two wings on one body meet [deg], infinite where none do.
+double meeting_angle_deg(const Vehicle<double>& v) {
+  return has_wings(v) ? degrees_per_radian * v.wing_limits.stroke_max : std::numeric_limits<double>::infinity();
+}
+
+/// The largest stroke that the drive's own law has [deg].
+double law_stroke_max_deg(const Vehicle<double>& v) {
+  return v.transmission.type == TransmissionType::slider_crank ? tan_law_stroke_max_deg : other_stroke_max_deg;
 }
 
 /// For double and dual numbers.
@@ -68,14 +73,24 @@ std::array<S, domain_limit_count> excess_of(const Vehicle<double>& v, const Metr
     at(DomainLimit::flow_speed) = m[Metric::flapping_velocity_peak] * S(reference_radius(v) / flow_speed_max) - S(1.0);
   }
   if (drive_of(v).stroke_is_fixed) {
-    at(DomainLimit::stroke) = S(stroke_excess(v));
+    if (has_wings(v)) at(DomainLimit::stroke) = S(stroke_reach_deg(v) / stroke_max_deg(v) - 1.0);
   } else {
-    at(DomainLimit::stroke) = m[Metric::stroke_amplitude] * S(degrees_per_radian / other_stroke_max_deg) - S(1.0);
+    at(DomainLimit::stroke) = m[Metric::stroke_amplitude] * S(degrees_per_radian / stroke_max_deg(v)) - S(1.0);
   }
 
   if (heats_up(v.thermal)) {
     at(DomainLimit::winding_temperature) =
-        (m[Metric::winding_temperature] + S(zero_celsius)) / S(winding_temperature_max(v.thermal)) - S(1.0);
+        (m[Metric::winding_temperature] + S(zero_celsius)) / S(v.thermal.winding_temperature_max) - S(1.0);
+  }
+
+  const WingLimits<double>& wings = v.wing_limits;
+  if (air && !std::isnan(wings.reynolds_number_per_speed)) {
+    const S& Re = m[Metric::reynolds_number];
+    S& excess_Re = at(DomainLimit::reynolds_number);
+    if (wings.reynolds_number_min > 0.0) excess_Re = S(1.0) - Re / S(wings.reynolds_number_min);
+    if (std::isfinite(wings.reynolds_number_max)) {
+      excess_Re = larger(Re / S(wings.reynolds_number_max) - S(1.0), excess_Re);
+    }
   }
 
   const S& P_e = m[Metric::power_electrical];
@@ -109,25 +124,25 @@ const std::array<DomainLimitInfo, domain_limit_count>& domain_limit_table() {
        "coefficients, over the whole cycle"},
       {"stroke",
        "stroke angle of a slider-crank up to 85 deg to either side, of another mechanism to 180 deg, stroke "
-       "amplitude of a direct drive to 180 deg"},
+       "amplitude of a direct drive to 180 deg; of two and more wings on one body to where they meet, 90 deg and by as "
+       "much more as wing.planform.shoulder_distance leaves room for"},
       {"formulation_residual", "formulation residual at most 5 % of the input power"},
       {"mechanism_efficiency", "mechanism efficiency from 0 to 1"},
       {"motor_efficiency", "motor efficiency from 0 to 1"},
       {"input_power", "input power positive and finite"},
       {"flow_speed", "speed of the wings at S_3/S_2 up to 103 m/s (Mach 0.3)"},
       {"winding_temperature",
-       "winding temperature of a motor with thermal resistances up to motor.winding_temperature_max, at the "
-       "most to copper's melting point"},
+       "winding temperature of a motor with thermal resistances up to motor.winding_temperature_max, 125 degC unless "
+       "given"},
+      {"reynolds_number",
+       "Reynolds number of wings with a shape within that of the named force coefficients, 100 to 26000, or within "
+       "aerodynamics.reynolds_number_min and reynolds_number_max"},
   }};
   return table;
 }
 
-double stroke_max_deg(TransmissionType transmission) {
-  return transmission == TransmissionType::slider_crank ? tan_law_stroke_max_deg : other_stroke_max_deg;
-}
-
-double stroke_excess(const Vehicle<double>& vehicle) {
-  return has_wings(vehicle) ? stroke_reach_deg(vehicle) / stroke_max_deg(vehicle.transmission.type) - 1.0 : -1.0;
+double stroke_max_deg(const Vehicle<double>& vehicle) {
+  return std::min(law_stroke_max_deg(vehicle), meeting_angle_deg(vehicle));
 }
 
 DomainExcess domain_excess(const Vehicle<double>& vehicle, const Metrics<double>& metrics) {
@@ -150,9 +165,10 @@ DomainExcess domain_excess_slopes(const Vehicle<double>& vehicle, const Metrics<
 
 std::bitset<metric_count> domain_metrics() {
   std::bitset<metric_count> needed;
-  for (const Metric m : {Metric::power_electrical, Metric::power_motor, Metric::power_aerodynamic,
-                         Metric::power_residual, Metric::angle_of_attack_min, Metric::stroke_amplitude,
-                         Metric::flapping_velocity_peak, Metric::winding_temperature, Metric::angle_of_attack_max}) {
+  for (const Metric m :
+       {Metric::power_electrical, Metric::power_motor, Metric::power_aerodynamic, Metric::power_residual,
+        Metric::angle_of_attack_min, Metric::stroke_amplitude, Metric::flapping_velocity_peak,
+        Metric::winding_temperature, Metric::angle_of_attack_max, Metric::reynolds_number}) {
     needed.set(std::size_t(m));
   }
   return needed;
@@ -194,13 +210,13 @@ std::vector<DomainEvidence> domain_evidence(const Vehicle<double>& v, const Metr
     add(DomainLimit::angle_of_attack, short_table ? Quantity::angle_of_attack_range : Quantity::angle_of_attack_min,
         m[Metric::angle_of_attack_min], range.low, range.high);
   }
-  if (!drive_of(v).stroke_is_fixed) {
-    add(DomainLimit::stroke, Quantity::stroke_amplitude, degrees_per_radian * m[Metric::stroke_amplitude], 0.0,
-        other_stroke_max_deg);
-  } else {
-    const double most = stroke_max_deg(v.transmission.type);
-    add(DomainLimit::stroke, Quantity::stroke_angle, stroke_reach_deg(v), -most, most);
-  }
+  const bool fixed = drive_of(v).stroke_is_fixed, meet = meeting_angle_deg(v) < law_stroke_max_deg(v);
+  const double most = stroke_max_deg(v);
+  add(DomainLimit::stroke,
+      meet    ? Quantity::wings_meet
+      : fixed ? Quantity::stroke_angle
+              : Quantity::stroke_amplitude,
+      fixed ? stroke_reach_deg(v) : degrees_per_radian * m[Metric::stroke_amplitude], fixed ? -most : 0.0, most);
   add(DomainLimit::formulation_residual, Quantity::residual_share, std::abs(m[Metric::power_residual] / P_e), 0.0,
       formulation_residual_max);
   if (P_m > 0.0) {
@@ -212,10 +228,12 @@ std::vector<DomainEvidence> domain_evidence(const Vehicle<double>& v, const Metr
   add(DomainLimit::input_power, Quantity::input_power, P_e, 0.0, std::numeric_limits<double>::infinity());
   add(DomainLimit::flow_speed, Quantity::flow_speed, m[Metric::flapping_velocity_peak] * reference_radius(v), 0.0,
       flow_speed_max);
-  const double T_w = m[Metric::winding_temperature], T_max = winding_temperature_max(v.thermal) - zero_celsius;
+  const double T_w = m[Metric::winding_temperature], T_max = v.thermal.winding_temperature_max - zero_celsius;
   const bool runaway = T_w > copper_melting_point - zero_celsius;
   add(DomainLimit::winding_temperature, runaway ? Quantity::thermal_runaway : Quantity::winding_temperature, T_w,
       -zero_celsius, T_max);
+  add(DomainLimit::reynolds_number, Quantity::reynolds_number, m[Metric::reynolds_number],
+      v.wing_limits.reynolds_number_min, v.wing_limits.reynolds_number_max);
   return rows;
 }
 
@@ -227,6 +245,12 @@ std::optional<double> notable_residual(const Vehicle<double>& v, const Metrics<d
   const double share = std::abs(m[Metric::power_residual] / m[Metric::power_electrical]);
   if (!(share > formulation_residual_warn) || !(m[Metric::power_electrical] > 0.0)) return std::nullopt;
   return share;
+}
+
+std::optional<double> hot_winding(const Vehicle<double>& v, const Metrics<double>& m) {
+  const double T_w = m[Metric::winding_temperature];
+  if (!heats_up(v.thermal) || !(T_w + zero_celsius > v.thermal.winding_temperature_max)) return std::nullopt;
+  return T_w;
 }
 
 }  // namespace wingbeat

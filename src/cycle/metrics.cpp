@@ -45,6 +45,8 @@ const std::array<MetricInfo, metric_count>& metric_table() {
       {"pitch_amplitude_deg", "degree", "pitch amplitude, half peak to peak"},
       {"pitch_phase_deg", "degree", "lead of the pitching over the pitch that opposes the flapping velocity"},
       {"angle_of_attack_max_deg", "degree", "largest angle of attack of wings that pitch on a hinge"},
+      {"reynolds_number", "1", "Reynolds number of the mean chord at the mean speed of the wing tips"},
+      {"hover_s", "s", "flight time until lift falls below the weight"},
       {"endurance_s", "s", "flight time until the battery's end"},
   }};
   return table;
@@ -62,8 +64,6 @@ const char* lacking_of_heat(Metric metric, const Design<double>& design) {
   const MotorThermalDesign<double>& thermal = design.motor.thermal;
   switch (metric) {
     case Metric::winding_temperature_margin:
-      if (!thermal.winding_temperature_max) return motor_thermal_key::winding_temperature_max.path;
-      [[fallthrough]];
     case Metric::winding_temperature:
     case Metric::case_temperature:
       return thermal.resistance_winding ? nullptr : motor_thermal_key::resistance_winding.path;
@@ -73,8 +73,13 @@ const char* lacking_of_heat(Metric metric, const Design<double>& design) {
 
 const char* lacking_for(Metric metric, const Design<double>& design) {
   if (metric == Metric::added_mass_inertia_ratio && !design.aerodynamics.added_mass) return "aerodynamics.added_mass";
-  if (metric == Metric::endurance && !has_battery(design.supply.type)) return "supply.type = \"battery\"";
   switch (metric) {
+    case Metric::hover:
+      if (!design.mass) return "vehicle.mass";
+      [[fallthrough]];
+    case Metric::endurance: return has_battery(design.supply.type) ? nullptr : "supply.type = \"battery\"";
+    case Metric::reynolds_number:
+      return design.wing.planform.shape != PlanformShape::moments ? nullptr : "a wing.planform with a shape";
     case Metric::power_hinge:
     case Metric::pitch_amplitude:
     case Metric::pitch_phase:

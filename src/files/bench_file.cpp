@@ -181,8 +181,9 @@ class BenchReader {
       if (q.metric == Metric::lift_to_weight && !fit.design.mass) {
         l.refuse(l.at("file"), "file", "lift_to_weight needs [vehicle] mass in the vehicle file");
       }
-      if (q.metric == Metric::endurance) {
-        l.refuse(l.at("file"), "file", "endurance_s is a whole flight's: a cycle cannot be fitted to it");
+      if (q.metric == Metric::hover || q.metric == Metric::endurance) {
+        l.refuse(l.at("file"), "file",
+                 fmt::format("{} is a whole flight's: a cycle cannot be fitted to it", metric_info(q.metric).key));
       }
       if (const char* lacks = lacking_for(q.metric, fit.design)) {
         l.refuse(l.at("file"), "file",

@@ -9,8 +9,9 @@ namespace wingbeat {
 constexpr std::uint64_t largest_chunk = 8192;
 
 std::uint64_t ChunkLayout::begin(std::size_t column) const {
-  const std::uint64_t bytes_of_flags = (flags * chunk + 7) & ~std::uint64_t(7);
-  return column < flags ? column * chunk : bytes_of_flags + 8 * chunk * (column - flags);
+  // Flags are a byte each, but for the last, the domain, of two.
+  const std::uint64_t all_flags = (bytes_of_flags * chunk + 7) & ~std::uint64_t(7);
+  return column < flags ? column * chunk : all_flags + 8 * chunk * (column - flags);
 }
 
 ChunkLayout layout_of(const Sweep& sweep) {
@@ -22,11 +23,11 @@ void pack(const ChunkLayout& layout, const SweepColumns& columns, std::vector<st
   const std::size_t n = columns.status.size();
   bytes.resize(layout.bytes());
   if (n < layout.chunk) std::fill(bytes.begin(), bytes.end(), std::byte(0));
-  std::fill(bytes.begin() + std::ptrdiff_t(layout.flags * layout.chunk),
+  std::fill(bytes.begin() + std::ptrdiff_t(layout.bytes_of_flags * layout.chunk),
             bytes.begin() + std::ptrdiff_t(layout.begin(layout.flags)), std::byte(0));
   std::memcpy(bytes.data(), columns.status.data(), n);
   std::memcpy(bytes.data() + layout.begin(1), columns.recomputed.data(), n);
-  std::memcpy(bytes.data() + layout.begin(2), columns.domain.data(), n);
+  std::memcpy(bytes.data() + layout.begin(2), columns.domain.data(), 2 * n);
   std::memcpy(bytes.data() + layout.begin(3), columns.error_estimate.data(), 8 * n);
   for (std::size_t m = 0; m < columns.metrics.size(); ++m) {
     std::memcpy(bytes.data() + layout.begin(4 + m), columns.metrics[m].data(), 8 * n);

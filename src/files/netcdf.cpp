@@ -117,7 +117,13 @@ NetcdfFile::Variable NetcdfFile::define_dense(const std::string& name, const std
   Variable variable{0, dimensions};
   std::vector<int> ids;
   for (const Dimension& d : dimensions) ids.push_back(d.id);
-  const nc_type type = storage == Storage::real ? NC_DOUBLE : storage == Storage::whole ? NC_INT : NC_BYTE;
+  nc_type type = NC_DOUBLE;
+  switch (storage) {
+    case Storage::real: break;
+    case Storage::whole: type = NC_INT; break;
+    case Storage::flag: type = NC_BYTE; break;
+    case Storage::masks: type = NC_SHORT; break;
+  }
   check(nc_def_var(id_, name.c_str(), type, int(ids.size()), ids.data(), &variable.id), "define variable " + name);
   check(nc_def_var_fill(id_, variable.id, NC_NOFILL, nullptr), "set the fill mode of " + name);
   if (!ids.empty()) {
@@ -160,13 +166,13 @@ void NetcdfFile::set_flags(const Variable& variable, std::span<const std::string
 }
 
 void NetcdfFile::set_flag_masks(const Variable& variable, std::span<const std::string> meanings) {
-  std::vector<signed char> masks;
+  std::vector<short> masks;
   std::string names;
   for (const std::string& meaning : meanings) {
     names += (names.empty() ? "" : " ") + meaning;
-    masks.push_back(static_cast<signed char>(1 << masks.size()));
+    masks.push_back(static_cast<short>(1 << masks.size()));
   }
-  check(nc_put_att_schar(id_, variable.id, "flag_masks", NC_BYTE, masks.size(), masks.data()),
+  check(nc_put_att_short(id_, variable.id, "flag_masks", NC_SHORT, masks.size(), masks.data()),
         "set attribute flag_masks");
   set_attribute(variable, "flag_meanings", names);
 }
@@ -237,6 +243,13 @@ void NetcdfFile::write_run(const Variable& variable, std::size_t first, std::spa
   for_each_block(variable.dimensions, first, values.size(),
                  [&](std::size_t done, const std::size_t* start, const std::size_t* count) {
                    check(nc_put_vara_schar(id_, variable.id, start, count, values.data() + done), "write values");
+                 });
+}
+
+void NetcdfFile::write_run(const Variable& variable, std::size_t first, std::span<const std::int16_t> values) {
+  for_each_block(variable.dimensions, first, values.size(),
+                 [&](std::size_t done, const std::size_t* start, const std::size_t* count) {
+                   check(nc_put_vara_short(id_, variable.id, start, count, values.data() + done), "write values");
                  });
 }
 
@@ -333,6 +346,14 @@ void NetcdfReader::read_run(const std::string& variable, std::size_t first, std:
   for_each_block(v.dimensions, first, values.size(),
                  [&](std::size_t done, const std::size_t* start, const std::size_t* count) {
                    check(nc_get_vara_schar(id_, v.id, start, count, values.data() + done), "read " + variable);
+                 });
+}
+
+void NetcdfReader::read_run(const std::string& variable, std::size_t first, std::span<std::int16_t> values) const {
+  const NetcdfFile::Variable v = find(variable);
+  for_each_block(v.dimensions, first, values.size(),
+                 [&](std::size_t done, const std::size_t* start, const std::size_t* count) {
+                   check(nc_get_vara_short(id_, v.id, start, count, values.data() + done), "read " + variable);
                  });
 }
 

@@ -21,7 +21,7 @@ class OptimiseReader : public detail::StudySections {
  public:
   OptimiseReader(const fs::path& file, std::string_view text, std::span<const std::string> overrides)
       : StudySections(input_name(file), text, overrides, {"objective", "parameter", "constraint", "motors", "search"},
-                      {"condition"}),
+                      {"condition", "count_after_hover"}),
         folder_(file.parent_path()) {}
 
   OptimiseFile read() {
@@ -41,6 +41,8 @@ class OptimiseReader : public detail::StudySections {
       study.options.tolerance = accuracy.tolerance;
     });
     attempt([&] { study.allow_extrapolation = read_allow_extrapolation(); });
+    const TomlNode* const after_hover = study_->find("count_after_hover");
+    attempt([&] { counts_after_hover_ = after_hover && boolean(*after_hover, "study.count_after_hover"); });
     if (!attempt([&] { study.design = read_vehicle(folder_); })) finish();  // the rest is read for this vehicle
     file.vehicle_file = find_vehicle(folder_, vehicle_file());
     attempt([&] { study.options.frequency = read_frequency(study.design); });
@@ -63,16 +65,30 @@ class OptimiseReader : public detail::StudySections {
     });
     attempt([&] { read_parameters(file, base); });
     attempt([&] { read_constraints(study, base); });
+    attempt([&] {
+      if (!after_hover || counts_flight_) return;
+      refuse(*after_hover, "study.count_after_hover",
+             "has no place here: neither the objective nor a constraint is endurance_s");
+    });
     finish();
     check_size(file);
     return file;
   }
 
  private:
-  /// The metric of that name. One that the vehicle does not have is refused with what it needs.
-  Metric metric_named(const TomlNode& node, const std::string& where, const Design<double>& design) const {
+  /// The metric of that name. One that the vehicle does not have is refused with what it needs. The endurance is
+  /// counted while lift carries the weight, unless the study says otherwise.
+  Metric metric_named(const TomlNode& node, const std::string& where, const Design<double>& design) {
     const std::string name = text_of(node, where, "the name of a metric such as \"power_electrical_w\"");
     const Metric metric = metric_called(node, where, name);
+    const bool flight = metric == Metric::endurance;
+    counts_flight_ = counts_flight_ || flight;
+    const bool while_hovering = flight && !counts_after_hover_ && !lacking_for(metric, design);
+    if (while_hovering && !design.mass) {
+      refuse(node, where,
+             "endurance_s counts while lift carries the weight, which needs vehicle.mass; give it, or "
+             "count_after_hover = true in [study] for the time to the battery's end");
+    }
     if (metric == Metric::floquet_multiplier_max && !several_)
       refuse(node, where, fmt::format("{} has no derivative", name));
     if (metric == Metric::lift_to_weight && !design.mass) {
@@ -84,7 +100,7 @@ class OptimiseReader : public detail::StudySections {
     if (const char* lacks = lacking_for(metric, design)) {
       refuse(node, where, fmt::format("{} needs {} in the vehicle file", name, lacks));
     }
-    return metric;
+    return while_hovering ? Metric::hover : metric;
   }
 
   void read_objective(OptimiseStudy& study, const Design<double>& design) {
@@ -322,7 +338,9 @@ class OptimiseReader : public detail::StudySections {
   }
 
   fs::path folder_;
-  bool several_ = false;  ///< objectives
+  bool several_ = false;             ///< objectives
+  bool counts_after_hover_ = false;  ///< endurance_s runs to the battery's end
+  bool counts_flight_ = false;       ///< endurance_s is an objective or in a constraint
 };
 
 }  // namespace

@@ -66,13 +66,9 @@ class StudyReader : public detail::StudySections {
     places_.study = place_of(*study_);
     if (const auto voltage = set_.find("supply.voltage"); voltage != set_.end()) places_.set_voltage = voltage->second;
     detail::complete_sweep(study.sweep, *this, places_, input);
-    bool heats = false, added_mass = false, pitching = false;
-    for (const auto& v : study.sweep.variants) {
-      heats = heats || v.design.motor.thermal.resistance_winding.has_value();
-      added_mass = added_mass || v.design.aerodynamics.added_mass;
-      pitching = pitching || v.design.pitch.stiffness;
-    }
-    leave_out_absent(study.sweep.options, heats, added_mass, pitching);
+    std::vector<const Design<double>*> designs;
+    for (const auto& v : study.sweep.variants) designs.push_back(&v.design);
+    complete_metrics(study.sweep.options, designs);
     return study;
   }
 

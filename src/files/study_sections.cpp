@@ -239,18 +239,17 @@ void StudySections::read_metrics(EnsembleOptions& options) const {
   }
 }
 
-void StudySections::leave_out_absent(EnsembleOptions& options, bool heats, bool added_mass, bool pitching) const {
-  if (study_->find("metrics")) return;
-  if (!pitching) {
-    for (const Metric m :
-         {Metric::power_hinge, Metric::pitch_amplitude, Metric::pitch_phase, Metric::angle_of_attack_max}) {
-      options.metrics.reset(std::size_t(m));
-    }
+void StudySections::complete_metrics(EnsembleOptions& options, std::span<const Design<double>* const> designs) const {
+  const auto nobody_has = [&](Metric metric) {
+    return std::all_of(designs.begin(), designs.end(),
+                       [&](const Design<double>* design) { return lacking_for(metric, *design) != nullptr; });
+  };
+  if (options.metrics[std::size_t(Metric::endurance)] && !nobody_has(Metric::hover)) {
+    options.metrics.set(std::size_t(Metric::hover));
   }
-  if (!added_mass) options.metrics.reset(std::size_t(Metric::added_mass_inertia_ratio));
-  if (heats) return;
-  for (const Metric m : {Metric::winding_temperature, Metric::case_temperature, Metric::winding_temperature_margin}) {
-    options.metrics.reset(std::size_t(m));
+  if (study_->find("metrics")) return;
+  for (int m = 0; m < metric_count; ++m) {
+    if (nobody_has(Metric(m))) options.metrics.reset(std::size_t(m));
   }
 }
 

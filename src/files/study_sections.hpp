@@ -76,9 +76,9 @@ class StudySections : public TomlReader {
 
   void read_tolerance(EnsembleOptions& options) const;
   void read_metrics(EnsembleOptions& options) const;
-  /// What vehicles without a motor that heats up, without added mass or without pitch hinges do not have is no metric
-  /// unless the study names it.
-  void leave_out_absent(EnsembleOptions& options, bool heats, bool added_mass, bool pitching) const;
+  /// What vehicles without a motor that heats up, without added mass, pitch hinges or wings with a shape do not have is
+  /// no metric unless the study names it. Beside the endurance goes the time of hover, of vehicles whose mass is known.
+  void complete_metrics(EnsembleOptions& options, std::span<const Design<double>* const> designs) const;
   std::string read_title() const;
   /// The vehicle with [set], its file being sought in that folder.
   Design<double> read_vehicle(const std::filesystem::path& folder) const;

@@ -119,13 +119,15 @@ void write_input(NetcdfFile& file, const Study& study, std::string_view version)
 std::uint64_t fingerprint(const Study& study, std::string_view version) {
   std::uint64_t sum = 1;
   const auto add = [&](std::string_view text) { sum = checksum(std::as_bytes(std::span(text)), sum); };
-  add("6");
+  add("7");
   add(version);
   add(study.input.study);
   add(study.input.vehicle);
   add(study.input.table);
   add(fmt::format("{} {} {} {}", study.sweep.options.tolerance, int(study.sweep.options.isa),
                   study.sweep.options.scalar_only, study.sweep.options.metrics.to_string()));
+  // Where hover ends depends on it, and nothing else that is stored.
+  if (study.sweep.options.metrics[std::size_t(Metric::hover)]) add(study.sweep.allow_extrapolation ? "1" : "0");
   return sum;
 }
 
@@ -177,7 +179,7 @@ std::vector<std::uint64_t> prepare_data_set(const fs::path& path, const Study& s
   file.set_flags(columns.back(), meanings);
   columns.push_back(define("recomputed", "1", "solver that gave the result", Storage::flag));
   file.set_flags(columns.back(), std::vector<std::string>{"batch", "scalar"});
-  columns.push_back(define("domain", "1", "limits of the model's domain that are exceeded", Storage::flag));
+  columns.push_back(define("domain", "1", "limits of the model's domain that are exceeded", Storage::masks));
   std::vector<std::string> limits;
   for (const DomainLimitInfo& limit : domain_limit_table()) limits.push_back(limit.key);
   file.set_flag_masks(columns.back(), limits);
@@ -221,10 +223,14 @@ std::vector<std::uint64_t> prepare_data_set(const fs::path& path, const Study& s
   const std::size_t last = std::size_t(sweep.size() - 1);
   const double nothing = 0.0;
   const std::int8_t no_flag = 0;
+  const std::int16_t no_masks = 0;
   const ChunkLayout layout = layout_of(sweep);
   for (std::size_t c = 0; c < columns.size(); ++c) {
-    if (layout.bytes_of_value(c) == 1) file.write_run(columns[c], last, std::span(&no_flag, 1));
-    else file.write_run(columns[c], last, std::span(&nothing, 1));
+    switch (layout.bytes_of_value(c)) {
+      case 1: file.write_run(columns[c], last, std::span(&no_flag, 1)); break;
+      case 2: file.write_run(columns[c], last, std::span(&no_masks, 1)); break;
+      default: file.write_run(columns[c], last, std::span(&nothing, 1));
+    }
   }
   file.close();
   std::vector<std::string> names = {"status", "recomputed", "domain", "error_estimate"};
@@ -312,7 +318,7 @@ std::uint64_t data_set_size(const Study& study) {
   const Sweep& sweep = study.sweep;
   std::uint64_t bytes = 100000 + study.input.study.size() + study.input.vehicle.size() + study.input.table.size();
   for (const SweepAxis& axis : sweep.axes) bytes += 8 * axis.count * axis.quantities.size();
-  return bytes + sweep.size() * (ChunkLayout::flags + 8 * (1 + sweep.options.metrics.count()));
+  return bytes + sweep.size() * (ChunkLayout::bytes_of_flags + 8 * (1 + sweep.options.metrics.count()));
 }
 
 }  // namespace wingbeat

@@ -33,7 +33,7 @@ void write_tolerance(const ToleranceStudy& study, const ToleranceResult& result,
   data.set_flags(status, names);
   data.write_run(status, 0, std::span(columns.status).subspan(0, base));
   const auto domain = data.define_dense("domain", {sample}, "1", "limits of the model's domain that are exceeded",
-                                        NetcdfFile::Storage::flag);
+                                        NetcdfFile::Storage::masks);
   std::vector<std::string> limits;
   for (const DomainLimitInfo& limit : domain_limit_table()) limits.push_back(limit.key);
   data.set_flag_masks(domain, limits);

@@ -33,8 +33,8 @@ class ToleranceReader : public detail::StudySections {
     attempt([&] { read_metrics(study.options); });
     attempt([&] { read_samples(); });
     if (!attempt([&] { study.design = read_vehicle(folder_); })) finish();  // the rest is read for this vehicle
-    leave_out_absent(study.options, study.design.motor.thermal.resistance_winding.has_value(),
-                     study.design.aerodynamics.added_mass, study.design.pitch.stiffness.has_value());
+    const Design<double>* const designs[] = {&study.design};
+    complete_metrics(study.options, designs);
     if (study.design.mass) study.options.metrics.set(std::size_t(Metric::lift_to_weight));
     attempt([&] { study.frequency = read_frequency(study.design); });
     attempt([&] {

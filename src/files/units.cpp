@@ -205,6 +205,7 @@ std::string quantity_example(std::string_view unit) {
       {"degC", "a temperature such as \"25 degC\""},
       {"K/W", "a thermal resistance such as \"20 K/W\""},
       {"1/K", "a temperature coefficient such as \"0.0039 1/K\""},
+      {"m2/s", "a kinematic viscosity such as \"1.5e-5 m2/s\""},
       {"m4", "a chord moment such as \"2.5e-6 m4\""},
       {"m5", "a chord moment such as \"1e-7 m5\""}};
   for (const auto& [known, example] : examples) {

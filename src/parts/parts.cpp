@@ -31,6 +31,7 @@ void validate(const Planform<double>& p) {
     return;
   }
   require(planform_key::hub_offset, p.hub_offset);
+  require(planform_key::shoulder_distance, p.shoulder_distance);
   if (p.shape == PlanformShape::tabulated) {
     if (p.chord_table.size() < 2) {
       throw ParameterError("wing.planform.file", "the chord table needs at least two rows");

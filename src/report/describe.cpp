@@ -124,7 +124,10 @@ std::string describe(const DesignPoint& point) {
 
 std::string describe(const UnreachedRow& row) { return row.refused ? describe(*row.refused) : describe(row.evidence); }
 
-std::string describe(const EnduranceResult& r) {
+namespace {
+
+/// How a flight ends.
+std::string described_end(const EnduranceResult& r) {
   if (r.end == EnduranceEnd::never_starts) {
     return fmt::format("the battery cannot start the vehicle at a charge of {:.4g} ({:.4g} V without load): {}",
                        r.first_charge, r.first_voltage, describe(r.evidence));
@@ -168,6 +171,31 @@ std::string describe(const EnduranceResult& r) {
     case EnduranceEnd::never_starts: break;
   }
   return "";
+}
+
+}  // namespace
+
+std::string describe(const EnduranceResult& r) {
+  const std::string end = described_end(r);
+  if (r.rows.empty() || !(r.endurance() > 0.0)) return end;
+  const EnduranceRow& first = r.rows.front();
+  const double lift_to_weight = first.metrics[Metric::lift_to_weight];
+  switch (r.hover) {
+    case Hover::unknown: return "the vehicle file gives no mass, so that hover is unknown; " + end;
+    case Hover::never:
+      return fmt::format("it does not hover: lift is {:.4g} of the weight at the start; {}", lift_to_weight, end);
+    case Hover::outside:
+      return fmt::format("it does not hover inside the model's domain ({}), though lift is {:.4g} times the weight; {}",
+                         name_of(first.domain), lift_to_weight, end);
+    case Hover::lost: {
+      const EnduranceRow& lost = *r.hover_lost;
+      const bool sinks = std::abs(lost.metrics[Metric::lift_to_weight] - 1.0) < 1e-6;
+      return fmt::format("it hovers for {:.4g} s, until {} at a charge of {:.4g}; {}", lost.time,
+                         sinks ? "lift falls below the weight" : "it leaves the model's domain", lost.charge, end);
+    }
+    case Hover::kept: return "it hovers to the end; " + end;
+  }
+  return end;
 }
 
 }  // namespace wingbeat

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <iterator>
 #include <stdexcept>
@@ -64,10 +65,12 @@ std::pair<std::size_t, DomainStatus> outside(const EnduranceResult& result) {
   return sum;
 }
 
+bool of_a_flight(Metric metric) { return metric == Metric::hover || metric == Metric::endurance; }
+
 Json metrics_json(const Metrics<double>& metrics) {
   Json json = Json::object();
   for (int m = 0; m < metric_count; ++m) {
-    if (Metric(m) == Metric::endurance) continue;
+    if (of_a_flight(Metric(m))) continue;
     json[metric_info(Metric(m)).key] = number_or_null(metrics.values[std::size_t(m)]);
   }
   return json;
@@ -81,6 +84,19 @@ std::string duration(double seconds) {
 }
 
 std::string minutes(double seconds) { return seconds < 100.0 ? "" : fmt::format("{:.2f} min", seconds / 60.0); }
+
+/// Hover first: how long the vehicle flaps is no flight where it cannot carry its weight.
+std::string plot_title(const EnduranceResult& result) {
+  const std::string flaps = fmt::format("flaps for {}", duration(result.endurance()));
+  switch (result.hover) {
+    case Hover::unknown: return "Hover unknown without a mass; " + flaps;
+    case Hover::never: return "Does not hover; " + flaps;
+    case Hover::outside: return "Hover outside the model's domain; " + flaps;
+    case Hover::lost: return fmt::format("Hovers for {}, {}", duration(result.hover_lost->time), flaps);
+    case Hover::kept: return fmt::format("Hovers for {}, to the end", duration(result.endurance()));
+  }
+  return flaps;
+}
 
 }  // namespace
 
@@ -110,9 +126,10 @@ std::string json_endurance(const EnduranceResult& result) {
   Json json;
   json["status"] = name_of(result.status);
   json["status_detail"] = describe(result);
+  json["hover"] = name_of(result.hover);
+  json["hover_s"] = number_or_null(result.hover_time());
   json["end"] = name_of(result.end);
   json["endurance_s"] = result.endurance();
-  json["hover"] = name_of(result.hover);
   json["domain"] = result.rows.empty() ? Json(nullptr) : Json(name_of(outside(result).second));
   Json moment = nullptr;
   if (const auto& at = result.hover_lost) {
@@ -177,21 +194,24 @@ std::string text_endurance(const Design<double>& design, const EnduranceResult& 
                     88, 2) +
             "\n";
   }
-  text += wrapped(fmt::format("{}: {}.", name_of(result.end), describe(result)), 88, 2) + "\n";
+  std::string sentence = describe(result) + ".";
+  sentence.front() = char(std::toupper(static_cast<unsigned char>(sentence.front())));
+  text += wrapped(sentence, 88, 2) + "\n";
   if (result.rows.empty()) return text;
   const Flight f(result);
 
-  text += "\nFlight\n";
-  line("endurance", duration(f.time), minutes(f.time));
+  text += "\nOn the battery\n";
   switch (result.hover) {
-    case Hover::unknown: line("hover", "-", "the vehicle file gives no mass"); break;
-    case Hover::never: line("hover", "never", "below weight from the start: cannot hover"); break;
-    case Hover::outside: line("hover", "not claimed", "lift exceeds the weight, but outside the model's domain"); break;
-    case Hover::kept: line("hover", "to the end", "lift exceeds the weight throughout"); break;
+    case Hover::unknown: line("hovers for", "unknown", "the vehicle file gives no mass"); break;
+    case Hover::never: line("hovers for", "never", "below weight from the start: cannot hover"); break;
+    case Hover::outside:
+      line("hovers for", "not claimed", "lift exceeds the weight, but outside the model's domain");
+      break;
+    case Hover::kept: line("hovers for", duration(f.time), minutes(f.time) + "   to the end"); break;
     case Hover::lost: {
       const EnduranceRow& at = *result.hover_lost;
-      line("hover lost after", duration(at.time), minutes(at.time));
-      line("  at a charge of", charge(at.charge));
+      line("hovers for", duration(at.time), minutes(at.time));
+      line("  to a charge of", charge(at.charge));
       line("  terminal voltage", readable(at.terminal_voltage, "V"),
            fmt::format("{} without load", readable(at.open_circuit_voltage, "V")));
       line("  mean current", readable(at.battery_current, "A"));
@@ -199,6 +219,7 @@ std::string text_endurance(const Design<double>& design, const EnduranceResult& 
       break;
     }
   }
+  line("flaps for", duration(f.time), minutes(f.time));
 
   text += "\nBattery\n";
   line("charge drawn", readable(f.drawn / 3.6, "mA h"),
@@ -211,7 +232,7 @@ std::string text_endurance(const Design<double>& design, const EnduranceResult& 
     line("  given to the air", readable(f.last.energy_aerodynamic, "J"), share(f.last.energy_aerodynamic));
   }
 
-  fmt::format_to(out, "\n{:<24}{:>14}{:>14}{:>14}\n", "Over the flight", "first", "mean", "last");
+  fmt::format_to(out, "\n{:<24}{:>14}{:>14}{:>14}\n", "Over the discharge", "first", "mean", "last");
   const EnduranceRow& first = f.rows.front();
   const auto over_flight = [&](const char* name, Metric m, const char* unit, double mean) {
     fmt::format_to(out, "  {:<22}{:>14}{:>14}{:>14}\n", name, readable(first.metrics[m], unit), readable(mean, unit),
@@ -248,7 +269,7 @@ std::string text_endurance(const Design<double>& design, const EnduranceResult& 
 
 void plot_endurance(const Design<double>& design, const EnduranceResult& result, PlotFormat format,
                     const std::filesystem::path& file) {
-  if (!(result.endurance() > 0.0)) throw std::runtime_error("no flight to plot");
+  if (!(result.endurance() > 0.0)) throw std::runtime_error("no discharge to plot");
   const auto& rows = result.rows;
   const bool weighed = total_mass(design).has_value();
   const double weight = total_mass(design).value_or(absent) * standard_gravity;
@@ -275,9 +296,7 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
   constexpr double left = 0.15, right = 0.96, top = 0.93, bottom = 0.075, gap = 0.05;
   constexpr double height = (top - bottom - 3.0 * gap) / 4.0;
   figure.add("set lmargin at screen {}\nset rmargin at screen {}\n", left, right);
-  figure.text(fmt::format("{}: {} {}", result.hover == Hover::lost ? "Flight and loss of hover" : "Flight",
-                          duration(result.endurance()), "to the end"),
-              8.0, "screen 0.5,0.982 center");
+  figure.text(plot_title(result), 8.0, "screen 0.5,0.982 center");
   double key_height = 0.0;
   const auto panel = [&](int index, const std::string& name, double most) {
     if (index > 0) figure.next_panel();
@@ -335,7 +354,7 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
 }
 
 void write_endurance(const EnduranceResult& result, const Provenance& provenance, const std::filesystem::path& path) {
-  if (result.rows.empty()) throw std::runtime_error("no flight to write");
+  if (result.rows.empty()) throw std::runtime_error("no discharge to write");
   NetcdfFile file(path);
   const NetcdfFile::Dimension time = file.define_dimension("time_s", result.rows.size());
   std::vector<NetcdfFile::Variable> variables;
@@ -344,14 +363,14 @@ void write_endurance(const EnduranceResult& result, const Provenance& provenance
   }
   std::vector<Metric> metrics;
   for (int m = 0; m < metric_count; ++m) {
-    if (Metric(m) != Metric::endurance) metrics.push_back(Metric(m));
+    if (!of_a_flight(Metric(m))) metrics.push_back(Metric(m));
   }
   for (const Metric m : metrics) {
     const MetricInfo& info = metric_info(m);
     variables.push_back(file.define_variable(info.key, {time}, info.unit, info.long_name));
   }
   const auto domain = file.define_dense("domain", {time}, "1", "limits of the model's domain that are exceeded",
-                                        NetcdfFile::Storage::flag);
+                                        NetcdfFile::Storage::masks);
   std::vector<std::string> limits;
   for (const DomainLimitInfo& limit : domain_limit_table()) limits.push_back(limit.key);
   file.set_flag_masks(domain, limits);
@@ -367,9 +386,9 @@ void write_endurance(const EnduranceResult& result, const Provenance& provenance
   for (std::size_t c = 0; c < std::size(columns); ++c) {
     write(variables[c], [&](const EnduranceRow& row) { return row.*columns[c].value; });
   }
-  std::vector<std::int8_t> exceeded;
-  for (const EnduranceRow& row : result.rows) exceeded.push_back(std::int8_t(row.domain.to_ulong()));
-  file.write_run(domain, 0, std::span<const std::int8_t>(exceeded));
+  std::vector<std::int16_t> exceeded;
+  for (const EnduranceRow& row : result.rows) exceeded.push_back(std::int16_t(row.domain.to_ulong()));
+  file.write_run(domain, 0, std::span<const std::int16_t>(exceeded));
   for (std::size_t n = 0; n < metrics.size(); ++n) {
     write(variables[std::size(columns) + n], [&](const EnduranceRow& row) { return row.metrics[metrics[n]]; });
   }

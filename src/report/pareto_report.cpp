@@ -285,13 +285,13 @@ void write_front(const ParetoStudy& study, const ParetoResult& r, const std::str
     }
     const auto domain = data.define_dense(prefix + "domain", {along}, "1",
                                           std::string("limits of the model's domain that are exceeded") + of,
-                                          NetcdfFile::Storage::flag);
+                                          NetcdfFile::Storage::masks);
     std::vector<std::string> limits;
     for (const DomainLimitInfo& limit : domain_limit_table()) limits.push_back(limit.key);
     data.set_flag_masks(domain, limits);
-    std::vector<std::int8_t> exceeded;
-    for (const ParetoDesign& d : list) exceeded.push_back(std::int8_t(d.domain.to_ulong()));
-    data.write_run(domain, 0, std::span<const std::int8_t>(exceeded));
+    std::vector<std::int16_t> exceeded;
+    for (const ParetoDesign& d : list) exceeded.push_back(std::int16_t(d.domain.to_ulong()));
+    data.write_run(domain, 0, std::span<const std::int16_t>(exceeded));
     if (study.vehicles.size() > 1) {
       std::vector<std::string> names;
       for (const ParetoDesign& d : list) names.push_back(study.vehicles[d.vehicle].name);

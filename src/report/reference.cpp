@@ -168,7 +168,7 @@ constexpr MetricDefinition metric_definitions[] = {
     {Metric::winding_temperature, R"($T_\mathrm{w}$)", "at which the winding settles; thermal resistances given"},
     {Metric::case_temperature, R"($T_\mathrm{case}$)", "at which the motor's case settles"},
     {Metric::winding_temperature_margin, R"($T_\mathrm{w,max} - T_\mathrm{w}$)",
-     "`motor.winding_temperature_max` given"},
+     "thermal resistances given; 125 degC unless `motor.winding_temperature_max` is given"},
     {Metric::added_mass_inertia_ratio, R"($J_\mathrm{a} / (N_\mathrm{w} J_\mathrm{w})$)",
      "`aerodynamics.added_mass = true`"},
     {Metric::power_hinge, R"($P_\mathrm{hinge}$)",
@@ -178,8 +178,13 @@ constexpr MetricDefinition metric_definitions[] = {
      R"(by how much the first harmonic of $\psi$ is ahead of that of $-\dot\beta$: 0 for symmetric flips)"},
     {Metric::angle_of_attack_max, R"($\alpha_\mathrm{max}$)",
      "of wings on pitch hinges, above 90 degrees at reversals"},
+    {Metric::reynolds_number, R"($\mathit{Re} = \bar c\, 4 \Phi f (R + d) / \nu$)",
+     R"($\bar c$ the mean chord, $\Phi$ the stroke amplitude; wings with a shape, in air)"},
+    {Metric::hover, R"($t_\mathrm{hover}$)",
+     "of a flight on a battery, 0 where it does not hover; with `vehicle.mass`, in `run --endurance` and studies that "
+     "ask for it"},
     {Metric::endurance, R"($t_\mathrm{end}$)",
-     "of a flight on a battery; in `run --json` and studies that ask for it"}};
+     "of a flight on a battery, hovering or not; in `run --endurance` and studies that ask for it"}};
 static_assert(std::size(metric_definitions) == std::size_t(metric_count), "a metric lacks its definition");
 
 }  // namespace

@@ -120,6 +120,21 @@ void heat_group(Table& table, const Metrics<double>& m) {
   table.line("case temperature", fmt::format("{:.1f} degC", m[Metric::case_temperature]));
 }
 
+/// How long the battery lasts, where that was asked for.
+void flight_group(Table& table, const Metrics<double>& m) {
+  const double hover = m[Metric::hover], end = m[Metric::endurance];
+  if (!std::isfinite(end)) return;
+  table.group("On the battery");
+  table.line("hovers for",
+             std::isnan(hover) ? "unknown"
+             : hover > 0.0     ? readable(hover, "s")
+                               : "never",
+             std::isnan(hover) ? "the vehicle file gives no mass"
+             : hover > 0.0     ? ""
+                               : "does not hover");
+  table.line("flaps for", readable(end, "s"));
+}
+
 void start_up_group(Table& table, const TransientResult& s, bool flapping) {
   using Kind = TransientEvent::Kind;
   auto counts = event_counts(s);
@@ -194,9 +209,13 @@ std::string wrapped(std::string_view text, int width, int indent) {
 }
 
 std::vector<std::string> warnings_of(const RunResult& result) {
-  std::vector<std::string> warnings;
-  if (result.residual_share) warnings.push_back(residual_warning(*result.residual_share));
-  return warnings;
+  std::vector<std::string> sentences;
+  if (result.residual_share) sentences.push_back(residual_warning(*result.residual_share));
+  if (result.hot_winding) {
+    const double allowed = *result.hot_winding + result.metrics[Metric::winding_temperature_margin];
+    sentences.push_back(winding_warning(*result.hot_winding, allowed));
+  }
+  return sentences;
 }
 
 std::string json_report(const RunResult& result) {
@@ -241,6 +260,7 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
   table.text(wrapped(how, table_width, 2) + "\n");
   if (result.start_up) start_up_group(table, *result.start_up, flapping);
   if (!std::isfinite(m[Metric::frequency])) return table.take();
+  flight_group(table, m);
 
   table.group("Operating point");
   table.metric("voltage", Metric::voltage, "V");
@@ -282,6 +302,10 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
   table.angle("stroke amplitude", degrees_per_radian * m[Metric::stroke_amplitude], "half peak to peak");
   table.metric("peak flapping velocity", Metric::flapping_velocity_peak, "rad/s");
   table.angle("smallest angle of attack", m[Metric::angle_of_attack_min]);
+  if (std::isfinite(m[Metric::reynolds_number])) {
+    table.line("Reynolds number", fmt::format("{:.0f}", m[Metric::reynolds_number]),
+               "mean chord, mean speed of the tips");
+  }
   if (std::isfinite(m[Metric::pitch_amplitude])) {
     table.angle("largest angle of attack", m[Metric::angle_of_attack_max], "beyond 90 deg the wings over-rotate");
     table.angle("pitch amplitude", m[Metric::pitch_amplitude], "half peak to peak");

@@ -18,11 +18,16 @@ namespace {
 
 using namespace schema;
 
+constexpr const char* unless_asked_for =
+    "; of a vehicle on a battery; null unless asked for: run --endurance, a study that names it";
+
 SchemaKeys metrics(int count = metric_count) {
   SchemaKeys keys;
   for (int m = 0; m < count; ++m) {
     const MetricInfo& metric = metric_table()[std::size_t(m)];
-    keys.push_back({metric.key, with_text(number_if_any, fmt::format("{} [{}]", metric.long_name, metric.unit))});
+    const bool of_a_flight = Metric(m) == Metric::hover || Metric(m) == Metric::endurance;
+    keys.push_back({metric.key, with_text(number_if_any, fmt::format("{} [{}]{}", metric.long_name, metric.unit,
+                                                                     of_a_flight ? unless_asked_for : ""))});
   }
   return keys;
 }
@@ -275,15 +280,16 @@ Json optimise_schema() {
 }
 
 Json endurance_schema() {
-  const Json state = object(metrics(int(Metric::endurance)));
+  const Json state = object(metrics(int(Metric::hover)));
   const Json moment =
       object(SchemaKeys{{"time_s", any_number}, {"charge", any_number}, {"open_circuit_voltage_v", any_number}} +
-             metrics(int(Metric::endurance)));
+             metrics(int(Metric::hover)));
   return object({{"status", or_null(statuses())},
                  {"status_detail", any_text},
+                 {"hover", any_text},
+                 {"hover_s", number_if_any},
                  {"end", any_text},
                  {"endurance_s", any_number},
-                 {"hover", any_text},
                  {"domain", or_null(domain)},
                  {"hover_lost", or_null(moment)},
                  {"charge_initial", number_if_any},

@@ -38,10 +38,11 @@ DesignPoint design_point(const Design<double>& given, const DesignPointOptions& 
   point.evidence = orbit.evidence;
   if (orbit.status != FlappingStatus::flapping) return point;
   point.metrics = orbit.metrics;
-  Endurance endurance;
-  if (options.endurance && has_battery(design.supply.type)) {
-    endurance = endurance_of(design, options.condition, options.tolerance, parameters);
-    point.metrics[Metric::endurance] = endurance.time;
+  Endurance flight;
+  if (options.flight.any() && has_battery(design.supply.type)) {
+    flight = endurance_of(design, options.condition, options.tolerance, parameters, options.flight);
+    point.metrics[Metric::hover] = flight.hover;
+    point.metrics[Metric::endurance] = flight.time;
   }
   point.domain_excess = domain_excess(vehicle, orbit.metrics);
   point.domain = domain_of(point.domain_excess);
@@ -52,9 +53,11 @@ DesignPoint design_point(const Design<double>& given, const DesignPointOptions& 
   if (!gradients.regular) return point;
   point.gradients = gradients.by_parameter;
   for (std::size_t k = 0; k < parameters.size(); ++k) {
-    if (!endurance.by_parameter.empty()) {
-      point.gradients[k][std::size_t(Metric::endurance)] = endurance.by_parameter[k];
-    }
+    const auto of_flight = [&](Metric metric, const std::vector<double>& by_parameter) {
+      if (!by_parameter.empty()) point.gradients[k][std::size_t(metric)] = by_parameter[k];
+    };
+    of_flight(Metric::hover, flight.hover_by_parameter);
+    of_flight(Metric::endurance, flight.by_parameter);
     point.domain_slopes[k] = domain_excess_slopes(vehicle, orbit.metrics, Metrics<double>{point.gradients[k]});
   }
   return point;

@@ -72,6 +72,7 @@ class Flight {
                                  : solve(first, start_up_in_time());
     result_.status = start.status;
     result_.evidence = start.evidence;
+    if (std::isfinite(steady_.reporting.mass)) result_.hover = Hover::never;
     result_.first_charge = first;
     result_.first_voltage = open_circuit_voltage(battery_, first);
     if (battery_.cutoff_voltage) result_.cutoff_voltage = battery_.cells * *battery_.cutoff_voltage;
@@ -201,9 +202,21 @@ class Flight {
     for (std::size_t n = 1; n < charges.size(); ++n) {
       if (hovers(charges[n])) continue;
       result_.hover = Hover::lost;
-      return bisect(hovers, charges[n - 1], charges[n]).before;
+      if (!lifts(charges[n])) {
+        const double lost = charge_of_equal_lift(charges[n - 1], charges[n]);
+        if (hovers(lost)) return lost;
+      }
+      return bisect(hovers, charges[n - 1], charges[n]).before;  // the domain is left
     }
     return std::nullopt;
+  }
+
+  /// The charge, to a part of the tolerance, down to which lift carries the weight: it does at `before`, and no longer
+  /// at `after`.
+  double charge_of_equal_lift(double before, double after) {
+    const auto excess = [&](double drawn) { return at(before - drawn).metrics[Metric::lift_to_weight] - 1.0; };
+    const double resolved = std::max(1e-3 * options_.tolerance, 1e-13) * before, drawn = before - after;
+    return before - find_zero(excess, 0.0, excess(0.0), drawn, excess(drawn), resolved).before;
   }
 
   /// What a charge drawn at an open-circuit voltage gives for each unit of it. Through that voltage alone the state of

@@ -59,17 +59,21 @@ std::string name_of(const MetricConstraint& c) {
   return key + std::string(c.at_least ? " >= " : " <= ") + number(c.limit);
 }
 
-std::string bound_of(DomainLimit limit, TransmissionType transmission) {
+std::string bound_of(DomainLimit limit, const Vehicle<double>& vehicle) {
+  const WingLimits<double>& wings = vehicle.wing_limits;
   switch (limit) {
     case DomainLimit::angle_of_attack: return "angle_of_attack >= 0 deg";
-    case DomainLimit::stroke: return "stroke <= " + number(stroke_max_deg(transmission)) + " deg";
+    case DomainLimit::stroke: return "stroke <= " + number(stroke_max_deg(vehicle)) + " deg";
     case DomainLimit::formulation_residual:
       return "formulation_residual <= " + number(100.0 * formulation_residual_max) + " %";
     case DomainLimit::mechanism_efficiency: return "mechanism_efficiency <= 1";
     case DomainLimit::motor_efficiency: return "motor_efficiency <= 1";
     case DomainLimit::input_power: return "input_power > 0";
     case DomainLimit::flow_speed: return "flow_speed <= " + number(flow_speed_max) + " m/s";
-    case DomainLimit::winding_temperature: return "winding_temperature <= its maximum";
+    case DomainLimit::winding_temperature:
+      return "winding_temperature <= " + number(vehicle.thermal.winding_temperature_max - zero_celsius) + " degC";
+    case DomainLimit::reynolds_number:
+      return "reynolds_number from " + number(wings.reynolds_number_min) + " to " + number(wings.reynolds_number_max);
   }
   return "unknown";
 }

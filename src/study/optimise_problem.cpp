@@ -61,11 +61,12 @@ OptimiseProblem::Evaluation OptimiseProblem::evaluate(const Vector& u, bool grad
   for (Eigen::Index c = own; c < m; ++c) {
     const std::size_t limit = std::size_t(c - own);
     e.constraints[c] = e.point.domain_excess[limit] + domain_margin;
-    if (!gradients) continue;
-    const bool by_geometry = limit == std::size_t(DomainLimit::stroke) && drive_of(study_.design).stroke_is_fixed;
-    for (Eigen::Index k = 0; k < size(); ++k) {
-      e.jacobian(c, k) =
-          by_geometry ? stroke_slope(u, k) : e.point.domain_slopes[std::size_t(k)][limit] * slope(k, u[k]);
+  }
+  for (Eigen::Index k = 0; gradients && own < m && k < size(); ++k) {
+    const DomainExcess by_vehicle = vehicle_slopes(u, k, e.point.metrics);
+    for (Eigen::Index c = own; c < m; ++c) {
+      const std::size_t limit = std::size_t(c - own);
+      e.jacobian(c, k) = e.point.domain_slopes[std::size_t(k)][limit] * slope(k, u[k]) + by_vehicle[limit];
     }
   }
   e.flaps = std::isfinite(e.objective) && e.constraints.allFinite() && e.gradient.allFinite() && e.jacobian.allFinite();
@@ -73,13 +74,18 @@ OptimiseProblem::Evaluation OptimiseProblem::evaluate(const Vector& u, bool grad
   return e;
 }
 
-double OptimiseProblem::stroke_slope(const Vector& u, Eigen::Index k) const {
+DomainExcess OptimiseProblem::vehicle_slopes(const Vector& u, Eigen::Index k, const Metrics<double>& metrics) const {
   constexpr double step = 1e-5;
   Vector up = u, down = u;
   up[k] = std::min(1.0, u[k] + step);
   down[k] = std::max(0.0, u[k] - step);
-  const auto excess = [&](const Vector& at) { return stroke_excess(resolve(design(at), study_.options.condition)); };
-  return (excess(up) - excess(down)) / (up[k] - down[k]);
+  const auto excess = [&](const Vector& at) {
+    return domain_excess(resolve(design(at), study_.options.condition), metrics);
+  };
+  DomainExcess slopes = excess(up);
+  const DomainExcess below = excess(down);
+  for (std::size_t l = 0; l < slopes.size(); ++l) slopes[l] = (slopes[l] - below[l]) / (up[k] - down[k]);
+  return slopes;
 }
 
 }  // namespace wingbeat::detail

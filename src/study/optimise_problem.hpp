@@ -21,10 +21,10 @@ class OptimiseProblem {
   OptimiseProblem(const OptimiseStudy& study, const StartUp& start_up)
       : study_(study), options_(study.options), start_up_(start_up) {
     for (const OptimisedParameter& p : study.parameters) parameters_.push_back(p.parameter);
-    options_.endurance = options_.endurance || study.objective == Metric::endurance;
-    for (const MetricConstraint& c : study.constraints) {
-      options_.endurance = options_.endurance || c.metric == Metric::endurance;
-    }
+    MetricSet wanted;
+    wanted.set(std::size_t(study.objective));
+    for (const MetricConstraint& c : study.constraints) wanted.set(std::size_t(c.metric));
+    options_.flight = flight_metrics(wanted, study.allow_extrapolation);
   }
 
   Eigen::Index size() const { return Eigen::Index(study_.parameters.size()); }
@@ -75,11 +75,12 @@ class OptimiseProblem {
   const OptimiseStudy& study() const { return study_; }
 
  private:
-  /// Derivative of the stroke's excess, which is geometry alone, by central differences.
-  double stroke_slope(const Vector& u, Eigen::Index k) const;
+  /// Derivatives of the excess over the domain's limits that are the vehicle's alone, its metrics held, by central
+  /// differences.
+  DomainExcess vehicle_slopes(const Vector& u, Eigen::Index k, const Metrics<double>& metrics) const;
 
   const OptimiseStudy& study_;
-  DesignPointOptions options_;  ///< of the study, with the endurance where it is asked for
+  DesignPointOptions options_;  ///< of the study, with the flight where it is asked for
   const StartUp& start_up_;
   std::vector<DesignParameter> parameters_;
 };

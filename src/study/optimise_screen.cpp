@@ -29,6 +29,7 @@ std::vector<Vector> screened(const OptimiseProblem& problem, const StartUp& star
   sweep.variants.push_back({study.design, study.options.condition, true});
   sweep.variant_stride = {0};
   sweep.frequency = study.options.frequency;
+  sweep.allow_extrapolation = study.allow_extrapolation;
   sweep.options.tolerance = 1e-4;
   sweep.options.metrics.reset();
   sweep.options.metrics.set(std::size_t(study.objective));

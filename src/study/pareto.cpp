@@ -63,6 +63,7 @@ class Problem {
         sweep.variants.push_back({vehicle(designs[first + k]), study_.condition, true});
       }
       sweep.frequency = study_.frequency;
+      sweep.allow_extrapolation = study_.allow_extrapolation;
       sweep.options.tolerance = tolerance;
       sweep.options.metrics = metrics;
       SweepColumns columns;

@@ -208,6 +208,7 @@ void note_domain(const Vehicle<double>& vehicle, RunResult& result) {
   result.domain = domain_of(vehicle, result.metrics);
   result.domain_evidence = domain_evidence(vehicle, result.metrics);
   result.residual_share = notable_residual(vehicle, result.metrics);
+  result.hot_winding = hot_winding(vehicle, result.metrics);
 }
 
 }  // namespace
@@ -261,7 +262,10 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
   note_domain(vehicle, result);
   const bool flies = has_battery(supply.type) && result.status == FlappingStatus::flapping;
   if (options.endurance && flies) {
-    result.metrics[Metric::endurance] = endurance_of(design, options.condition, options.tolerance).time;
+    const FlightMetrics wanted{true, true, options.allow_extrapolation};
+    const Endurance flight = endurance_of(design, options.condition, options.tolerance, {}, wanted);
+    result.metrics[Metric::hover] = flight.hover;
+    result.metrics[Metric::endurance] = flight.time;
   }
   return result;
 }

@@ -39,7 +39,7 @@ void next(const Sweep& sweep, std::span<std::uint64_t> place) {
   }
 }
 
-static_assert(domain_limit_count <= 8, "bits of a byte");
+static_assert(domain_limit_count <= 15, "bits of a column's whole numbers");
 
 }  // namespace
 
@@ -153,17 +153,25 @@ void SweepSolver::solve(SweepColumns& columns, std::size_t begin, std::size_t en
     columns.status[row] = std::int8_t(unreached ? SweepStatus::unreached : sweep_status(out.status));
     columns.recomputed[row] = out.scalar ? 1 : 0;
     if (!flaps || unreached) continue;
-    columns.domain[row] = std::int8_t(out.domain.to_ulong());
+    columns.domain[row] = std::int16_t(out.domain.to_ulong());
     columns.error_estimate[row] = out.error_estimate;
     for (std::size_t m = 0; m < kept_.size(); ++m) {
       columns.metrics[m][row] = out.metrics.values[std::size_t(kept_[m])];
     }
-    if (sweep_.options.metrics[std::size_t(Metric::endurance)]) {
-      const SweepDesign of = design_at(sweep_, columns.first + row);
-      const bool flies = has_battery(of.design.supply.type);
-      if (flies)
-        columns.metrics[kept_.size() - 1][row] = endurance_of(of.design, of.condition, sweep_.options.tolerance).time;
-    }
+    fly(columns, row);
+  }
+}
+
+/// The metrics of a whole flight, where the sweep wants them.
+void SweepSolver::fly(SweepColumns& columns, std::size_t row) const {
+  const FlightMetrics wanted = flight_metrics(sweep_.options.metrics, sweep_.allow_extrapolation);
+  if (!wanted.any()) return;
+  const SweepDesign of = design_at(sweep_, columns.first + row);
+  if (!has_battery(of.design.supply.type)) return;
+  const Endurance flight = endurance_of(of.design, of.condition, sweep_.options.tolerance, {}, wanted);
+  for (std::size_t m = 0; m < kept_.size(); ++m) {
+    if (Metric(kept_[m]) == Metric::hover) columns.metrics[m][row] = flight.hover;
+    if (Metric(kept_[m]) == Metric::endurance) columns.metrics[m][row] = flight.time;
   }
 }
 

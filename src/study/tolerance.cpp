@@ -254,7 +254,7 @@ ToleranceResult assess_tolerance(const ToleranceStudy& study, const SweepColumns
     parameters.push_back(p.parameter);
   }
   const DesignPointOptions options{study.condition, study.frequency, study.options.tolerance, true,
-                                   study.options.metrics[std::size_t(Metric::endurance)]};
+                                   flight_metrics(study.options.metrics, study.allow_extrapolation)};
   result.centre = design_point(centre, options, parameters, start_up);
   const auto covariance = parameter_covariance(study);
 

@@ -171,6 +171,10 @@ void validate(const Design<double>& d) {
         d.wing.rib_count > 0.0 ? wing_material_key::rib_density.path : wing_material_key::rib_count.path,
         "missing: give both rib_count and rib_density, or neither");
   }
+  const AerodynamicsDesign<double>& air = d.aerodynamics;
+  if (air.reynolds_number_min && air.reynolds_number_max && !(*air.reynolds_number_min < *air.reynolds_number_max)) {
+    throw ParameterError(wing_limits_key::reynolds_number_max.path, "must exceed reynolds_number_min");
+  }
   const MotorThermalDesign<double>& thermal = d.motor.thermal;
   if (thermal.resistance_winding.has_value() != thermal.resistance_case.has_value()) {
     throw ParameterError(thermal.resistance_winding ? motor_thermal_key::resistance_case.path

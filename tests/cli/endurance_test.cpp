@@ -18,9 +18,13 @@ TEST_F(Endurance, ReportJsonFigureAndDataSet) {
   const Outcome report = run({"endurance", battery, "--set", "supply.cells=2", "--set", "vehicle.mass=\"5 g\"", "-o",
                               path("flight.nc"), "--plot", path("flight.svg")});
   EXPECT_EQ(report.status, 0) << report.err;
-  EXPECT_THAT(report.out, HasSubstr("empty: the battery is empty after"));
-  EXPECT_THAT(report.out, HasSubstr("hover lost after"));
+  // Hover comes first, everywhere.
+  EXPECT_THAT(report.out, testing::ContainsRegex("It hovers for 216.6 s, until lift falls below the weight at a charge "
+                                                 "of[ \n]+0.04[56]"));
+  EXPECT_THAT(report.out, HasSubstr("the battery is empty after"));
+  EXPECT_LT(report.out.find("hovers for   "), report.out.find("flaps for   "));
   EXPECT_THAT(report.out, HasSubstr("lost inside the battery"));
+  EXPECT_THAT(read(path("flight.svg")), HasSubstr("Hovers for 216.6 s, flaps for 228.5 s"));
   for (const char* name : {"mean lift", "weight, 49.03 mN", "electrical", "open circuit", "state of charge"}) {
     EXPECT_THAT(read(path("flight.svg")), HasSubstr(name));
   }
@@ -30,11 +34,13 @@ TEST_F(Endurance, ReportJsonFigureAndDataSet) {
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
   EXPECT_THAT(keys, testing::ElementsAre(
-                        "status", "status_detail", "end", "endurance_s", "hover", "domain", "hover_lost",
+                        "status", "status_detail", "hover", "hover_s", "end", "endurance_s", "domain", "hover_lost",
                         "charge_initial", "charge_final", "charge_drawn_c", "energy_chemical_j", "energy_electrical_j",
                         "energy_internal_j", "energy_aerodynamic_j", "current_mean_a", "power_electrical_w",
                         "power_aerodynamic_w", "lift_mean_n", "efficiency_system", "initial", "final", "history"));
   EXPECT_EQ(json["hover"], "lost");
+  EXPECT_EQ(json["hover_s"], json["hover_lost"]["time_s"]);
+  EXPECT_LT(json["hover_s"], json["endurance_s"]);
   EXPECT_NEAR(json["hover_lost"]["lift_to_weight"].get<double>(), 1.0, 1e-9);
   EXPECT_EQ(json["charge_drawn_c"], 108.0);
   const auto& history = json["history"];
@@ -87,9 +93,18 @@ TEST_F(Endurance, ABatteryThatCannotStartTheVehicle) {
 }
 
 TEST_F(Endurance, AVehicleThatNeverHoversSaysSo) {
-  const Outcome outcome = run({"endurance", battery});
+  const Outcome outcome = run({"endurance", battery, "--plot", path("flaps.svg")});
   EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("It does not hover: lift is 0.643"));
+  EXPECT_LT(outcome.out.find("does not hover"), outcome.out.find("491.8"));
   EXPECT_THAT(outcome.out, HasSubstr("below weight from the start: cannot hover"));
+  EXPECT_THAT(outcome.out, testing::Not(HasSubstr("light")));
+  const std::string figure = read(path("flaps.svg"));
+  EXPECT_THAT(figure, HasSubstr("Does not hover; flaps for 491.8 s"));
+  EXPECT_THAT(figure, testing::Not(HasSubstr("Flight")));
+  const Json json = run({"endurance", battery, "--json"}).json();
+  EXPECT_EQ(json["hover_s"], 0.0);
+  EXPECT_THAT(json["status_detail"].get<std::string>(), testing::StartsWith("it does not hover"));
 }
 
 TEST_F(Endurance, BadInput) {
@@ -185,8 +200,17 @@ TEST_F(Endurance, OfADirectDriveThroughABridge) {
 /// The endurance of the shipped battery as runs, sweeps and optima tell it.
 TEST_F(Endurance, AsAMetric) {
   const double flight = run({"endurance", battery, "--json"}).json()["endurance_s"].get<double>();
-  EXPECT_NEAR(run({"run", battery, "--json"}).json()["endurance_s"].get<double>(), flight, 1e-5 * flight);
-  EXPECT_TRUE(run({"run", plain, "--json"}).json()["endurance_s"].is_null());
+  const Json asked = run({"run", battery, "--endurance", "--json"}).json();
+  EXPECT_NEAR(asked["endurance_s"].get<double>(), flight, 1e-5 * flight);
+  EXPECT_EQ(asked["hover_s"], 0.0);
+  const Outcome text = run({"run", battery, "--endurance"});
+  EXPECT_THAT(text.out, testing::ContainsRegex("hovers for +never +does not hover\n +flaps for +491.8 s"));
+  const Json plainly = run({"run", battery, "--json"}).json();  // no flight unless asked for
+  EXPECT_TRUE(plainly["endurance_s"].is_null());
+  EXPECT_TRUE(plainly["hover_s"].is_null());
+  const Outcome refused = run({"run", plain, "--endurance"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("--endurance: only a battery runs down: supply.type is constant"));
 
   const auto study = [&](const std::string& vehicle, const std::string& more, const std::string& sections) {
     std::ofstream(path("study.toml")) << "[study]\nvehicle = \"" << vehicle << "\"\n" << more << sections;
@@ -199,6 +223,7 @@ TEST_F(Endurance, AsAMetric) {
   ASSERT_EQ(time.size(), 2U);
   EXPECT_NEAR(time[0], flight, 1e-5 * flight);
   EXPECT_NEAR(time[1], 2.0 * flight, 2e-5 * flight);
+  EXPECT_EQ(wingbeat::NetcdfReader(path("named.nc")).read("hover_s"), std::vector<double>({0.0, 0.0}));
   ASSERT_EQ(run({"sweep", study(battery, "", axis), "-o", path("all.nc")}).status, 0);
   EXPECT_EQ(read(path("all.nc")).find("endurance_s"), std::string::npos);
 
@@ -208,12 +233,66 @@ TEST_F(Endurance, AsAMetric) {
   const Outcome none = run({"optimise", study(plain, "", capacity)});
   EXPECT_EQ(none.status, 2);
   EXPECT_THAT(none.err, HasSubstr("endurance_s needs supply.type = \"battery\" in the vehicle file"));
-  const Outcome best = run({"optimise", study(battery, "", capacity), "--json"});
+  const Outcome best = run({"optimise", study(battery, "count_after_hover = true\n", capacity), "--json"});
   ASSERT_EQ(best.status, 0) << best.err;
   const Json json = best.json();
   EXPECT_EQ(json["objective"], "endurance_s");
   EXPECT_GT(json["value"].get<double>(), 0.9 * flight);
   EXPECT_EQ(json["value"], json["metrics"]["endurance_s"]);
+}
+
+/// What an optimum of the endurance counts: the time for which lift carries the weight, unless the study says
+/// otherwise.
+TEST_F(Endurance, AnOptimumCountsWhileTheVehicleHovers) {
+  const auto study = [&](const std::string& more, const std::string& metric, const std::string& set) {
+    std::ofstream(path("study.toml")) << "[study]\nvehicle = \"" << battery << "\"\n"
+                                      << more << set << "[objective]\nmaximise = \"" << metric
+                                      << "\"\nstarts = 2\nscreen = 16\n"
+                                      << "[[parameter]]\nkey = \"supply.capacity\"\nlower = \"20 mA h\"\n"
+                                      << "upper = \"100 mA h\"\n";
+    return path("study.toml");
+  };
+  const std::string two =
+      "[set]\nsupply.cells = 2\nvehicle.mass = \"2.5 g\"\nsupply.specific_energy = "
+      "\"160 W h/kg\"\n";
+  const Outcome o = run({"optimise", study("", "endurance_s", two), "--json", "-o", path("best.toml")});
+  ASSERT_EQ(o.status, 0) << o.err;
+  const Json json = o.json();
+  EXPECT_EQ(json["objective"], "hover_s");
+  EXPECT_EQ(json["value"], json["metrics"]["hover_s"]);
+  const Json flight = run({"endurance", path("best.toml"), "--json"}).json();
+  EXPECT_NEAR(json["value"].get<double>(), flight["hover_s"].get<double>(), 1e-5 * flight["hover_s"].get<double>());
+  // More or less capacity hovers for a shorter time.
+  for (const double factor : {0.97, 1.03}) {
+    const double capacity = factor * json["parameters"]["supply.capacity"].get<double>();
+    const Json other =
+        run({"endurance", path("best.toml"), "--set", "supply.capacity=" + Json(capacity).dump(), "--json"}).json();
+    EXPECT_LT(other["hover_s"].get<double>(), json["value"].get<double>()) << factor;
+  }
+  EXPECT_THAT(run({"optimise", study("", "endurance_s", two)}).out,
+              HasSubstr("most flight time until lift falls below the weight: "));
+  const Json all = run({"optimise", study("count_after_hover = true\n", "endurance_s", two), "--json"}).json();
+  EXPECT_EQ(all["objective"], "endurance_s");
+  EXPECT_GT(all["value"].get<double>(), json["value"].get<double>());
+
+  const Outcome useless = run({"optimise", study("count_after_hover = true\n", "lift_mean_n", "")});
+  EXPECT_EQ(useless.status, 2);
+  EXPECT_THAT(useless.err, HasSubstr("study.count_after_hover: has no place here: neither the objective nor a "
+                                     "constraint is endurance_s"));
+  std::string weightless = read(battery);
+  weightless.erase(weightless.find("mass = "),
+                   weightless.find('\n', weightless.find("mass = ")) - weightless.find("mass = "));
+  std::ofstream(path("weightless.toml")) << weightless;
+  std::ofstream(path("unknown.toml")) << "[study]\nvehicle = \"weightless.toml\"\n[objective]\n"
+                                      << "maximise = \"endurance_s\"\n[[parameter]]\nkey = \"spring.stiffness\"\n"
+                                      << "lower = 1e-3\nupper = 2e-3\n";
+  const Outcome unknown = run({"optimise", path("unknown.toml")});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("endurance_s counts while lift carries the weight, which needs vehicle.mass"));
+  std::ofstream(path("sweep.toml")) << "[study]\nvehicle = \"" << battery << "\"\ncount_after_hover = true\n"
+                                    << "[[axis]]\nkey = \"supply.charge\"\nvalues = [1, 0.5]\n";
+  EXPECT_THAT(run({"sweep", path("sweep.toml"), "-o", path("s.nc")}).err,
+              HasSubstr("study.count_after_hover: unknown key"));
 }
 
 TEST_F(Endurance, TheLongestFlightOnTwoCells) {
@@ -222,7 +301,7 @@ TEST_F(Endurance, TheLongestFlightOnTwoCells) {
   const Json json = o.json();
   EXPECT_EQ(json["active"][0]["limit"], "lift_to_weight >= 1.2");
   EXPECT_NEAR(json["metrics"]["lift_to_weight"].get<double>(), 1.2, 1e-4);
-  const double flight = run({"endurance", path("best.toml"), "--json"}).json()["endurance_s"].get<double>();
+  const double flight = run({"endurance", path("best.toml"), "--json"}).json()["hover_s"].get<double>();
   EXPECT_NEAR(json["value"].get<double>(), flight, 1e-5 * flight);
 }
 

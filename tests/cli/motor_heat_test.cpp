@@ -40,13 +40,36 @@ TEST_F(MotorHeat, ARunTellsTheTemperatures) {
   EXPECT_TRUE(cold["winding_temperature_degc"].is_null());
   EXPECT_NEAR(warm["winding_temperature_degc"].get<double>(), 45.0, 5.0);
   EXPECT_LT(warm["case_temperature_degc"], warm["winding_temperature_degc"]);
-  EXPECT_TRUE(warm["winding_temperature_margin_k"].is_null());
+  EXPECT_NEAR(warm["winding_temperature_margin_k"].get<double>(),
+              125.0 - warm["winding_temperature_degc"].get<double>(), 1e-9);
+  EXPECT_TRUE(warm["warnings"].empty());
   EXPECT_LT(warm["lift_mean_n"].get<double>(), 0.95 * cold["lift_mean_n"].get<double>());
   const Outcome text = run({"run", path("warm.toml"), "--set", "motor.winding_temperature_max=40 degC"});
   EXPECT_EQ(text.status, 0) << text.err;
   EXPECT_THAT(text.out, HasSubstr("OUTSIDE THE MODEL'S DOMAIN (winding_temperature): the winding heats up to "));
   EXPECT_THAT(text.out, HasSubstr("winding temperature"));
   EXPECT_THAT(text.out, HasSubstr("K above the largest allowed"));
+}
+
+/// A winding far above what insulation stands hovers nowhere: in a run, a search, an optimum or on a battery.
+TEST_F(MotorHeat, AGlowingWindingDoesNotHover) {
+  const std::vector<std::string> hot = {"run", path("warm.toml"), "--voltage", "9 V", "--set", "vehicle.mass=0.5 g"};
+  std::vector<std::string> as_json = hot, longer = hot;
+  as_json.emplace_back("--json");
+  const Json json = run(as_json).json();
+  EXPECT_GT(json["winding_temperature_degc"].get<double>(), 150.0);
+  EXPECT_GT(json["lift_to_weight"].get<double>(), 1.0);
+  EXPECT_THAT(json["domain"].get<std::string>(), HasSubstr("winding_temperature"));
+  EXPECT_THAT(json["warnings"].dump(), HasSubstr("above motor.winding_temperature_max = 125 degC"));
+  EXPECT_THAT(run(hot).out, testing::Not(HasSubstr("can hover")));
+  for (const char* more :
+       {"--set", "motor.winding_temperature_max=400 degC", "--set", "aerodynamics.pitch_coefficient=0"})
+    longer.emplace_back(more);
+  EXPECT_THAT(run(longer).out, testing::Not(HasSubstr("winding heats up")));
+  std::ofstream(path("study.toml")) << "[study]\nvehicle = \"warm.toml\"\n[objective]\nmaximise = \"lift_mean_n\"\n"
+                                    << "[[parameter]]\nkey = \"supply.voltage\"\nlower = \"1 V\"\nupper = \"9 V\"\n";
+  const Json best = run({"optimise", path("study.toml"), "--json"}).json();
+  EXPECT_LE(best["metrics"]["winding_temperature_degc"].get<double>(), 125.0);
 }
 
 TEST_F(MotorHeat, TransientRouteAgrees) {

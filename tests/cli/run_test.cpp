@@ -65,6 +65,8 @@ const std::vector<std::string> contract_keys = {"status",
                                                 "pitch_amplitude_deg",
                                                 "pitch_phase_deg",
                                                 "angle_of_attack_max_deg",
+                                                "reynolds_number",
+                                                "hover_s",
                                                 "endurance_s"};
 
 void expect_same_metrics(const Json& a, const Json& b, double tolerance) {
@@ -88,7 +90,7 @@ TEST_F(Run, JsonIsOneObjectWithTheContractsKeysAndNothingElse) {
     const std::string& key = contract_keys[k];
     const bool option = key.find("temperature") != std::string::npos || key == "added_mass_inertia_ratio" ||
                         key.find("pitch") == 0 || key == "power_hinge_w" || key == "angle_of_attack_max_deg" ||
-                        key == "endurance_s";
+                        key == "reynolds_number" || key == "hover_s" || key == "endurance_s";
     EXPECT_EQ(json[key].is_number(), !option) << key;
   }
   EXPECT_EQ(json["voltage_v"], 3.0);

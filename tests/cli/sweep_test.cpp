@@ -121,11 +121,12 @@ TEST_F(Sweep, EachDesignIsWhatARunOfItGives) {
     EXPECT_EQ(status[n] == 0.0, json["status"] == "flapping") << n;
     for (const auto& metric : wingbeat::metric_table()) {
       // A data set has no temperatures where no motor is said to heat up, no added mass and no pitching where none is,
-      // and the endurance where it is asked for.
+      // no Reynolds number of wings without a shape, and the flight where it is asked for.
       const std::string_view key = metric.key;
       const bool pitching = key.starts_with("pitch_") || key == "power_hinge_w" || key == "angle_of_attack_max_deg";
       const bool option = pitching || key.find("temperature") != std::string_view::npos ||
-                          key == "added_mass_inertia_ratio" || key == "endurance_s";
+                          key == "added_mass_inertia_ratio" || key == "reynolds_number" || key == "hover_s" ||
+                          key == "endurance_s";
       if (json[metric.key].is_null() && option) continue;
       const double swept = file.read(metric.key)[n];
       if (json[metric.key].is_null()) {

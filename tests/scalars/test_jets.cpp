@@ -36,6 +36,7 @@ Vehicle<double> generic_vehicle(Formulation formulation) {
   v.pitch.mass_product = 1e-8;
   v.pitch.moments = {1.2e-6, 4.2e-8, 1.2e-6, 2.5e-8, 2.6e-8};
   v.pitch.air = {4e-8, 1.2e-8, 7e-9, 1.2e-6, 6e-7};
+  v.wing_limits = {82.0, 100.0, 26000.0, 1.6};
   return v;
 }
 

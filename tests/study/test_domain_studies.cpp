@@ -59,6 +59,79 @@ TEST(DomainOfEnsembles, BatchedAndScalarAgreeWhicheverMetricsAreWanted) {
   EXPECT_LT(outside, int(members.size()) - 5);
 }
 
+/// Small and large wings in thick and thin air, and direct drives about the stroke at which their wings meet: the
+/// limits of the wings themselves.
+TEST(DomainOfEnsembles, LimitsOfTheWingsAreTheSameInBatches) {
+  std::vector<EnsembleMember> members;
+  for (int n = 0; n < 24; ++n) {
+    Design<double> d = with_springs();
+    d.wing.planform = {PlanformShape::semi_ellipse, 63e-3, 25e-3};
+    d.aerodynamics.kinematic_viscosity = 1e-6 * std::pow(1e3, n / 23.0);
+    members.push_back({resolve(d), reporting_of(d)});
+  }
+  for (int n = 0; n < 24; ++n) {
+    Design<double> d = read_design(std::string(WINGBEAT_DATA) + "/designs/direct-drive.toml");
+    d.wing.count = n % 3 == 0 ? 1.0 : 2.0;
+    d.supply.voltage = 1.0 + 0.5 * n;
+    members.push_back({resolve(d), reporting_of(d)});
+  }
+  EnsembleOptions scalar, few;
+  scalar.scalar_only = true;
+  few.metrics = MetricSet().set(std::size_t(Metric::lift_mean));
+  std::vector<EnsembleOutcome> exact(members.size()), batched(members.size()), narrow(members.size());
+  solve_ensemble(members, scalar, start_up_in_time(), exact);
+  solve_ensemble(members, {}, start_up_in_time(), batched);
+  solve_ensemble(members, few, start_up_in_time(), narrow);
+  int by_reynolds = 0, by_stroke = 0, inside = 0;
+  for (std::size_t n = 0; n < members.size(); ++n) {
+    ASSERT_EQ(exact[n].status, FlappingStatus::flapping) << n;
+    EXPECT_EQ(batched[n].domain, exact[n].domain) << n;
+    EXPECT_EQ(narrow[n].domain, exact[n].domain) << n;
+    const double Re = exact[n].metrics[Metric::reynolds_number];
+    EXPECT_EQ(std::isnan(Re), n >= 24);
+    if (n < 24) {
+      EXPECT_NEAR(batched[n].metrics[Metric::reynolds_number] / Re, 1.0, 1e-6) << n;
+    }
+    by_reynolds += exact[n].domain[std::size_t(DomainLimit::reynolds_number)];
+    by_stroke += exact[n].domain[std::size_t(DomainLimit::stroke)];
+    inside += exact[n].domain.none();
+  }
+  EXPECT_GT(by_reynolds, 3);
+  EXPECT_GT(by_stroke, 3);
+  EXPECT_GT(inside, 5);
+}
+
+/// The limits of the wings as constraints of an optimum: the largest stroke of two wings that one motor swings, and the
+/// lowest Reynolds number of ever smaller ones.
+TEST(DomainOfOptima, WingsMeetAndCoefficientsEnd) {
+  OptimiseStudy study;
+  study.design = read_design(std::string(WINGBEAT_DATA) + "/designs/direct-drive.toml");
+  study.parameters = {between("supply.amplitude", 1.0, 12.0)};
+  study.objective = Metric::stroke_amplitude;
+  study.maximise = true;
+  study.starts = 2;
+  study.screen = 32;
+  const OptimiseResult stroke = optimise(study, start_up_in_time());
+  ASSERT_EQ(stroke.outcome, OptimiseResult::Outcome::found);
+  EXPECT_LE(degrees_per_radian * stroke.point.metrics[Metric::stroke_amplitude], 90.0);
+  EXPECT_NEAR(degrees_per_radian * stroke.point.metrics[Metric::stroke_amplitude], 90.0, 0.01);
+  ASSERT_FALSE(stroke.active.empty());
+  EXPECT_EQ(stroke.active[0].name, "domain: stroke <= 90 deg");
+
+  study.design = with_springs();
+  study.design.transmission.formulation = Formulation::virtual_work;
+  study.design.wing.planform = {PlanformShape::semi_ellipse, 20e-3, 8e-3};
+  study.parameters = {between("wing.planform.length", 2e-3, 30e-3)};
+  study.objective = Metric::reynolds_number;
+  study.maximise = false;
+  const OptimiseResult small = optimise(study, start_up_in_time());
+  ASSERT_EQ(small.outcome, OptimiseResult::Outcome::found);
+  EXPECT_GE(small.point.metrics[Metric::reynolds_number], 100.0);
+  EXPECT_NEAR(small.point.metrics[Metric::reynolds_number], 100.0, 0.1);
+  ASSERT_FALSE(small.active.empty());
+  EXPECT_EQ(small.active[0].name, "domain: reynolds_number from 100 to 26000");
+}
+
 TEST(DomainOfOptima, MostLiftSitsOnTheEdgeAndSaysSo) {
   OptimiseStudy study;
   study.design = with_springs();

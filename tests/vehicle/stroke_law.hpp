@@ -89,11 +89,12 @@ struct StrokeLawVehicle {
   MotorThermal<S> thermal;
   S motors = S(1);
   S load_torque = S(0);
+  WingLimits<S> wing_limits = {};
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
     return use(of.voltage, of.motor, of.transmission, of.friction, of.spring, of.wing_count, of.wing_inertia, of.wings,
-               of.source_resistance, of.drive_frequency, of.thermal, of.motors, of.load_torque);
+               of.source_resistance, of.drive_frequency, of.thermal, of.motors, of.load_torque, of.wing_limits);
   }
 };
 

@@ -171,7 +171,7 @@ TEST(ThermalEquilibrium, RunawayIsNamed) {
   EXPECT_EQ(found.status, FlappingStatus::flapping);
   EXPECT_EQ(name_of(found.domain), "winding_temperature");
   EXPECT_EQ(describe(found.domain_evidence),
-            "thermal runaway: the losses do not settle before copper melts at 1085 degC (at most 1085 degC)");
+            "thermal runaway: the losses do not settle before copper melts at 1085 degC (at most 125 degC)");
 }
 
 TEST(ThermalEquilibrium, HeatsUpUntilItStops) {

@@ -16,15 +16,16 @@ namespace wingbeat {
 /// A limit of the domain. The order is that of the bits in data sets.
 enum class DomainLimit {
   angle_of_attack,       ///< 0 to 90 deg over the whole cycle: what the force coefficients were fitted to
-  stroke,                ///< of the tan-law mechanism 85 deg to either side; of a direct drive an amplitude of 180 deg
+  stroke,                ///< of the tan-law mechanism 85 deg to either side, else 180; less where two wings meet
   formulation_residual,  ///< |P_residual| at most 5 % of the input power
   mechanism_efficiency,  ///< P_aero/P_m from 0 to 1, in air
   motor_efficiency,      ///< P_m/P_e from 0 to 1; with the above, so is the system efficiency
   input_power,           ///< P_e positive and finite
   flow_speed,            ///< wings below Mach 0.3: the coefficients are those of incompressible flow
-  winding_temperature    ///< of a motor that heats up: as the vehicle states, at the most copper's melting point
+  winding_temperature,   ///< of a motor that heats up: as the vehicle states, else 125 degC
+  reynolds_number        ///< that of the named force coefficients, or as the vehicle states
 };
-inline constexpr int domain_limit_count = int(DomainLimit::winding_temperature) + 1;
+inline constexpr int domain_limit_count = int(DomainLimit::reynolds_number) + 1;
 
 /// Indexed by DomainLimit. A set bit: that limit is exceeded; none(): inside.
 using DomainStatus = std::bitset<domain_limit_count>;
@@ -54,20 +55,16 @@ const std::array<DomainLimitInfo, domain_limit_count>& domain_limit_table();
 /// apply. NaN counts as outside.
 using DomainExcess = std::array<double, domain_limit_count>;
 /// Of a flapping vehicle. From what the vehicle is and what its cycle gives, by whichever solver; of the metrics it
-/// needs the four powers, the residual, the smallest angle of attack, the stroke amplitude, the peak flapping
-/// velocity and the winding temperature.
+/// needs those of domain_metrics().
 DomainExcess domain_excess(const Vehicle<double>& vehicle, const Metrics<double>& metrics);
 
-/// Derivative of domain_excess() where the metrics change at the rates `slopes`, the vehicle itself held: that of
-/// `stroke` with a crank is 0, see stroke_excess().
+/// Derivative of domain_excess() where the metrics change at the rates `slopes`, the vehicle itself held: `stroke` with
+/// a crank, which geometry alone decides, has 0.
 DomainExcess domain_excess_slopes(const Vehicle<double>& vehicle, const Metrics<double>& metrics,
                                   const Metrics<double>& slopes);
 
 /// The limit `stroke`: of the stroke angle to either side, of a direct drive of the amplitude [deg].
-double stroke_max_deg(TransmissionType transmission);
-
-/// domain_excess() of the limit `stroke` of a crank, which the mechanism's geometry alone decides; -1 without wings.
-double stroke_excess(const Vehicle<double>& vehicle);
+double stroke_max_deg(const Vehicle<double>& vehicle);
 
 /// Metrics that domain_excess() reads.
 std::bitset<metric_count> domain_metrics();
@@ -87,6 +84,7 @@ struct DomainEvidence {
     angle_of_attack_range,  ///< the same [deg], where the coefficients end before the 90 deg of the reversals
     stroke_angle,           ///< largest to either side, by the mechanism's geometry [deg]
     stroke_amplitude,       ///< of a direct drive [deg]
+    wings_meet,             ///< either [deg], where two wings on one body meet before
     residual_share,         ///< |P_residual / P_e| [1]
     mechanism_efficiency,   ///< P_aero / P_m [1]
     aerodynamic_power,      ///< P_aero [W] where the motor gives nothing; at most P_m
@@ -94,7 +92,8 @@ struct DomainEvidence {
     input_power,            ///< P_e [W]
     flow_speed,             ///< largest at the radius S_3/S_2 [m/s]
     winding_temperature,    ///< of a motor that heats up [degC]
-    thermal_runaway         ///< the same [degC], where the losses do not settle before copper melts
+    thermal_runaway,        ///< the same [degC], where the losses do not settle before copper melts
+    reynolds_number         ///< of the mean chord at the mean speed of the wing tips [1]
   };
   DomainLimit limit;
   Quantity quantity;
@@ -114,5 +113,11 @@ std::optional<double> notable_residual(const Vehicle<double>& vehicle, const Met
 
 /// The sentence that says so.
 std::string residual_warning(double share);
+
+/// The winding temperature [degC], where it is above the largest that the vehicle allows.
+std::optional<double> hot_winding(const Vehicle<double>& vehicle, const Metrics<double>& metrics);
+
+/// The sentence that says so; both temperatures in degC.
+std::string winding_warning(double temperature, double allowed);
 
 }  // namespace wingbeat

@@ -52,6 +52,8 @@ enum class Metric {
   pitch_amplitude,
   pitch_phase,
   angle_of_attack_max,
+  reynolds_number,
+  hover,     ///< as the next
   endurance  ///< of a flight, not of a cycle: absent unless a study asks for it
 };
 inline constexpr int metric_count = int(Metric::endurance) + 1;
@@ -174,7 +176,8 @@ const char* lacking_for(Metric metric, const Design<double>& design);
 /// direct drive has no rod, no speed of rotation and no direct current: rod forces, crank speeds and the bench estimate
 /// (17) are absent; its voltage is the amplitude. Floquet multiplier: of the orbit, or `absent`. The temperatures are
 /// those that the losses of this cycle lead to, absent without thermal resistances; the ratio of inertias is that at
-/// rest, J_a / (N_w J_w), absent without added mass or without wings.
+/// rest, J_a / (N_w J_w), absent without added mass or without wings. The Reynolds number is that of the mean chord at
+/// the mean speed of the wing tips, absent without air and of wings without a shape.
 template <template <Scalar> class V, Scalar S>
 Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, const CycleExtremes<S>& extremes,
                          const S& floquet_multiplier_max, const ReportingOf<S>& reporting) {
@@ -240,7 +243,8 @@ Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, cons
        {Metric::power_hinge, Metric::pitch_amplitude, Metric::pitch_phase, Metric::angle_of_attack_max}) {
     m[which] = S(absent);
   }
-  m[Metric::endurance] = S(absent);
+  m[Metric::reynolds_number] = v.wing_limits.reynolds_number_per_speed * (S(4.0) * m[Metric::stroke_amplitude] * f);
+  m[Metric::hover] = m[Metric::endurance] = S(absent);
   return m;
 }
 

@@ -33,8 +33,10 @@ InstructionSet best_instruction_set();
 /// Indexed by Metric.
 using MetricSet = std::bitset<metric_count>;
 
-/// All metrics of a cycle. The endurance, which costs a flight, is asked for by name.
-inline MetricSet all_metrics() { return MetricSet().set().reset(std::size_t(Metric::endurance)); }
+/// All metrics of a cycle. Those of a flight, which cost one, are asked for by name.
+inline MetricSet all_metrics() {
+  return MetricSet().set().reset(std::size_t(Metric::hover)).reset(std::size_t(Metric::endurance));
+}
 
 struct EnsembleOptions {
   double tolerance = 1e-6;            ///< wanted relative accuracy of every metric, 1e-12 to 1e-2

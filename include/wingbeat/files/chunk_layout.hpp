@@ -22,8 +22,9 @@ struct ChunkLayout {
   std::uint64_t size(std::uint64_t c) const { return std::min(chunk, designs - c * chunk); }
   /// Columns of results: status, recomputed, domain, error estimate, metrics.
   static constexpr std::size_t flags = 3;
+  static constexpr std::uint64_t bytes_of_flags = 4;  ///< of one design
   std::size_t columns() const { return flags + 1 + std::size_t(metrics); }
-  std::size_t bytes_of_value(std::size_t column) const { return column < flags ? 1 : 8; }
+  std::size_t bytes_of_value(std::size_t column) const { return column < 2 ? 1 : column == 2 ? 2 : 8; }
   /// Place of a column in a packed chunk [bytes].
   std::uint64_t begin(std::size_t column) const;
   std::uint64_t bytes() const { return begin(columns()); }

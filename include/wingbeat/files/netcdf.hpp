@@ -52,9 +52,9 @@ class NetcdfFile {
   /// Absent values are written as NaN, which is also what unwritten ones read as.
   Variable define_variable(const std::string& name, const std::vector<Dimension>& dimensions, const std::string& unit,
                            const std::string& long_name);
-  /// Doubles, whole numbers or small whole numbers (flags) of which every value will be written: nothing is filled in
-  /// beforehand, and what is not written is undefined.
-  enum class Storage { real, whole, flag };
+  /// Doubles, whole numbers or small whole numbers (of one byte: flag; of two: masks) of which every value will be
+  /// written: nothing is filled in beforehand, and what is not written is undefined.
+  enum class Storage { real, whole, flag, masks };
   Variable define_dense(const std::string& name, const std::vector<Dimension>& dimensions, const std::string& unit,
                         const std::string& long_name, Storage storage = Storage::real);
   /// One text for each place along a dimension, as characters that xarray reads as strings.
@@ -67,7 +67,7 @@ class NetcdfFile {
   void set_key(const Variable& variable, std::string_view key) { set_attribute(variable, "wingbeat_key", key); }
   /// What the values of a flag mean, in the manner of the CF conventions: 0, 1, 2, ...
   void set_flags(const Variable& variable, std::span<const std::string> meanings);
-  /// What the bits of a flag mean, the lowest first (at most seven): flag_masks 1, 2, 4, ...
+  /// What the bits of a variable of masks mean, the lowest first (at most 15): flag_masks 1, 2, 4, ...
   void set_flag_masks(const Variable& variable, std::span<const std::string> meanings);
 
   /// The whole variable, last dimension fastest.
@@ -78,6 +78,7 @@ class NetcdfFile {
   /// Values that follow each other in the order of the file, from the value `first` on: any part of a variable.
   void write_run(const Variable& variable, std::size_t first, std::span<const double> values);
   void write_run(const Variable& variable, std::size_t first, std::span<const std::int8_t> values);
+  void write_run(const Variable& variable, std::size_t first, std::span<const std::int16_t> values);
 
   void close();
 
@@ -108,6 +109,7 @@ class NetcdfReader {
   /// Values that follow each other in the order of the file, from the value `first` on.
   void read_run(const std::string& variable, std::size_t first, std::span<double> values) const;
   void read_run(const std::string& variable, std::size_t first, std::span<std::int8_t> values) const;
+  void read_run(const std::string& variable, std::size_t first, std::span<std::int16_t> values) const;
 
  private:
   void check(int status, const std::string& action) const;

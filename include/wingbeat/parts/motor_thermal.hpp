@@ -12,8 +12,11 @@
 
 namespace wingbeat {
 
-inline constexpr double zero_celsius = 273.15;             ///< [K]
-inline constexpr double catalogue_temperature = 298.15;    ///< T_0 of motor catalogues [K], 25 degC
+inline constexpr double zero_celsius = 273.15;           ///< [K]
+inline constexpr double catalogue_temperature = 298.15;  ///< T_0 of motor catalogues [K], 25 degC
+/// Largest winding temperature where a data sheet gives none [K], 125 degC: that of most small motors' data sheets lies
+/// between 85 and 155 degC, 155 degC being the limit of insulation of class F (IEC 60085).
+inline constexpr double usual_winding_temperature_max = 398.15;
 inline constexpr double copper_melting_point = 1357.77;    ///< [K], fixed point of ITS-90
 inline constexpr double copper_resistance_slope = 0.0039;  ///< a_Cu of annealed copper [1/K], IEC 60028 rounded
 
@@ -28,8 +31,7 @@ struct MotorThermal {
   S copper_temperature_coefficient =
       S(copper_resistance_slope);           ///< a_Cu: R_a = R_a0 (1 + a_Cu (T_w - T_0)) [1/K], >= 0
   S magnet_temperature_coefficient = S(0);  ///< a_B: K = K_0 (1 + a_B (T_case - T_0)) [1/K], <= 0
-  /// Largest temperature allowed to the winding [K]; not a number: none is stated.
-  S winding_temperature_max = S(std::numeric_limits<double>::quiet_NaN());
+  S winding_temperature_max = S(usual_winding_temperature_max);  ///< largest temperature allowed to the winding [K]
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {

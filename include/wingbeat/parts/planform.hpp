@@ -38,10 +38,12 @@ struct Planform {
   S s3 = S(0);                        ///< moments given outright: S_3 of all wings [m5], >= 0
   std::optional<S> chord_ratio = {};  ///< c_0 / R [1], > 0; given, root_chord follows from the length
   std::optional<S> s22 = {};          ///< moments given outright: S_22 of all wings [m5], >= 0
+  S shoulder_distance = S(0);         ///< between the hinges of two wings that share a body [m], >= 0
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
-    return use(of.shape, of.length, of.root_chord, of.hub_offset, of.chord_table, of.s2, of.s3, of.chord_ratio, of.s22);
+    return use(of.shape, of.length, of.root_chord, of.hub_offset, of.chord_table, of.s2, of.s3, of.chord_ratio, of.s22,
+               of.shoulder_distance);
   }
 };
 
@@ -58,6 +60,7 @@ inline constexpr ParameterKey length{"wing.planform.length", "m", range::positiv
 inline constexpr ParameterKey root_chord{"wing.planform.root_chord", "m", range::positive};
 inline constexpr ParameterKey chord_ratio{"wing.planform.chord_ratio", "1", range::positive};
 inline constexpr ParameterKey hub_offset{"wing.planform.hub_offset", "m", range::not_negative};
+inline constexpr ParameterKey shoulder_distance{"wing.planform.shoulder_distance", "m", range::not_negative};
 inline constexpr ParameterKey s2{"wing.planform.s2", "m4", range::not_negative};
 inline constexpr ParameterKey s3{"wing.planform.s3", "m5", range::not_negative};
 inline constexpr ParameterKey s22{"wing.planform.s22", "m5", range::not_negative};

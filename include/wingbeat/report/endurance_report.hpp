@@ -1,4 +1,5 @@
-// A flight to the end of the battery for people, for programs, as a figure and as a data set.
+// The discharge of a battery for people, for programs, as a figure and as a data set: how long the vehicle hovers
+// first.
 #pragma once
 
 #include <filesystem>

@@ -7,6 +7,7 @@
 
 #include "wingbeat/cycle/domain.hpp"
 #include "wingbeat/cycle/orbit_gradient.hpp"
+#include "wingbeat/study/endurance.hpp"
 #include "wingbeat/study/frequency_search.hpp"
 #include "wingbeat/study/sweep.hpp"
 
@@ -17,7 +18,7 @@ struct DesignPointOptions {
   std::optional<double> frequency = {};  ///< held [Hz]; the voltage follows
   double tolerance = 1e-6;               ///< of the orbit
   bool peaks = true;                     ///< differentiate metrics that are peaks
-  bool endurance = false;                ///< of a vehicle on a battery: Metric::endurance, too
+  FlightMetrics flight = {};             ///< of a vehicle on a battery: Metric::hover, Metric::endurance, too
 };
 
 /// What a design does, and how its metrics change with parameters; in words: describe() of report/describe.hpp.
@@ -29,8 +30,7 @@ struct DesignPoint {
   Metrics<double> metrics;               ///< all absent unless flapping
   DomainStatus domain;                   ///< limits of the model that are exceeded; none unless flapping
   DomainExcess domain_excess{};          ///< by how much; only where flapping
-  /// Derivatives of domain_excess by each parameter, the stroke of a crank excepted (see stroke_excess); as
-  /// `gradients`.
+  /// Derivatives of domain_excess by each parameter through the metrics alone (domain_excess_slopes); as `gradients`.
   std::vector<DomainExcess> domain_slopes;
   /// By each parameter, SI; the supply's voltage and duty included. All absent unless flapping and regular.
   std::vector<std::array<double, metric_count>> gradients;

@@ -11,6 +11,7 @@
 // P_e of a cycle at the direct current that its terminal voltage asks for, (E - R_i I) I = P_e.
 #pragma once
 
+#include <bitset>
 #include <optional>
 #include <span>
 #include <vector>
@@ -78,23 +79,39 @@ struct EnduranceResult {
 
   /// Time to the end [s]; 0 if it never starts.
   double endurance() const { return rows.empty() ? 0.0 : rows.back().time; }
+  /// Time for which it hovers from the start on [s]; absent without a mass.
+  double hover_time() const {
+    if (hover == Hover::unknown) return absent;
+    return hover == Hover::kept ? endurance() : hover_lost ? hover_lost->time : 0.0;
+  }
 };
 
 /// Flies the design's battery from its charge until it is empty, at its cut-off voltage, or no longer turns the crank.
 /// Throws ParameterError for a supply that is no battery and for options out of range.
 EnduranceResult simulate_discharge(const Design<double>& design, const EnduranceOptions& options = {});
 
-/// Metric::endurance of a design on a battery.
+/// Which metrics of a whole flight are wanted.
+struct FlightMetrics {
+  bool hover = false, endurance = false;
+  bool allow_extrapolation = false;  ///< a vehicle outside the model's domain may hover
+
+  bool any() const { return hover || endurance; }
+};
+FlightMetrics flight_metrics(const std::bitset<metric_count>& metrics, bool allow_extrapolation);
+
+/// Metric::hover and Metric::endurance of a design on a battery.
 struct Endurance {
-  double time = absent;  ///< EnduranceResult::endurance() [s]
-  /// Its derivatives, SI; absent where there are none, as where the vehicle never starts.
-  std::vector<double> by_parameter;
+  double hover = absent;  ///< EnduranceResult::hover_time() [s]
+  double time = absent;   ///< EnduranceResult::endurance() [s]
+  /// Derivatives, SI; absent where there are none, as where the vehicle never starts or does not hover.
+  std::vector<double> hover_by_parameter, by_parameter;
 };
 
-/// The endurance to a relative `tolerance`, for some fifty orbits, and its derivatives: exact, for eleven orbits with
-/// gradients, where the battery is emptied to its cut-off or to the end; by central differences where no orbit is left
-/// before that, or where the motor's temperatures are states of the flight. Throws as simulate_discharge().
+/// What is wanted of a flight to a relative `tolerance`, for some fifty orbits, and its derivatives: exact, for eleven
+/// orbits with gradients each, where the battery is emptied to its cut-off or to the end and where lift falls below the
+/// weight; by central differences where no orbit is left before that, where hover ends by leaving the domain, or where
+/// the motor's temperatures are states of the flight. Throws as simulate_discharge().
 Endurance endurance_of(const Design<double>& design, Condition condition, double tolerance,
-                       std::span<const DesignParameter> parameters = {});
+                       std::span<const DesignParameter> parameters = {}, FlightMetrics wanted = {true, true, false});
 
 }  // namespace wingbeat

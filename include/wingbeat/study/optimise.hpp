@@ -106,6 +106,6 @@ OptimiseResult optimise(const OptimiseStudy& study, const StartUp& start_up, con
 /// "lift_to_weight >= 1"
 std::string name_of(const MetricConstraint& constraint);
 /// "angle_of_attack >= 0 deg"
-std::string bound_of(DomainLimit limit, TransmissionType transmission);
+std::string bound_of(DomainLimit limit, const Vehicle<double>& vehicle);
 
 }  // namespace wingbeat

@@ -30,7 +30,7 @@ struct RunOptions {
   std::optional<double> lift = {};
   bool allow_extrapolation = false;  ///< a search for a frequency or a lift may leave the model's domain
   int waveform_rows = 0;             ///< instants of one cycle to return, both ends included; 0: none
-  bool endurance = false;            ///< of a vehicle on a battery: Metric::endurance, too
+  bool endurance = false;            ///< of a vehicle on a battery: Metric::hover and Metric::endurance, too
 };
 
 /// In words: describe() of report/describe.hpp.
@@ -45,6 +45,7 @@ struct RunResult {
   DomainStatus domain;           ///< limits of the model that the cycle exceeds; none unless flapping
   std::vector<DomainEvidence> domain_evidence;  ///< the same with numbers
   std::optional<double> residual_share;         ///< notable_residual(), of a vehicle that flaps
+  std::optional<double> hot_winding;            ///< hot_winding(), of a vehicle that flaps [degC]
   std::vector<WaveformRow> cycle;
   solver::PeriodicSummary orbit;            ///< of Method::orbit
   std::optional<TransientResult> start_up;  ///< of Method::transient

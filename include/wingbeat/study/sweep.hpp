@@ -94,7 +94,7 @@ struct SweepColumns {
   std::uint64_t first = 0;
   std::vector<std::int8_t> status;           ///< SweepStatus
   std::vector<std::int8_t> recomputed;       ///< 1: by the scalar solver
-  std::vector<std::int8_t> domain;           ///< bits of DomainStatus, of what flaps; 0: inside
+  std::vector<std::int16_t> domain;          ///< bits of DomainStatus, of what flaps; 0: inside
   std::vector<double> error_estimate;        ///< relative; absent unless flapping
   std::vector<std::vector<double>> metrics;  ///< those of options.metrics, in the order of Metric
 
@@ -116,6 +116,7 @@ class SweepSolver {
 
  private:
   void gather(SweepColumns& columns, std::size_t begin, std::size_t end);
+  void fly(SweepColumns& columns, std::size_t row) const;
 
   const Sweep& sweep_;
   StartUp start_up_;

@@ -17,6 +17,7 @@
 #include "wingbeat/parts/planform.hpp"
 #include "wingbeat/parts/spring.hpp"
 #include "wingbeat/parts/supply.hpp"
+#include "wingbeat/parts/wing_limits.hpp"
 #include "wingbeat/parts/wing_mass.hpp"
 
 namespace wingbeat {
@@ -40,7 +41,7 @@ struct MotorThermalDesign {
   S reference_temperature = S(catalogue_temperature);             ///< T_0 [K]
   S copper_temperature_coefficient = S(copper_resistance_slope);  ///< a_Cu [1/K]
   S magnet_temperature_coefficient = S(0);                        ///< a_B [1/K]
-  std::optional<S> winding_temperature_max;                       ///< [K]
+  S winding_temperature_max = S(usual_winding_temperature_max);   ///< [K]
   std::optional<S> time_constant_winding;  ///< tau_w of the winding over the case [s], for flights
   std::optional<S> time_constant_case;     ///< tau_c of the case over the air [s], for flights
 
@@ -168,11 +169,14 @@ struct AerodynamicsDesign {
   ForceCoefficients<S> coefficients;
   std::optional<S> angle_of_attack_min;  ///< stop of the passive pitching [rad]; none unless given
   bool added_mass = false;  ///< air accelerated with the wings counts, by strip theory (model.md section 10)
+  S kinematic_viscosity = S(air_kinematic_viscosity);  ///< nu [m2/s], of the Reynolds number alone
+  /// Reynolds numbers for which the coefficients hold [1]; those of the named set unless given.
+  std::optional<S> reynolds_number_min, reynolds_number_max;
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
     return use(of.air_density, of.pitch_coefficient, of.coefficients_name, of.coefficients, of.angle_of_attack_min,
-               of.added_mass);
+               of.added_mass, of.kinematic_viscosity, of.reynolds_number_min, of.reynolds_number_max);
   }
 };
 

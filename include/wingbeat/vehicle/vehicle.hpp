@@ -11,6 +11,7 @@
 #include "wingbeat/parts/motor_thermal.hpp"
 #include "wingbeat/parts/pitching_wings.hpp"
 #include "wingbeat/parts/spring.hpp"
+#include "wingbeat/parts/wing_limits.hpp"
 #include "wingbeat/vehicle/design.hpp"
 #include "wingbeat/vehicle/drive.hpp"
 
@@ -40,11 +41,13 @@ struct Vehicle {
   /// T_x that a load outside the vehicle takes from crank or shaft, against a positive speed [N m]; no design states
   /// one. SIMD packs do not know it.
   S load_torque = S(0);
+  WingLimits<S> wing_limits;  ///< beyond which the wings or their coefficients are no longer what the equations say
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
     return use(of.voltage, of.motor, of.transmission, of.friction, of.spring, of.wing_count, of.wing_inertia, of.wings,
-               of.source_resistance, of.drive_frequency, of.thermal, of.motors, of.pitch, of.load_torque);
+               of.source_resistance, of.drive_frequency, of.thermal, of.motors, of.pitch, of.load_torque,
+               of.wing_limits);
   }
 };
 
@@ -88,8 +91,7 @@ MotorThermal<S> motor_thermal_of(const MotorThermalDesign<S>& t) {
         t.reference_temperature,
         t.copper_temperature_coefficient,
         t.magnet_temperature_coefficient,
-        of.winding_temperature_max};
-  if (t.winding_temperature_max) of.winding_temperature_max = *t.winding_temperature_max;
+        t.winding_temperature_max};
   return of;
 }
 
@@ -112,6 +114,22 @@ PitchingWings<S> pitching_wings_of(const Design<S>& design, const S& count, cons
   if (!p.rotational_lift) of.rotational_coefficient = S(0.0);
   of.damping_coefficient = p.damping_coefficient;
   if (design.aerodynamics.coefficients_name == normal_force_set) of.normal_force = NormalForce::normal_force;
+  return of;
+}
+
+/// Limits of the wings that a design describes, `count` of them on one body.
+template <Scalar S>
+WingLimits<S> wing_limits_of(const Design<S>& design, const S& count, Condition condition) {
+  const Planform<S>& planform = design.wing.planform;
+  WingLimits<S> of;
+  if (condition == Condition::wingless) return of;
+  if (value_of(count) >= 2.0) of.stroke_max = stroke_where_wings_meet(planform);
+  const AerodynamicsDesign<S>& a = design.aerodynamics;
+  if (condition != Condition::air || !(value_of(a.air_density) > 0.0)) return of;
+  of.reynolds_number_per_speed = reynolds_number_per_speed(planform, a.kinematic_viscosity);
+  const ReynoldsRange published = reynolds_range_of(a.coefficients_name);
+  of.reynolds_number_min = a.reynolds_number_min ? *a.reynolds_number_min : S(published.lowest);
+  of.reynolds_number_max = a.reynolds_number_max ? *a.reynolds_number_max : S(published.highest);
   return of;
 }
 
@@ -178,6 +196,7 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
     v.wings.added_inertia = added_inertia_of(v.wings.air_density, s22);
   }
   if (design.pitch.stiffness && wings) v.pitch = pitching_wings_of(design, v.wing_count, v.wings.air_density);
+  v.wing_limits = wing_limits_of(design, v.wing_count, condition);
   return v;
 }
 

@@ -31,7 +31,7 @@ class Ensemble:
     #: A code for each design: `statuses[code]` is its name, 0 flapping.
     status_code: npt.NDArray[np.int8]
     #: Limits of the model that are exceeded, bit by bit as in data sets; 0: inside, or not flapping.
-    domain_code: npt.NDArray[np.int8]
+    domain_code: npt.NDArray[np.int16]
     #: Estimated relative error of the metrics.
     error_estimate: npt.NDArray[np.float64]
     #: 1: by the scalar solver, 0: by the batched one.
@@ -130,7 +130,7 @@ def solve_columns(
     frequency : [Hz], held by all designs: the voltage is found for each
     condition : "air", "vacuum" or "wingless"
     tolerance : wanted relative accuracy of every metric, 1e-12 to 1e-2
-    metrics : those wanted, fewer cost less; default: all but endurance
+    metrics : those wanted, fewer cost less; default: all but hover and endurance
     threads : at most so many; 0: one for each core
     progress : True shows a bar (tqdm where it is installed), a function is called with designs done and designs
 

@@ -126,5 +126,11 @@ class WithMetrics:
     def angle_of_attack_max(self) -> Quantity | None:
         """Largest angle of attack of wings that pitch on a hinge [degree]."""
     @property
+    def reynolds_number(self) -> Quantity | None:
+        """Reynolds number of the mean chord at the mean speed of the wing tips [1]."""
+    @property
+    def hover(self) -> Quantity | None:
+        """Flight time until lift falls below the weight [s]."""
+    @property
     def endurance(self) -> Quantity | None:
         """Flight time until the battery's end [s]."""

@@ -125,7 +125,7 @@ class RunResult(WithMetrics):
             condition=options["condition"],
             tolerance=options["tolerance"],
             frequency=options["frequency"],
-            endurance=metric_rows[index].name == "endurance",
+            endurance=metric_rows[index].name in ("hover", "endurance"),
         )
         slopes: npt.NDArray[np.float64] = found["gradients"][:, index].copy()
         return float(slopes[0]) if isinstance(keys, str) else slopes
@@ -196,7 +196,7 @@ def solve(vehicle: Vehicle | Mapping[str, Any], /, **options: Any) -> RunResult 
     method : "orbit", or "transient": simulated from rest
     tolerance : wanted relative accuracy of every metric, 1e-12 to 1e-2
     allow_extrapolation : a search for a frequency or a lift may leave the model's domain
-    endurance : of a vehicle on a battery: its endurance, too, which costs a flight
+    endurance : of a vehicle on a battery: how long it hovers and how long it flaps, too, which costs a flight
 
     Not flapping is a result, never an exception. Raises InputError.
     """

@@ -220,8 +220,8 @@ class MotorSection(Section):
         """
     @property
     def winding_temperature_max(self) -> Quantity | None:
-        """largest temperature allowed to the winding: beyond, a result is outside the domain.
-        [K] Range: 173.15 to 1000 K (-100 to 727 degC). Default: none.
+        """largest temperature allowed to the winding, of its data sheet: beyond, a result is outside the domain; 125 degC unless given.
+        [K] Range: 173.15 to 1000 K (-100 to 727 degC). Default: 398.15 K.
         Only with motor.thermal_resistance_winding.
         """
     @property
@@ -435,6 +435,12 @@ class WingPlanformSection(Section):
         Only with wing.planform.shape = semi-ellipse or rectangle or tabulated.
         """
     @property
+    def shoulder_distance(self) -> Quantity | None:
+        """distance between the hinges of two wings that share a body: the farther apart, the farther beyond 90 deg they may swing before they meet.
+        [m] Range: >= 0. Default: 0 m.
+        Only with wing.planform.shape = semi-ellipse or rectangle or tabulated.
+        """
+    @property
     def file(self) -> str | None:
         """chord table: columns distance (from the root) and chord, see below.
         Range: name of a CSV file. Default: required or chords.
@@ -577,6 +583,21 @@ class AerodynamicsSection(Section):
     def added_mass(self) -> bool:
         """air accelerated with the wings: J_a = pi/4 rho S_22 by strip theory, of wings on a pitch hinge the air that their pitching moves, too; takes no mean power.
         Range: true or false. Default: false.
+        """
+    @property
+    def kinematic_viscosity(self) -> Quantity:
+        """nu, kinematic viscosity of the air: it sets the Reynolds number, and no force.
+        [m2/s] Range: > 0. Default: 1.5e-5 m2/s.
+        """
+    @property
+    def reynolds_number_min(self) -> Quantity | None:
+        """lowest Reynolds number for which the coefficients hold.
+        Number. Range: >= 0. Default: of a named set of coefficients 100, else none.
+        """
+    @property
+    def reynolds_number_max(self) -> Quantity | None:
+        """highest Reynolds number for which the coefficients hold.
+        Number. Range: > 0. Default: of a named set of coefficients 26000, else none.
         """
     @property
     def coefficients(self) -> str | None:

@@ -135,7 +135,7 @@ def _file_of(study: Study, vehicle: Vehicle | None) -> Iterator[bytes]:
 
 
 def endurance(vehicle: Vehicle, *, allow_extrapolation: bool = False) -> Flight:
-    """How long its battery flies a vehicle: `wingbeat endurance`.
+    """How long a vehicle hovers and flaps on its battery: `wingbeat endurance`.
 
     Parameters
     ----------

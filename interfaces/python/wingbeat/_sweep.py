@@ -49,7 +49,7 @@ def sweep(
         from what is there. Without it nothing is left on the disk.
     frequency : [Hz], held by all designs: the voltage is found for each
     tolerance : wanted relative accuracy of every metric, 1e-12 to 1e-2
-    metrics : those wanted; default: all that the vehicle has but endurance
+    metrics : those wanted; default: all that the vehicle has but hover and endurance
     threads : at most so many; 0: one for each core
     force : replaces a file that is not of this sweep
     progress : True shows a bar (tqdm where it is installed), a function is called with designs done and designs

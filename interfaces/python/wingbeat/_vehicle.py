@@ -267,7 +267,7 @@ class Vehicle(Sections):
         return sweep(self, axes, **options)
 
     def endurance(self, **options: Any) -> Flight:
-        """How long its battery flies it: see wingbeat.endurance."""
+        """How long it hovers and flaps on its battery: see wingbeat.endurance."""
         from ._studies import endurance
 
         return endurance(self, **options)

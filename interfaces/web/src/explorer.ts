@@ -329,7 +329,7 @@ export class Explorer {
     document.body.dataset.sensitivities = 'shown';
   }
 
-  /** How long a battery lasts: some forty designs of the vehicle, beside the page. */
+  /** How long it hovers and how long the battery lasts: some forty designs of the vehicle, beside the page. */
   private async findEndurance() {
     const current = this.current;
     if (!String(current.values['supply.type']).startsWith('battery') || current.solved.report.status !== 'flapping')
@@ -337,6 +337,7 @@ export class Explorer {
     const stated = {text: this.stated.text, changes: {...this.stated.changes}};
     const found = await this.background.report(stated, {...runOptions(this.state), endurance: true});
     if (!found || this.current !== current) return;
+    current.solved.report.hover_s = found.hover_s;
     current.solved.report.endurance_s = found.endurance_s;
     this.showAllMetrics();
   }

@@ -1,0 +1,75 @@
+// Limits of flapping wings that no equation of motion knows: where two wings on one body meet, and the Reynolds numbers
+// for which force coefficients hold; docs/domain.md.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/core/range.hpp"
+#include "wingbeat/core/scalar.hpp"
+#include "wingbeat/parts/pitching_wings.hpp"
+#include "wingbeat/parts/planform.hpp"
+
+namespace wingbeat {
+
+inline constexpr double air_kinematic_viscosity = 1.5e-5;  ///< nu of air at 20 degC and 1 atm [m2/s], rounded
+
+template <Scalar S>
+struct WingLimits {
+  /// Reynolds number over the mean of |beta'| [s/rad]; not a number without air and of wings without a shape.
+  S reynolds_number_per_speed = S(std::numeric_limits<double>::quiet_NaN());
+  S reynolds_number_min = S(0);                                        ///< for which the coefficients hold [1]
+  S reynolds_number_max = S(std::numeric_limits<double>::infinity());  ///< the same
+  /// Stroke angle to either side at which two wings on one body meet [rad]; infinite where none do.
+  S stroke_max = S(std::numeric_limits<double>::infinity());
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& of, const Use& use) {
+    return use(of.reynolds_number_per_speed, of.reynolds_number_min, of.reynolds_number_max, of.stroke_max);
+  }
+};
+
+namespace wing_limits_key {
+inline constexpr ParameterKey kinematic_viscosity{"aerodynamics.kinematic_viscosity", "m2/s", range::positive};
+inline constexpr ParameterKey reynolds_number_min{"aerodynamics.reynolds_number_min", "1", range::not_negative};
+inline constexpr ParameterKey reynolds_number_max{"aerodynamics.reynolds_number_max", "1", range::positive};
+}  // namespace wing_limits_key
+
+/// From where to where coefficients hold [1].
+struct ReynoldsRange {
+  double lowest = 0.0, highest = std::numeric_limits<double>::infinity();
+};
+
+/// Of the named sets, both from a model wing at Re = 136 (Dickinson, Lehmann and Sane, Science 284, 1999). Below about
+/// 100 lift falls and drag grows (Wu and Sun, J. Exp. Biol. 207, 2004); from 1100 to 26000, mayfly to quail, the
+/// coefficients of revolving wings hardly change (Usherwood and Ellington, J. Exp. Biol. 205, 2002).
+inline constexpr ReynoldsRange robofly_reynolds_range{100.0, 26000.0};
+
+/// Of the set of that name; a vehicle's own coefficients are not limited.
+inline ReynoldsRange reynolds_range_of(std::string_view coefficients) {
+  return named_coefficients(coefficients) ? robofly_reynolds_range : ReynoldsRange{};
+}
+
+/// c_mean (R + hub offset) / nu [s/rad], which the mean of |beta'| makes the Reynolds number of the mean chord at the
+/// mean speed of the tip (Ellington, Phil. Trans. R. Soc. Lond. B 305, 1984); not a number without a shape.
+template <Scalar S>
+S reynolds_number_per_speed(const Planform<S>& p, const S& kinematic_viscosity) {
+  if (p.shape == PlanformShape::moments) return S(std::numeric_limits<double>::quiet_NaN());
+  const S R = length_of(p);
+  return wing_area(p) / R * (R + p.hub_offset) / kinematic_viscosity;
+}
+
+/// Where the tips of two wings meet in the plane between them [rad]: 90 deg, and by as much more as the shoulders leave
+/// room for; infinite where the wings are too short to meet. Wings without a shape are taken to meet at 90 deg.
+template <Scalar S>
+S stroke_where_wings_meet(const Planform<S>& p) {
+  using std::asin;
+  if (p.shape == PlanformShape::moments) return S(0.5 * pi);
+  const S room = p.shoulder_distance / (S(2.0) * (length_of(p) + p.hub_offset));
+  if (!(value_of(room) < 1.0)) return S(std::numeric_limits<double>::infinity());
+  return S(0.5 * pi) + asin(room);
+}
+
+}  // namespace wingbeat
