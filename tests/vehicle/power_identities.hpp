@@ -90,7 +90,7 @@ class PowerIdentities {
 
   void currents(bool constant_voltage) {
     const double rms = at(Metric::current_rms), R = v_.motor.armature_resistance;
-    exactly(at(Metric::power_copper), R * square(rms), "copper = R_a i_rms^2");
+    same(at(Metric::power_copper), R * square(rms), "copper = R_a i_rms^2");
     require(rms * (1.0 + tolerance_) >= std::abs(at(Metric::current_mean)), "rms current >= mean");
     require(at(Metric::current_peak) * (1.0 + 2.0 * tolerance_) >= rms, "peak current >= rms");
     if (!constant_voltage || !drive_of(v_).rotates) return;

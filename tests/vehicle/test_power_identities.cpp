@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "vehicle/hinged_design.hpp"
+#include "vehicle/kind_boxes.hpp"
 #include "vehicle/metrics_apart.hpp"
 #include "vehicle/rungs.hpp"
 #include "wingbeat/cycle/thermal_equilibrium.hpp"
@@ -55,47 +56,57 @@ int expect_identities_of(const Design<double>& design) {
 }
 
 TEST(PowerIdentities, HoldOnEveryTransmissionWithEveryFurtherPart) {
+  std::mt19937_64 random(32);
   int flaps = 0;
-  for (const FarBox box : {FarBox::friction_laws, FarBox::four_bar, FarBox::tabulated, FarBox::direct}) {
-    for (const Rung rung : {Rung::none, Rung::all, Rung::pitch}) {
-      for (std::uint32_t n = 0; n < 3; ++n) {
-        SCOPED_TRACE(std::string(far_box_names[std::size_t(box)]) + " " + std::string(rung_names[std::size_t(rung)]) +
-                     " " + std::to_string(n));
-        Design<double> d = wide_vehicle(box, n, 32).design;
-        add_rung(d, rung, n, 32);
-        flaps += expect_identities_of(d);
+  for (const Rung rung : {Rung::none, Rung::gear, Rung::heat, Rung::all}) {
+    SCOPED_TRACE(rung_names[std::size_t(rung)]);
+    for (std::uint32_t n = 0; n < 2; ++n) {
+      Design<double> crank = box_design(random), direct = smooth_direct_design(random);
+      crank.motors = direct.motors = double(n + 1);
+      for (Design<double>* d : {&crank, &direct}) {
+        add_rung(*d, rung, n, 32);
+        flaps += expect_identities_of(*d);
       }
     }
   }
-  EXPECT_GT(flaps, 50);
+  EXPECT_GT(flaps, 30);
+  flaps = 0;
+  for (const FarBox box : {FarBox::four_bar, FarBox::tabulated}) {
+    Design<double> d = box_design(random);
+    d.transmission = wide_vehicle(box, 1, 32).design.transmission;
+    d.friction = {FrictionLaw::load_proportional, 5e-4};
+    d.motor.gear_efficiency = 0.8;
+    flaps += expect_identities_of(d);
+  }
+  EXPECT_GT(flaps, 2);
 }
 
 TEST(PowerIdentities, HoldOverImpactsOnStops) {
   int flaps = 0;
-  for (std::uint32_t n = 0; n < 12; ++n) {
+  for (std::uint32_t n = 0; n < 8; ++n) {
     SCOPED_TRACE(n);
     Design<double> d = random_hinged_crank(n, 5);
-    d.pitch.stop = 0.1 + 0.03 * n;
+    d.pitch.stop = 0.1 + 0.05 * n;
     if (n % 3 == 0) d.motor.gear_efficiency = 0.7;
     if (n % 4 == 0) d.motors = 2.0;
     flaps += expect_identities_of(d);
   }
   std::mt19937_64 random(6);
-  for (int n = 0; n < 4; ++n) {
+  for (int n = 0; n < 3; ++n) {
     SCOPED_TRACE(n);
     flaps += expect_identities_of(random_hinged_design(random, true));
   }
-  EXPECT_GT(flaps, 30);
+  EXPECT_GT(flaps, 15);
 }
 
 TEST(PowerIdentities, HoldOnOtherSupplies) {
+  std::mt19937_64 random(33);
   int flaps = 0;
-  for (std::uint32_t n = 0; n < 8; ++n) {
-    SCOPED_TRACE(n);
-    const Design<double> d = wide_vehicle(FarBox::supplies, n, 33).design;
-    if (d.supply.type != SupplyType::sine) flaps += expect_identities_of(d);
+  for (const KindBox box : {KindBox::battery, KindBox::pwm}) {
+    SCOPED_TRACE(kind_box_names[std::size_t(box)]);
+    for (int n = 0; n < 2; ++n) flaps += expect_identities_of(kind_design(box, random));
   }
-  EXPECT_GT(flaps, 8);
+  EXPECT_GT(flaps, 6);
 }
 
 Design<double> design_of_case(const char* name) {
@@ -123,19 +134,16 @@ TEST(PowerIdentities, StopsTakeNoNegativePower) {
   }
 }
 
+// An impact after which the gear torque changes its sign had been met twice in one place. The hinge power is that of the
+// simulation in time.
 TEST(PowerIdentities, AnImpactThatTurnsTheGearTorqueOverCountsOnce) {
   const Design<double> d = design_of_case("hinge-41");
-  RunResult by[2];
-  for (const Method method : {Method::orbit, Method::transient}) {
-    RunResult& r = by[int(method)];
-    r = run_design(d, {.method = method, .tolerance = tolerance});
-    ASSERT_EQ(r.status, FlappingStatus::flapping);
-    expect_identities(resolve(d), r.metrics);
-  }
-  const double hinge = by[1].metrics[Metric::power_hinge];
-  EXPECT_NEAR(by[0].metrics[Metric::power_hinge], hinge, 1e-3 * hinge);
-  std::string where;
-  EXPECT_LT(metrics_apart(by[0].metrics, by[1].metrics, where), 1e-5) << where;
+  const RunResult r = run_design(d, {.tolerance = 1e-4});
+  ASSERT_EQ(r.status, FlappingStatus::flapping);
+  const EnergyAudit audit = energy_audit(r.metrics);
+  EXPECT_LT(std::abs(audit.imbalance), 1e-3 * audit.hinge);
+  EXPECT_NEAR(audit.hinge, 1.31e-5, 1e-3 * 1.31e-5);
+  expect_identities(resolve(d), r.metrics);
 }
 
 }  // namespace

@@ -49,9 +49,10 @@ inline EnergyAudit energy_audit(const Vehicle<double>& v, const CycleIntegrals<d
 }
 
 /// Up to this imbalance [W] the balance of a solution to the relative `tolerance` counts as closed. What is beyond is
-/// no solution.
+/// no solution: ten times the tolerance, or what rounding may leave, of the input or of what the formulation gives.
 inline double largest_imbalance(const EnergyAudit& a, double tolerance) {
-  return 10.0 * tolerance * std::max(std::abs(a.electrical), std::abs(a.residual));
+  constexpr double rounding = 1e-11;
+  return 10.0 * std::max(tolerance, rounding) * std::max(std::abs(a.electrical), std::abs(a.residual));
 }
 
 /// `stored`: by how much what the vehicle stores grows on the average [W], where it does not return to its start.

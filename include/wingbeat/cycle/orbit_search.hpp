@@ -1,6 +1,7 @@
 // The search for one vehicle's orbit, and what is reported of it: the same for every system.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -94,10 +95,7 @@ class OrbitSearch {
   }
 
   /// What the energy balance leaves open of a cycle refused for that, of the input.
-  double imbalance() const {
-    const EnergyAudit of = audit();
-    return std::abs(of.imbalance / of.electrical);
-  }
+  double imbalance() const { return imbalance_; }
 
   const System& system() const { return system_; }
   const solver::PeriodicSummary& summary() const { return summary_; }
@@ -127,11 +125,13 @@ class OrbitSearch {
  private:
   /// An orbit whose energy balance stays open is none: finer steps first.
   void solve(const State& guess, solver::PeriodicOptions periodic) {
-    constexpr double finer = 1e-2;
+    constexpr double finer = 1e-2, finest = 1e-12;
     summary_ = solver::solve_periodic(system_, guess, periodic, iterate_);
     if (summary_.status != solver::PeriodicStatus::converged || balances()) return;
+    const EnergyAudit open = audit();
+    imbalance_ = std::abs(open.imbalance / open.electrical);
     const int iterates_before = summary_.iterates;
-    periodic.tolerance *= finer;
+    periodic.tolerance = std::max(finer * periodic.tolerance, std::min(finest, periodic.tolerance));
     periodic.near = true;
     const State start = iterate_.steps.front().y;
     summary_ = solver::solve_periodic(system_, start, periodic, iterate_);
@@ -161,6 +161,7 @@ class OrbitSearch {
   System system_;
   solver::Iterate<System> iterate_;
   solver::PeriodicSummary summary_;
+  double imbalance_ = absent;
 };
 
 }  // namespace wingbeat::detail
