@@ -202,6 +202,11 @@ std::string describe_doubt(const StatusEvidence& e) {
           "it rotates when simulated in time, but neither a periodic orbit in %s (%s) nor a simulated "
           "cycle was found that it settles on",
           phase_of(e), describe(e.search));
+    case StatusEvidence::Kind::open_balance:
+      return format(
+          "the energy balance of the cycle found does not close, with finer steps either: %.2g of the input "
+          "is left over",
+          e.change);
     case StatusEvidence::Kind::no_steady_temperature:
       return format("it flaps, but no steady winding temperature was found, at last near %.4g degC",
                     e.winding_temperature);

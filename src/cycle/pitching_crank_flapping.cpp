@@ -91,7 +91,7 @@ class PitchingCrankSearch {
   std::vector<OrbitSearch<System>> stable_;
   solver::PeriodicSummary last_;
   int iterates_ = 0;
-  double unstable_multiplier_ = absent, unstable_frequency_ = absent;
+  double unstable_multiplier_ = absent, unstable_frequency_ = absent, imbalance_ = absent;
   bool ambiguous_ = false;
 };
 
@@ -104,6 +104,7 @@ void PitchingCrankSearch<N>::attempt(const State& guess, bool near) {
   const bool found = near ? orbit.search_near(guess) : orbit.search(guess);
   iterates_ += orbit.summary().iterates;
   last_ = orbit.summary();
+  if (last_.status == solver::PeriodicStatus::unbalanced) imbalance_ = orbit.imbalance();
   if (!found) return;
   const double multiplier = orbit.multiplier();
   if (!(multiplier < 1.0)) {
@@ -140,6 +141,9 @@ SteadyFlapping PitchingCrankSearch<N>::undecided(SteadyFlapping result) const {
     result.evidence = {.kind = PitchCrankEvidence::unstable_orbit,
                        .frequency = unstable_frequency_,
                        .multiplier = unstable_multiplier_};
+  } else if (std::isfinite(imbalance_)) {
+    result.status = FlappingStatus::undecided;
+    result.evidence = {.kind = PitchCrankEvidence::open_balance, .change = imbalance_, .search = last_.status};
   } else {
     result.status = FlappingStatus::locked;
     result.evidence = {.kind = PitchCrankEvidence::no_orbit, .angle = last_.stop, .search = last_.status};

@@ -101,6 +101,9 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
     result.status = FlappingStatus::undecided;
     result.evidence = {
         .kind = Evidence::unstable_orbit, .frequency = orbit.frequency(), .multiplier = orbit.multiplier()};
+  } else if (result.summary.status == solver::PeriodicStatus::unbalanced) {
+    result.status = FlappingStatus::undecided;
+    result.evidence = {.kind = Evidence::open_balance, .change = orbit.imbalance(), .search = result.summary.status};
   } else {
     result.status = FlappingStatus::locked;
     result.evidence = {.kind = Evidence::no_orbit, .angle = result.summary.stop, .search = result.summary.status};

@@ -9,6 +9,7 @@
 
 #include "ensemble/plan.hpp"
 #include "wingbeat/core/cancellation.hpp"
+#include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
 #include "wingbeat/cycle/thermal_equilibrium.hpp"
 #include "wingbeat/ensemble/direct_pack_blocks.hpp"
@@ -231,7 +232,7 @@ class EnsembleRun {
       const auto begin = [](std::size_t, DirectPackResult&) {};
       run_blocks<DirectPackResult>(open, settings, solver_.solve_direct, begin,
                                    [&](std::size_t n, const DirectPackResult& r) {
-                                     if (r.error_estimate <= options_.tolerance) {
+                                     if (r.error_estimate <= options_.tolerance && balances(r.metrics)) {
                                        accept(n, r.metrics, r.error_estimate);
                                      } else if (std::isfinite(r.error_estimate)) {
                                        inexact.push_back(n);
@@ -287,7 +288,7 @@ class EnsembleRun {
         in_doubt.push_back(n);
       } else if (r.assessment == PackAssessment::unresolved) {
         unresolved.push_back(n);
-      } else if (!(r.error_estimate <= options_.tolerance)) {
+      } else if (!(r.error_estimate <= options_.tolerance) || !balances(r.metrics)) {
         starts_[n] = r.start;
         inexact.push_back(n);
       } else {
@@ -295,6 +296,8 @@ class EnsembleRun {
       }
     });
   }
+
+  bool balances(const Metrics<double>& metrics) const { return closes(energy_audit(metrics), options_.tolerance); }
 
   void accept(std::size_t n, const Metrics<double>& metrics, double error_estimate) {
     outcomes_[n] = {FlappingStatus::flapping, false, error_estimate, metrics, domain(n, metrics)};

@@ -86,8 +86,16 @@ class MeasuredModel : public Base {
     if constexpr (crank) all[cycle_end] = -1;
     return all;
   }
+  void begin_piece() {
+    adding_impulses([&] { Base::begin_piece(); });
+  }
+  bool branch_lost() {
+    bool lost = false;
+    adding_impulses([&] { lost = Base::branch_lost(); });
+    return lost;
+  }
   void handle(std::size_t indicator) {
-    if (indicator < cycle_end) return Base::handle(indicator);
+    if (indicator < cycle_end) return adding_impulses([&] { Base::handle(indicator); });
     means.end_cycle(this->now.t);
     means.next += two_pi;
   }
@@ -110,6 +118,22 @@ class MeasuredModel : public Base {
     if constexpr (crank) of.direction = this->now.branch.direction;
     else if constexpr (requires { this->now.direction; }) of.direction = this->now.direction;
     return of;
+  }
+
+ private:
+  /// What impacts add to the integrals at once is added to the sums.
+  template <class Change>
+  void adding_impulses(const Change& change) {
+    if constexpr (requires { this->now.impulses; }) {
+      const auto before = this->now.impulses;
+      change();
+      for (std::size_t k = 0; k < quadrature_count; ++k) {
+        const auto which = std::size_t(detail::quadratures[k]);
+        means.sums[k] += this->now.impulses[which] - before[which];
+      }
+    } else {
+      change();
+    }
   }
 };
 

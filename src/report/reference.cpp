@@ -172,7 +172,7 @@ constexpr MetricDefinition metric_definitions[] = {
     {Metric::added_mass_inertia_ratio, R"($J_\mathrm{a} / (N_\mathrm{w} J_\mathrm{w})$)",
      "`aerodynamics.added_mass = true`"},
     {Metric::power_hinge, R"($P_\mathrm{hinge}$)",
-     R"(mean of $c_\psi \dot\psi^2$ of all wings and what impacts at the stops take; wings on pitch hinges)"},
+     R"(mean of $c_\psi \dot\psi^2$ of all wings and what the stops take in impacts; wings on pitch hinges)"},
     {Metric::pitch_amplitude, R"($\tfrac12 (\psi_\mathrm{max} - \psi_\mathrm{min})$)", ""},
     {Metric::pitch_phase, R"($\varphi_\psi$)",
      R"(by how much the first harmonic of $\psi$ is ahead of that of $-\dot\beta$: 0 for symmetric flips)"},

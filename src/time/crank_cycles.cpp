@@ -111,10 +111,12 @@ void CrankStartUp::cycle_measured(double rate) {
   const bool agree = enough || ((tightest || relative_tolerance_ < 0.2 * measured_with_) && before &&
                                 metrics_apart(*before, *result_.metrics) < 0.3 * tolerance);
   const bool rounding = change_ < tolerance && cycles_at_tightest_ > (change_ < 30.0 * tightest_ ? 4 : 40);
+  const EnergyAudit audit = energy_audit(*result_.metrics);
+  const bool balances = closes(audit, tolerance);
   if ((closed && agree) || rounding) {
     result_.closure = off;
-    flap();
-    return;
+    if (balances) return flap();
+    if (tightest && cycles_at_tightest_ > 4) return give_up_open_balance(audit);
   }
   last_metrics_ = std::exchange(result_.metrics, std::nullopt);
   measured_with_ = relative_tolerance_;
@@ -132,7 +134,8 @@ void CrankStartUp::cycle_measured(double rate) {
   }
   if (cycles_since_jump_ == 2 && change_ > 0.5 * change_before_jump_) contraction_ = 0.0;
   relative_tolerance_ =
-      std::max(tightest_, closed ? relative_tolerance_ / 10.0 : std::min(relative_tolerance_, 3e-3 * tolerance / gain));
+      std::max(tightest_, closed || !balances ? relative_tolerance_ / 10.0
+                                              : std::min(relative_tolerance_, 3e-3 * tolerance / gain));
   if (!closed && contraction_ > 0.0 && cycles_since_jump_ >= 2) {
     const Crossing& last = crossings_[crossings_.size() - 2];
     const double share = contraction_ / (1.0 - contraction_);
@@ -270,7 +273,17 @@ bool CrankStartUp::cycle_done_averaging() {
     if (++measured_cycles_ < int(window)) return false;
     result_.cycle_scatter = cycle_scatter(window);
     take_metrics(int(window));
-    flap();
+    const EnergyAudit audit = energy_audit(*result_.metrics);
+    const double stored = (model_.stored_energy() - stored_mark_) / (now_.t - measured_from_);
+    if (closes(audit, options_.tolerance, stored)) {
+      flap();
+    } else if (relative_tolerance_ > tightest_) {
+      relative_tolerance_ = std::max(tightest_, relative_tolerance_ / 10.0);
+      measuring_ = false;
+      begin_measuring();
+    } else {
+      give_up_open_balance(audit);
+    }
     return true;
   }
   if (n < 5) return false;
@@ -279,6 +292,11 @@ bool CrankStartUp::cycle_done_averaging() {
   if (change_ > std::max(options_.tolerance, 1e-4) && n < 40) return false;
   begin_measuring();
   return true;
+}
+
+void CrankStartUp::give_up_open_balance(const EnergyAudit& audit) {
+  result_.metrics.reset();
+  give_up({.kind = Evidence::open_balance, .change = std::abs(audit.imbalance / audit.electrical)});
 }
 
 double CrankStartUp::cycle_scatter(std::size_t cycles) const {
@@ -299,7 +317,9 @@ void CrankStartUp::begin_measuring() {
   extremes_.fill(-infinity);
   variation_ = 0.0;
   energy_mark_ = model_.wing_energy();
-  rotor_mark_ = now_.rotor_gain;
+  motor_mark_ = model_.motor_energy();
+  stored_mark_ = model_.stored_energy();
+  impulses_mark_ = now_.impulses;
   measured_from_ = now_.t;
   measured_angle_ = next_cycle_ - two_pi;
   result_.cycle.clear();
@@ -316,17 +336,20 @@ void CrankStartUp::take_metrics(int cycles) {
   const std::size_t n = crossings_.size();
   const double start = int(n) > cycles ? crossings_[n - 1 - std::size_t(cycles)].time : 0.0;
   CycleIntegrals<double>& integrals = result_.integrals;
-  for (int k = 0; k < quadrature_count; ++k) integrals[std::size_t(quadratures[k])] = q_[k] / cycles;
+  for (int k = 0; k < quadrature_count; ++k) {
+    const auto which = std::size_t(quadratures[k]);
+    integrals[which] = (q_[k] + now_.impulses[which] - impulses_mark_[which]) / cycles;
+  }
   integrals[std::size_t(Integral::time)] = (now_.t - start) / cycles;
   integrals[std::size_t(Integral::reactive_work)] = variation_ / cycles;
   const Motor<double>& m = model_.vehicle.motor;
   if (has_gear_loss(m)) {
-    // What the motor gives less what comes out, which over whole cycles is what the gearbox loses.
+    // What the motor gives less what comes out is what the gearbox loses.
     const auto total = [&](Integral which) { return integrals[std::size_t(which)]; };
     integrals[std::size_t(Integral::gear_work)] =
         total(Integral::electrical_work) - m.armature_resistance * total(Integral::current_square) -
-        m.viscous_damping * total(Integral::speed_square) - total(Integral::motor_work) +
-        (now_.rotor_gain - rotor_mark_) / cycles;
+        m.viscous_damping * total(Integral::speed_square) - total(Integral::motor_work) -
+        (model_.motor_energy() - motor_mark_) / cycles;
   }
   if (model_.pitching) {
     // Of a crank that stands for a while, what rounding leaves of the speed is none.

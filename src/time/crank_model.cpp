@@ -118,8 +118,7 @@ Motion<double> CrankModel::motion_now() const {
   double moment = m.stored_moment;
   if (pitching) {
     const WingsAtPitch<double> wings = wings_standing(y);
-    const PitchState<double> at = pitch_state(now.psi, now.held ? 0.0 : now.pitch_velocity, 0.0);
-    m.aero.lift = lift_at_pitch(vehicle.pitch, wings, at, 0.0, wings.free_acceleration);
+    m.aero.lift = standing_lift(y, wings);
     moment += wings.moment;
   }
   m.rod_force = wingless ? 0.0 : moment / m.kinematics.wing_lever;
@@ -146,6 +145,7 @@ bool CrankModel::rates(double t, const double* y, double* dy, bool quadrature) c
         case Integral::electrical_work: rate = i * terminal_voltage(vehicle, voltage(t), i); break;
         case Integral::rod_force: rate = std::abs(spring_moment(vehicle, k) + wings.moment) / k.wing_lever; break;
         case Integral::aero_work: rate = wings.aero.power; break;
+        case Integral::lift: rate = standing_lift(y, wings); break;
         default: break;
       }
     }
@@ -205,6 +205,18 @@ StandingTorques<double> CrankModel::standing_torques(double theta) const {
 double CrankModel::wing_energy() const {
   const CrankKinematics<double> k = kinematics(now.theta);
   return wingbeat::wing_energy(vehicle, k, k.stroke_slope * now.omega);
+}
+
+double CrankModel::motor_energy() const {
+  return 0.5 * (vehicle.motor.inertia * square(now.omega) + vehicle.motor.armature_inductance * square(now.i));
+}
+
+double CrankModel::stored_energy() const {
+  const CrankKinematics<double> k = kinematics(now.theta);
+  const double velocity = k.stroke_slope * now.omega;
+  if (pitching) return motor_energy() + wing_energy() + pitch_energy(velocity);
+  const double alpha = aero_loads(vehicle.wings, std::abs(velocity)).angle_of_attack;
+  return motor_energy() + wing_energy() + 0.5 * vehicle.wings.added_inertia * square(std::sin(alpha) * velocity);
 }
 
 /// di/dt [A/s]; `rates` are needed without inductance only.

@@ -32,8 +32,8 @@ class CrankModel {
     long switches = 0;                          ///< of a pwm supply so far: even ones turn on, number 0 at t = 0
     double psi = 0.0, pitch_velocity = 0.0;     ///< of wings that pitch [rad], [rad/s]
     bool held = false;                          ///< a stop holds the wings
-    double impact_loss = 0.0;                   ///< energy that impacts on stops have taken so far [J]
-    double rotor_gain = 0.0;                    ///< kinetic energy that the rotor has gained in them [J]
+    double impact_loss = 0.0;                   ///< energy that stops have taken in impacts so far [J]
+    CycleIntegrals<double> impulses{};          ///< what impacts have added to the integrals so far
 
     /// Calls use(number) for each of them.
     template <class Self, class Use>
@@ -42,7 +42,8 @@ class CrankModel {
       use(of.branch.stroke), use(of.branch.force), use(of.branch.direction), use(of.branch.stored_power);
       use(of.branch.pitching), use(of.branch.gear), use(of.force_branch_known);
       use(of.switched_voltage), use(of.stuck), use(of.jammed), use(of.switches);
-      use(of.psi), use(of.pitch_velocity), use(of.held), use(of.impact_loss), use(of.rotor_gain);
+      use(of.psi), use(of.pitch_velocity), use(of.held), use(of.impact_loss);
+      for (auto& x : of.impulses) use(x);
     }
   };
   /// Functions of the state whose sign changes are events.
@@ -94,6 +95,10 @@ class CrankModel {
   double holding_torque(double theta) const;
   StandingTorques<double> standing_torques(double theta) const;
   double wing_energy() const;
+  /// Kinetic energy of the rotor, energy of the inductance [J].
+  double motor_energy() const;
+  /// The same with all that wings, the air that moves with them, springs and hinges store [J].
+  double stored_energy() const;
   double current_slope(double t, const double* y, const double* rates) const;
   double uniqueness(double theta) const;
   /// The same as the wings stand at the unknowns y.
@@ -108,8 +113,9 @@ class CrankModel {
   bool wings_rest() const { return !pitching || (now.psi == 0.0 && now.pitch_velocity == 0.0); }
   /// Torques of the motor [N m] between which the crank stands while the wings pitch.
   StandingTorques<double> standing_torques(const double* y) const;
-  /// Elastic energy of the hinges and kinetic energy of the pitching alone [J].
-  double pitch_energy() const;
+  /// Elastic energy of the hinges and kinetic energy of the pitching, of added mass too, beside wing_energy() [J];
+  /// without a stroke velocity that of the pitching alone.
+  double pitch_energy(double stroke_velocity = 0.0) const;
   /// Meets the stop that the wings are at and move on to.
   void resume();
 
@@ -144,6 +150,7 @@ class CrankModel {
  private:
   void find_jams();
   WingsAtPitch<double> wings_standing(const double* y) const;
+  double standing_lift(const double* y, const WingsAtPitch<double>& wings) const;
   double start_speed_ = 0.0, start_current_ = 0.0, start_pitch_ = 0.0, start_pitch_velocity_ = 0.0;
 
   double rotor_inertia() const;  ///< that counts where the mechanism may jam [kg m2]

@@ -1,6 +1,5 @@
 // What a crank in time does where its wings pitch on hinges; model.md section 12.
 #include <cmath>
-#include <limits>
 
 #include "time/crank_model.hpp"
 
@@ -34,6 +33,12 @@ WingsAtPitch<double> CrankModel::wings_standing(const double* y) const {
                         pitch_state(y[pitch_at()], velocity, 0.0), 1.0, sign_of(velocity), now.held ? -1.0 : 1.0);
 }
 
+/// Their lift [N].
+double CrankModel::standing_lift(const double* y, const WingsAtPitch<double>& wings) const {
+  const double velocity = now.held ? 0.0 : y[pitch_at() + 1];
+  return lift_at_pitch(vehicle.pitch, wings, pitch_state(y[pitch_at()], velocity, 0.0), 0.0, wings.free_acceleration);
+}
+
 double CrankModel::uniqueness_at(const double* y) const {
   if (!pitching) return uniqueness(y[0]);
   const CrankKinematics<double> k = kinematics(y[0]);
@@ -60,10 +65,11 @@ StandingTorques<double> CrankModel::standing_torques(const double* y) const {
   return wingbeat::standing_torques(vehicle, k, (spring_moment(vehicle, k) + wings_standing(y).moment) / k.wing_lever);
 }
 
-double CrankModel::pitch_energy() const {
+double CrankModel::pitch_energy(double stroke_velocity) const {
   if (!pitching) return 0.0;
+  const PitchState<double> at = pitch_state(now.psi, now.pitch_velocity, stroke_velocity);
   return hinge_loads(vehicle.pitch.hinge, now.psi, now.pitch_velocity).energy +
-         0.5 * (vehicle.pitch.pitch_inertia + vehicle.pitch.air.pp) * square(now.pitch_velocity);
+         kinetic_energy(pitch_inertia(vehicle.pitch, 0.0, at), at);
 }
 
 void CrankModel::resume() {
@@ -71,10 +77,10 @@ void CrankModel::resume() {
   if (pitching && !now.held && side * now.psi >= stop_angle && side * now.pitch_velocity > 0.0) meet_stop();
 }
 
-/// The wings meet a stop. A crank that friction holds gives way to the blow where the lever of the rod exceeds that of
-/// friction.
+/// The wings meet a stop. A crank that the blow brings to rest turns back where the lever of the rod exceeds that of
+/// friction, as does one that friction holds; else the stop takes what is left.
 void CrankModel::meet_stop() {
-  const double side = sign_of(now.psi), J = vehicle.motor.inertia;
+  const double side = sign_of(now.psi);
   now.psi = side * vehicle.pitch.hinge.stop;
   now.held = true;
   if (uniqueness_now() <= smallest_margin) {
@@ -82,26 +88,44 @@ void CrankModel::meet_stop() {
     return;
   }
   const CrankKinematics<double> k = kinematics(now.theta);
-  double omega = now.omega;
-  if (omega == 0.0) {
-    // Of no size, in the direction in which the blow would turn the crank.
+  const auto impact = [&](double direction, double left) {
+    return stop_impact(vehicle, vehicle.pitch, k, now.omega, now.psi, now.pitch_velocity, direction, left);
+  };
+  const auto pass = [&](const StopImpact<double>& of, double left) {
+    now.omega += of.shaft_speed;
+    now.pitch_velocity = left;
+    now.impact_loss += of.stop_work;
+    const CycleIntegrals<double> at_once = wingbeat::impulses(of);
+    for (std::size_t q = 0; q < at_once.size(); ++q) now.impulses[q] += at_once[q];
+    if (of.shaft_speed != 0.0) now.stuck = false;
+  };
+  if (now.omega != 0.0) {
+    const double direction = sign_of(now.omega);
+    const StopImpact<double> whole = impact(direction, 0.0);
+    if (direction * (now.omega + whole.shaft_speed) < 0.0) {
+      const double left = (1.0 + now.omega / whole.shaft_speed) * now.pitch_velocity;
+      pass(impact(direction, left), left);
+      now.omega = 0.0;
+    } else {
+      pass(whole, 0.0);
+    }
+  }
+  if (now.omega == 0.0 && now.pitch_velocity != 0.0) {
     const double coupling = (vehicle.pitch.mass_product + vehicle.pitch.air.rp) * std::cos(now.psi);
-    omega = sign_of(coupling * now.pitch_velocity * k.crank_lever) * std::numeric_limits<double>::min();
+    const double direction = sign_of(coupling * now.pitch_velocity * k.crank_lever);
+    const StopImpact<double> turning = impact(direction, 0.0);
+    pass(direction * turning.shaft_speed > 0.0
+             ? turning
+             : stop_impact_standing(vehicle, vehicle.pitch, k, now.psi, now.pitch_velocity),
+         0.0);
   }
-  StopImpact<double> impact = stop_impact(vehicle, vehicle.pitch, k, omega, now.psi, now.pitch_velocity);
-  if (now.omega == 0.0 && !(impact.shaft_speed * omega > 0.0)) {
-    impact = {0.0, pitch_energy() - hinge_loads(vehicle.pitch.hinge, now.psi, 0.0).energy};
-  }
-  now.rotor_gain += J * impact.shaft_speed * (now.omega + 0.5 * impact.shaft_speed);
-  now.omega += impact.shaft_speed;
-  now.pitch_velocity = 0.0;
-  now.impact_loss += impact.energy;
-  if (impact.shaft_speed != 0.0) now.stuck = false;
   if (!inductive) now.i = algebraic_current(vehicle, voltage(now.t), now.omega);
   now.branch.direction = now.omega != 0.0 ? sign_of(now.omega) : now.branch.direction;
   double y[5];
   unknowns(y);
   const bool stands = now.stuck || now.omega == 0.0;
+  // The impact may have turned the rod force over; its sign may depend on that of the gear torque.
+  for (int sweep = 0; sweep < 2 && !stands; ++sweep) now.branch.force = sign_of(motion(now.t, y).force_switch);
   const double presses = stands ? wings_standing(y).pitching_moment : pitch_motion(now.t, y).stop_moment;
   if (side * presses < 0.0) now.held = false;
 }

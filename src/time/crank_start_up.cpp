@@ -178,7 +178,9 @@ void CrankStartUp::switch_supply() {
 
 /// Integrates one smooth branch to the next event that ends it.
 void CrankStartUp::slide() {
+  if (measuring_ && model_.pitching) add_variation();
   model_.resume();
+  if (measuring_ && model_.pitching) add_variation();
   if (now_.jammed) return jam(now_.theta);
   if (!now_.stuck) model_.choose_force_branch();
   std::unique_ptr<Integrator>& slot = measuring_ ? with_quadratures_ : plain_;
@@ -283,13 +285,12 @@ void CrankStartUp::slide() {
   }
 }
 
-/// The blow takes at once what is no power that flows back and forth.
 void CrankStartUp::meet_or_leave_stop() {
   if (measuring_) add_variation();
   const double lost = now_.impact_loss;
   model_.handle(CrankModel::stop);
   if (now_.impact_loss > lost) event(Kind::stop_impact);
-  if (measuring_) energy_mark_ = model_.wing_energy();
+  if (measuring_) add_variation();
 }
 
 void CrankStartUp::step_taken(Integrator& steps, double from) {

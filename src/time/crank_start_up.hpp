@@ -12,6 +12,7 @@
 #include "time/integrator.hpp"
 #include "time/recorder.hpp"
 #include "time/transient_tools.hpp"
+#include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/time/transient.hpp"
 
 namespace wingbeat::detail {
@@ -53,6 +54,7 @@ class CrankStartUp {
   bool jump_by_blocks(std::size_t n, std::size_t block);
   void begin_measuring();
   void take_metrics(int cycles);
+  void give_up_open_balance(const EnergyAudit& audit);
   double cycle_time(std::size_t cycle) const { return crossings_[cycle].cycle; }
   bool repeats_after(std::size_t cycles) const;
   double time_of_steadiness(double period) const;
@@ -98,7 +100,8 @@ class CrankStartUp {
   double contraction_ = 0.0;  // of a cycle, as the blocks of cycles before a jump have shown it
   int cycles_since_jump_ = 0;
   double change_before_jump_ = std::numeric_limits<double>::infinity();
-  double variation_ = 0.0, energy_mark_ = 0.0, rotor_mark_ = 0.0;
+  double variation_ = 0.0, energy_mark_ = 0.0, motor_mark_ = 0.0, stored_mark_ = 0.0;
+  CycleIntegrals<double> impulses_mark_{};
   CycleExtremes<double> extremes_{};
   CrankPitchReading pitching_;
   double measured_from_ = 0.0, measured_angle_ = 0.0;  // time and crank angle

@@ -12,6 +12,7 @@
 #include "time/pitch_direct_model.hpp"
 #include "time/recorder.hpp"
 #include "time/transient_tools.hpp"
+#include "wingbeat/cycle/energy_audit.hpp"
 
 namespace wingbeat::detail {
 namespace {
@@ -143,7 +144,9 @@ void DirectStartUp<Model>::advance(double until) {
     now_.t = until;
     return;
   }
+  if (measuring_) add_variation();
   model_.resume();
+  if (measuring_) add_variation();
   std::unique_ptr<Integrator>& slot = measuring_ ? with_quadratures_ : plain_;
   if (!slot) slot = integrator(measuring_);
   Integrator& steps = *slot;
@@ -244,8 +247,7 @@ template <class Model>
 void DirectStartUp<Model>::interrupt() {
   if (measuring_) add_variation();
   if (const auto kind = model_.interrupt()) event(*kind);
-  // What it takes at once is no power that flows back and forth.
-  if (measuring_) energy_mark_ = model_.wing_energy();
+  if (measuring_) add_variation();
 }
 
 template <class Model>
@@ -255,6 +257,7 @@ void DirectStartUp<Model>::take_metrics() {
   for (int k = 0; k < quadrature_count; ++k) integrals[std::size_t(quadratures[k])] = q_[k];
   integrals[std::size_t(Integral::time)] = model_.period;
   integrals[std::size_t(Integral::reactive_work)] = variation_;
+  reading_.add_impulses(model_, integrals);
   result_.metrics = cycle_metrics(model_.vehicle, integrals, extremes_, absent, options_.reporting);
   result_.averaged_cycles = 1;
   reading_.finish(model_, q_ + quadrature_count, *result_.metrics);
@@ -367,7 +370,15 @@ void DirectStartUp<Model>::period_done() {
     const bool agree =
         before && (tightest || relative_tolerance_ < 0.2 * measured_with_) && apart < 0.3 * options_.tolerance;
     periods_at_tightest_ += tightest && change < 10.0 * noise;
-    if (((close || change < noise) && agree) || periods_at_tightest_ > 40) {
+    const EnergyAudit audit = energy_audit(*result_.metrics);
+    const bool balances = closes(audit, options_.tolerance);
+    const bool settled = ((close || change < noise) && agree) || periods_at_tightest_ > 40;
+    if (settled && !balances && tightest) {
+      result_.metrics.reset();
+      give_up({.kind = Evidence::open_balance, .change = std::abs(audit.imbalance / audit.electrical)});
+      return;
+    }
+    if (settled && balances) {
       settle(std::min(off, change / (1.0 - std::min(rate, 0.999))), change);
       return;
     }
@@ -390,7 +401,11 @@ void DirectStartUp<Model>::period_done() {
 template <class Model>
 bool DirectStartUp<Model>::out_of_budget() {
   ++result_.steps;
-  if (result_.steps > options_.max_steps && last_metrics_ && last_off_ < nearly_settled) {
+  const auto as_good_as_steps_allow = [&] {
+    return last_metrics_ && last_off_ < nearly_settled &&
+           closes(energy_audit(*last_metrics_), std::max(options_.tolerance, last_apart_));
+  };
+  if (result_.steps > options_.max_steps && as_good_as_steps_allow()) {
     // That it flaps is beyond doubt, its metrics are as good as the steps allowed make them.
     result_.metrics = last_metrics_;
     settle(last_off_, changes_.back());

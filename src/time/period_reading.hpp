@@ -21,6 +21,7 @@ template <>
 class PeriodReading<DirectModel> {
  public:
   void begin(const DirectModel&) {}
+  void add_impulses(const DirectModel&, CycleIntegrals<double>&) const {}
   void step_taken(const DirectModel&, Integrator&, double) {}
   void finish(const DirectModel&, const double*, Metrics<double>&) {}
   void add_to(StatusEvidence&, const DirectModel&) const {}
@@ -35,6 +36,14 @@ class PeriodReading<PitchDirectModel> {
     lowest_psi_ = infinity;
     highest_psi_ = -infinity;
     impact_mark_ = model.now.impact_loss;
+    impulses_mark_ = model.now.impulses;
+  }
+
+  /// Adds what impacts of this period add to its integrals; the reactive work has it already.
+  void add_impulses(const PitchDirectModel& model, CycleIntegrals<double>& integrals) const {
+    for (const Integral which : quadratures) {
+      integrals[std::size_t(which)] += model.now.impulses[std::size_t(which)] - impulses_mark_[std::size_t(which)];
+    }
   }
 
   /// The step from the time `from` [s] to where the model stands: pitch and angle of attack have their extremes at ends
@@ -69,6 +78,7 @@ class PeriodReading<PitchDirectModel> {
  private:
   PitchMetrics metrics_{};  ///< of this period, so far
   double lowest_psi_ = 0.0, highest_psi_ = 0.0, impact_mark_ = 0.0;
+  CycleIntegrals<double> impulses_mark_{};
 };
 
 }  // namespace wingbeat::detail

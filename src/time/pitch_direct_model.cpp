@@ -105,10 +105,12 @@ void PitchDirectModel::put_state(TransientResult& in) const {
 void PitchDirectModel::meet_stop() {
   now.y[2] = side() * vehicle.pitch.hinge.stop;
   const StopImpact<double> impact =
-      stop_impact(vehicle, vehicle.pitch, direct_kinematics<double>(), now.y[1], now.y[2], now.y[3]);
+      stop_impact(vehicle, vehicle.pitch, direct_kinematics<double>(), now.y[1], now.y[2], now.y[3], sign_of(now.y[1]));
   now.y[1] += impact.shaft_speed;
   now.y[3] = 0.0;
-  now.impact_loss += impact.energy;
+  now.impact_loss += impact.stop_work;
+  const CycleIntegrals<double> at_once = wingbeat::impulses(impact);
+  for (std::size_t q = 0; q < at_once.size(); ++q) now.impulses[q] += at_once[q];
   now.held = true;
   if (side() * pitch_motion(now.t, now.y).stop_moment < 0.0) now.held = false;
 }

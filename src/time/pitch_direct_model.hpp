@@ -26,14 +26,16 @@ class PitchDirectModel : public DrivenShaft {
     static constexpr bool stuck = false;
     double t = 0.0;
     double y[5] = {};
-    bool held = false;         ///< a stop holds the wings
-    double impact_loss = 0.0;  ///< energy that impacts on stops have taken so far [J]
+    bool held = false;                  ///< a stop holds the wings
+    double impact_loss = 0.0;           ///< energy that stops have taken in impacts so far [J]
+    CycleIntegrals<double> impulses{};  ///< what impacts have added to the integrals so far
 
     /// Calls use(number) for each of them.
     template <class Self, class Use>
     static void each(Self& of, const Use& use) {
       use(of.t), use(of.y[0]), use(of.y[1]), use(of.y[2]), use(of.y[3]), use(of.y[4]), use(of.held);
       use(of.impact_loss);
+      for (auto& x : of.impulses) use(x);
     }
   };
   /// Functions of the state whose sign changes are events: room to the stop or, of wings that it holds, how they press

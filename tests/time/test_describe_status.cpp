@@ -136,6 +136,9 @@ TEST(DescribeStatus, Undecided) {
   EXPECT_EQ(describe({.kind = Evidence::no_cycle, .search = PeriodicStatus::not_converged}),
             "it rotates when simulated in time, but neither a periodic orbit in crank angle (iterates did not close) "
             "nor a simulated cycle was found that it settles on");
+  EXPECT_EQ(describe({.kind = Evidence::open_balance, .change = 2.5e-4}),
+            "the energy balance of the cycle found does not close, with finer steps either: 0.00025 of the input is "
+            "left over");
   StatusEvidence e{.kind = Evidence::out_of_steps, .frequency = 17.0, .steps = 100};
   EXPECT_EQ(describe(e), "no decision within 100 integration steps; it flaps at 17 Hz then");
   e.range = AngleRange{-0.5 * degree, 12.0 * degree};

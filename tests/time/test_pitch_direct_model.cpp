@@ -7,6 +7,7 @@
 
 #include "time/simulation.hpp"
 #include "vehicle/pitching_vehicle.hpp"
+#include "vehicle/recorded_impacts.hpp"
 #include "wingbeat/core/jet.hpp"
 #include "wingbeat/cycle/pitch_direct_system.hpp"
 #include "wingbeat/solve/periodic.hpp"

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "vehicle/pitching_vehicle.hpp"
+#include "vehicle/recorded_impacts.hpp"
 #include "vehicle/return_map_derivative.hpp"
 #include "wingbeat/cycle/crank_system.hpp"
 #include "wingbeat/cycle/pitch_crank_system.hpp"
@@ -55,7 +56,7 @@ double crank_imbalance(const PitchCrank& system, const PitchCrankOrbit& orbit) {
   const double taken = m.armature_resistance * orbit.total(Integral::current_square) +
                        m.viscous_damping * orbit.total(Integral::speed_square) + orbit.total(Integral::friction_work) +
                        orbit.total(Integral::aero_work) + orbit.total(Integral::residual_work) +
-                       orbit.total(PitchCrank::hinge_work) + impact_loss(system, orbit.cycle);
+                       orbit.total(PitchCrank::hinge_work);
   return (given - taken) / given;
 }
 

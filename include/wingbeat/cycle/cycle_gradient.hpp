@@ -79,9 +79,6 @@ class CycleGradient {
     if constexpr (pitching) ends_.reserve(cycle_.steps.size());
     for (std::size_t at = 0; at < cycle_.steps.size(); ++at) {
       const auto& step = cycle_.steps[at];
-      if constexpr (pitching) {
-        if (impact_before(at)) impact_loss_ += impact_energy(at, y);
-      }
       solver::reset_map<true>(jets_, cycle_.steps, at, y, &totals_);
       starts_.push_back(y);
       const auto signs = solver::signs_of<Jets>(step);
@@ -153,7 +150,7 @@ class CycleGradient {
   J hinge_power() const
     requires pitching
   {
-    return total((totals_[System::hinge_work] + impact_loss_) / totals_[std::size_t(Integral::time)]);
+    return total(totals_[System::hinge_work] / totals_[std::size_t(Integral::time)]);
   }
 
   /// What pitch_metrics() finds on plain numbers.
@@ -266,16 +263,6 @@ class CycleGradient {
     for (int n = 0; n < N; ++n) y[n] += dy[n] * move;
     x += move;
     return y;
-  }
-
-  /// What the impact takes with which step n begins [J]; y: the state before it, next to the stop.
-  W impact_energy(std::size_t n, JetState y) const {
-    const W x(cycle_.steps[n].x);
-    const auto dy = jets_.template rates<false>(x, y, solver::signs_of<Jets>(cycle_.steps[n - 1])).dy;
-    const W stop = pitch_stops::side<Jets>(y) * jets_.vehicle.pitch.hinge.stop;
-    const W late = (stop - y[System::pitch]) / dy[System::pitch];
-    for (int i = 0; i < N; ++i) y[i] += dy[i] * late;
-    return pitch_stops::impact_at(jets_, W(x + late), y).energy;
   }
 
   /// psi [rad] where step n begins, at a reversal of a stroke whose velocity is a state at the reversal itself.
@@ -459,7 +446,6 @@ class CycleGradient {
   std::vector<JetState> starts_;
   std::vector<JetState> ends_;  ///< of the steps, of wings that pitch
   std::vector<W> begins_;       ///< time from the cycle's start at which each step begins, of wings that pitch [s]
-  W impact_loss_ = W(0.0);
   double start_change_[N][slots] = {};
   bool absent_slots_[gradient_slots];
 };

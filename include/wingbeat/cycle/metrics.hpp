@@ -8,6 +8,7 @@
 
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/scalar.hpp"
+#include "wingbeat/vehicle/pitch_motion.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
@@ -127,6 +128,21 @@ CycleIntegrals<S> integrands(const Motion<S>& m, const S& omega, const Branch<S>
           m.aero.lift,
           branch.force * m.rod_force,
           m.gear_loss};
+}
+
+/// What an impact on a stop adds to the integrals at once.
+template <Scalar S>
+CycleIntegrals<S> impulses(const StopImpact<S>& impact) {
+  CycleIntegrals<S> of;
+  of.fill(S(0.0));
+  of[std::size_t(Integral::motor_work)] = impact.motor_work;
+  of[std::size_t(Integral::friction_work)] = impact.friction_work;
+  of[std::size_t(Integral::reactive_work)] = impact.stored_work;
+  of[std::size_t(Integral::residual_work)] = impact.residual_work;
+  of[std::size_t(Integral::lift)] = impact.lift;
+  of[std::size_t(Integral::rod_force)] = sign_of(impact.rod_impulse) * impact.rod_impulse;
+  of[std::size_t(Integral::gear_work)] = impact.gear_work;
+  return of;
 }
 
 /// Quantities of which a cycle's extreme value is a metric.

@@ -1,10 +1,12 @@
 // The search for one vehicle's orbit, and what is reported of it: the same for every system.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "wingbeat/cycle/direct_balance.hpp"
+#include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/cycle/extremes.hpp"
 #include "wingbeat/cycle/pitch_metrics.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
@@ -50,16 +52,18 @@ class OrbitSearch {
     if constexpr (requires { System::pitch; }) periodic.max_steps = pitching_steps;
     if (stiff(guess)) periodic.method = solver::Method::radau;
     const int iterates_before = summary_.iterates;
-    summary_ = solver::solve_periodic(system_, guess, periodic, iterate_);
-    if (summary_.status == solver::PeriodicStatus::too_many_steps && periodic.method != solver::Method::radau) {
+    solve(guess, periodic);
+    const bool other_method = summary_.status == solver::PeriodicStatus::too_many_steps ||
+                              summary_.status == solver::PeriodicStatus::unbalanced;
+    if (other_method && periodic.method != solver::Method::radau) {
       periodic.method = solver::Method::radau;
-      summary_ = solver::solve_periodic(system_, guess, periodic, iterate_);
+      solve(guess, periodic);
     }
     if (summary_.status == solver::PeriodicStatus::too_many_steps && !System::has_rod) {
       // Not stiff then, but hard: a shaft that hardly breaks away.
       periodic.method = solver::Method::explicit_pair;
       periodic.max_steps *= 20;
-      summary_ = solver::solve_periodic(system_, guess, periodic, iterate_);
+      solve(guess, periodic);
     }
     summary_.iterates += iterates_before;
     return summary_.status == solver::PeriodicStatus::converged;
@@ -74,7 +78,7 @@ class OrbitSearch {
       if (method == solver::Method::explicit_pair && stiff(guess)) continue;
       periodic.method = method;
       const int iterates_before = summary_.iterates;
-      summary_ = solver::solve_periodic(system_, guess, periodic, iterate_);
+      solve(guess, periodic);
       summary_.iterates += iterates_before;
       if (summary_.status == solver::PeriodicStatus::converged) return true;
     }
@@ -89,6 +93,9 @@ class OrbitSearch {
     constexpr int n = int(std::tuple_size_v<State>);
     return solver::monodromy_product(system_, system_.template cast<Jet<n>>(), iterate_).spectral_radius();
   }
+
+  /// What the energy balance leaves open of a cycle refused for that, of the input.
+  double imbalance() const { return imbalance_; }
 
   const System& system() const { return system_; }
   const solver::PeriodicSummary& summary() const { return summary_; }
@@ -116,6 +123,32 @@ class OrbitSearch {
   }
 
  private:
+  /// An orbit whose energy balance stays open is none: finer steps first.
+  void solve(const State& guess, solver::PeriodicOptions periodic) {
+    constexpr double finer = 1e-2, finest = 1e-12;
+    summary_ = solver::solve_periodic(system_, guess, periodic, iterate_);
+    if (summary_.status != solver::PeriodicStatus::converged || balances()) return;
+    const EnergyAudit open = audit();
+    imbalance_ = std::abs(open.imbalance / open.electrical);
+    const int iterates_before = summary_.iterates;
+    periodic.tolerance = std::max(finer * periodic.tolerance, std::min(finest, periodic.tolerance));
+    periodic.near = true;
+    const State start = iterate_.steps.front().y;
+    summary_ = solver::solve_periodic(system_, start, periodic, iterate_);
+    summary_.iterates += iterates_before;
+    if (summary_.status == solver::PeriodicStatus::converged && balances()) return;
+    summary_.status = solver::PeriodicStatus::unbalanced;
+  }
+
+  bool balances() const { return closes(audit(), options_.tolerance); }
+  EnergyAudit audit() const {
+    double hinge_work = 0.0;
+    if constexpr (requires { System::hinge_work; }) {
+      for (const auto& step : iterate_.steps) hinge_work += step.dq[System::hinge_work];
+    }
+    return energy_audit(system_.vehicle, cycle_integrals(iterate_), hinge_work);
+  }
+
   /// True where explicit steps need not be tried.
   bool stiff([[maybe_unused]] const State& guess) const {
     if constexpr (requires { system_.stiff(guess); }) return system_.stiff(guess);
@@ -128,6 +161,7 @@ class OrbitSearch {
   System system_;
   solver::Iterate<System> iterate_;
   solver::PeriodicSummary summary_;
+  double imbalance_ = absent;
 };
 
 }  // namespace wingbeat::detail

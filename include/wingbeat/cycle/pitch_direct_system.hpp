@@ -95,8 +95,8 @@ struct PitchDirectSystem {
     if (pitch_stops::rests_at_stop(*this, y)) pitch_stops::hold_or_leave(*this, S(0.0), y, signs);
     return signs;
   }
-  void event_transition(std::size_t k, const S& phi, State& y, Signs& signs) const {
-    if (jumps(k)) pitch_stops::event_transition(*this, phi, y, signs);
+  void event_transition(std::size_t k, const S& phi, State& y, Signs& signs, Quadrature* totals) const {
+    if (jumps(k)) pitch_stops::event_transition(*this, phi, y, signs, totals);
     else signs[k] = -signs[k];
   }
   template <bool quadratures>

@@ -64,7 +64,7 @@ double pitch_at_start(const solver::Iterate<System>& cycle, std::size_t n) {
 template <class System>
 PitchMetrics pitch_metrics(const System& system, const solver::Iterate<System>& cycle) {
   double lowest = infinity, highest = -infinity, period = 0.0;
-  PitchMetrics m{0.0, 0.0, infinity, -infinity, impact_loss(system, cycle), 0.0};
+  PitchMetrics m{0.0, 0.0, infinity, -infinity, 0.0, 0.0};
   for (std::size_t n = 0; n < cycle.steps.size(); ++n) {
     const auto& step = cycle.steps[n];
     for (const double psi : {detail::pitch_at_start(cycle, n), detail::pitch_at_start(cycle, n + 1)}) {

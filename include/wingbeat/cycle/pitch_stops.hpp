@@ -2,13 +2,14 @@
 //
 // A stop takes the pitch velocity in an inelastic impact, at which the stroke velocity jumps too, and holds the wings
 // as long as they press on it. A system has among its signs `turn` (of psi'), `stop` (the switch), `held` (-1 where a
-// stop holds the wings) and `impacts` (turned over by each, so that a recorded cycle tells), among its states psi and
+// stop holds the wings) and `impacts` (their number so far, so that a recorded cycle tells), among its states psi and
 // psi' at `pitch` and the next, and the speed of its shaft at `shaft`.
 #pragma once
 
 #include <cmath>
 
-#include "wingbeat/solve/iterate.hpp"
+#include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/solve/iterate_record.hpp"
 #include "wingbeat/vehicle/pitch_motion.hpp"
 
 namespace wingbeat::pitch_stops {
@@ -49,36 +50,41 @@ void hold_or_leave(const System& system, const typename System::Real& x, const t
   const S at = side<System>(y);
   signs[System::held] = S(-1.0);
   signs[System::turn] = -at;
+  // An impact may have turned them over.
+  solver::settle_signs(system, x, y, signs);
   if (value_of(S(at * system.pitch_motion(x, y, signs).stop_moment)) < 0.0) signs[System::held] = S(1.0);
 }
 
+/// The state after the impact of one that is at a stop; what it adds to the integrals is added to `*totals`, where
+/// given.
 template <class System>
-StopImpact<typename System::Real> impact_at(const System& system, const typename System::Real& x,
-                                            const typename System::State& y) {
-  return stop_impact(system.vehicle, system.vehicle.pitch, system.kinematics(x), y[System::shaft], y[System::pitch],
-                     y[System::pitch + 1]);
-}
-
-template <class System>
-typename System::State after_impact(const System& system, const typename System::Real& x, typename System::State y) {
+typename System::State after_impact(const System& system, const typename System::Real& x, typename System::State y,
+                                    typename System::Quadrature* totals) {
   using S = typename System::Real;
   y[System::pitch] = side<System>(y) * system.vehicle.pitch.hinge.stop;
-  y[System::shaft] = y[System::shaft] + impact_at(system, x, y).shaft_speed;
+  const StopImpact<S> impact = stop_impact(system.vehicle, system.vehicle.pitch, system.kinematics(x), y[System::shaft],
+                                           y[System::pitch], y[System::pitch + 1], S(sign_of(y[System::shaft])));
+  if (totals) {
+    const CycleIntegrals<S> at_once = impulses(impact);
+    for (std::size_t q = 0; q < at_once.size(); ++q) (*totals)[q] = (*totals)[q] + at_once[q];
+    (*totals)[System::hinge_work] = (*totals)[System::hinge_work] + impact.stop_work;
+  }
+  y[System::shaft] = y[System::shaft] + impact.shaft_speed;
   y[System::pitch + 1] = S(0.0);
   return y;
 }
 
-/// The switch `stop` is crossed: wings that were held leave, others meet the stop.
+/// The switch `stop` is crossed: wings that were held leave, others meet the stop. `totals` as in after_impact().
 template <class System>
 void event_transition(const System& system, const typename System::Real& x, typename System::State& y,
-                      typename System::Signs& signs) {
+                      typename System::Signs& signs, typename System::Quadrature* totals) {
   using S = typename System::Real;
   if (is_held<System>(signs)) {
     signs[System::held] = S(1.0);
     signs[System::turn] = -side<System>(y);
   } else {
-    y = after_impact(system, x, y);
-    signs[System::impacts] = -signs[System::impacts];
+    y = after_impact(system, x, y, totals);
+    signs[System::impacts] = signs[System::impacts] + S(1.0);
     hold_or_leave(system, x, y, signs);
   }
 }
@@ -93,7 +99,7 @@ void reset_map(const System& system, const typename System::Real& x, typename Sy
     const auto before = system.template rates<quadratures>(x, y, from);
     const S late = (side<System>(y) * system.vehicle.pitch.hinge.stop - y[System::pitch]) / before.dy[System::pitch];
     for (std::size_t n = 0; n < y.size(); ++n) y[n] = y[n] + before.dy[n] * late;
-    y = after_impact(system, S(x + late), y);
+    y = after_impact(system, S(x + late), y, quadratures ? totals : nullptr);
     const auto after = system.template rates<quadratures>(S(x + late), y, to);
     for (std::size_t n = 0; n < y.size(); ++n) y[n] = y[n] - after.dy[n] * late;
     if constexpr (quadratures) {
@@ -109,20 +115,3 @@ void reset_map(const System& system, const typename System::Real& x, typename Sy
 }
 
 }  // namespace wingbeat::pitch_stops
-
-namespace wingbeat {
-
-/// Energy that impacts on the stops take from a recorded cycle [J].
-template <class System>
-double impact_loss(const System& system, const solver::Iterate<System>& cycle) {
-  double lost = 0.0;
-  for (std::size_t n = 1; n < cycle.steps.size(); ++n) {
-    const auto& before = cycle.steps[n - 1];
-    if (before.signs[System::impacts] == cycle.steps[n].signs[System::impacts]) continue;
-    const double x = before.x + before.h;
-    lost += pitch_stops::impact_at(system, x, solver::evaluate_inside<false>(system, cycle, before, x).y).energy;
-  }
-  return lost;
-}
-
-}  // namespace wingbeat

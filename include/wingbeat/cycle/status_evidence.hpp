@@ -56,9 +56,10 @@ struct StatusEvidence {
     inertia_vanishes,  ///< inertia at angle
 
     // Undecided, by the orbit search
-    unstable_orbit,         ///< frequency, multiplier
-    unstable_response,      ///< of a direct drive: multiplier
-    no_response,            ///< of a direct drive: search
+    unstable_orbit,     ///< frequency, multiplier
+    unstable_response,  ///< of a direct drive: multiplier
+    no_response,        ///< of a direct drive: search
+    open_balance,  ///< change: of the input, what the energy balance of the cycle found leaves open; search or direct
     no_steady_temperature,  ///< winding_temperature, the last of a search around cycles that flap
     no_cycle,  ///< it rotates in time, but neither an orbit (search, direct) nor a simulated cycle was found
     // Undecided, in time; a crank also has `range` of its angles, or the frequency where it revolves

@@ -8,7 +8,8 @@
 // A system may have switches at which its right-hand side jumps, as with dry friction. It says so by jumps(k), and
 // their positions are found to the tolerance itself. Its event_transition() chooses the new branch, and its reset_map()
 // takes a solution next to the recorded one over a recorded jump, to first order (the saltation matrix). Where
-// event_transition() moves the state itself, as an impact does, the system says `state_jumps`.
+// event_transition() moves the state itself, as an impact does, the system says `state_jumps`, and both functions
+// return what the jump adds to the integrals.
 #pragma once
 
 #include <algorithm>

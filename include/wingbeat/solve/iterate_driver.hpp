@@ -398,21 +398,22 @@ class IterateDriver {
 
   /// Flips a located sign at the present position.
   void flip_here(std::size_t k) {
-    if constexpr (requires { system_.event_transition(k, x_, y_, signs_); }) {
+    if constexpr (state_jumps<System>()) {
+      typename System::Quadrature at_once{};
+      system_.event_transition(k, x_, y_, signs_, &at_once);
+      if (quadratures && !iterate_.steps.empty()) {
+        for (std::size_t q = 0; q < at_once.size(); ++q) iterate_.steps.back().dq[q] += at_once[q];
+      }
+    } else if constexpr (requires { system_.event_transition(k, x_, y_, signs_); }) {
       system_.event_transition(k, x_, y_, signs_);
     } else {
       signs_[k] = -signs_[k];
     }
     ++flips_here_;
     iterate_.switches.push_back({x_, k});
+    // The other switches may have jumped over their zeros with the rates.
+    if (jumps(system_, k)) settle_signs(system_, x_, y_, signs_);
     first_ = system_.template rates<quadratures>(place_, y_, signs_);
-    if (jumps(system_, k)) {
-      // The other switches may have jumped over their zeros with the rates.
-      for (std::size_t other = 0; other < switch_count; ++other) {
-        if (!jumps(system_, other)) signs_[other] = first_.switches[other] >= 0.0 ? 1.0 : -1.0;
-      }
-      first_ = system_.template rates<quadratures>(place_, y_, signs_);
-    }
   }
 
   void pass_fixed_nodes() {

@@ -2,9 +2,12 @@
 // went.
 #pragma once
 
+#include <cstddef>
+#include <tuple>
 #include <vector>
 
 #include "wingbeat/core/cancellation.hpp"
+#include "wingbeat/core/scalar.hpp"
 #include "wingbeat/solve/explicit_step.hpp"
 #include "wingbeat/solve/implicit_step.hpp"
 
@@ -30,7 +33,7 @@ struct Step {
   typename System::State y;  ///< at x
   typename System::Signs signs;
   Rates<System> first;             ///< rates at (x, y)
-  typename System::Quadrature dq;  ///< integrals over the step
+  typename System::Quadrature dq;  ///< integrals over the step, and what a jump of the state at its end adds to them
 };
 
 enum class Method {
@@ -108,6 +111,27 @@ bool jumps(const System& system, std::size_t k) {
     return system.jumps(k);
   } else {
     return false;
+  }
+}
+
+/// Gives the signs of the switches at which nothing jumps the values that they have at a state; that of a switch at
+/// zero stays. They may depend on each other.
+template <class System>
+void settle_signs(const System& system, const typename System::Real& x, const typename System::State& y,
+                  typename System::Signs& signs) {
+  using Real = typename System::Real;
+  constexpr std::size_t count = std::tuple_size_v<typename System::Switches>;
+  constexpr std::size_t max_changes = 4 * count;
+  auto values = system.template rates<false>(x, y, signs).switches;
+  std::size_t settled = 0, changes = 0;
+  for (std::size_t k = 0; settled < count && changes < max_changes; k = (k + 1) % count) {
+    ++settled;
+    const double value = value_of(values[k]);
+    if (jumps(system, k) || value == 0.0 || value * value_of(signs[k]) > 0.0) continue;
+    signs[k] = Real(value > 0.0 ? 1.0 : -1.0);
+    values = system.template rates<false>(x, y, signs).switches;
+    settled = 1;
+    ++changes;
   }
 }
 

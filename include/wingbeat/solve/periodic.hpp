@@ -36,7 +36,8 @@ enum class PeriodicStatus {
   converged,
   barrier,         ///< iterates run into the edge of the admissible region: no orbit was found
   too_many_steps,  ///< an iterate needs more steps than allowed
-  not_converged    ///< iterates neither settle nor fail within max_iterates
+  not_converged,   ///< iterates neither settle nor fail within max_iterates
+  unbalanced       ///< converged, but the energy balance does not close: a caller's verdict
 };
 
 /// The same in words; empty where nothing was searched for.
@@ -47,6 +48,7 @@ constexpr const char* describe(PeriodicStatus status) {
     case PeriodicStatus::barrier: return "an iterate ran into the edge of the admissible region";
     case PeriodicStatus::too_many_steps: return "an iterate needs more steps than allowed";
     case PeriodicStatus::not_converged: return "iterates did not close";
+    case PeriodicStatus::unbalanced: return "the energy balance of the orbit found does not close";
   }
   return "";
 }

@@ -45,30 +45,68 @@ PitchMotion<S> pitch_motion_on(const V<S>& v, const PitchingWings<S>& p, const C
   return m;
 }
 
-/// What an impact on a stop does, which takes all of psi' (inelastic).
+/// What an impact on a stop does. Works are those of the impulses at the mean of the velocities before and after:
+/// exact, since all velocities change in proportion while the stop takes psi'.
 template <Scalar S>
 struct StopImpact {
-  S shaft_speed;  ///< gained by the crank, or the shaft of a direct drive [rad/s]
-  S energy;       ///< lost, in the stop, in the friction that the blow on the rod causes and in the gearbox [J]
+  S shaft_speed;    ///< gained by the crank, or the shaft of a direct drive [rad/s]
+  S rod_impulse;    ///< F^, of the rod force [N s]
+  S motor_work;     ///< that the rotor passes on behind the gearbox, T_m^ omega [J]
+  S gear_work;      ///< lost in the gearbox [J]
+  S friction_work;  ///< lost in the friction that the blow on the rod causes [J]
+  S residual_work;  ///< what the formulation of the transmission fails to conserve [J]
+  S stored_work;    ///< magnitude of the change of N_w J_w beta'^2 / 2 [J]
+  S stop_work;      ///< lost at the stop, >= 0 [J]
+  S lift;           ///< impulse of the lift [N s]
 };
 
-/// The impact at pitch angle psi [rad] and velocity psi' [rad/s] of a vehicle at shaft speed omega [rad/s]. The impulse
-/// on the rod, F^ = -e J d omega / (h + s mu r_e), has the sign of -M_bp psi'; e as in Instant.
+/// The impact at pitch angle psi [rad] of a vehicle at shaft speed omega [rad/s], which moves on in `direction` (its
+/// sign), from the pitch velocity psi' to the one `left` [rad/s]. The impulse on the rod, F^ = -e J d omega /
+/// (h + s mu r_e), has the sign of -M_bp (psi' - left); e as in Instant.
 template <template <Scalar> class V, Scalar S>
 StopImpact<S> stop_impact(const V<S>& v, const PitchingWings<S>& p, const CrankKinematics<S>& k, const S& omega,
-                          const S& psi, const S& velocity) {
-  const PitchState<S> before = pitch_state<S>(psi, velocity, k.stroke_slope * omega);
-  const PitchInertia<S> m = pitch_inertia<S>(p, v.wing_count * v.wing_inertia, before);
-  const S blow = m.bp * velocity;
-  const S direction = sign_of(omega);
-  const S lever = k.crank_lever - sign_of(blow) * direction * v.friction.radius;
+                          const S& psi, const S& velocity, const S& direction, const S& left = S(0.0)) {
+  const PitchState<S> state = pitch_state<S>(psi, velocity, k.stroke_slope * omega);
+  const PitchInertia<S> m = pitch_inertia<S>(p, v.wing_count * v.wing_inertia, state);
+  const S taken = velocity - left;
+  const S blow = m.bp * taken;
+  const S friction = -sign_of(blow) * direction * v.friction.radius, lever = k.crank_lever + friction;
   const S& J = v.motor.inertia;
-  S eJ = J;
-  if (has_gear_loss(v.motor)) eJ = gear_torque_ratio(v.motor, S(-sign_of(S(blow * lever)) * direction)) * J;
-  const S gained = blow * lever / (eJ * k.wing_lever + m.bb * k.stroke_slope * lever);
-  const PitchState<S> after = pitch_state<S>(psi, S(0.0), k.stroke_slope * (omega + gained));
-  const S energy = kinetic_energy(m, before) - kinetic_energy(m, after) - J * gained * (omega + S(0.5) * gained);
-  return {gained, energy};
+  S ratio(1.0);
+  if (has_gear_loss(v.motor)) ratio = gear_torque_ratio(v.motor, S(-sign_of(S(blow * lever)) * direction));
+  const S eJ = ratio * J;
+  StopImpact<S> of;
+  of.shaft_speed = blow * lever / (eJ * k.wing_lever + m.bb * k.stroke_slope * lever);
+  const S stroke_gain = k.stroke_slope * of.shaft_speed, mean_speed = omega + S(0.5) * of.shaft_speed;
+  of.rod_impulse = (m.bb * stroke_gain - blow) / k.wing_lever;
+  const S rotor_work = -J * of.shaft_speed * mean_speed;
+  of.motor_work = ratio * rotor_work;
+  of.gear_work = (S(1.0) - ratio) * rotor_work;
+  of.friction_work = of.rod_impulse * friction * mean_speed;
+  of.residual_work = of.rod_impulse * (k.crank_lever - k.wing_lever * k.stroke_slope) * mean_speed;
+  const S stored = v.wing_count * v.wing_inertia * stroke_gain * k.stroke_slope * mean_speed;
+  of.stored_work = sign_of(stored) * stored;
+  of.stop_work = S(0.5) * (velocity + left) * (m.pp * taken - m.bp * stroke_gain);
+  of.lift = (p.air.p * taken - p.air.r * stroke_gain * state.cos_psi) * state.sin_psi;
+  return of;
+}
+
+/// The same where friction holds crank or shaft, and the stroke with it, against the blow.
+template <template <Scalar> class V, Scalar S>
+StopImpact<S> stop_impact_standing(const V<S>& v, const PitchingWings<S>& p, const CrankKinematics<S>& k, const S& psi,
+                                   const S& velocity) {
+  const PitchState<S> state = pitch_state<S>(psi, velocity, S(0.0));
+  const PitchInertia<S> m = pitch_inertia<S>(p, v.wing_count * v.wing_inertia, state);
+  const S none(0.0);
+  return {none,
+          -m.bp * velocity / k.wing_lever,
+          none,
+          none,
+          none,
+          none,
+          none,
+          S(0.5) * m.pp * square(velocity),
+          p.air.p * velocity * state.sin_psi};
 }
 
 }  // namespace wingbeat
