@@ -95,8 +95,7 @@ class CrankModel {
   StandingTorques<double> standing_torques(double theta) const;
   double wing_energy() const;
   double current_slope(double t, const double* y, const double* rates) const;
-  double uniqueness(double theta) const;
-  /// The same as the wings stand at the unknowns y.
+  /// uniqueness() as the wings stand at the unknowns y.
   double uniqueness_at(const double* y) const;
   double uniqueness_now() const;
   /// The least J + A (h + s mu r_e) of either branch as everything stands [kg m2].

@@ -62,6 +62,8 @@ class CrankStartUp {
   void event(Kind kind) { result_.events.push_back({now_.t, now_.theta, kind}); }
   void sample() { recorder_.sample({now_.t, now_.theta, now_.omega, now_.i}); }
   bool out_of_budget();
+  double stall_torque() const;
+  bool stalls(double angle);
   void rest(double theta, bool held_by_friction);
   void jam(double theta);
   void flap();
@@ -93,6 +95,7 @@ class CrankStartUp {
   std::unique_ptr<Integrator> plain_, with_quadratures_;
   bool measuring_ = false;
   int measured_cycles_ = 0, cycles_at_tightest_ = 0;
+  int relearned_ = 0;  // how often measured cycles that do not close were taken for plain ones again
   std::optional<Metrics<double>> last_metrics_;  // of the cycle before, found with the relative tolerance
   double measured_with_ = 0.0;
   double contraction_ = 0.0;  // of a cycle, as the blocks of cycles before a jump have shown it
