@@ -74,7 +74,7 @@ std::string describe_flapping(const StatusEvidence& e) {
                                 e.extrapolated        ? " (slow convergence, extrapolated)"
                                 : e.repeats_after > 1 ? format(" every %d cycles", e.repeats_after).c_str()
                                                       : "");
-      if (std::isfinite(e.accuracy)) text += format(", to about %.1g of where they converge", e.accuracy);
+      if (std::isfinite(e.accuracy)) text += format(", within about %.1g of where they converge", e.accuracy);
       return text + describe_pitching(e);
     }
     case StatusEvidence::Kind::averaged_cycles:

@@ -110,13 +110,11 @@ void CrankStartUp::cycle_measured(double rate) {
   const bool enough = gain < 1.5 && relative_tolerance_ <= 1e-3 * tolerance && !cancels(*result_.metrics);
   const bool agree = enough || ((tightest || relative_tolerance_ < 0.2 * measured_with_) && before &&
                                 metrics_apart(*before, *result_.metrics) < 0.3 * tolerance);
-  // What cycles at rounding leave is all there is; where others still come nearer, their contraction was not known.
-  constexpr int most_relearned = 4;
-  const bool at_rounding = change_ < 30.0 * tightest_;
-  const bool rounding = change_ < tolerance && cycles_at_tightest_ > (at_rounding ? 4 : 40) &&
-                        (at_rounding || relearned_ >= most_relearned);
+  const bool rounding = change_ < tolerance && cycles_at_tightest_ > (change_ < 30.0 * tightest_ ? 4 : 40);
   if ((closed && agree) || rounding) {
-    result_.closure = off;
+    // Where cycles were skipped, blocks of them may have shown what fades sooner than the speed does, of which the
+    // motor alone takes little away.
+    result_.closure = jumped_ ? std::max(off, change_ / free_return(model_.vehicle, crossings_.back().cycle)) : off;
     flap();
     return;
   }
@@ -124,7 +122,6 @@ void CrankStartUp::cycle_measured(double rate) {
   measured_with_ = relative_tolerance_;
   if (change_ > 100.0 * tolerance || cycles_at_tightest_ > 40) {
     // Not what was known of the contraction: back to plain cycles.
-    relearned_ += cycles_at_tightest_ > 40;
     measuring_ = false;
     change_ = infinity;
     rate_ = last_rate_ = 1.0;

@@ -95,7 +95,6 @@ class CrankStartUp {
   std::unique_ptr<Integrator> plain_, with_quadratures_;
   bool measuring_ = false;
   int measured_cycles_ = 0, cycles_at_tightest_ = 0;
-  int relearned_ = 0;  // how often measured cycles that do not close were taken for plain ones again
   std::optional<Metrics<double>> last_metrics_;  // of the cycle before, found with the relative tolerance
   double measured_with_ = 0.0;
   double contraction_ = 0.0;  // of a cycle, as the blocks of cycles before a jump have shown it
