@@ -69,11 +69,12 @@ std::string describe_flapping(const StatusEvidence& e) {
           e.repeats_after > 1 ? format(", which repeats after %d turns", e.repeats_after).c_str() : "", phase_of(e),
           describe(e.search));
     case StatusEvidence::Kind::settled_cycles: {
-      const std::string text = format("flaps steadily at %.6g Hz from %.4g s on; after %d cycles they repeat to %.1g%s",
-                                      e.frequency, e.time, e.cycles, e.change,
-                                      e.extrapolated        ? " (slow convergence, extrapolated)"
-                                      : e.repeats_after > 1 ? format(" every %d cycles", e.repeats_after).c_str()
-                                                            : "");
+      std::string text = format("flaps steadily at %.6g Hz from %.4g s on; after %d cycles they repeat to %.1g%s",
+                                e.frequency, e.time, e.cycles, e.change,
+                                e.extrapolated        ? " (slow convergence, extrapolated)"
+                                : e.repeats_after > 1 ? format(" every %d cycles", e.repeats_after).c_str()
+                                                      : "");
+      if (std::isfinite(e.accuracy)) text += format(", within about %.1g of where they converge", e.accuracy);
       return text + describe_pitching(e);
     }
     case StatusEvidence::Kind::averaged_cycles:

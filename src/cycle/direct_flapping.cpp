@@ -80,8 +80,7 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
 
 SteadyFlapping find_direct_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                     const StartUp& start_up) {
-  return vehicle.motor.armature_inductance > 0.0 ? search<3>(vehicle, options, start_up)
-                                                 : search<2>(vehicle, options, start_up);
+  return has_current_state(vehicle) ? search<3>(vehicle, options, start_up) : search<2>(vehicle, options, start_up);
 }
 
 }  // namespace wingbeat::detail

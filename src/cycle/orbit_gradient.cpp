@@ -13,15 +13,16 @@ namespace {
 using J = GradientJet;
 constexpr int slots = gradient_slots;
 
+void make_absent(J& x) { x.v.setConstant(absent); }
+
 /// What wings that pitch have instead of the metrics of the pitch law.
 void set_pitch_metrics(const PitchGradient& of, Metrics<J>& m) {
   m[Metric::pitch_amplitude] = degrees_per_radian * of.amplitude;
   m[Metric::pitch_phase] = degrees_per_radian * of.phase;
+  if (!(of.amplitude.a > still_pitch)) m[Metric::pitch_phase] = J(absent), make_absent(m[Metric::pitch_phase]);
   m[Metric::angle_of_attack_min] = degrees_per_radian * of.angle_of_attack_min;
   m[Metric::angle_of_attack_max] = degrees_per_radian * of.angle_of_attack_max;
 }
-
-void make_absent(J& x) { x.v.setConstant(absent); }
 
 /// All numbers of a gradient.
 template <class Visit>

@@ -212,8 +212,8 @@ SteadyFlapping PitchingCrankSearch<N>::run(const StartUp& start_up) {
 
 SteadyFlapping find_pitching_crank_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                             const StartUp& start_up) {
-  return vehicle.motor.armature_inductance > 0.0 ? PitchingCrankSearch<4>(vehicle, options).run(start_up)
-                                                 : PitchingCrankSearch<3>(vehicle, options).run(start_up);
+  return has_current_state(vehicle) ? PitchingCrankSearch<4>(vehicle, options).run(start_up)
+                                    : PitchingCrankSearch<3>(vehicle, options).run(start_up);
 }
 
 }  // namespace wingbeat::detail

@@ -173,8 +173,8 @@ SteadyFlapping PitchingSearch<N>::run(const StartUp& start_up) {
 
 SteadyFlapping find_pitching_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                       const StartUp& start_up) {
-  return vehicle.motor.armature_inductance > 0.0 ? PitchingSearch<5>(vehicle, options).run(start_up)
-                                                 : PitchingSearch<4>(vehicle, options).run(start_up);
+  return has_current_state(vehicle) ? PitchingSearch<5>(vehicle, options).run(start_up)
+                                    : PitchingSearch<4>(vehicle, options).run(start_up);
 }
 
 }  // namespace wingbeat::detail

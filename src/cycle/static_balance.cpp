@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "wingbeat/core/minimise.hpp"
-#include "wingbeat/core/root.hpp"
+#include "cycle/static_bounds.hpp"
+#include "wingbeat/core/certain.hpp"
 
 namespace wingbeat {
 namespace {
@@ -33,15 +33,61 @@ CrankKinematics<double> kinematics_at(const Vehicle<double>& v, double theta) {
   return crank_kinematics(v.transmission, std::sin(theta), std::cos(theta));
 }
 
-/// Least value over the circle from samples, refined around the least sample where `refine` says it matters.
-template <class F>
-std::pair<double, double> min_on_circle(const F& f, const std::array<double, angle_count>& samples, double refine) {
+Minimum least_of(const std::array<double, angle_count>& samples) {
   const std::size_t n = std::size_t(std::min_element(samples.begin(), samples.end()) - samples.begin());
-  const double angle = unit_circle().angle[n];
-  if (samples[n] > refine) return {angle, samples[n]};
-  const double step = two_pi / angle_count;
-  const Minimum refined = minimise(f, angle - step, angle + step, 1e-9);
-  return refined.value < samples[n] ? std::pair{wrap_angle(refined.at), refined.value} : std::pair{angle, samples[n]};
+  return {unit_circle().angle[n], samples[n]};
+}
+
+/// What levers reach over a turn, from the links alone.
+struct LeverReach {
+  double wing_lever_min;  ///< g [m]
+  double crank_lever;     ///< |h| [m]
+  double ratio_min;       ///< h / B1 [m]
+};
+
+LeverReach lever_reach(const SliderCrank<double>& c) {
+  const double sine = c.crank_radius / c.rod_length, cosine = std::sqrt(1.0 - square(sine));
+  const double along = c.hinge_offset * cosine;
+  const double height = std::abs(c.rod_length - c.mid_stroke_height) + c.crank_radius;
+  return {c.formulation == Formulation::virtual_work ? along : along - sine * height, c.crank_radius, along};
+}
+
+LeverReach lever_reach(const FourBar<double>& f) {
+  const auto lever = [&](double diagonal) {
+    const double cosine = (square(f.rocker_length) + square(f.coupler_length) - square(diagonal)) /
+                          (2.0 * f.rocker_length * f.coupler_length);
+    return f.rocker_length * std::sqrt(1.0 - square(cosine)) / f.stroke_ratio;
+  };
+  const double least = std::min(lever(f.ground_length - f.crank_radius), lever(f.ground_length + f.crank_radius));
+  return {least, f.crank_radius, least};
+}
+
+LeverReach lever_reach(const StrokeTable<double>& t) { return {t.reference_radius, infinity, t.reference_radius}; }
+
+LeverReach lever_reach(const AnyTransmission<double>& t) {
+  return visit(t, [](const auto& of_type) { return lever_reach(of_type); });
+}
+
+// Least values that are further from where they matter are not sought exactly.
+constexpr double far_inertia = 0.3, far_lever = 0.1, far_torque = 0.2;
+constexpr double accuracy = 1e-13;  // of those that are, relative
+
+/// No lever or inertia that is near zero, certainly.
+bool is_certainly_unique(const Vehicle<double>& v, const LeverReach& reach) {
+  if (!(reach.wing_lever_min > far_lever * typical_lever(v.transmission))) return false;
+  const double J = has_gear_loss(v.motor) ? v.motor.gear_efficiency * v.motor.inertia : v.motor.inertia;
+  const double wings = v.wing_count * v.wing_inertia + v.wings.added_inertia;
+  // With A (h + s mu r_e) = N J_w (r B1^2 +- mu r_e B1) / g, r = h / B1, at the least favourable B1.
+  return J - wings * square(v.friction.radius) / (4.0 * reach.ratio_min * reach.wing_lever_min) >
+         far_inertia * v.motor.inertia;
+}
+
+/// No advance torque that is near zero, certainly.
+bool is_certain_to_advance(const Vehicle<double>& v, const LeverReach& reach, double stall) {
+  if (!(reach.wing_lever_min > 0.0)) return false;
+  const double force = v.wing_count * v.spring.stiffness * stroke_reach(v.transmission) / reach.wing_lever_min;
+  const double load = force * (reach.crank_lever + v.friction.radius) + std::abs(v.load_torque) + v.friction.torque;
+  return stall - torque_before_gear(v.motor, load) - v.motor.friction_torque > far_torque * stall;
 }
 
 }  // namespace
@@ -75,58 +121,139 @@ StaticBalance static_balance(const Vehicle<double>& v) {
     lever[n] = k.wing_lever;
     if (springs) advance[n] = advance_torque(v, k, spring_moment(v, k), s.stall_torque);
   }
-  std::tie(s.inertia_angle, s.inertia_min) = min_on_circle(
-      [&](double angle) { return min_inertia(v, kinematics_at(v, angle)); }, inertia, 0.3 * v.motor.inertia);
-  std::tie(s.lever_angle, s.lever_min) = min_on_circle([&](double angle) { return kinematics_at(v, angle).wing_lever; },
-                                                       lever, 0.1 * typical_lever(v.transmission));
+  Minimum least_inertia = least_of(inertia), least_lever = least_of(lever);
+  const detail::StaticBounds bounds(v);
+  const LeverReach reach = lever_reach(v.transmission);
+  if (!is_certainly_unique(v, reach)) {
+    const double J = v.motor.inertia, typical = typical_lever(v.transmission);
+    least_lever = least_value([&](double angle) { return kinematics_at(v, angle).wing_lever; },
+                              [&](double from, double to) { return bounds.wing_lever(from, to); }, 0.0, two_pi,
+                              far_lever * typical, accuracy * typical, least_lever);
+    // Beyond a pole of F the inertia says nothing.
+    if (least_lever.value > 0.0) {
+      least_inertia = least_value([&](double angle) { return min_inertia(v, kinematics_at(v, angle)); },
+                                  [&](double from, double to) { return bounds.min_inertia(from, to); }, 0.0, two_pi,
+                                  far_inertia * J, accuracy * J, least_inertia);
+    }
+  }
+  s.inertia_angle = wrap_angle(least_inertia.at), s.inertia_min = least_inertia.value;
+  s.lever_angle = wrap_angle(least_lever.at), s.lever_min = least_lever.value;
   if (springs) {
-    std::tie(s.advance_angle, s.advance_min) =
-        min_on_circle([&](double angle) { return advance_torque(v, angle); }, advance, 0.2 * s.stall_torque);
+    Minimum least = least_of(advance);
+    if (!is_certain_to_advance(v, reach, s.stall_torque)) {
+      const Enclosure stall(s.stall_torque);
+      least = least_value([&](double angle) { return advance_torque(v, angle); },
+                          [&](double from, double to) { return stall - bounds.high(from, to); }, 0.0, two_pi,
+                          far_torque * s.stall_torque, accuracy * s.stall_torque, least);
+    }
+    s.advance_angle = wrap_angle(least.at), s.advance_min = least.value;
   }
   return s;
 }
 
-std::vector<LockInterval> lock_intervals(const Vehicle<double>& v) {
-  constexpr int samples = 1440;
-  const auto margin = [&](double angle) { return lock_margin(v, angle); };
-  std::vector<LockInterval> found;
-  // Start where the crank does not lock, so that no interval is cut in two.
-  int start = 0;
-  while (start < samples && margin(two_pi * start / samples) >= 0.0) ++start;
-  if (start == samples) return {{0.0, two_pi, 0.0, margin(0.0)}};
+namespace {
 
-  double before = two_pi * start / samples, margin_before = margin(before);
-  LockInterval open{};
-  bool is_open = false;
-  for (int n = start + 1; n <= start + samples; ++n) {
-    const double angle = two_pi * n / samples, at = margin(angle);
-    if (!is_open && at < 0.0 && margin_before < 0.0) {
-      // Thin intervals, down to the single angles that a spring alone leaves, show as a change of the net torque's
-      // sign.
-      const auto net = [&](double x) { return advance_torque(v, x); };
-      if ((net(before) > 0.0) != (net(angle) > 0.0)) {
-        const double edge = sign_change(net, before, angle);
-        if (margin(edge) > -1e-9 * stall_torque(v)) {
-          found.push_back({edge, edge, wrap_angle(edge), std::max(0.0, margin(edge))});
-        }
-      }
-    } else if (!is_open && at >= 0.0) {
-      open = {sign_change(margin, before, angle), angle, angle, at};
-      is_open = true;
-    } else if (is_open && at >= 0.0) {
-      if (at > open.margin) open.angle = angle, open.margin = at;
-    } else if (is_open) {
-      open.to = sign_change(margin, before, angle);
-      if (open.from >= two_pi) open.from -= two_pi, open.to -= two_pi;
-      open.angle = wrap_angle(open.angle);
-      found.push_back(open);
-      is_open = false;
+/// The interval between two cuts in which the crank locks.
+LockInterval lock_between(const Vehicle<double>& v, double from, double to) {
+  constexpr int samples = 16;
+  LockInterval lock{from, to, from, -infinity};
+  const auto note = [&](double angle, double margin) {
+    if (margin > lock.margin) lock.angle = angle, lock.margin = margin;
+  };
+  for (int n = 0; n <= samples; ++n) {
+    const double angle = from + (to - from) * n / samples;
+    note(angle, lock_margin(v, angle));
+  }
+  const double step = (to - from) / samples;
+  if (step > 1e-9) {
+    const Minimum best = minimise([&](double angle) { return -lock_margin(v, angle); },
+                                  std::max(from, lock.angle - step), std::min(to, lock.angle + step), 1e-9);
+    note(best.at, -best.value);
+  }
+  if (lock.from >= two_pi) lock.from -= two_pi, lock.to -= two_pi;
+  lock.angle = wrap_angle(lock.angle);
+  return lock;
+}
+
+}  // namespace
+
+std::vector<LockInterval> lock_intervals(const Vehicle<double>& v) {
+  const double stall = stall_torque(v);
+  const auto torques = [&](double angle) {
+    const CrankKinematics<double> k = kinematics_at(v, angle);
+    return standing_torques(v, k, static_rod_force(k, spring_moment(v, k)));
+  };
+  const detail::StaticBounds bounds(v);
+  const Enclosure motor(stall);
+  // The crank stands where the motor's torque lies between the standing torques.
+  std::vector<double> cuts =
+      sign_cuts([&](double angle) { return stall - torques(angle).high; },
+                [&](double from, double to) { return motor - bounds.high(from, to); }, 0.0, two_pi);
+  const std::vector<double> lower =
+      sign_cuts([&](double angle) { return stall - torques(angle).low; },
+                [&](double from, double to) { return motor - bounds.low(from, to); }, 0.0, two_pi);
+  cuts.insert(cuts.end(), lower.begin(), lower.end());
+  std::sort(cuts.begin(), cuts.end());
+  if (cuts.empty()) {
+    if (lock_margin(v, 0.0) < 0.0) return {};
+    return {{0.0, two_pi, 0.0, lock_margin(v, 0.0)}};
+  }
+  const std::size_t count = cuts.size();
+  const auto cut = [&](std::size_t n) { return n < count ? cuts[n] : cuts[n - count] + two_pi; };
+  constexpr double same = 1e-14;  // cuts of a crank without friction, which are two each
+  const auto locks_behind = [&](std::size_t n) {
+    const double width = cut(n + 1) - cut(n);
+    return width > same && lock_margin(v, cut(n) + 0.5 * width) >= 0.0;
+  };
+  std::size_t start = 0;
+  while (start < count && locks_behind(start + count - 1)) ++start;
+  if (start == count) return {{0.0, two_pi, 0.0, lock_margin(v, 0.0)}};
+  std::vector<LockInterval> found;
+  for (std::size_t n = start; n < start + count; ++n) {
+    const double from = cut(n);
+    if (locks_behind(n)) {
+      while (n + 1 < start + count && locks_behind(n + 1)) ++n;
+      found.push_back(lock_between(v, from, cut(n + 1)));
+    } else if (n == start || !locks_behind(n - 1)) {
+      // A single angle that a spring alone leaves, or that friction just reaches.
+      const double margin = lock_margin(v, from), angle = wrap_angle(from);
+      const bool known = !found.empty() && std::abs(found.back().from - angle) <= same;
+      if (margin > -1e-9 * stall && !known) found.push_back({angle, angle, angle, std::max(0.0, margin)});
     }
-    before = angle;
-    margin_before = at;
   }
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.from < b.from; });
   return found;
+}
+
+bool certainly_unique(const Vehicle<double>& v) { return is_certainly_unique(v, lever_reach(v.transmission)); }
+
+bool certainly_advances(const Vehicle<double>& v) {
+  return !(v.spring.stiffness > 0.0) || is_certain_to_advance(v, lever_reach(v.transmission), stall_torque(v));
+}
+
+double uniqueness(const Vehicle<double>& v, double crank_angle) {
+  const CrankKinematics<double> k = kinematics_at(v, crank_angle);
+  const double lever = k.wing_lever / typical_lever(v.transmission);
+  if (!(lever > 0.0)) return lever;
+  return std::min(lever, min_inertia(v, k) / v.motor.inertia);
+}
+
+JamAngles nearest_jams(const Vehicle<double>& v, double from, double margin) {
+  const auto spare = [&](double angle) { return uniqueness(v, angle) - margin; };
+  if (spare(from) <= 0.0) return {from, from};
+  JamAngles jams{-infinity, infinity};
+  if (margin < 0.5 * far_lever && is_certainly_unique(v, lever_reach(v.transmission))) return jams;
+  const detail::StaticBounds bounds(v);
+  const Enclosure least(margin);
+  std::vector<double> cuts =
+      sign_cuts(spare, [&](double a, double b) { return bounds.uniqueness(a, b) - least; }, from, from + two_pi);
+  // Each begins or ends what cannot be passed, or touches it, but for those that only come near.
+  std::erase_if(cuts, [&](double angle) {
+    constexpr double beside = 1e-7;
+    return spare(angle) > 0.0 && spare(angle - beside) > 0.0 && spare(angle + beside) > 0.0;
+  });
+  if (cuts.empty()) return jams;
+  return {cuts.back() - two_pi, cuts.front()};
 }
 
 namespace {

@@ -175,8 +175,7 @@ SteadyFlapping detail::find_flapping_as_it_is(const Vehicle<double>& vehicle, co
                                      : detail::find_pitching_flapping(vehicle, options, start_up);
   }
   if (!drive_of(vehicle).rotates) return detail::find_direct_flapping(vehicle, options, start_up);
-  return vehicle.motor.armature_inductance > 0.0 ? search<2>(vehicle, options, start_up)
-                                                 : search<1>(vehicle, options, start_up);
+  return has_current_state(vehicle) ? search<2>(vehicle, options, start_up) : search<1>(vehicle, options, start_up);
 }
 
 SteadyFlapping find_steady_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,

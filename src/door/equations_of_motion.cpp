@@ -9,7 +9,7 @@ EquationsOfMotion::EquationsOfMotion(const Design<double>& design, Condition con
     : supply_(design.supply), direct_(drive_of(design).alternating) {
   validate(design);
   vehicle_ = switched_on(resolve(design, condition));
-  inductive_ = vehicle_.motor.armature_inductance > 0.0;
+  inductive_ = has_current_state(vehicle_);
   pitching_ = pitches(vehicle_);
 }
 

@@ -13,6 +13,7 @@
 #include "wingbeat/cycle/static_balance.hpp"
 #include "wingbeat/cycle/thermal_equilibrium.hpp"
 #include "wingbeat/ensemble/direct_pack_blocks.hpp"
+#include "wingbeat/ensemble/lane_statics.hpp"
 #include "wingbeat/ensemble/pack_blocks.hpp"
 #include "wingbeat/ensemble/pack_tables.hpp"
 #include "wingbeat/solve/collocation.hpp"
@@ -43,6 +44,17 @@ bool suits_packs(const Vehicle<double>& v) {
   // Where constant friction holds a shaft that swings, the equations jump; where coefficients bend, so do their slopes.
   return v.transmission.type == TransmissionType::direct && breakaway_torque(v) == 0.0 && !v.wings.coefficients.table &&
          !has_pitch_stop(v.wings);
+}
+
+/// Whether a crank can jam, or lock where the angles that lanes look at do not show it: statics tell it of any angle.
+bool needs_start_up(const Vehicle<double>& v) {
+  constexpr double inertia_margin = 0.05, lever_margin = 0.02;  // as PackOrbit holds back of cranks from rest
+  if (!(v.wing_inertia > 0.0)) return false;
+  const bool locks_seen = lanes_see_locks(v) || certainly_advances(v);
+  if (locks_seen && certainly_unique(v)) return false;
+  const StaticBalance statics = static_balance(v);
+  return statics.inertia_min <= inertia_margin * v.motor.inertia ||
+         statics.lever_min <= lever_margin * typical_lever(v.transmission) || (!locks_seen && statics.can_lock());
 }
 
 void keep_wanted(const MetricSet& wanted, Metrics<double>& metrics) {
@@ -135,6 +147,8 @@ class EnsembleRun {
         settle(n, FlappingStatus::stalled);
       } else if (!drive_of(v).rotates) {
         direct_by_kind[direct_kind_of(v)].push_back(n);
+      } else if (needs_start_up(v)) {
+        solve_by_scalar(n);
       } else {
         by_kind[kind_of(v)].push_back(n);
       }
@@ -163,12 +177,12 @@ class EnsembleRun {
 
   static constexpr std::size_t direct_kinds = 4;
   static std::size_t direct_kind_of(const Vehicle<double>& v) {
-    return (v.wings.added_inertia > 0.0 ? 2 : 0) + (v.motor.armature_inductance > 0.0 ? 1 : 0);
+    return (v.wings.added_inertia > 0.0 ? 2 : 0) + (has_current_state(v) ? 1 : 0);
   }
 
   PackCurrent current_of(const Vehicle<double>& v) const {
-    if (!(v.motor.armature_inductance > 0.0)) return PackCurrent::algebraic;
-    return lag_of(v) < max_lag(options_.tolerance) ? PackCurrent::lagging : PackCurrent::state;
+    if (!has_current_state(v)) return PackCurrent::algebraic;
+    return electrical_lag(v) < max_lag(options_.tolerance) ? PackCurrent::lagging : PackCurrent::state;
   }
 
   /// Few need more than the first attempt: all of a kind together fill the lanes of the others.
@@ -194,7 +208,7 @@ class EnsembleRun {
     if (kind.current == PackCurrent::lagging) {
       // What the lag leaves out no finer mesh brings back.
       const auto lags_far = [&](std::size_t n) {
-        return lag_of(members_[n].vehicle) >= 0.3 * max_lag(options_.tolerance);
+        return electrical_lag(members_[n].vehicle) >= 0.3 * max_lag(options_.tolerance);
       };
       const auto far =
           std::stable_partition(inexact.begin(), inexact.end(), [&](std::size_t n) { return !lags_far(n); });

@@ -40,10 +40,6 @@ constexpr std::array meshes_by_tolerance = {
 
 }  // namespace
 
-double lag_of(const Vehicle<double>& v) {
-  return v.motor.armature_inductance / circuit_resistance(v) * no_load_speed(v);
-}
-
 double max_lag(double tolerance) { return 0.007 * std::min(std::sqrt(tolerance / 1e-6), 1.0); }
 
 Plan plan_for(const EnsembleOptions& options) {

@@ -10,10 +10,8 @@
 
 namespace wingbeat {
 
-/// Angle that a crank turns by at the speed without load while its current decays by a factor of e [rad].
-double lag_of(const Vehicle<double>& v);
-/// Up to here lanes take it for a lag, of which they leave out what is of higher order. Segments are forty times as
-/// long.
+/// Up to such an electrical_lag() lanes take the current for one that lags, of which they leave out what is of higher
+/// order. Segments are forty times as long.
 double max_lag(double tolerance);
 
 /// How a tolerance is met.

@@ -28,7 +28,7 @@ struct Places {
   template <Scalar S>
   explicit Places(const Vehicle<S>& v)
       : crank(!drive_of(v).alternating),
-        inductive(value_of(v.motor.armature_inductance) > 0.0),
+        inductive(has_current_state(v)),
         pitching(pitches(v)),
         current(crank || !pitching ? 2 : 4),
         pitch(crank && inductive ? 3 : 2),

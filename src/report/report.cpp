@@ -309,7 +309,9 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
   if (std::isfinite(m[Metric::pitch_amplitude])) {
     table.angle("largest angle of attack", m[Metric::angle_of_attack_max], "beyond 90 deg the wings over-rotate");
     table.angle("pitch amplitude", m[Metric::pitch_amplitude], "half peak to peak");
-    table.angle("pitch phase", m[Metric::pitch_phase], "ahead of the pitch that opposes the flapping velocity");
+    if (std::isfinite(m[Metric::pitch_phase])) {
+      table.angle("pitch phase", m[Metric::pitch_phase], "ahead of the pitch that opposes the flapping velocity");
+    }
   }
   table.metric("lowest crank speed", Metric::crank_speed_min, "rad/s");
   table.metric("highest crank speed", Metric::crank_speed_max, "rad/s");

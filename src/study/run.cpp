@@ -76,7 +76,7 @@ void last_cycle(const Vehicle<double>& vehicle, const Supply<double>& supply, Tr
     const double v = voltage_at(supply, time);
     const double L_a = vehicle.motor.armature_inductance;
     // A switching supply kinks the current between samples: there a straight line is the safer guess.
-    const double current = !(L_a > 0.0) ? algebraic_current(vehicle, v, omega)
+    const double current = !has_current_state(vehicle) ? algebraic_current(vehicle, v, omega)
                            : supply.type == SupplyType::pwm
                                ? a.current + x * (b.current - a.current)
                                : hermite(a.current, b.current, ma.inductive_voltage / L_a, mb.inductive_voltage / L_a);

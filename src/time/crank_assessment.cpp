@@ -65,6 +65,7 @@ bool CrankStartUp::swings_repeat() {
   result_.settled = true;
   result_.status = FlappingStatus::locked;
   result_.time_to_steady = now_.t;
+  if (model_.supply.type == SupplyType::pwm && stalls(wrap_angle(now_.theta))) return true;
   if (last_high_ - last_low_ < same_swing) result_.lock_angle = wrap_angle(0.5 * (last_low_ + last_high_));
   result_.evidence = {.kind = Evidence::swings, .range = AngleRange{last_low_, last_high_}};
   return true;
@@ -95,6 +96,7 @@ void CrankStartUp::flap() {
                         .frequency = 1.0 / period,
                         .time = result_.time_to_steady,
                         .change = change_,
+                        .accuracy = options_.metrics && result_.closure > options_.tolerance ? result_.closure : absent,
                         .cycles = int(crossings_.size()),
                         .repeats_after = int(turns_),
                         .extrapolated = jumped_};
@@ -109,29 +111,37 @@ void CrankStartUp::flap() {
                       .incommensurate = !result_.settled};
 }
 
+/// The motor's against the resistance, on a switched supply of its mean voltage [N m].
+double CrankStartUp::stall_torque() const {
+  const double v = model_.supply.type == SupplyType::pwm ? model_.vehicle.voltage : model_.supply.voltage;
+  return model_.vehicle.motor.torque_constant * v / circuit_resistance(model_.vehicle);
+}
+
+/// Whether the motor is too weak for the constant friction, with the decision: that comes before all that else becomes
+/// of the crank.
+bool CrankStartUp::stalls(double angle) {
+  if (stall_torque() > model_.constant_friction) return false;
+  result_.status = FlappingStatus::stalled;
+  result_.evidence = {.kind = Evidence::stalled_crank,
+                      .angle = angle,
+                      .torque = stall_torque(),
+                      .friction_torque = model_.constant_friction};
+  return true;
+}
+
 void CrankStartUp::rest(double theta, bool held_by_friction) {
   done_ = true;
   result_.settled = true;
   now_.theta = theta;
   now_.omega = 0.0;
   const double R = circuit_resistance(model_.vehicle);
-  // A switched supply drives with its mean voltage.
-  const double v = model_.supply.type == SupplyType::pwm ? model_.vehicle.voltage : model_.supply.voltage;
-  const double stall_torque = model_.vehicle.motor.torque_constant * v / R;
   const double mean_current = model_.supply.type == SupplyType::sine ? 0.0 : model_.vehicle.voltage / R;
   const double angle = wrap_angle(theta);
   const double load = std::abs(model_.net_static_torque(theta, mean_current));
   result_.lock_angle = angle;
   result_.torque_margin = held_by_friction ? std::max(0.0, model_.holding_torque(theta) - load) : 0.0;
   result_.time_to_steady = now_.t;
-  if (stall_torque <= model_.constant_friction) {
-    result_.status = FlappingStatus::stalled;
-    result_.evidence = {.kind = Evidence::stalled_crank,
-                        .angle = angle,
-                        .torque = stall_torque,
-                        .friction_torque = model_.constant_friction};
-    return;
-  }
+  if (stalls(angle)) return;
   result_.status = FlappingStatus::locked;
   if (held_by_friction) {
     result_.evidence = {.kind = Evidence::friction_holds,
@@ -139,7 +149,7 @@ void CrankStartUp::rest(double theta, bool held_by_friction) {
                         .friction_torque = model_.holding_torque(theta),
                         .torque_margin = *result_.torque_margin};
   } else {
-    result_.evidence = {.kind = Evidence::springs_balance, .angle = angle, .torque = stall_torque};
+    result_.evidence = {.kind = Evidence::springs_balance, .angle = angle, .torque = stall_torque()};
   }
 }
 
@@ -148,8 +158,9 @@ void CrankStartUp::jam(double theta) {
   event(Kind::jam);
   result_.settled = true;
   result_.status = FlappingStatus::jammed;
-  result_.jam_angle = wrap_angle(theta);
   result_.time_to_steady = now_.t;
+  if (stalls(wrap_angle(theta))) return;
+  result_.jam_angle = wrap_angle(theta);
   const CrankKinematics<double> k = model_.kinematics(theta);
   if (k.wing_lever <= 2.0 * CrankModel::smallest_margin * typical_lever(model_.vehicle.transmission)) {
     result_.evidence = {.kind = Evidence::lever_vanishes, .angle = *result_.jam_angle, .lever = k.wing_lever};

@@ -114,7 +114,9 @@ void CrankStartUp::cycle_measured(double rate) {
   const EnergyAudit audit = energy_audit(*result_.metrics);
   const bool balances = closes(audit, tolerance);
   if ((closed && agree) || rounding) {
-    result_.closure = off;
+    // Where cycles were skipped, blocks of them may have shown what fades sooner than the speed does, of which the
+    // motor alone takes little away.
+    result_.closure = jumped_ ? std::max(off, change_ / free_return(model_.vehicle, crossings_.back().cycle)) : off;
     if (balances) return flap();
     if (tightest && cycles_at_tightest_ > 4) return give_up_open_balance(audit);
   }

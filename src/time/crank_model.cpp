@@ -4,8 +4,6 @@
 #include <cmath>
 
 #include "time/transient_tools.hpp"
-#include "wingbeat/core/minimise.hpp"
-#include "wingbeat/core/root.hpp"
 #include "wingbeat/cycle/direct_balance.hpp"
 
 namespace wingbeat::detail {
@@ -39,7 +37,7 @@ void CrankModel::start(double theta, double omega, double current, double psi, d
   now = {};
   now.theta = theta;
   now.omega = omega;
-  inductive = vehicle.motor.armature_inductance > 0.0;
+  inductive = has_current_state(vehicle);
   coupled = (inductive ? 3 : 2) + (pitching ? 2 : 0);
   now.psi = psi;
   now.pitch_velocity = pitch_velocity;
@@ -229,15 +227,6 @@ double CrankModel::current_slope(double t, const double* y, const double* rates)
   return (voltage_slope - m.torque_constant * rates[1]) / R;
 }
 
-/// The smaller of the effective inertias over J, and the wing lever over its size: the equations have one solution
-/// while it is positive.
-double CrankModel::uniqueness(double theta) const {
-  const CrankKinematics<double> k = kinematics(theta);
-  const double lever = k.wing_lever / typical_lever(vehicle.transmission);
-  if (!(lever > 0.0)) return lever;
-  return std::min(lever, min_inertia(vehicle, k) / vehicle.motor.inertia);
-}
-
 double CrankModel::rotor_inertia() const {
   return has_gear_loss(vehicle.motor) ? vehicle.motor.gear_efficiency * vehicle.motor.inertia : vehicle.motor.inertia;
 }
@@ -246,33 +235,13 @@ double CrankModel::rotor_inertia() const {
 void CrankModel::find_jams() {
   smallest_inertia = vehicle.motor.inertia;
   if (wingless) return;
+  const double least = static_balance(vehicle).inertia_min / vehicle.motor.inertia;
+  smallest_inertia *= std::clamp(least, 1e-3, 1.0);
   // Of wings that pitch it depends on how they stand: indicators() looks at that.
-  constexpr int count = 720;
-  constexpr double spacing = two_pi / count;
-  double margin[count];
-  for (int k = 0; k < count; ++k) margin[k] = uniqueness(now.theta + k * spacing);
-  const auto at = [&](int k) { return margin[((k % count) + count) % count]; };
-  const auto unique = [&](double theta) { return uniqueness(theta) > smallest_margin; };
-  const auto first = [&](int direction) {
-    for (int k = 0; k <= count; ++k) {
-      const double here = now.theta + direction * k * spacing;
-      if (at(direction * k) <= smallest_margin) {
-        return k == 0 ? here : bisect(unique, here - direction * spacing, here).after;
-      }
-      // A narrow window of jam may hide between two samples.
-      const double before = at(direction * (k - 1)), after = at(direction * (k + 1));
-      if (at(direction * k) <= std::min(before, after) && at(direction * k) < 0.2) {
-        const Minimum least =
-            minimise([&](double x) { return uniqueness(x); }, here - spacing, here + spacing, 2e-7 * spacing);
-        if (least.value <= smallest_margin) return bisect(unique, here - direction * spacing, least.at).after;
-      }
-    }
-    return direction * infinity;
-  };
-  smallest_inertia *= std::clamp(*std::min_element(margin, margin + count), 1e-3, 1.0);
   if (pitching) return;
-  jam_above = first(1);
-  if (std::isfinite(jam_above)) jam_below = first(-1);
+  const JamAngles jams = nearest_jams(vehicle, now.theta, smallest_margin);
+  jam_below = jams.below;
+  jam_above = jams.above;
 }
 
 double CrankModel::next_switch() const {

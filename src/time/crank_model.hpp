@@ -100,8 +100,7 @@ class CrankModel {
   /// The same with all that wings, the air that moves with them, springs and hinges store [J].
   double stored_energy() const;
   double current_slope(double t, const double* y, const double* rates) const;
-  double uniqueness(double theta) const;
-  /// The same as the wings stand at the unknowns y.
+  /// uniqueness() as the wings stand at the unknowns y.
   double uniqueness_at(const double* y) const;
   double uniqueness_now() const;
   /// The least J + A (h + s mu r_e) of either branch as everything stands [kg m2].

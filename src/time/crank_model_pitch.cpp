@@ -40,7 +40,7 @@ double CrankModel::standing_lift(const double* y, const WingsAtPitch<double>& wi
 }
 
 double CrankModel::uniqueness_at(const double* y) const {
-  if (!pitching) return uniqueness(y[0]);
+  if (!pitching) return uniqueness(vehicle, y[0]);
   const CrankKinematics<double> k = kinematics(y[0]);
   const double lever = k.wing_lever / typical_lever(vehicle.transmission);
   if (!(lever > 0.0)) return lever;

@@ -40,7 +40,7 @@ class CrankPitchReading {
       points_.push_back({t, half * weights[k], stroke_angle(kinematics), psi});
       loss_ += half * weights[k] * hinge_loads(model.vehicle.pitch.hinge, psi, velocity).loss;
       const double stroke = sign_of(kinematics.stroke_slope * y[1]);
-      if (stroke * psi > 0.0) metrics_.over_rotation += half * weights[k];
+      if (stroke * psi > still_pitch) metrics_.over_rotation += half * weights[k];
       if (k == 2) sign = stroke;
     }
     for (const double t : {from, model.now.t}) {
@@ -69,7 +69,7 @@ class CrankPitchReading {
   }
 
   void add_to(StatusEvidence& evidence, const CrankModel& model) const {
-    if (model.vehicle.wings.air_density > 0.0) evidence.over_rotation = metrics_.over_rotation;
+    if (model.vehicle.wings.air_density > 0.0) evidence.over_rotation = metrics_.over_rotation_of_moving();
   }
 
  private:

@@ -116,11 +116,7 @@ std::unique_ptr<Integrator> CrankStartUp::integrator(bool measuring) {
 
 TransientResult CrankStartUp::run() {
   prepare();
-  // A motor that never starts is stalled, jammed or not.
-  const double drive =
-      model_.vehicle.motor.torque_constant * model_.supply.voltage / circuit_resistance(model_.vehicle);
-  const bool starts = now_.omega != 0.0 || now_.theta != 0.0 || drive > model_.constant_friction;
-  if (starts && model_.uniqueness_now() <= CrankModel::smallest_margin && !model_.wingless) jam(now_.theta);
+  if (model_.uniqueness_now() <= CrankModel::smallest_margin && !model_.wingless) jam(now_.theta);
   while (!done_) {
     if (now_.omega == 0.0) {
       stand();

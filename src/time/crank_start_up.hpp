@@ -64,6 +64,8 @@ class CrankStartUp {
   void event(Kind kind) { result_.events.push_back({now_.t, now_.theta, kind}); }
   void sample() { recorder_.sample({now_.t, now_.theta, now_.omega, now_.i}); }
   bool out_of_budget();
+  double stall_torque() const;
+  bool stalls(double angle);
   void rest(double theta, bool held_by_friction);
   void jam(double theta);
   void flap();

@@ -27,7 +27,7 @@ struct DrivenShaft {
     require(vehicle.drive_frequency > 0.0, "supply.frequency", "must be > 0", "Hz", vehicle.drive_frequency);
     w = two_pi * vehicle.drive_frequency;
     period = 1.0 / vehicle.drive_frequency;
-    inductive = vehicle.motor.armature_inductance > 0.0;
+    inductive = has_current_state(vehicle);
     inertia = vehicle.motor.inertia + vehicle.wing_count * vehicle.wing_inertia;
   }
 

@@ -51,7 +51,7 @@ class PeriodReading<PitchDirectModel> {
   void step_taken(const PitchDirectModel& model, Integrator& steps, double from) {
     const double* middle = steps.dense(0.5 * (from + model.now.t));
     const double stroke = sign_of(middle[1]);
-    if (stroke * middle[2] > 0.0) metrics_.over_rotation += (model.now.t - from) / model.period;
+    if (stroke * middle[2] > still_pitch) metrics_.over_rotation += (model.now.t - from) / model.period;
     for (const double t : {from, model.now.t}) {
       const double psi = steps.dense(t)[2], alpha = 0.5 * pi + stroke * psi;
       lowest_psi_ = std::min(lowest_psi_, psi);
@@ -72,7 +72,7 @@ class PeriodReading<PitchDirectModel> {
   }
 
   void add_to(StatusEvidence& evidence, const PitchDirectModel& model) const {
-    if (model.vehicle.wings.air_density > 0.0) evidence.over_rotation = metrics_.over_rotation;
+    if (model.vehicle.wings.air_density > 0.0) evidence.over_rotation = metrics_.over_rotation_of_moving();
   }
 
  private:

@@ -88,7 +88,7 @@ struct BackUnlessDone {
 std::vector<std::string> time_state_names(const Vehicle<double>& vehicle) {
   std::vector<std::string> names{"crank_angle", "crank_speed"};
   if (drive_of(vehicle).alternating) names = {"stroke_angle", "flapping_velocity"};
-  if (vehicle.motor.armature_inductance > 0.0) names.emplace_back("current");
+  if (has_current_state(vehicle)) names.emplace_back("current");
   if (pitches(vehicle)) names.insert(names.end(), {"pitch_angle", "pitch_velocity"});
   return names;
 }

@@ -137,9 +137,10 @@ std::span<const Parameter<S>> parameter_table() {
                    [](const Design<S>& d) -> std::optional<S> { return d.motor.gear_efficiency; }},
       number<S>(row(motor_key::armature_resistance, "required", "R_a, armature resistance", {}, "9 ohm"),
                 [](auto& d) -> auto& { return d.motor.constants.armature_resistance; }),
-      number<S>(row(motor_key::armature_inductance, "required",
-                    "L_a, armature inductance; 0 makes the current algebraic", {}, "29 mH"),
-                [](auto& d) -> auto& { return d.motor.constants.armature_inductance; }),
+      number<S>(
+          row(motor_key::armature_inductance, "required",
+              "L_a, armature inductance; 0, or a lag of the current below 1e-9 rad, makes it algebraic", {}, "29 mH"),
+          [](auto& d) -> auto& { return d.motor.constants.armature_inductance; }),
       number<S>(row(motor_key::torque_constant, "required",
                     "K at the output shaft; K_b at the motor shaft with gear_ratio", {}, "10 mN m/A"),
                 [](auto& d) -> auto& { return d.motor.constants.torque_constant; }),

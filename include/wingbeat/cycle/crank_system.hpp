@@ -8,6 +8,7 @@
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/cycle/configurations.hpp"
 #include "wingbeat/cycle/crank_turn.hpp"
+#include "wingbeat/cycle/energy_balance.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/solve/iterate.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
@@ -84,6 +85,13 @@ struct CrankSystem : CrankTurn<S> {
       if (scale[q] > 0.0) largest = std::max(largest, scale[q] / (usual * std::abs(totals[q]) + scale[q] / most));
     }
     return largest;
+  }
+
+  /// What the integrals of a closed cycle show of their errors, relative.
+  double imbalance(const Quadrature& totals) const
+    requires std::same_as<S, double>
+  {
+    return relative_energy_gap(vehicle, totals);
   }
 
   S current(const S&, const State& y) const { return current(y); }

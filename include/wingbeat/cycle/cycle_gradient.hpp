@@ -58,7 +58,7 @@ class CycleGradient {
     }
     sharpen();
     for (auto& constant : absent_slots_) constant = false;
-    if (!(recorded.system.vehicle.motor.armature_inductance > 0.0)) {
+    if (!has_current_state(recorded.system.vehicle)) {
       for (int k = 0; k < gradient_slots; ++k) absent_slots_[k] = vehicle.motor.armature_inductance.v[k] != 0.0;
     }
     // At 1 a gearbox's efficiency has a derivative to one side alone.

@@ -3,8 +3,10 @@
 
 #include <array>
 #include <cmath>
+#include <concepts>
 
 #include "wingbeat/core/math.hpp"
+#include "wingbeat/cycle/energy_balance.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/solve/iterate.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
@@ -62,6 +64,13 @@ struct DirectSystem {
     State scale;
     for (std::size_t n = 0; n < N; ++n) scale[n] = abs(y[n]) + S(0.1) * typical[n];
     return scale;
+  }
+
+  /// What the integrals of a closed cycle show of their errors, relative.
+  double imbalance(const Quadrature& totals) const
+    requires std::same_as<S, double>
+  {
+    return relative_energy_gap(vehicle, totals);
   }
 
   /// Angular frequency of the supply [rad/s]: d phi / dt.

@@ -118,7 +118,7 @@ class OrbitSearch {
                                    summary_.floquet_multiplier_max, options_.reporting);
     if constexpr (pitching) {
       set_pitch_metrics(of_pitch, result.metrics);
-      result.evidence.over_rotation = of_pitch.over_rotation;
+      result.evidence.over_rotation = of_pitch.over_rotation_of_moving();
     }
   }
 

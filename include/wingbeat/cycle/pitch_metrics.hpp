@@ -13,6 +13,10 @@
 
 namespace wingbeat {
 
+/// Wings that pitch by less, to either side of where they stand, stand still but for rounding and what limits of the
+/// solvers leave: there is no phase of that [rad].
+inline constexpr double still_pitch = 1e-4;
+
 struct PitchMetrics {
   double amplitude;  ///< half of psi from peak to peak [rad]
   /// Of the first harmonics in time, by how much pitching is ahead of the pitch that opposes the stroke velocity [rad],
@@ -20,7 +24,11 @@ struct PitchMetrics {
   double phase;
   double angle_of_attack_min, angle_of_attack_max;  ///< [rad]; beyond pi/2 the wing over-rotates, its lift is negative
   double hinge_power;                               ///< mean loss in damping and stops of all hinges [W]
-  double over_rotation;                             ///< share of the period with alpha beyond pi/2, roughly [1]
+  double over_rotation;  ///< share of the period with alpha beyond pi/2 by more than still_pitch, roughly [1]
+
+  bool stands_still() const { return !(amplitude > still_pitch); }
+  /// over_rotation of wings that rotate.
+  double over_rotation_of_moving() const { return stands_still() ? 0.0 : over_rotation; }
 };
 
 /// What the metrics of a vehicle are under the pitch law and, of wings that pitch, are not.
@@ -28,7 +36,7 @@ inline void set_pitch_metrics(const PitchMetrics& pitching, Metrics<double>& m) 
   m[Metric::angle_of_attack_min] = degrees_per_radian * pitching.angle_of_attack_min;
   m[Metric::angle_of_attack_max] = degrees_per_radian * pitching.angle_of_attack_max;
   m[Metric::pitch_amplitude] = degrees_per_radian * pitching.amplitude;
-  m[Metric::pitch_phase] = degrees_per_radian * pitching.phase;
+  m[Metric::pitch_phase] = pitching.stands_still() ? absent : degrees_per_radian * pitching.phase;
   m[Metric::power_hinge] = pitching.hinge_power;
 }
 
@@ -92,7 +100,7 @@ PitchMetrics pitch_metrics(const System& system, const solver::Iterate<System>& 
       const double t = time + inside.dq[std::size_t(Integral::time)];
       const double dt = system.template rates<true>(x, inside.y, step.signs).dq[std::size_t(Integral::time)];
       const auto weighted = std::polar(0.5 * step.h * weights[k] * dt, -two_pi * t / period);
-      if (system.stroke_sign(step.signs) * inside.y[System::pitch] > 0.0) m.over_rotation += std::abs(weighted);
+      if (system.stroke_sign(step.signs) * inside.y[System::pitch] > still_pitch) m.over_rotation += std::abs(weighted);
       stroke += weighted * system.stroke_angle(x, inside.y);
       pitching += weighted * inside.y[System::pitch];
     }

@@ -1,4 +1,6 @@
 // Where the mechanism can stand still or jam, from its geometry and statics alone; model.md section 2, "Not flapping".
+// All of it holds of every crank angle: least values and intervals are found from bounds over ranges of the angle
+// (core/certain.hpp), to 1e-8 rad.
 #pragma once
 
 #include <span>
@@ -20,14 +22,15 @@ struct LockInterval {
 struct StaticBalance {
   double stall_torque;      ///< K v / (R_a + R_i) [N m]
   double breakaway_torque;  ///< T_c, the constant friction that holds the motor [N m]
-  double inertia_min;       ///< least J + A (h + s mu r_e) over crank angle and branch [kg m2]; <= 0 jams
-  double inertia_angle;     ///< crank angle of it [rad]
-  double lever_min;         ///< least wing lever g over crank angle [m]; <= 0 jams
-  double lever_angle;       ///< crank angle of it [rad]
-  double advance_min;       ///< least K v/(R_a + R_i) - F_s h - mu r_e |F_s| - T_c over crank angle [N m]; <= 0: locks
-                            ///< exist (of a gearbox that loses torque: advance_torque())
-  double advance_angle;     ///< crank angle of it [rad]
-  bool has_wings;           ///< false: rod force zero, nothing can jam or lock
+  // Least values that are far from zero, beyond 0.3 J, 0.1 of a lever and 0.2 of the stall torque, are about the least.
+  double inertia_min;    ///< least J + A (h + s mu r_e) over crank angle and branch [kg m2]; <= 0 jams
+  double inertia_angle;  ///< crank angle of it [rad]
+  double lever_min;      ///< least wing lever g over crank angle [m]; <= 0 jams
+  double lever_angle;    ///< crank angle of it [rad]
+  double advance_min;    ///< least K v/(R_a + R_i) - F_s h - mu r_e |F_s| - T_c over crank angle [N m]; <= 0: locks
+                         ///< exist (of a gearbox that loses torque: advance_torque())
+  double advance_angle;  ///< crank angle of it [rad]
+  bool has_wings;        ///< false: rod force zero, nothing can jam or lock
 
   bool stalled() const { return stall_torque <= breakaway_torque; }
   bool can_jam() const { return has_wings && (inertia_min <= 0.0 || lever_min <= 0.0); }
@@ -115,6 +118,22 @@ StaticBalance static_balance(const Vehicle<double>& vehicle);
 
 /// All intervals in which the crank locks, in order of crank angle; empty unless static_balance().can_lock().
 std::vector<LockInterval> lock_intervals(const Vehicle<double>& vehicle);
+
+/// Whether links and springs alone, at less work than static_balance(), show that neither J + A (h + s mu r_e) nor the
+/// lever g comes near zero, and that the advance torque does not.
+bool certainly_unique(const Vehicle<double>& vehicle);
+bool certainly_advances(const Vehicle<double>& vehicle);
+
+/// The smaller of the lever g over its size and the least J + A (h + s mu r_e) over J: the equations of motion have one
+/// solution while it is positive [1].
+double uniqueness(const Vehicle<double>& vehicle, double crank_angle);
+
+/// Crank angles nearest to `from` on either side at which uniqueness() falls to `margin` [rad], not wrapped; infinite
+/// where it does so nowhere.
+struct JamAngles {
+  double below, above;
+};
+JamAngles nearest_jams(const Vehicle<double>& vehicle, double from, double margin);
 
 /// A crank angle as the mean load of a cycle sees it.
 template <Scalar S>

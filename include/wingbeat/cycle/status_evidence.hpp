@@ -27,7 +27,7 @@ struct StatusEvidence {
     simulated_cycle,  ///< in place of an orbit: frequency, change (the metrics' error), repeats_after, search, direct
     // Flapping, in time
     settled_cycles,   ///< frequency, time (steady from then on), cycles, change, repeats_after, extrapolated,
-                      ///< over_rotation
+                      ///< over_rotation; accuracy where they are further from their limit than asked for
     averaged_cycles,  ///< frequency, cycles, change (largest deviation of a duration from their mean), incommensurate
     settled_periods,  ///< of a direct drive: frequency, time, cycles, change, over_rotation; accuracy and steps where
                       ///< those ran out

@@ -40,7 +40,7 @@ void solve_direct_block_of(const EnsembleMember* const* members, int count, cons
 template <class L>
 void solve_direct_block(const EnsembleMember* const* members, int count, const DirectPackSettings& settings,
                         DirectPackResult* const* results) {
-  if (members[0]->vehicle.motor.armature_inductance > 0.0) {
+  if (has_current_state(members[0]->vehicle)) {
     solve_direct_block_of<L, 3>(members, count, settings, results);
   } else {
     solve_direct_block_of<L, 2>(members, count, settings, results);

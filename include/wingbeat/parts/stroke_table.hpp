@@ -33,6 +33,8 @@ class StrokeCurve {
   /// A crank angle [rad] of any turn, counted from the first row: 0 to 2 pi.
   double position(double theta) const { return wrap_angle(theta - rows_.front().first); }
   [[gnu::pure]] const Piece& piece(double position) const;
+  /// Where a piece ends, as position().
+  double end_of(const Piece& piece) const { return &piece == &pieces_.back() ? two_pi : (&piece + 1)->x0; }
 
   const std::vector<std::pair<double, double>>& rows() const { return rows_; }
   double high() const { return high_; }  ///< [rad]

@@ -67,11 +67,20 @@ struct PeriodicSummary {
 
 namespace detail {
 
+/// Distances of each component.
+template <class System>
+typename System::State scaled_distances(const System& system, const typename System::State& a,
+                                        const typename System::State& b) {
+  const typename System::State scale = system.error_scale(a);
+  typename System::State distances;
+  for (std::size_t n = 0; n < a.size(); ++n) distances[n] = std::abs(a[n] - b[n]) / scale[n];
+  return distances;
+}
+
 template <class System>
 double scaled_distance(const System& system, const typename System::State& a, const typename System::State& b) {
-  const typename System::State scale = system.error_scale(a);
   double distance = 0.0;
-  for (std::size_t n = 0; n < a.size(); ++n) distance = std::max(distance, std::abs(a[n] - b[n]) / scale[n]);
+  for (const double of : scaled_distances(system, a, b)) distance = std::max(distance, of);
   return distance;
 }
 
@@ -173,17 +182,32 @@ class IterateInverse {
   double amplification_ = 1.0;
 };
 
+template <class System>
+typename System::Quadrature totals_of(const Iterate<System>& iterate) {
+  typename System::Quadrature totals{};
+  for (const Step<System>& step : iterate.steps) {
+    for (std::size_t q = 0; q < totals.size(); ++q) totals[q] += step.dq[q];
+  }
+  return totals;
+}
+
 /// What iterates' integrals must be more accurate than the steps' own scale by, for metrics that are small differences.
 template <class System>
 double cancellation(const System& system, const Iterate<System>& iterate) {
   if constexpr (requires(typename System::Quadrature totals) { system.cancellation(totals, totals); }) {
-    typename System::Quadrature totals{};
-    for (const Step<System>& step : iterate.steps) {
-      for (std::size_t q = 0; q < totals.size(); ++q) totals[q] += step.dq[q];
-    }
-    return system.cancellation(totals, iterate.integral_scale);
+    return system.cancellation(totals_of(iterate), iterate.integral_scale);
   } else {
     return 1.0;
+  }
+}
+
+/// What a closed iterate's integrals show of their errors, relative: 0 of systems that have no balance of them.
+template <class System>
+double imbalance(const System& system, const Iterate<System>& iterate) {
+  if constexpr (requires(typename System::Quadrature totals) { system.imbalance(totals); }) {
+    return system.imbalance(totals_of(iterate));
+  } else {
+    return 0.0;
   }
 }
 
@@ -219,13 +243,15 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   const bool forgets = options.expected_multiplier < 0.03;
   std::array<double, 3> tolerances = {std::max(fine, 1e-2), std::max(10.0 * fine, forgets ? 0.3 * near_quickly : 1e-7),
                                       fine};
-  State y = guess;
+  State y = guess, distances;
+  distances.fill(1.0);
   double residual = 1.0, before_tolerance = tolerances[0];
   // Errors of an iterate are left in the orbit 1 / (1 - multiplier) times: unless iterates have been seen to contract
   // quickly, the return map's derivative tells.
   bool contracts = false, moved_by_newton = true, known = false;
   double amplification = 1.0, cancellation = 1.0, off = 1.0;
-  int repeats = 0;
+  double imbalance = 0.0;
+  int repeats = 0, rebalanced = 0;
   // A fine iterate too many costs twice what a coarse one does: the next may be thought near where it hardly is.
   const auto is_near_after = [&](double distance) {
     return forgets && distance * options.expected_multiplier < 2.0 * near_quickly;
@@ -248,10 +274,17 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
     ++summary.iterates;
     if (iterate.status != IterateStatus::complete) return failed(iterate.status);
     const double before = residual;
+    const State distances_before = std::exchange(distances, detail::scaled_distances(system, iterate.end, y));
     residual = detail::scaled_distance(system, iterate.end, y);
     if (!std::isfinite(residual)) break;
-    if (!moved_by_newton && before > 3.0 * before_tolerance)
-      contracts = contracts || residual < slow_contraction * before;
+    if (!moved_by_newton && before > 3.0 * before_tolerance && residual < slow_contraction * before) {
+      // In every component: a current settles at once, whatever the speed of a heavy rotor does.
+      bool each = true;
+      for (std::size_t k = 0; k < n; ++k) {
+        each = each && (distances[k] < slow_contraction * distances_before[k] || distances[k] < before_tolerance);
+      }
+      contracts = contracts || each;
+    }
     moved_by_newton = false;
     const State start = y;
     y = iterate.end;
@@ -323,12 +356,24 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
     }
     if (summary.status == PeriodicStatus::converged) {
       const double needed = detail::cancellation(system, iterate);
-      if (!(needed > 1.5 * cancellation) || tolerances[2] <= tightest) break;
-      // Metrics that are small differences of what was controlled: once more, with tighter steps.
-      cancellation = needed;
-      closed = 0.1 * options.tolerance / cancellation;
+      imbalance = detail::imbalance(system, iterate);
+      const bool open = imbalance > 0.5 * options.tolerance;
+      if (open && contracts && !known) {
+        contracts = false;  // the return map's derivative tells after all
+      } else if (tolerances[2] <= tightest) {
+        break;
+      } else if (needed > 1.5 * cancellation) {
+        // Metrics that are small differences of what was controlled: once more, with tighter steps.
+        cancellation = needed;
+        closed = 0.1 * options.tolerance / cancellation;
+        tolerances[2] = std::max(fine / (amplification * cancellation), tightest);
+      } else if (open && rebalanced++ < 4) {
+        // Errors of steps that estimates do not see.
+        tolerances[2] = std::max(tolerances[2] * std::clamp(0.2 * options.tolerance / imbalance, 1e-3, 0.2), tightest);
+      } else {
+        break;
+      }
       summary.status = PeriodicStatus::not_converged;
-      tolerances[2] = std::max(fine / (amplification * cancellation), tightest);
       y = iterate.steps.front().y;
       continue;
     }
@@ -359,7 +404,8 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   summary.steps = int(iterate.steps.size());
   if (summary.status != PeriodicStatus::converged) return summary;
   // Estimates of single steps are pessimistic.
-  summary.error_estimate = 0.4 * amplification * cancellation * iterate.error_sum + cancellation * off;
+  summary.error_estimate =
+      std::max(0.4 * amplification * cancellation * iterate.error_sum + cancellation * off, 1.5 * imbalance);
   if (options.stability) {
     summary.floquet_multiplier_max =
         monodromy_product(system, system.template cast<Jet<int(n)>>(), iterate).spectral_radius();

@@ -432,6 +432,27 @@ S no_load_speed(const V<S>& v) {
   return K * v.voltage / (K * K + circuit_resistance(v) * v.motor.viscous_damping);
 }
 
+/// Angle that a crank turns by at the speed without load while its motor's current decays by a factor of e [rad].
+template <template <Scalar> class V, Scalar S>
+S electrical_lag(const V<S>& v) {
+  return v.motor.armature_inductance / circuit_resistance(v) * no_load_speed(v);
+}
+
+/// Below such an angle of crank or supply, or share of the motor's mechanical time constant, the current is
+/// quasi-steady: it differs from v / R - K omega / R by less, and L_a di/dt is a difference of voltages that rounding
+/// outweighs.
+inline constexpr double quasi_steady_lag = 1e-9;
+
+/// Whether the current is a state of its own, for every solver: elsewhere it is algebraic_current(), as without
+/// inductance.
+template <template <Scalar> class V, Scalar S>
+bool has_current_state(const V<S>& v) {
+  const double L = value_of(v.motor.armature_inductance), R = value_of(circuit_resistance(v));
+  const double K = value_of(v.motor.torque_constant);
+  const double rate = std::fmax(K * K / (R * value_of(v.motor.inertia)), two_pi * value_of(v.drive_frequency));
+  return L * std::fmax(rate, value_of(no_load_speed(v))) > quasi_steady_lag * R;
+}
+
 /// Kinetic energy of all wings, without the air that moves with them, and elastic energy of all hinge springs [J].
 template <template <Scalar> class V, Scalar S>
 S wing_energy(const V<S>& v, const CrankKinematics<S>& k, const S& stroke_velocity) {
