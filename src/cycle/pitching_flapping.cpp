@@ -110,7 +110,7 @@ SteadyFlapping PitchingSearch<N>::run(const StartUp& start_up, SharedSearch& sha
     }
     stable.push_back(std::move(orbit));
   };
-  constexpr long all = pitching_search_work, part = all / 4;
+  constexpr long all = pitching_search_work, part = all / 8;
   if (shared.orbit.size() == N) {
     State before;
     std::copy(shared.orbit.begin(), shared.orbit.end(), before.begin());

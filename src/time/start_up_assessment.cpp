@@ -22,7 +22,8 @@ StartUp start_up_in_time(double tolerance, TimeIntegrator integrator) {
     StartUpOutcome outcome{r.status,      r.settled,        r.evidence, r.crank_speed, r.current, r.stroke_angle,
                            r.pitch_angle, r.pitch_velocity, {}};
     if (r.status != FlappingStatus::flapping || !r.settled) return outcome;
-    outcome.cycle = [vehicle, integrator, left = max_steps - r.steps, state = outcome](double wanted, const Reporting& reporting) {
+    outcome.cycle = [vehicle, integrator, left = max_steps - r.steps, state = outcome](double wanted,
+                                                                                       const Reporting& reporting) {
       TransientOptions onward;
       onward.integrator = integrator;
       onward.tolerance = std::max(wanted, tightest);

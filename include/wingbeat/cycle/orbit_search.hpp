@@ -68,8 +68,9 @@ class OrbitSearch {
 
   /// One search from a state at the start of an iterate; of the multiplier see PeriodicOptions.
   bool search(const State& guess, double expected_multiplier = 1.0) {
-    solver::PeriodicOptions periodic{
-        .tolerance = options_.get().tolerance, .stability = options_.get().stability, .expected_multiplier = expected_multiplier};
+    solver::PeriodicOptions periodic{.tolerance = options_.get().tolerance,
+                                     .stability = options_.get().stability,
+                                     .expected_multiplier = expected_multiplier};
     if constexpr (requires { System::pitch; }) periodic.max_steps = pitching_steps;
     if (stiff(guess)) periodic.method = solver::Method::radau;
     const int iterates_before = summary_.iterates;
@@ -91,7 +92,8 @@ class OrbitSearch {
   /// The same from a state close to the orbit. Explicit steps that are unstable may end at the edge as well as take too
   /// many: implicit ones tell.
   bool search_near(const State& guess) {
-    solver::PeriodicOptions periodic{.tolerance = options_.get().tolerance, .stability = options_.get().stability, .near = true};
+    solver::PeriodicOptions periodic{
+        .tolerance = options_.get().tolerance, .stability = options_.get().stability, .near = true};
     if constexpr (requires { System::pitch; }) periodic.max_steps = pitching_steps;
     for (const auto method : {solver::Method::explicit_pair, solver::Method::radau}) {
       if (method == solver::Method::explicit_pair && stiff(guess)) continue;

@@ -262,11 +262,10 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
     }
     const long max_steps = first && !options.near ? options.max_steps : 10L * options.max_steps;
     const long affordable = (work.left() - 1) / per_step + 1;
-    const IterateOptions iterate_options = {
-        .method = options.method,
-        .tolerance = tolerances[level],
-        .max_steps = int(std::min(max_steps, affordable)),
-        .switches = is_fine ? 1000 : System::state_switches};
+    const IterateOptions iterate_options = {.method = options.method,
+                                            .tolerance = tolerances[level],
+                                            .max_steps = int(std::min(max_steps, affordable)),
+                                            .switches = is_fine ? 1000 : System::state_switches};
     if (is_fine) {
       run_iterate<true>(system, y, iterate_options, iterate);
     } else {
