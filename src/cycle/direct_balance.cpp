@@ -67,7 +67,9 @@ double typical_pitch(const Vehicle<double>& vehicle, double stroke_velocity, dou
                         drag * centre_of_pressure(0.5 * pi) * p.moments.s22 * square(stroke_velocity);
   const double rigidity =
       std::max(std::abs(p.hinge.stiffness - square(w) * (p.pitch_inertia + p.air.pp)), 0.2 * p.hinge.stiffness);
-  return std::min({moment / rigidity, p.hinge.stop, 1.0}) + 1e-12;
+  // What a stiff hinge leaves of the pitch acts on nothing: its oscillations of that size need not be resolved.
+  constexpr double least = 0.02;
+  return std::min({std::max(moment / rigidity, least), p.hinge.stop, 1.0}) + 1e-12;
 }
 
 }  // namespace wingbeat

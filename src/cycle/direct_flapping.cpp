@@ -10,7 +10,8 @@ namespace {
 using Evidence = StatusEvidence::Kind;
 
 template <int N>
-SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& options, const StartUp& start_up) {
+SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& options, const StartUp& start_up,
+                      solver::WorkBudget& work) {
   using System = DirectSystem<double, N>;
   using State = typename System::State;
   SteadyFlapping result;
@@ -31,7 +32,7 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
   const double slip_speed = (balance.drive_torque - balance.breakaway_torque) / (inertia * w);
   const double speed = balance.responses.empty() ? slip_speed : std::abs(balance.responses.back().speed);
   const double current = balance.drive_torque / vehicle.motor.torque_constant;
-  OrbitSearch<System> orbit(System(vehicle, state(speed / w, speed, current)), options);
+  OrbitSearch<System> orbit(System(vehicle, state(speed / w, speed, current)), options, work);
 
   const auto from_rest = [&] { return orbit.search(state(0.0, 0.0, 0.0)); };
   const auto from_harmonic = [&](const HarmonicResponse& r) {
@@ -79,8 +80,9 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
 }  // namespace
 
 SteadyFlapping find_direct_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
-                                    const StartUp& start_up) {
-  return has_current_state(vehicle) ? search<3>(vehicle, options, start_up) : search<2>(vehicle, options, start_up);
+                                    const StartUp& start_up, SharedSearch& shared) {
+  return has_current_state(vehicle) ? search<3>(vehicle, options, start_up, shared.work)
+                                    : search<2>(vehicle, options, start_up, shared.work);
 }
 
 }  // namespace wingbeat::detail

@@ -116,7 +116,10 @@ OrbitGradient orbit_gradient(const SteadyFlapping& orbit, const GradientVehicle&
   const MotorTemperatures<J> at{J(orbit.temperatures.winding), J(orbit.temperatures.casing)};
   const bool warm = heats_up(vehicle.thermal);
   OrbitGradient g = repeat(orbit, warm ? with_motor_at(vehicle, at) : vehicle, given, options);
-  if (warm) follow_temperatures(orbit, vehicle, given, options, g);
+  // Under thermal runaway the temperatures are the last that were looked at, and no fixed point.
+  const bool runs_away = warm && orbit.temperatures.winding >= copper_melting_point;
+  if (runs_away) g.regular = false;
+  else if (warm) follow_temperatures(orbit, vehicle, given, options, g);
 
   if (options.held == Held::frequency && voltage_varies) {
     const J f = g.metrics[Metric::frequency];

@@ -48,7 +48,7 @@ class PitchingCrankSearch {
         balanced_(balanced_speed(vehicle)),
         typical_(typical_state()) {}
 
-  SteadyFlapping run(const StartUp& start_up);
+  SteadyFlapping run(const StartUp& start_up, SharedSearch& shared);
 
  private:
   static State state(double speed, double psi, double pitch_velocity, double current) {
@@ -77,7 +77,8 @@ class PitchingCrankSearch {
   }
 
   /// Keeps the orbit found from there, if it is stable and none that is known.
-  void attempt(const State& guess, bool near = false);
+  /// It takes at most a part of the work that is left: one start may not take what is left for the others.
+  void attempt(const State& guess, SharedSearch& shared, long most, bool near = false);
   std::optional<std::size_t> reached_by(const State& settled) const;
   SteadyFlapping undecided(SteadyFlapping result) const;
 
@@ -96,12 +97,14 @@ class PitchingCrankSearch {
 };
 
 template <int N>
-void PitchingCrankSearch<N>::attempt(const State& guess, bool near) {
+void PitchingCrankSearch<N>::attempt(const State& guess, SharedSearch& shared, long most, bool near) {
   constexpr double same = 1e-3;  // orbits that are nearer to each other are one
   const System system(vehicle_, typical_, 1e-4 * no_load_);
   if (!system.admissible(guess)) return;
-  OrbitSearch<System> orbit(system, options_);
+  solver::WorkBudget part = shared.work.part(most);
+  OrbitSearch<System> orbit(system, options_, part);
   const bool found = near ? orbit.search_near(guess) : orbit.search(guess);
+  shared.work.used += part.used;
   iterates_ += orbit.summary().iterates;
   last_ = orbit.summary();
   if (last_.status == solver::PeriodicStatus::unbalanced) imbalance_ = orbit.imbalance();
@@ -153,16 +156,26 @@ SteadyFlapping PitchingCrankSearch<N>::undecided(SteadyFlapping result) const {
 }
 
 template <int N>
-SteadyFlapping PitchingCrankSearch<N>::run(const StartUp& start_up) {
+SteadyFlapping PitchingCrankSearch<N>::run(const StartUp& start_up, SharedSearch& shared) {
   SteadyFlapping result;
   if (stalls(statics_, result)) return result;
   if (!statics_.can_jam()) {
-    const double slope = crank_kinematics(vehicle_.transmission, 0.0, 1.0).stroke_slope;
-    attempt(turning(balanced_.slowest, quasi_static_pitch(vehicle_, slope * balanced_.slowest)));
-    attempt(turning(balanced_.slowest, 0.0));
-    attempt(turning(no_load_, std::min(0.5 * pi, vehicle_.pitch.hinge.stop)));
-    if (stable_.empty()) attempt(turning(no_load_, 0.0));
+    constexpr long part = pitching_search_work / 3, part_with_orbit = pitching_search_work / 10;
+    if (shared.orbit.size() == N) {
+      State before;
+      std::copy(shared.orbit.begin(), shared.orbit.end(), before.begin());
+      attempt(before, shared, part, true);
+    }
+    if (stable_.empty()) {
+      const double slope = crank_kinematics(vehicle_.transmission, 0.0, 1.0).stroke_slope;
+      const auto most = [&] { return stable_.empty() ? part : part_with_orbit; };
+      attempt(turning(balanced_.slowest, quasi_static_pitch(vehicle_, slope * balanced_.slowest)), shared, part);
+      attempt(turning(balanced_.slowest, 0.0), shared, part);
+      attempt(turning(no_load_, std::min(0.5 * pi, vehicle_.pitch.hinge.stop)), shared, most());
+      if (stable_.empty()) attempt(turning(no_load_, 0.0), shared, part);
+    }
   }
+  shared.orbit.clear();
   result.summary = last_;
 
   std::size_t chosen = 0;
@@ -180,7 +193,7 @@ SteadyFlapping PitchingCrankSearch<N>::run(const StartUp& start_up) {
       const State settled = state(outcome.crank_speed, outcome.pitch_angle, outcome.pitch_velocity, outcome.current);
       which = reached_by(settled);
       if (!which) {
-        attempt(settled, true);
+        attempt(settled, shared, pitching_search_work, true);
         which = reached_by(settled);
       }
     }
@@ -195,6 +208,7 @@ SteadyFlapping PitchingCrankSearch<N>::run(const StartUp& start_up) {
 
   const double other_frequency = stable_.size() > 1 ? stable_[chosen == 0 ? 1 : 0].frequency() : absent;
   OrbitSearch<System>& orbit = stable_[chosen];
+  if (stable_.size() == 1) shared.orbit.assign(orbit.start().begin(), orbit.start().end());
   result.summary = orbit.summary();
   result.summary.iterates = iterates_;
   result.status = FlappingStatus::flapping;
@@ -211,9 +225,9 @@ SteadyFlapping PitchingCrankSearch<N>::run(const StartUp& start_up) {
 }  // namespace
 
 SteadyFlapping find_pitching_crank_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
-                                            const StartUp& start_up) {
-  return has_current_state(vehicle) ? PitchingCrankSearch<4>(vehicle, options).run(start_up)
-                                    : PitchingCrankSearch<3>(vehicle, options).run(start_up);
+                                            const StartUp& start_up, SharedSearch& shared) {
+  return has_current_state(vehicle) ? PitchingCrankSearch<4>(vehicle, options).run(start_up, shared)
+                                    : PitchingCrankSearch<3>(vehicle, options).run(start_up, shared);
 }
 
 }  // namespace wingbeat::detail

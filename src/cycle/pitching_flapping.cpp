@@ -27,7 +27,7 @@ class PitchingSearch {
         w_(two_pi * vehicle.drive_frequency),
         typical_(typical_state()) {}
 
-  SteadyFlapping run(const StartUp& start_up);
+  SteadyFlapping run(const StartUp& start_up, SharedSearch& shared);
 
  private:
   static State state(double stroke, double speed, double psi, double pitch_velocity, double current) {
@@ -73,7 +73,7 @@ class PitchingSearch {
 };
 
 template <int N>
-SteadyFlapping PitchingSearch<N>::run(const StartUp& start_up) {
+SteadyFlapping PitchingSearch<N>::run(const StartUp& start_up, SharedSearch& shared) {
   constexpr double same = 1e-3;                              // orbits that are nearer to each other are one
   constexpr double pitch_guesses[] = {0.25 * pi, 0.5 * pi};  // [rad]
   SteadyFlapping result;
@@ -85,11 +85,20 @@ SteadyFlapping PitchingSearch<N>::run(const StartUp& start_up) {
   int iterates = 0;
   double unstable_multiplier = absent;
   solver::PeriodicSummary last;
-  const auto attempt = [&](const State& guess, bool near) {
-    OrbitSearch<System> orbit(system, options_);
+  bool cut_short = false;  // some start, for want of work
+  State reached_from_rest{};
+  // One start may not take what is left for the others.
+  const auto attempt = [&](const State& guess, bool near, long most) {
+    solver::WorkBudget part = shared.work.part(most);
+    OrbitSearch<System> orbit(system, options_, part);
     const bool found = near ? orbit.search_near(guess) : orbit.search(guess);
+    shared.work.used += part.used;
     iterates += orbit.summary().iterates;
     last = orbit.summary();
+    if (last.status == solver::PeriodicStatus::out_of_work && orbit.started() && !cut_short) {
+      cut_short = true;
+      reached_from_rest = orbit.start();
+    }
     if (!found) return;
     any_found = true;
     if (!is_stable(orbit)) {
@@ -101,10 +110,20 @@ SteadyFlapping PitchingSearch<N>::run(const StartUp& start_up) {
     }
     stable.push_back(std::move(orbit));
   };
-  attempt(State{}, false);
-  for (const double psi : pitch_guesses) {
-    if (!balance_.responses.empty()) attempt(harmonic(psi), false);
+  constexpr long all = pitching_search_work, part = all / 8;
+  if (shared.orbit.size() == N) {
+    State before;
+    std::copy(shared.orbit.begin(), shared.orbit.end(), before.begin());
+    attempt(before, true, part);
   }
+  if (stable.empty()) {
+    attempt(State{}, false, part);
+    for (const double psi : pitch_guesses) {
+      if (!balance_.responses.empty()) attempt(harmonic(psi), false, part);
+    }
+    if (stable.empty() && cut_short) attempt(reached_from_rest, false, all);
+  }
+  shared.orbit.clear();
 
   std::size_t chosen = 0;
   if (stable.size() != 1 && start_up) {
@@ -129,7 +148,7 @@ SteadyFlapping PitchingSearch<N>::run(const StartUp& start_up) {
                                   outcome.pitch_velocity, outcome.current);
       which = reached_by(reached);
       if (!which) {
-        attempt(reached, true);
+        attempt(reached, true, all);
         which = reached_by(reached);
       }
     }
@@ -155,6 +174,7 @@ SteadyFlapping PitchingSearch<N>::run(const StartUp& start_up) {
     other_amplitude = other.metrics[Metric::stroke_amplitude];
   }
   OrbitSearch<System>& orbit = stable[chosen];
+  if (stable.size() == 1) shared.orbit.assign(orbit.start().begin(), orbit.start().end());
   result.summary = orbit.summary();
   result.summary.iterates = iterates;
   orbit.fill(result);
@@ -172,9 +192,9 @@ SteadyFlapping PitchingSearch<N>::run(const StartUp& start_up) {
 }  // namespace
 
 SteadyFlapping find_pitching_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
-                                      const StartUp& start_up) {
-  return has_current_state(vehicle) ? PitchingSearch<5>(vehicle, options).run(start_up)
-                                    : PitchingSearch<4>(vehicle, options).run(start_up);
+                                      const StartUp& start_up, SharedSearch& shared) {
+  return has_current_state(vehicle) ? PitchingSearch<5>(vehicle, options).run(start_up, shared)
+                                    : PitchingSearch<4>(vehicle, options).run(start_up, shared);
 }
 
 }  // namespace wingbeat::detail

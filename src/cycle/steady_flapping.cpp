@@ -16,9 +16,9 @@ using Evidence = StatusEvidence::Kind;
 template <int N>
 class CrankSearch : public OrbitSearch<CrankSystem<double, N>> {
  public:
-  CrankSearch(const Vehicle<double>& vehicle, const SteadyOptions& options)
+  CrankSearch(const Vehicle<double>& vehicle, const SteadyOptions& options, solver::WorkBudget& work)
       : OrbitSearch<CrankSystem<double, N>>(
-            {vehicle, 1e-4 * no_load_speed(vehicle), vehicle.voltage / circuit_resistance(vehicle)}, options) {}
+            {vehicle, 1e-4 * no_load_speed(vehicle), vehicle.voltage / circuit_resistance(vehicle)}, options, work) {}
 
   /// One search from crank speed omega at crank angle zero, with the quasi-steady current of `earlier_speed`.
   bool from(double omega, double earlier_speed, double expected_multiplier = 1.0) {
@@ -44,12 +44,13 @@ class CrankSearch : public OrbitSearch<CrankSystem<double, N>> {
 };
 
 template <int N>
-SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& options, const StartUp& start_up) {
+SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& options, const StartUp& start_up,
+                      solver::WorkBudget& work) {
   SteadyFlapping result;
   const StaticBalance statics = static_balance(vehicle);
   if (detail::stalls(statics, result)) return result;
 
-  CrankSearch<N> orbit(vehicle, options);
+  CrankSearch<N> orbit(vehicle, options, work);
   bool found = false, ambiguous = false;
   if (!statics.can_jam()) {
     const OrbitGuess<double> guess = guess_orbit(vehicle);
@@ -167,15 +168,24 @@ void detail::fill_simulated(const StartUpOutcome& outcome, const SteadyOptions& 
   result.evidence.repeats_after = result.simulated->cycles;
 }
 
+SteadyFlapping detail::find_flapping_among(const Vehicle<double>& vehicle, const SteadyOptions& options,
+                                           const StartUp& start_up, SharedSearch& shared) {
+  const bool rotates = drive_of(vehicle).rotates;
+  if (pitches(vehicle)) {
+    return rotates ? find_pitching_crank_flapping(vehicle, options, start_up, shared)
+                   : find_pitching_flapping(vehicle, options, start_up, shared);
+  }
+  if (!rotates) return find_direct_flapping(vehicle, options, start_up, shared);
+  return has_current_state(vehicle) ? search<2>(vehicle, options, start_up, shared.work)
+                                    : search<1>(vehicle, options, start_up, shared.work);
+}
+
 SteadyFlapping detail::find_flapping_as_it_is(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                               const StartUp& start_up) {
   check_cancellation();
-  if (pitches(vehicle)) {
-    return drive_of(vehicle).rotates ? detail::find_pitching_crank_flapping(vehicle, options, start_up)
-                                     : detail::find_pitching_flapping(vehicle, options, start_up);
-  }
-  if (!drive_of(vehicle).rotates) return detail::find_direct_flapping(vehicle, options, start_up);
-  return has_current_state(vehicle) ? search<2>(vehicle, options, start_up) : search<1>(vehicle, options, start_up);
+  SharedSearch alone;
+  alone.work.limit = search_work(vehicle);
+  return find_flapping_among(vehicle, options, start_up, alone);
 }
 
 SteadyFlapping find_steady_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,

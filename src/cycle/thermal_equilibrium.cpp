@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "wingbeat/cycle/orbit_search.hpp"
+
 namespace wingbeat {
 namespace {
 
@@ -48,7 +50,7 @@ MotorTemperatures<double> ThermalEquilibrium::secant(const Trial& last) const {
 
 /// Halves what lies between the last trial that flapped and the coolest that did not.
 bool ThermalEquilibrium::towards_stop() {
-  if (stopped_->winding - before_->at.winding < stop_width) {
+  if (verge_is_unclear_ || stopped_->winding - before_->at.winding < stop_width) {
     // The verge itself is nothing that a start-up could decide.
     at_stop_ = true;
     at_ = {std::clamp(before_->leads_to.winding, stopped_->winding, copper_melting_point),
@@ -59,12 +61,14 @@ bool ThermalEquilibrium::towards_stop() {
   return false;
 }
 
-bool ThermalEquilibrium::advance(bool flaps, const Metrics<double>& metrics) {
+bool ThermalEquilibrium::advance(bool flaps, const Metrics<double>& metrics, bool decided) {
   ++solutions_;
   if (at_stop_) return end(flaps ? ThermalOutcome::does_not_settle : ThermalOutcome::stops);
   if (!flaps) {
     if (!before_) return end(ThermalOutcome::never_flaps);
-    stopped_ = at_;
+    // Where even a simulation is undecided, more of them would not show the verge more closely.
+    verge_is_unclear_ = !decided && stopped_;
+    if (!verge_is_unclear_) stopped_ = at_;
     return towards_stop();
   }
   const Trial last{
@@ -104,11 +108,14 @@ SteadyFlapping detail::find_warm_flapping(const Vehicle<double>& vehicle, const 
   SteadyOptions within = options;
   within.tolerance = tolerance_within_equilibrium(options.tolerance);
   ThermalEquilibrium equilibrium(vehicle.thermal, options.tolerance);
+  SharedSearch shared;
+  shared.work.limit = 2 * search_work(vehicle);
   SteadyFlapping found;
   do {
-    found = find_flapping_as_it_is(with_motor_at(vehicle, equilibrium.at()), within, start_up);
+    found = find_flapping_among(with_motor_at(vehicle, equilibrium.at()), within, start_up, shared);
     found.temperatures = equilibrium.at();
-  } while (!equilibrium.advance(found.status == FlappingStatus::flapping, found.metrics));
+  } while (!equilibrium.advance(found.status == FlappingStatus::flapping, found.metrics,
+                                found.status != FlappingStatus::undecided));
   if (!conclude(equilibrium, found.status, found.evidence)) {
     SteadyFlapping none;
     none.metrics.values.fill(absent);

@@ -171,7 +171,7 @@ TransientResult simulate_warm(Vehicle<double>& vehicle, TransientOptions transie
     vehicle = with_motor_at(stated, equilibrium.at());
     found = simulate_start_up(vehicle, transient);
     flaps = found.status == FlappingStatus::flapping && found.metrics;
-  } while (!equilibrium.advance(flaps, flaps ? *found.metrics : nothing));
+  } while (!equilibrium.advance(flaps, flaps ? *found.metrics : nothing, found.status != FlappingStatus::undecided));
   if (!conclude(equilibrium, found.status, found.evidence)) {
     found.metrics.reset();
     found.settled = false;

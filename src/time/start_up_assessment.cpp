@@ -6,6 +6,8 @@ namespace wingbeat {
 namespace {
 
 constexpr double tightest = 1e-11;  // what TransientOptions::tolerance admits
+/// Steps that an assessment may take, a few microseconds each, and what is left for its cycle in any case.
+constexpr long max_steps = 600000, least_steps = 150000;
 
 }  // namespace
 
@@ -15,15 +17,18 @@ StartUp start_up_in_time(double tolerance, TimeIntegrator integrator) {
     options.integrator = integrator;
     options.tolerance = std::max(tolerance, tightest);
     options.metrics = false;
+    options.max_steps = max_steps;
     const TransientResult r = simulate_start_up(vehicle, options);
     StartUpOutcome outcome{r.status,      r.settled,        r.evidence, r.crank_speed, r.current, r.stroke_angle,
                            r.pitch_angle, r.pitch_velocity, {}};
     if (r.status != FlappingStatus::flapping || !r.settled) return outcome;
-    outcome.cycle = [vehicle, integrator, state = outcome](double wanted, const Reporting& reporting) {
+    outcome.cycle = [vehicle, integrator, left = max_steps - r.steps, state = outcome](double wanted,
+                                                                                       const Reporting& reporting) {
       TransientOptions onward;
       onward.integrator = integrator;
       onward.tolerance = std::max(wanted, tightest);
       onward.reporting = reporting;
+      onward.max_steps = std::max(left, least_steps);
       onward.crank_angle = state.stroke_angle;
       onward.crank_speed = state.crank_speed;
       onward.current = state.current;

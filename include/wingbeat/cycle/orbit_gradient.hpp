@@ -75,7 +75,7 @@ struct GradientInstant {
 struct OrbitGradient {
   Metrics<GradientJet> metrics;
   std::vector<GradientInstant> instants;
-  /// False: I - dP/dy (or df/dv) is singular, the derivatives do not exist.
+  /// False: I - dP/dy (or df/dv) is singular, or the motor's temperatures do not settle; there are no derivatives.
   bool regular = true;
 };
 

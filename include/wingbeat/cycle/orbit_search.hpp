@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
+#include <vector>
 
 #include "wingbeat/cycle/direct_balance.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
@@ -13,16 +15,35 @@
 
 namespace wingbeat::detail {
 
+/// What one vehicle's searches may take together, over all starts. It bounds the processor time: a step of the explicit
+/// pair takes about a microsecond, of wings that pitch about three.
+constexpr long orbit_search_work = 1000000, pitching_search_work = 300000;
+inline long search_work(const Vehicle<double>& vehicle) {
+  return pitches(vehicle) ? pitching_search_work : orbit_search_work;
+}
+
+/// What the solutions of one vehicle share that differ by the temperatures of its motor alone.
+struct SharedSearch {
+  solver::WorkBudget work;
+  /// Start of the only stable orbit of wings that pitch at the last temperature, which a motor that warms up follows;
+  /// empty where there was none, or more than one.
+  std::vector<double> orbit;
+};
+
+/// find_flapping_as_it_is() as one of several solutions.
+SteadyFlapping find_flapping_among(const Vehicle<double>& vehicle, const SteadyOptions& options,
+                                   const StartUp& start_up, SharedSearch& shared);
+
 /// The steady flapping of a direct drive; see find_steady_flapping.
 SteadyFlapping find_direct_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
-                                    const StartUp& start_up);
+                                    const StartUp& start_up, SharedSearch& shared);
 
 /// The same of wings that pitch.
 SteadyFlapping find_pitching_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
-                                      const StartUp& start_up);
+                                      const StartUp& start_up, SharedSearch& shared);
 /// The same of a crank whose wings pitch.
 SteadyFlapping find_pitching_crank_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
-                                            const StartUp& start_up);
+                                            const StartUp& start_up, SharedSearch& shared);
 
 /// The start of every search under a crank: its statics. True, with the decision, of a motor that never starts.
 bool stalls(const StaticBalance& statics, SteadyFlapping& result);
@@ -43,12 +64,15 @@ class OrbitSearch {
  public:
   using State = typename System::State;
 
-  OrbitSearch(const System& system, const SteadyOptions& options) : options_(options), system_(system) {}
+  /// What the search takes is added to `work`, which ends it.
+  OrbitSearch(const System& system, const SteadyOptions& options, solver::WorkBudget& work)
+      : options_(options), system_(system), work_(work) {}
 
   /// One search from a state at the start of an iterate; of the multiplier see PeriodicOptions.
   bool search(const State& guess, double expected_multiplier = 1.0) {
-    solver::PeriodicOptions periodic{
-        .tolerance = options_.tolerance, .stability = options_.stability, .expected_multiplier = expected_multiplier};
+    solver::PeriodicOptions periodic{.tolerance = options_.get().tolerance,
+                                     .stability = options_.get().stability,
+                                     .expected_multiplier = expected_multiplier};
     if constexpr (requires { System::pitch; }) periodic.max_steps = pitching_steps;
     if (stiff(guess)) periodic.method = solver::Method::radau;
     const int iterates_before = summary_.iterates;
@@ -72,7 +96,8 @@ class OrbitSearch {
   /// The same from a state close to the orbit. Explicit steps that are unstable may end at the edge as well as take too
   /// many: implicit ones tell.
   bool search_near(const State& guess) {
-    solver::PeriodicOptions periodic{.tolerance = options_.tolerance, .stability = options_.stability, .near = true};
+    solver::PeriodicOptions periodic{
+        .tolerance = options_.get().tolerance, .stability = options_.get().stability, .near = true};
     if constexpr (requires { System::pitch; }) periodic.max_steps = pitching_steps;
     for (const auto method : {solver::Method::explicit_pair, solver::Method::radau}) {
       if (method == solver::Method::explicit_pair && stiff(guess)) continue;
@@ -99,6 +124,8 @@ class OrbitSearch {
 
   const System& system() const { return system_; }
   const solver::PeriodicSummary& summary() const { return summary_; }
+  /// True where a start() is known, if only that of the last iterate of a search that ended without an orbit.
+  bool started() const { return !iterate_.steps.empty(); }
   const State& start() const { return iterate_.steps.front().y; }
   double frequency() const {
     double period = 0.0;
@@ -109,13 +136,13 @@ class OrbitSearch {
   void fill(SteadyFlapping& result) {
     result.crank_speed = system_.shaft_speed(start());
     result.current = system_.current(0.0, start());
-    const CycleExtremes<double> extremes = cycle_extremes(system_, iterate_, options_.tolerance);
+    const CycleExtremes<double> extremes = cycle_extremes(system_, iterate_, options_.get().tolerance);
     constexpr bool pitching = requires { System::pitch; };
     PitchMetrics of_pitch{};
     if constexpr (pitching) of_pitch = pitch_metrics(system_, iterate_);
     result.record = CycleRecord(RecordedCycle<System>{system_, std::move(iterate_)});
     result.metrics = cycle_metrics(system_.vehicle, result.record.integrals(), extremes,
-                                   summary_.floquet_multiplier_max, options_.reporting);
+                                   summary_.floquet_multiplier_max, options_.get().reporting);
     if constexpr (pitching) {
       set_pitch_metrics(of_pitch, result.metrics);
       result.evidence.over_rotation = of_pitch.over_rotation_of_moving();
@@ -126,7 +153,7 @@ class OrbitSearch {
   /// An orbit whose energy balance stays open is none: finer steps first.
   void solve(const State& guess, solver::PeriodicOptions periodic) {
     constexpr double finer = 1e-2, finest = 1e-12;
-    summary_ = solver::solve_periodic(system_, guess, periodic, iterate_);
+    summary_ = solver::solve_periodic(system_, guess, periodic, iterate_, work_.get());
     if (summary_.status != solver::PeriodicStatus::converged || balances()) return;
     const EnergyAudit open = audit();
     imbalance_ = std::abs(open.imbalance / open.electrical);
@@ -134,13 +161,13 @@ class OrbitSearch {
     periodic.tolerance = std::max(finer * periodic.tolerance, std::min(finest, periodic.tolerance));
     periodic.near = true;
     const State start = iterate_.steps.front().y;
-    summary_ = solver::solve_periodic(system_, start, periodic, iterate_);
+    summary_ = solver::solve_periodic(system_, start, periodic, iterate_, work_.get());
     summary_.iterates += iterates_before;
     if (summary_.status == solver::PeriodicStatus::converged && balances()) return;
     summary_.status = solver::PeriodicStatus::unbalanced;
   }
 
-  bool balances() const { return closes(audit(), options_.tolerance); }
+  bool balances() const { return closes(audit(), options_.get().tolerance); }
   EnergyAudit audit() const {
     double hinge_work = 0.0;
     if constexpr (requires { System::hinge_work; }) {
@@ -157,8 +184,9 @@ class OrbitSearch {
 
   static constexpr int pitching_steps = 2000;  ///< a stiff hinge's own frequency is many times the supply's
 
-  const SteadyOptions& options_;
+  std::reference_wrapper<const SteadyOptions> options_;
   System system_;
+  std::reference_wrapper<solver::WorkBudget> work_;
   solver::Iterate<System> iterate_;
   solver::PeriodicSummary summary_;
   double imbalance_ = absent;

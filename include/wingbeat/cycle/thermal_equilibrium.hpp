@@ -29,8 +29,8 @@ class ThermalEquilibrium {
 
   /// Where the vehicle is to be solved next; after the search, where it was solved last [K].
   const MotorTemperatures<double>& at() const { return at_; }
-  /// True when the search is over.
-  bool advance(bool flaps, const Metrics<double>& metrics);
+  /// True when the search is over. Of a solution that does not flap, `decided` says whether that is known.
+  bool advance(bool flaps, const Metrics<double>& metrics, bool decided = true);
   ThermalOutcome outcome() const { return outcome_; }
   /// ThermalOutcome::stops: winding temperature up to which the vehicle flaps [K].
   double stops_at() const { return stopped_ ? stopped_->winding : absent; }
@@ -55,6 +55,7 @@ class ThermalEquilibrium {
   std::optional<MotorTemperatures<double>> stopped_;  ///< the coolest that did not
   std::optional<Trial> heating_, cooling_;            ///< nearest to the equilibrium on either side, by the winding
   bool at_stop_ = false;
+  bool verge_is_unclear_ = false;
   int solutions_ = 0;
   ThermalOutcome outcome_ = ThermalOutcome::searching;
 };

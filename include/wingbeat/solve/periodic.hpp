@@ -6,6 +6,7 @@
 // monodromy matrix.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -19,6 +20,23 @@
 #include "wingbeat/solve/linear.hpp"
 
 namespace wingbeat::solver {
+
+/// Limits the work of searches that share it. The unit is a step of the explicit pair: a count, so that where a search
+/// ends does not depend on the machine.
+struct WorkBudget {
+  long limit = std::numeric_limits<long>::max();
+  long used = 0;
+
+  bool spent() const { return used >= limit; }
+  long left() const { return spent() ? 0 : limit - used; }
+  /// A part of what is left, of at most `most`; whoever spends it adds what was used.
+  WorkBudget part(long most) const { return {std::min(most, left()), 0}; }
+
+  // What else takes, in steps of the explicit pair.
+  static constexpr long implicit_step = 8;
+  static constexpr long located_switch = 4;  ///< in steps of the same method
+  static constexpr long derivative = 5;      ///< of a step, in steps of the same method
+};
 
 struct PeriodicOptions {
   double tolerance = 1e-6;  ///< wanted relative accuracy of the orbit and its integrals
@@ -37,7 +55,8 @@ enum class PeriodicStatus {
   barrier,         ///< iterates run into the edge of the admissible region: no orbit was found
   too_many_steps,  ///< an iterate needs more steps than allowed
   not_converged,   ///< iterates neither settle nor fail within max_iterates
-  unbalanced       ///< converged, but the energy balance does not close: a caller's verdict
+  unbalanced,      ///< converged, but the energy balance does not close: said by the caller
+  out_of_work      ///< the WorkBudget is used up
 };
 
 /// The same in words; empty where nothing was searched for.
@@ -49,6 +68,7 @@ constexpr const char* describe(PeriodicStatus status) {
     case PeriodicStatus::too_many_steps: return "an iterate needs more steps than allowed";
     case PeriodicStatus::not_converged: return "iterates did not close";
     case PeriodicStatus::unbalanced: return "the energy balance of the orbit found does not close";
+    case PeriodicStatus::out_of_work: return "the integration steps allowed for the search are used up";
   }
   return "";
 }
@@ -214,11 +234,11 @@ double imbalance(const System& system, const Iterate<System>& iterate) {
 }  // namespace detail
 
 /// Finds a periodic orbit from the state `guess` at x = 0. On success `iterate` holds the orbit's iterate with its
-/// integrals. `system.cast<Jet<states>>()` must give it dual numbers for Newton steps and stability. Throws nothing but
-/// Cancelled.
+/// integrals. `system.cast<Jet<states>>()` must give it dual numbers for Newton steps and stability. The search ends
+/// where `work` is used up. Throws nothing but Cancelled.
 template <class System>
 PeriodicSummary solve_periodic(const System& system, const typename System::State& guess,
-                               const PeriodicOptions& options, Iterate<System>& iterate) {
+                               const PeriodicOptions& options, Iterate<System>& iterate, WorkBudget& work) {
   using State = typename System::State;
   constexpr std::size_t n = std::tuple_size_v<State>;
   constexpr double slow_contraction = 0.1;
@@ -232,10 +252,12 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   const auto failed = [&](IterateStatus status) {
     summary.stop = iterate.stop;
     summary.status = status == IterateStatus::barrier ? PeriodicStatus::barrier : PeriodicStatus::too_many_steps;
-    return summary;
   };
   iterate.switches.clear();
   iterate.largest_step = 0.0;
+  const long per_step = options.method == Method::radau ? WorkBudget::implicit_step : 1;
+  const auto steps_taken = [&] { work.used += per_step * long(iterate.steps.size()); };
+  const auto derivatives_taken = [&] { work.used += WorkBudget::derivative * per_step * long(iterate.steps.size()); };
 
   // A fine iterate closes by repeating its mesh if its start was close enough for its switches to stay where they are.
   const double near_quickly = 0.1 * std::sqrt(options.tolerance), near_slowly = 0.03 * near_quickly;
@@ -261,18 +283,31 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   for (std::size_t level = options.near || one_is_enough ? 1 : 0; summary.iterates < options.max_iterates;) {
     // Coarse iterates need only the switches that bend the solution itself.
     const bool is_fine = level + 1 == tolerances.size(), first = level == 0 || summary.iterates == 0;
-    const IterateOptions iterate_options = {
-        .method = options.method,
-        .tolerance = tolerances[level],
-        .max_steps = first && !options.near ? options.max_steps : 10 * options.max_steps,
-        .switches = is_fine ? 1000 : System::state_switches};
+    if (work.spent()) {
+      summary.status = PeriodicStatus::out_of_work;
+      summary.stop = iterate.stop;
+      break;
+    }
+    const long max_steps = first && !options.near ? options.max_steps : 10L * options.max_steps;
+    const long affordable = (work.left() - 1) / per_step + 1;
+    const IterateOptions iterate_options = {.method = options.method,
+                                            .tolerance = tolerances[level],
+                                            .max_steps = int(std::min(max_steps, affordable)),
+                                            .switches = is_fine ? 1000 : System::state_switches};
     if (is_fine) {
       run_iterate<true>(system, y, iterate_options, iterate);
     } else {
       run_iterate<false>(system, y, iterate_options, iterate);
     }
     ++summary.iterates;
-    if (iterate.status != IterateStatus::complete) return failed(iterate.status);
+    steps_taken();
+    work.used += WorkBudget::located_switch * per_step * long(iterate.switches.size());
+    if (iterate.status != IterateStatus::complete) {
+      failed(iterate.status);
+      const bool cut_short = iterate.status == IterateStatus::too_many_steps && affordable < max_steps;
+      if (cut_short) summary.status = PeriodicStatus::out_of_work;
+      return summary;
+    }
     const double before = residual;
     const State distances_before = std::exchange(distances, detail::scaled_distances(system, iterate.end, y));
     residual = detail::scaled_distance(system, iterate.end, y);
@@ -293,6 +328,7 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
       // Coarse iterates were left before they could tell how quickly they contract, and this one has not shown it.
       const detail::IterateInverse<System> of_iterate(system, iterate);
       ++summary.iterates;
+      derivatives_taken();
       known = true;
       amplification = of_iterate.amplification();
       if (amplification > 1.0 + slow_contraction) {
@@ -310,6 +346,7 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
     if (is_fine && slow) {
       inverse.emplace(system, iterate);
       ++summary.iterates;
+      derivatives_taken();
       amplification = inverse->amplification();
     }
     if (inverse && inverse->isolated()) {
@@ -328,6 +365,7 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
           residual = detail::close_on_mesh(system, iterate, std::max(closed / amplification, rounding), position_error,
                                            grazes);
           ++summary.iterates;
+          steps_taken();
           std::tie(good, moved) = move_on();
         }
         // The last digits of an iterate are rounding, whatever that makes of the orbit.
@@ -344,6 +382,7 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
         previous = residual;
         residual = detail::close_on_mesh(system, iterate, closed, position_error, grazes);
         ++summary.iterates;
+        steps_taken();
       }
       off = residual;
       if (residual <= closed) summary.status = PeriodicStatus::converged;
@@ -386,6 +425,7 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
     if ((stalls && residual < 0.5) || ask) {
       const detail::IterateInverse<System> of_iterate(system, iterate);
       ++summary.iterates;
+      derivatives_taken();
       known = ask;
       if (ask) {
         amplification = of_iterate.amplification();
@@ -411,6 +451,14 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
         monodromy_product(system, system.template cast<Jet<int(n)>>(), iterate).spectral_radius();
   }
   return summary;
+}
+
+/// The same without a limit but those of the options.
+template <class System>
+PeriodicSummary solve_periodic(const System& system, const typename System::State& guess,
+                               const PeriodicOptions& options, Iterate<System>& iterate) {
+  WorkBudget unlimited;
+  return solve_periodic(system, guess, options, iterate, unlimited);
 }
 
 }  // namespace wingbeat::solver
