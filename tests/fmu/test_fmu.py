@@ -520,7 +520,7 @@ class Functions(unittest.TestCase):
 
     def test_a_parameter_that_takes_a_state_away_is_refused(self):
         instance = Instance(export(CRANK), True)
-        with self.assertRaisesRegex(FmuError, "motor.armature_inductance must stay > 0 H"):
+        with self.assertRaisesRegex(FmuError, "armature_inductance: must stay > 0 H"):
             instance.set({"motor_armature_inductance": 0.0})
             instance.initialise()
         instance.close()
