@@ -2,6 +2,11 @@
 set(DEBIAN_REVISION 1)
 set(DEBIAN_DOCUMENTS ${PROJECT_BINARY_DIR}/debian)
 find_program(GZIP gzip REQUIRED)
+# FMUs of the packaged program run on Windows, too.
+if(NOT WINDOWS_COMPILER)
+  message(FATAL_ERROR "the package wingbeat holds the binary of FMUs for Windows, for which there is no compiler: "
+    "install g++-mingw-w64-x86-64-posix, as scripts/install-dependencies --packages does")
+endif()
 
 # The date of the changelog is that of the sources: SOURCE_DATE_EPOCH.
 string(TIMESTAMP DEBIAN_DATE "%a, %d %b %Y %H:%M:%S +0000" UTC)

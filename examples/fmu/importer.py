@@ -141,8 +141,12 @@ class Instance:
         return list(values)
 
     def whole(self, name):
-        value = c.c_int()
         reference = c.c_uint(self.package.reference(name))
+        if self.package.variables[name].tag == "Enumeration":  # of FMI 3, which gets them as other numbers
+            value = c.c_int64()
+            self.call("", c.byref(reference), c.c_size_t(1), c.byref(value), c.c_size_t(1), name3="GetInt64")
+            return value.value
+        value = c.c_int()
         self.call("GetInteger", c.byref(reference), c.c_size_t(1), c.byref(value), *self._sized(1), name3="GetInt32")
         return value.value
 
@@ -186,11 +190,12 @@ class Instance:
         self.call("SerializeFMUstate", state, bytes_, size, name3="SerializeFMUState")
         return bytes(bytes_)
 
-    def deserialise(self, content):
+    def deserialise(self, content, size=None):
         state = c.c_void_p()
         self.call(
-            "DeSerializeFMUstate", content, c.c_size_t(len(content)), c.byref(state), name3="DeserializeFMUState"
-        )
+            "DeSerializeFMUstate", content, c.c_size_t(len(content) if size is None else size), c.byref(state),
+            name3="DeserializeFMUState",
+        )  # fmt: skip
         return state
 
     def directional(self, unknowns, knowns, seed):
@@ -268,9 +273,8 @@ class Instance:
             self.functions.fmi3FreeInstance(self.handle)
 
 
-def integrate(instance, until, tolerance=1e-9, sample=None, command=None):
-    """Model exchange by DOP853 of SciPy, through events, to `until`; calls sample(time) after each step and
-    command(time), for inputs, before each."""
+def integrate(instance, until, tolerance=1e-9, sample=None):
+    """Model exchange by DOP853 of SciPy, through events, to `until`; calls sample(time) after each step."""
     import numpy as np
     from scipy.integrate import DOP853
     from scipy.optimize import brentq

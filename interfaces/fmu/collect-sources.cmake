@@ -1,6 +1,8 @@
 # cmake -P: the sources of the FMU binary with every header that they need beyond the standard library, as a ZIP file
 # whose files find each other: gcc -I. all.cpp. Of COMPILER, FILES (.cpp below ROOT/src), ROOT, the folders EIGEN, CERES
-# and XSIMD that hold Eigen, ceres and xsimd, README, FOLDER to work in, and DEPFILE makes OUTPUT.
+# and XSIMD that hold Eigen, ceres and xsimd, README, FOLDER to work in, and DEPFILE makes OUTPUT. What the compiler
+# here does not read is what another processor's, or the same with other options, may: Eigen and xsimd have headers for
+# each instruction set, and all of those are packed.
 
 file(REMOVE_RECURSE ${FOLDER})
 file(MAKE_DIRECTORY ${FOLDER})
@@ -17,6 +19,10 @@ execute_process(
 file(WRITE ${DEPFILE} "${needed}")
 string(REPLACE "\\\n" " " needed "${needed}")
 separate_arguments(needed UNIX_COMMAND "${needed}")
+file(GLOB_RECURSE instruction_sets ${EIGEN}/Eigen/src/Core/arch/*.h ${XSIMD}/xsimd/*.hpp)
+list(FILTER instruction_sets EXCLUDE REGEX "/arch/(CUDA|GPU|HIP|SYCL)/")
+list(APPEND needed ${instruction_sets})
+list(REMOVE_DUPLICATES needed)
 foreach(file ${needed})
   foreach(place ${ROOT}/include ${ROOT}/src ${EIGEN}/Eigen ${CERES}/ceres ${XSIMD}/xsimd)
     string(FIND ${file} ${place}/ at)

@@ -70,6 +70,7 @@ class ArchiveReader {
  public:
   explicit ArchiveReader(std::string_view bytes) : rest_(bytes) {}
   bool done() const { return rest_.empty(); }
+  std::string_view rest() const { return rest_; }
 
   template <class T>
   void operator()(T& x) {

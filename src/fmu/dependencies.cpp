@@ -1,31 +1,35 @@
 #include "fmu/dependencies.hpp"
 
+#include <algorithm>
+
 #include "fmu/instant.hpp"
 
 namespace wingbeat::fmu {
 namespace {
 
-/// Of the electrical side: current and, without inductance, what it follows from.
+/// Of one side.
 struct Knowns {
-  Places at;
+  StateLayout layout;
+  std::size_t side;
   std::vector<std::size_t> found;
 
-  void state(std::size_t k) { found.push_back(reference_of(VariableKind::state, k)); }
-  void input(InputId id) { found.push_back(reference_of(VariableKind::input, std::size_t(id))); }
+  void state(std::size_t k) { found.push_back(reference_of(VariableKind::state, k, side)); }
+  void input(InputId id) { found.push_back(reference_of(VariableKind::input, std::size_t(id), side)); }
   void voltages(bool sine) {
     input(InputId::voltage);
-    if (sine) input(InputId::voltage_offset);
+    if (!sine) return;
+    input(InputId::voltage_offset);
+    state(layout.phase());
   }
 };
 
-}  // namespace
-
-std::vector<std::size_t> dependencies_of(const Design<double>& design, std::size_t reference) {
-  Knowns k{Places(resolve(design)), {}};
-  const Places& at = k.at;
-  const bool sine = is_sine(design.supply.type);
+std::vector<std::size_t> known_on_side(const Design<double>& design, VariableKind kind, std::size_t number,
+                                       std::size_t side) {
+  Knowns k{StateLayout(resolve(design)), side, {}};
+  const StateLayout& layout = k.layout;
+  const Places& at = layout.at;
+  const bool sine = layout.has_phase;
   const bool resists = design.supply.type == SupplyType::battery;
-  const std::size_t number = number_of(reference);
   const auto all_states = [&] {
     for (std::size_t n = 0; n < at.count; ++n) k.state(n);
   };
@@ -58,16 +62,18 @@ std::vector<std::size_t> dependencies_of(const Design<double>& design, std::size
     if (at.inductive) k.state(at.current);
     k.voltages(sine);
   };
-  if (kind_of(reference) == VariableKind::derivative) {
+  if (kind == VariableKind::derivative) {
+    const std::size_t sum = number - layout.first_sum();
     if (number == 0 || (at.pitching && number == at.pitch)) k.state(number == 0 ? 1 : at.pitch + 1);
     else if (at.inductive && number == at.current) k.state(1), k.state(at.current), k.voltages(sine);
     else if (number < at.count) mechanics();
-    else if (number == at.count) lift();
-    else if (number <= at.count + 2) current();
-    else if (number == at.count + 3) electrical_power();
-    else if (number == at.count + 4) mechanics();
+    else if (number < layout.first_sum()) k.input(InputId::frequency);
+    else if (sum == 0) lift();
+    else if (sum <= 2) current();
+    else if (sum == 3) electrical_power();
+    else if (sum == 4) mechanics();
     else aerodynamics();
-  } else if (kind_of(reference) == VariableKind::output) {
+  } else if (kind == VariableKind::output) {
     switch (OutputId(number)) {
       case OutputId::crank_angle: k.state(0); break;
       case OutputId::crank_speed:
@@ -90,10 +96,36 @@ std::vector<std::size_t> dependencies_of(const Design<double>& design, std::size
         k.state(1);
         k.input(InputId::load_torque);
         break;
+      case OutputId::roll_moment:
+      case OutputId::pitch_moment:
+        lift();
+        k.state(0);
+        break;
+      case OutputId::yaw_moment:
+        aerodynamics();
+        k.state(0);
+        break;
       default: mechanics(); break;
     }
   }
+  std::sort(k.found.begin(), k.found.end());
+  k.found.erase(std::unique(k.found.begin(), k.found.end()), k.found.end());
   return k.found;
+}
+
+}  // namespace
+
+std::vector<std::size_t> dependencies_of(const Design<double>& design, std::size_t reference) {
+  const VariableKind kind = kind_of(reference);
+  if (kind != VariableKind::derivative && kind != VariableKind::output) return {};
+  const std::size_t side = side_of(reference), index = index_of(reference);
+  if (!has_two_drives(design) || side != 0) return known_on_side(design, kind, index, side);
+  std::vector<std::size_t> both;
+  for (const std::size_t one : {1, 2}) {
+    for (const std::size_t known : known_on_side(design, kind, index, one)) both.push_back(known);
+  }
+  std::sort(both.begin(), both.end());
+  return both;
 }
 
 }  // namespace wingbeat::fmu

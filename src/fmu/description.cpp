@@ -69,7 +69,12 @@ BaseUnit base_of(const std::string& unit) {
 class Writer {
  public:
   Writer(const Design<double>& design, const std::string& token, const FmuOptions& options)
-      : design_(design), token_(token), options_(options), instance_(design), variables_(variables_of(design)) {
+      : design_(design),
+        token_(token),
+        options_(options),
+        instance_(design),
+        layout_(drive_vehicle(design, has_two_drives(design))),
+        variables_(variables_of(design)) {
     // FMI 2 knows the number of event indicators alone, FMI 3 each as a variable.
     if (!is3() || !has_model_exchange()) {
       std::erase_if(variables_, [](const Variable& v) { return v.kind == VariableKind::indicator; });
@@ -81,6 +86,7 @@ class Writer {
     head();
     kinds();
     units();
+    types();
     line(1, "<LogCategories>");
     for (const auto& [name, meaning] : {std::pair{"logStatusDiscard", "calls that were discarded"},
                                         std::pair{"logStatusError", "calls that failed"}}) {
@@ -159,12 +165,38 @@ class Writer {
       for (std::size_t k = 0; k < 6; ++k) {
         if (base.exponents[k] != 0) exponents += attribute(names[k], std::to_string(base.exponents[k]));
       }
-      line(2, "<Unit" + attribute("name", unit) + "><BaseUnit" + exponents + "/></Unit>");
+      std::string shown;
+      for (const DisplayUnit& d : display_units) {
+        if (unit != d.unit) continue;
+        shown += "<DisplayUnit" + attribute("name", d.name) + attribute("factor", number(d.factor)) +
+                 (d.offset != 0.0 ? attribute("offset", number(d.offset)) : std::string()) + "/>";
+      }
+      line(2, "<Unit" + attribute("name", unit) + "><BaseUnit" + exponents + "/>" + shown + "</Unit>");
     }
     line(1, "</UnitDefinitions>");
   }
 
+  /// Of the status.
+  void types() {
+    line(1, "<TypeDefinitions>");
+    const std::string name = attribute("name", status_type) + attribute("description", "What a drive does");
+    if (is3()) line(2, "<EnumerationType" + name + ">");
+    else line(2, "<SimpleType" + name + "><Enumeration>");
+    for (const StatusMeaning& s : status_meanings) {
+      line(3, "<Item" + attribute("name", s.name) + attribute("value", std::to_string(int(s.status))) +
+                  attribute("description", s.meaning) + "/>");
+    }
+    line(2, is3() ? "</EnumerationType>" : "</Enumeration></SimpleType>");
+    line(1, "</TypeDefinitions>");
+  }
+
+  static constexpr const char* status_type = "Status";
   bool is_whole(const Variable& v) const { return v.kind == VariableKind::count; }
+  std::string unit_of(const Variable& v) const {
+    if (is_text(v) || is_whole(v) || v.unit.empty()) return {};
+    return attribute("unit", v.unit) +
+           (v.display_unit.empty() ? std::string() : attribute("displayUnit", v.display_unit));
+  }
   bool is_text(const Variable& v) const { return v.kind == VariableKind::text; }
 
   /// A start value belongs to what is set, to constants, and to what is exact.
@@ -186,13 +218,14 @@ class Writer {
 
   /// Nominal value, and whether events may set it anew: the motion at stops and standstill, not the sums.
   std::string of_state(const Variable& v) const {
-    const bool moves = v.number + exposed_sum_count < instance_.state_count();
-    return attribute("nominal", number(instance_.nominals()[v.number])) +
+    const bool moves = v.number < layout_.at.count;
+    const std::size_t before = v.side == 2 ? layout_.count() : 0;
+    return attribute("nominal", number(instance_.nominals()[before + v.number])) +
            (moves && has_model_exchange() ? attribute("reinit", "true") : std::string());
   }
 
   /// Value references of the state behind a derivative.
-  static std::size_t state_behind(const Variable& v) { return reference_of(VariableKind::state, v.number); }
+  static std::size_t state_behind(const Variable& v) { return reference_of(VariableKind::state, v.number, v.side); }
 
   void variable2(const Variable& v) {
     line(2, "<ScalarVariable" + attribute("name", v.name) + attribute("valueReference", std::to_string(v.reference())) +
@@ -200,8 +233,9 @@ class Writer {
                 attribute("variability", v.variability) +
                 (v.initial.empty() || v.causality == "independent" ? std::string() : attribute("initial", v.initial)) +
                 ">");
-    std::string type = is_text(v) ? "<String" : is_whole(v) ? "<Integer" : "<Real";
-    if (!is_text(v) && !is_whole(v) && !v.unit.empty()) type += attribute("unit", v.unit);
+    std::string type = is_text(v) ? "<String" : v.is_status() ? "<Enumeration" : is_whole(v) ? "<Integer" : "<Real";
+    if (v.is_status()) type += attribute("declaredType", status_type);
+    type += unit_of(v);
     if (!is_text(v)) type += bounds(v);
     if (v.kind == VariableKind::state) type += of_state(v);
     if (has_start(v)) type += attribute("start", start_of(v));
@@ -213,12 +247,13 @@ class Writer {
   }
 
   void variable3(const Variable& v) {
-    std::string text = is_text(v) ? "<String" : is_whole(v) ? "<Int32" : "<Float64";
+    std::string text = is_text(v) ? "<String" : v.is_status() ? "<Enumeration" : is_whole(v) ? "<Int32" : "<Float64";
     text += attribute("name", v.name) + attribute("valueReference", std::to_string(v.reference())) +
             attribute("description", v.description) + attribute("causality", v.causality) +
             attribute("variability", v.variability);
     if (!v.initial.empty() && v.causality != "independent") text += attribute("initial", v.initial);
-    if (!is_text(v) && !is_whole(v) && !v.unit.empty()) text += attribute("unit", v.unit);
+    if (v.is_status()) text += attribute("declaredType", status_type);
+    text += unit_of(v);
     if (!is_text(v)) text += bounds(v);
     if (v.kind == VariableKind::state) text += of_state(v);
     if (v.kind == VariableKind::derivative) text += attribute("derivative", std::to_string(state_behind(v)));
@@ -308,6 +343,7 @@ class Writer {
   std::string token_;
   FmuOptions options_;
   Instance instance_;
+  StateLayout layout_;
   std::vector<Variable> variables_;
   std::string text_;
 };

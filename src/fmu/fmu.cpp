@@ -62,7 +62,7 @@ std::string build_description_of(const FmuOptions& options) {
          "  <BuildConfiguration modelIdentifier=\"" +
          options.identifier +
          "\" description=\"One C++ file with all others\">\n"
-         "    <SourceFileSet language=\"C++20\" compiler=\"gcc\" compilerOptions=\"-std=c++20 -O2 -fPIC\">\n"
+         "    <SourceFileSet language=\"C++20\" compiler=\"gcc\" compilerOptions=\"-std=c++20 -O2 -fPIC -fno-gnu-unique\">\n"
          "      <SourceFile name=\"fmu.cpp\"/>\n"
          "      <IncludeDirectory name=\".\"/>\n"
          "    </SourceFileSet>\n"
@@ -77,7 +77,11 @@ FmuContent fmu_content(const Design<double>& design, const FmuOptions& options) 
   content.description = model_description(design, token_of(content.resource), options);
   content.documentation = documentation_of(design, options);
   const bool second = options.version == FmiVersion::fmi2;
+#ifdef __aarch64__
+  content.linux_folder = "binaries/aarch64-linux";  // FMI 2 has no name for it
+#else
   content.linux_folder = second ? "binaries/linux64" : "binaries/x86_64-linux";
+#endif
   content.windows_folder = second ? "binaries/win64" : "binaries/x86_64-windows";
   if (options.sources) content.source = source_of(options);
   if (options.sources && !second) content.build_description = build_description_of(options);

@@ -39,7 +39,8 @@ template <Scalar S>
 struct Everything {
   std::array<S, max_unknowns> rates;
   Motion<S> motion;
-  S stroke_angle, shaft_speed, pitch_angle;
+  S angle;  ///< of crank or shaft
+  S stroke_angle, shaft_speed, pitch_angle, pitch_velocity, load_torque;
   CycleIntegrals<S> integrands;
 };
 
@@ -107,6 +108,9 @@ Everything<S> evaluate(const Vehicle<S>& v, const Mode& mode, const S* y, const 
     m.motor_torque = v.motor.torque_constant * i;
     m.friction_torque = m.motor_torque - m.rod_force * k.crank_lever - v.load_torque;
   }
+  all.angle = y[0];
+  all.pitch_velocity = turning;
+  all.load_torque = v.load_torque;
   all.stroke_angle = at.crank ? S(stroke_angle(k)) : y[0];
   all.shaft_speed = omega;
   all.rates.fill(S(0.0));

@@ -247,8 +247,9 @@ void CrankModel::find_jams() {
 double CrankModel::next_switch() const {
   if (supply.type != SupplyType::pwm || command) return infinity;
   // Even switches turn on, odd ones off; number 0 is the switching on at t = 0.
-  const long next = now.switches + 1;
-  return (double(next / 2) + (next % 2 == 1 ? supply.duty : 0.0)) / supply.frequency;
+  const std::int64_t next = now.switches + 1;
+  const bool off = (next & 1) != 0;
+  return (double((next - (off ? 1 : 0)) / 2) + (off ? supply.duty : 0.0)) / supply.frequency;
 }
 
 void CrankModel::choose_force_branch() {
@@ -426,7 +427,7 @@ void CrankModel::switch_supply() {
 
 void CrankModel::catch_up_with_supply() {
   if (supply.type != SupplyType::pwm || command) return;
-  now.switches = 2 * long(std::floor(now.t * supply.frequency));
+  now.switches = 2 * std::int64_t(std::floor(now.t * supply.frequency));
   now.switched_voltage = supply.voltage;
   while (next_switch() <= now.t) switch_supply();
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -29,7 +30,7 @@ class CrankModel {
     double switched_voltage = 0.0;              ///< of a supply that is no sine, at this moment [V]
     bool stuck = false;                         ///< stands where friction holds it
     bool jammed = false;                        ///< has reached where its equations have no unique solution
-    long switches = 0;                          ///< of a pwm supply so far: even ones turn on, number 0 at t = 0
+    std::int64_t switches = 0;                  ///< of a pwm supply so far: even ones turn on, number 0 at t = 0
     double psi = 0.0, pitch_velocity = 0.0;     ///< of wings that pitch [rad], [rad/s]
     bool held = false;                          ///< a stop holds the wings
     double impact_loss = 0.0;                   ///< energy that stops have taken in impacts so far [J]

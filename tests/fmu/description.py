@@ -118,6 +118,19 @@ def problems_of(package):
 
     units = [u.get("name") for u in xml.iter("Unit")]
     rule(len(units) == len(set(units)), "units are defined once")
+    shown = {u.get("name"): {d.get("name") for d in u.iter("DisplayUnit")} for u in xml.iter("Unit")}
+    for d in xml.iter("DisplayUnit"):
+        rule(set(d.keys()) <= {"name", "factor", "offset"}, f"attributes of the display unit {d.get('name')}")
+        rule(float(d.get("factor", "1")) != 0.0, f"factor of {d.get('name')}")
+    types = {
+        t.get("name"): t for t in xml.find("TypeDefinitions")
+        if (t.tag, version) in (("SimpleType", 2), ("EnumerationType", 3))
+    }  # fmt: skip
+    rule(len(types) == len(xml.find("TypeDefinitions")), "types")
+    for name, type_ in types.items():
+        items = list(type_.iter("Item"))
+        for key in ("name", "value"):
+            rule(len({item.get(key) for item in items}) == len(items) > 0, f"{name}: each {key} once")
     variables = list(xml.find("ModelVariables"))
     names = [v.get("name") for v in variables]
     references = [v.get("valueReference") for v in variables]
@@ -141,6 +154,9 @@ def problems_of(package):
             start = type_.find("Start").get("value")
         needs = pair[0] in ("input", "parameter") or pair[1] == "constant" or initial in ("exact", "approx")
         rule((start is not None) == needs, f"{name}: start value")
+        rule(type_.tag != "Enumeration" or type_.get("declaredType") in types, f"{name}: declared type")
+        rule(not type_.get("displayUnit") or type_.get("displayUnit") in shown.get(type_.get("unit"), set()),
+             f"{name}: display unit {type_.get('displayUnit')}")  # fmt: skip
         rule(not type_.get("unit") or type_.get("unit") in units, f"{name}: unit {type_.get('unit')}")
         rule(not real or bool(type_.get("unit")), f"{name}: no unit")
         bounds = [float(type_.get(k)) if type_.get(k) else None for k in ("min", "max")]
@@ -175,7 +191,8 @@ def problems_of(package):
     for state in states:
         rule(state.get("variability") == "continuous", f"{state.get('name')}: states are continuous")
         summed = state.get("name").startswith("sum_")
-        jumps = xml.find("ModelExchange") is not None and not summed
+        driven = state.get("name").startswith("state_supply_phase")
+        jumps = xml.find("ModelExchange") is not None and not summed and not driven
         rule(typed(state, version).get("reinit") == ("true" if jumps else None), f"{state.get('name')}: reinit")
     for v in variables:
         rule(not typed(v, version).get("reinit") or v in states, f"{v.get('name')}: states alone are set anew")

@@ -1,5 +1,6 @@
 """FMUs by an importer of the tests: every kind and version against the program, against each other and themselves."""
 
+import ctypes as c
 import json
 import os
 import pathlib
@@ -19,6 +20,9 @@ FOLDER = tempfile.TemporaryDirectory(prefix="wingbeat-fmus-")
 CRANK, DIRECT, HINGED = "friction2022", "direct-drive", "pitch-hinge"
 PWM = ("--set", "supply.type=\"pwm\"", "--set", "supply.voltage=4", "--set", "supply.duty=0.75",
        "--set", "supply.frequency=2e3")  # fmt: skip
+TWO = ("--set", "vehicle.motors=2")
+STOPS = ("--set", "pitch.stop=20 deg")
+HINGED_CRANK = "pitch-hinge-crank"
 
 
 def export(vehicle, version=2, *options):
@@ -46,6 +50,34 @@ class Descriptions(unittest.TestCase):
                 for kind in ("me", "cs", "both"):
                     package = export(vehicle, version, "--kind", kind)
                     self.assertEqual(problems_of(package), [], (vehicle, version, kind))
+
+    def test_of_two_drives_keep_them_too(self):
+        for vehicle in (CRANK, HINGED):
+            for version in (2, 3):
+                package = export(vehicle, version, *TWO)
+                self.assertEqual(problems_of(package), [], (vehicle, version))
+                for name in ("voltage_left", "voltage_right", "roll_moment", "status_left", "lift"):
+                    self.assertIn(name, package.variables)
+                self.assertNotIn("voltage", package.variables)
+
+    def test_display_units_and_the_status(self):
+        for version in (2, 3):
+            package = export(CRANK, version)
+            tag = "Real" if version == 2 else "Float64"
+
+            def attributes(name):
+                variable = package.variables[name]
+                return variable[0] if version == 2 else variable
+
+            for name, unit in (("crank_speed", "rpm"), ("stroke_angle", "deg"), ("flapping_velocity", "deg/s"),
+                               ("transmission_rod_length", "mm")):  # fmt: skip
+                self.assertEqual((attributes(name).tag, attributes(name).get("displayUnit")), (tag, unit))
+            units = {d.get("name"): float(d.get("factor")) for d in package.xml.iter("DisplayUnit")}
+            self.assertAlmostEqual(units["deg"] * np.pi, 180.0, 12)
+            self.assertAlmostEqual(units["rpm"] * 2.0 * np.pi, 60.0, 12)
+            self.assertEqual(attributes("status").tag, "Enumeration")
+            items = {item.get("name"): int(item.get("value")) for item in package.xml.iter("Item")}
+            self.assertEqual(items, {"starting": 0, "flapping": 1, "standing": 2, "jammed": 3})
 
     def test_every_number_of_the_vehicle_is_a_parameter(self):
         package = export(CRANK)
@@ -178,6 +210,160 @@ class Numbers(unittest.TestCase):
             instance.close()
 
 
+    def test_at_a_standstill_the_means_are_0(self):
+        package = export(CRANK)
+        means = [name for name in package.variables if name.endswith("_mean")]
+        instance = Instance(package, True, 0.0)
+        steps(instance, 0.0, 0.5)
+        cycles = instance.whole("cycles")
+        self.assertEqual(instance.whole("status"), 1)
+        instance.set({"voltage": 0.0})  # nothing but air and load-proportional friction brakes it
+        steps(instance, 0.5, 1.5)
+        self.assertEqual(instance.whole("status"), 2)
+        self.assertEqual(instance.get(*means), [0.0] * len(means))
+        # The other way round cycles count as well.
+        stood = instance.whole("cycles")
+        self.assertLess(stood, cycles + 5)
+        instance.set({"voltage": -3.0})
+        steps(instance, 1.5, 1.52)
+        self.assertEqual(instance.whole("status"), 0)
+        steps(instance, 1.52, 2.5)
+        self.assertEqual(instance.whole("status"), 1)
+        self.assertGreater(instance.whole("cycles"), stood + 10)
+        lift, frequency = instance.get("lift_mean", "frequency_mean")
+        self.assertGreater(lift, 5e-3)
+        # And after a reversal without a standstill.
+        instance.set({"voltage": 3.0})
+        steps(instance, 2.5, 3.5)
+        expected = run(CRANK)
+        self.assertEqual(instance.whole("status"), 1)
+        found = instance.get("lift_mean", "frequency_mean")
+        np.testing.assert_allclose(found, [expected["lift_mean_n"], expected["frequency_hz"]], rtol=1e-5)
+        instance.close()
+        direct = Instance(export(DIRECT), True, 0.0)
+        steps(direct, 0.0, 0.5)
+        self.assertEqual(direct.whole("status"), 1)
+        direct.set({"voltage": 0.0})
+        steps(direct, 0.5, 3.0, 0.01)
+        self.assertEqual(direct.whole("status"), 2)
+        self.assertEqual(direct.get("lift_mean", "frequency_mean"), [0.0, 0.0])
+        direct.close()
+
+    def test_an_input_that_was_set_wins_over_its_parameter(self):
+        for version in (2, 3):
+            for name, parameter, vehicle in (("voltage", "supply_voltage", CRANK),
+                                             ("frequency", "supply_frequency", DIRECT)):  # fmt: skip
+                instance = Instance(export(vehicle, version), True)
+                instance.set({name: 2.5})
+                instance.set({parameter: 2.0})
+                instance.initialise()
+                self.assertEqual(instance.get(name), [2.5])
+                instance.reset()
+                instance.set({parameter: 2.0})
+                instance.initialise()
+                self.assertEqual(instance.get(name), [2.0])
+                instance.close()
+
+    def test_the_drive_frequency_is_an_input(self):
+        package = export(DIRECT, 2)
+        co = Instance(package, True, 0.0, values={"solver_tolerance": 1e-10})
+        me = Instance(package, False, 0.0)
+        steps(co, 0.0, 0.213, 0.213)
+        integrate(me, 0.213, 1e-10)
+        before = co.get("terminal_voltage")[0]
+        co.set({"frequency": 18.0})
+        self.assertEqual(co.get("terminal_voltage")[0], before)  # the phase goes on
+        me.set({"frequency": 18.0})
+        steps(co, 0.213, 1.513, 0.1)
+        integrate(me, 1.513, 1e-10)
+        names = ("frequency_mean", "lift_mean", "current_mean", "stroke_angle", "current")
+        np.testing.assert_allclose(co.get(*names)[:3], me.get(*names)[:3], rtol=1e-6, atol=1e-9)
+        np.testing.assert_allclose(co.get(*names)[3:], me.get(*names)[3:], rtol=1e-5, atol=1e-6)
+        expected = run(DIRECT, "--set", "supply.frequency=18")
+        self.assertLess(abs(co.get("frequency_mean")[0] / 18.0 - 1.0), 1e-9)
+        self.assertLess(abs(co.get("lift_mean")[0] / expected["lift_mean_n"] - 1.0), 1e-5)
+        for wrong in (0.0, -1.0, float("inf")):
+            with self.assertRaises(FmuError):
+                co.set({"frequency": wrong})
+        co.close(), me.close()
+
+    def test_restarting_where_the_fmu_says_so_is_enough(self):
+        """As importers do that restart their integrators only where valuesOfContinuousStatesChanged is true."""
+        for vehicle, options in ((CRANK, PWM), (HINGED_CRANK, STOPS), (HINGED, STOPS)):
+            package = export(vehicle, 2, *options)
+            found = []
+            for only_where_told in (False, True):
+                me = Instance(package, False, 0.0)
+                jumps = euler_until(me, 0.06, only_where_told)
+                found.append(me.states())
+                self.assertGreater(jumps, 5)
+                me.close()
+            self.assertEqual(found[0], found[1], vehicle)
+
+    def test_two_drives_move_each_for_itself(self):
+        single = {v: run(CRANK, "--voltage", f"{v} V") for v in (2.8, 3.2)}
+        for version in (2, 3):
+            for co_simulation in (True, False):
+                package = export(CRANK, version, *TWO)
+                instance = Instance(package, co_simulation, 0.0,
+                                    values={"voltage_left": 3.2, "voltage_right": 2.8, "hinge_offset": 5e-3})  # fmt: skip
+                if co_simulation:
+                    steps(instance, 0.0, 1.2, 0.05)
+                else:
+                    integrate(instance, 1.2, 1e-8)
+                for side, voltage in (("left", 3.2), ("right", 2.8)):
+                    frequency, lift = instance.get(f"frequency_mean_{side}", f"lift_mean_{side}")
+                    self.assertLess(abs(frequency / single[voltage]["frequency_hz"] - 1.0), 1e-5)
+                    self.assertLess(abs(lift / single[voltage]["lift_mean_n"] - 1.0), 1e-5)
+                    self.assertEqual(instance.whole(f"status_{side}"), 1)
+                names = ("lift", "current", "roll_moment", "pitch_moment", "lift_left", "lift_right",
+                         "stroke_angle_left", "stroke_angle_right", "current_left", "current_right")  # fmt: skip
+                lift, current, roll, pitch, left, right, beta_left, beta_right, i_left, i_right = instance.get(*names)
+                self.assertAlmostEqual(lift, left + right, 12)
+                self.assertAlmostEqual(current, i_left + i_right, 12)
+                # S_3/S_2 of a semi-ellipse without offset, from the moments that both give.
+                a = [left * np.cos(beta_left) - right * np.cos(beta_right),
+                     left * np.sin(beta_left) + right * np.sin(beta_right)]  # fmt: skip
+                lever = pitch / a[1]
+                self.assertTrue(0.03 < lever < 0.06, lever)
+                self.assertAlmostEqual(roll, lever * a[0] + 5e-3 * (left - right), 12)
+                instance.close()
+
+    def test_two_drives_alike_are_the_vehicle(self):
+        battery = "friction2022-battery"
+        expected = run(battery, *TWO)
+        instance = Instance(export(battery, 2, *TWO), True, 0.0, values={"solver_tolerance": 1e-10})
+        steps(instance, 0.0, 1.5, 0.05)
+        lift, power, roll, yaw = instance.get("lift_mean", "power_electrical_mean", "roll_moment", "yaw_moment")
+        self.assertLess(abs(lift / expected["lift_mean_n"] - 1.0), 1e-5)
+        self.assertLess(abs(power / expected["power_electrical_w"] - 1.0), 1e-5)
+        self.assertEqual((roll, yaw), (0.0, 0.0))
+        instance.close()
+
+
+def euler_until(instance, end, only_where_told):
+    """Model exchange by two-step Adams formulas on a fixed grid that events divide; returns the number of restarts. An
+    importer that does not restart uses the rate before the event."""
+    time, restarts, before = 0.0, 0, None
+    _, _, following = instance.update()
+    while time < end - 1e-12:
+        stop = min(time + 1e-5, end, following if following is not None else end)
+        y, rate = np.array(instance.states()), np.array(instance.rates())
+        last = rate if before is None else before
+        h = stop - time
+        instance.put(stop, y + h * (1.5 * rate - 0.5 * last))
+        before, time = rate, stop
+        if (following is None or time < following) and min(instance.indicators()) > 0.0:
+            continue
+        instance.event_mode()
+        states, rates = instance.states(), instance.rates()
+        _, changed, following = instance.update()
+        jumps = instance.states() != states or instance.rates() != rates
+        if changed if only_where_told else jumps:
+            before, restarts = None, restarts + 1
+    return restarts
+
+
 class Functions(unittest.TestCase):
     def test_states_come_back_bit_for_bit(self):
         for vehicle in (CRANK, HINGED):
@@ -232,7 +418,7 @@ class Functions(unittest.TestCase):
 
                     begin = instance.get(known)[0]
                     size = 1e-4 if known == "load_torque" else min(max(abs(begin), 1e-2), 100.0)
-                    if known == "state_crank_angle":
+                    if known in ("state_crank_angle", "state_supply_phase"):
                         size = 0.2
                     h = 1e-3 * size
                     difference = (8 * (values(h) - values(-h)) - (values(2 * h) - values(-2 * h))) / (12 * h)
@@ -284,6 +470,65 @@ class Functions(unittest.TestCase):
             with self.assertRaisesRegex(FmuError, "token"):
                 Instance(package, True)
 
+    def test_no_number_hangs_or_ends_the_host(self):
+        inf, nan = float("inf"), float("nan")
+        for version in (2, 3):
+            package = export(CRANK, version)
+            for start in (nan, inf, -inf, 1e300):
+                instance = Instance(package, True)
+                with self.assertRaisesRegex(FmuError, "start time"):
+                    instance.initialise(start)
+                instance.initialise(0.0)
+                instance.close()
+            instance = Instance(package, True, 0.0)
+            for length, said in ((inf, "finite"), (nan, "finite"), (-1.0, "go back"), (1e9, "at most 1000 s")):
+                with self.assertRaisesRegex(FmuError, said):
+                    instance.step(0.0, length)
+            with self.assertRaisesRegex(FmuError, "finite"):
+                instance.step(nan, 0.1)
+            instance.step(0.0, 0.1)
+            state = instance.save()
+            content = instance.serialise(state)
+            for size in (2**63, 2**64 - 1, 2**40, len(content) + 1, len(content) - 1, 0, 7):
+                with self.assertRaisesRegex(FmuError, "no state that was serialised"):
+                    instance.deserialise(content, size)
+            for at in (0, 30, 200, len(content) - 1):
+                spoilt = bytearray(content)
+                spoilt[at] ^= 0x55
+                with self.assertRaisesRegex(FmuError, "no state that was serialised"):
+                    instance.deserialise(bytes(spoilt))
+            other = Instance(export(DIRECT, version), True, 0.0)
+            back = other.deserialise(content)
+            with self.assertRaisesRegex(FmuError, "another FMU"):
+                other.restore(back)
+            other.free(back)
+            instance.free(state)
+            with self.assertRaisesRegex(FmuError, "has been freed"):
+                instance.restore(state)
+            function = instance.functions.fmi2GetReal if version == 2 else instance.functions.fmi3GetFloat64
+            for handle, count in ((None, 1), (instance.handle, 1), (instance.handle, 2**63)):
+                arguments = [handle, None, c.c_size_t(count), None]
+                self.assertEqual(function(*arguments, *([] if version == 2 else [c.c_size_t(count)])), 3)
+            instance.step(0.1, 0.1)
+            instance.close(), other.close()
+            me = Instance(package, False, 0.0)
+            me.update()
+            for t in (nan, inf, 1e9):
+                with self.assertRaisesRegex(FmuError, "SetTime"):
+                    me.put(t, me.states())
+            me.close()
+
+    def test_a_parameter_that_takes_a_state_away_is_refused(self):
+        instance = Instance(export(CRANK), True)
+        with self.assertRaisesRegex(FmuError, "armature_inductance: must stay > 0 H"):
+            instance.set({"motor_armature_inductance": 0.0})
+            instance.initialise()
+        instance.close()
+        two = Instance(export(CRANK, 2, *TWO), True)
+        with self.assertRaisesRegex(FmuError, "vehicle_motors must not be"):
+            two.set({"vehicle_motors": 1.0})
+        two.close()
+
     def test_a_parameter_counts_from_the_start(self):
         values = {"transmission_crank_radius": 4e-3, "motor_inertia": 2e-7, "solver_tolerance": 1e-10}
         instance = Instance(export(CRANK), True, 0.0, values=values)
@@ -330,6 +575,9 @@ class Functions(unittest.TestCase):
         needed = {line.split()[0].split("/")[-1].split(".so")[0] for line in said.splitlines()}
         self.assertLessEqual(needed, {"linux-vdso", "libm", "libc", "ld-linux-x86-64"})
         said = subprocess.run(["objdump", "-T", package.binary()], capture_output=True, text=True, check=True).stdout
+        symbols = subprocess.run(["readelf", "--symbols", "--wide", package.binary()], capture_output=True, text=True,
+                                 check=True).stdout  # fmt: skip
+        self.assertNotIn("UNIQUE", symbols)
         newest = max(tuple(map(int, v.split("."))) for v in re.findall(r"GLIBC_([0-9.]+)", said))
         page = (package.root / "documentation/index.html").read_text()
         stated = re.search(r"glibc ([0-9.]+) or newer", page).group(1)
@@ -361,6 +609,28 @@ class Sources(unittest.TestCase):
         text = subprocess.run(command, cwd=sources, capture_output=True, text=True, check=True).stdout
         self.assertIn(f" {package.identifier}_fmi3DoStep(", text)
         self.assertNotIn(" fmi3DoStep(", text)
+
+
+    @unittest.skipUnless(os.environ.get("ARM_COMPILER"), "needs a cross compiler for ARM and qemu")
+    def test_they_give_the_same_numbers_on_arm(self):
+        package = export(CRANK, 3, "--sources")
+        sources = package.root / "sources"
+        compiler, emulator = os.environ["ARM_COMPILER"], os.environ["ARM_EMULATOR"].split(";")
+        subprocess.run([compiler, "-std=c++20", "-O1", "-fPIC", "-shared", "-fvisibility=hidden", "-fno-gnu-unique",
+                        "-DFMI2_OVERRIDE_FUNCTION_PREFIX", "-DFMI3_OVERRIDE_FUNCTION_PREFIX", "-I.", "fmu.cpp", "-o",
+                        "arm.so"], cwd=sources, check=True)  # fmt: skip
+        importer = pathlib.Path(FOLDER.name) / "arm_importer"
+        examples = pathlib.Path(os.environ["FMU_EXAMPLES"])
+        subprocess.run([compiler.replace("g++", "gcc"), "-std=gnu11", "-I", examples.parent.parent / "src",
+                        examples / "importer.c", "-o", importer, "-ldl"], check=True)  # fmt: skip
+        references = [str(package.reference(name)) for name in ("crank_angle", "current", "lift_mean")]
+
+        def told(command, binary):
+            line = [*command, binary, package.root / "resources", package.token, "3", "0.2", "0.001", *references]
+            return [float(x) for x in subprocess.run(line, capture_output=True, check=True).stdout.split()]
+
+        here = told([os.environ["FMU_IMPORTER"]], package.binary())
+        np.testing.assert_allclose(told([*emulator, importer], sources / "arm.so"), here, rtol=1e-9)
 
 
 class Importers(unittest.TestCase):

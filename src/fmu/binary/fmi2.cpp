@@ -1,5 +1,7 @@
 // FMI 2.0: model exchange and co-simulation.
+#include <cmath>
 #include <exception>
+#include <stdexcept>
 #include <string>
 
 #include "fmu/binary/component.hpp"
@@ -17,10 +19,22 @@ struct Fmi2 {
   bool has_tolerance = false;
 };
 
-Component& of(fmi2Component c) { return static_cast<Fmi2*>(c)->component; }
-fmi2Status status(int code) { return fmi2Status(code); }
+fmi2Status as2(int code) { return fmi2Status(code); }
+Component* component2(fmi2Component c) { return c ? &static_cast<Fmi2*>(c)->component : nullptr; }
 
-fmi2Status unsupported(fmi2Component c, const char* what) { return status(of(c).unsupported(what)); }
+template <class Work>
+fmi2Status with2(fmi2Component c, const char* function, const Work& work) noexcept {
+  return as2(wingbeat::fmu::guarded(component2(c), function, work));
+}
+template <class Work, class... Pointers>
+fmi2Status values2(fmi2Component c, const char* function, size_t count, const Work& work,
+                   const Pointers*... pointers) noexcept {
+  return as2(wingbeat::fmu::guarded_values(component2(c), function, count, work, pointers...));
+}
+/// What no variable has or nothing supports: right for none of it.
+fmi2Status none2(fmi2Component c, const char* function, size_t count, const char* what) noexcept {
+  return with2(c, function, [&](Component& of) { return count == 0 ? 0 : of.unsupported(what); });
+}
 
 }  // namespace
 
@@ -33,141 +47,196 @@ fmi2Status fmi2SetDebugLogging(fmi2Component, fmi2Boolean, size_t, const fmi2Str
 
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
                               const fmi2CallbackFunctions* callbacks, fmi2Boolean, fmi2Boolean) {
-  const std::string own_name = name ? name : "";
-  const fmi2CallbackLogger logger = callbacks ? callbacks->logger : nullptr;
-  const fmi2ComponentEnvironment environment = callbacks ? callbacks->componentEnvironment : nullptr;
-  const auto log = [=](StatusCode code, const char* category, const std::string& message) {
-    if (logger) logger(environment, own_name.c_str(), status(code), category, "%s", message.c_str());
-  };
   try {
-    const std::string folder = wingbeat::fmu::path_of_uri(resources ? resources : "");
-    return new Fmi2{{folder, guid ? guid : "", type == fmi2CoSimulation, log}, 0.0, 0.0, false};
-  } catch (const std::exception& problem) {
-    log(wingbeat::fmu::error, "logStatusError", std::string("fmi2Instantiate: ") + problem.what());
-    return nullptr;
+    const std::string own_name = name ? name : "";
+    const fmi2CallbackLogger logger = callbacks ? callbacks->logger : nullptr;
+    const fmi2ComponentEnvironment environment = callbacks ? callbacks->componentEnvironment : nullptr;
+    const auto log = [=](StatusCode code, const char* category, const std::string& message) {
+      if (logger) logger(environment, own_name.c_str(), as2(code), category, "%s", message.c_str());
+    };
+    try {
+      if (type != fmi2CoSimulation && type != fmi2ModelExchange) throw std::runtime_error("there is no such kind");
+      const std::string folder = wingbeat::fmu::path_of_uri(resources ? resources : "");
+      return new Fmi2{{folder, guid ? guid : "", type == fmi2CoSimulation, log}, 0.0, 0.0, false};
+    } catch (const std::exception& problem) {
+      log(wingbeat::fmu::error, "logStatusError", std::string("fmi2Instantiate: ") + problem.what());
+    }
+  } catch (...) {
+    // Not even the message could be made.
   }
+  return nullptr;
 }
 
 void fmi2FreeInstance(fmi2Component c) { delete static_cast<Fmi2*>(c); }
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2Real tolerance, fmi2Real start,
                                fmi2Boolean, fmi2Real) {
-  Fmi2& fmu = *static_cast<Fmi2*>(c);
-  fmu.start = start;
-  fmu.tolerance = tolerance;
-  fmu.has_tolerance = has_tolerance != 0;
-  return fmi2OK;
+  return with2(c, "fmi2SetupExperiment", [&](Component& of) {
+    Fmi2& fmu = *static_cast<Fmi2*>(c);
+    if (!(std::abs(start) <= wingbeat::fmu::latest_time)) {
+      return of.refuse("fmi2SetupExperiment: the start time must be a number of at most 1e6 s");
+    }
+    fmu.start = start;
+    fmu.tolerance = tolerance;
+    fmu.has_tolerance = has_tolerance != 0;
+    return 0;
+  });
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
-  const Fmi2& fmu = *static_cast<Fmi2*>(c);
-  return status(of(c).enter_initialisation(fmu.has_tolerance, fmu.tolerance, fmu.start));
+  return with2(c, "fmi2EnterInitializationMode", [&](Component& of) {
+    Fmi2& fmu = *static_cast<Fmi2*>(c);
+    return of.enter_initialisation(fmu.has_tolerance, fmu.tolerance, fmu.start);
+  });
 }
-fmi2Status fmi2ExitInitializationMode(fmi2Component c) { return status(of(c).exit_initialisation()); }
-fmi2Status fmi2Terminate(fmi2Component c) { return status(of(c).terminate()); }
-fmi2Status fmi2Reset(fmi2Component c) { return status(of(c).reset()); }
+fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
+  return with2(c, "fmi2ExitInitializationMode", [](Component& of) { return of.exit_initialisation(); });
+}
+fmi2Status fmi2Terminate(fmi2Component c) {
+  return with2(c, "fmi2Terminate", [](Component& of) { return of.terminate(); });
+}
+fmi2Status fmi2Reset(fmi2Component c) {
+  return with2(c, "fmi2Reset", [](Component& of) { return of.reset(); });
+}
 
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2Real values[]) {
-  return status(of(c).get_reals(r, n, values));
+  return values2(c, "fmi2GetReal", n, [&](Component& of) { return of.get_reals(r, n, values); }, r, values);
 }
 fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2Integer values[]) {
-  return status(of(c).get_wholes(r, n, values));
+  return values2(c, "fmi2GetInteger", n, [&](Component& of) { return of.get_integers(r, n, values); }, r, values);
 }
 fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference[], size_t n, fmi2Boolean[]) {
-  return status(of(c).get_none(n, "Boolean"));
+  return none2(c, "fmi2GetBoolean", n, "a Boolean variable");
 }
 fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2String values[]) {
-  return status(of(c).get_texts(r, n, values));
+  return values2(c, "fmi2GetString", n, [&](Component& of) { return of.get_texts(r, n, values); }, r, values);
 }
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference r[], size_t n, const fmi2Real values[]) {
-  return status(of(c).set_reals(r, n, values));
+  return values2(c, "fmi2SetReal", n, [&](Component& of) { return of.set_reals(r, n, values); }, r, values);
 }
 fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference[], size_t n, const fmi2Integer[]) {
-  return n == 0 ? fmi2OK : unsupported(c, "setting an Integer");
+  return none2(c, "fmi2SetInteger", n, "setting an Integer");
 }
 fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference[], size_t n, const fmi2Boolean[]) {
-  return n == 0 ? fmi2OK : unsupported(c, "setting a Boolean");
+  return none2(c, "fmi2SetBoolean", n, "setting a Boolean");
 }
 fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference[], size_t n, const fmi2String[]) {
-  return n == 0 ? fmi2OK : unsupported(c, "setting a String");
+  return none2(c, "fmi2SetString", n, "setting a String");
 }
 
-fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) { return status(of(c).save(state)); }
-fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) { return status(of(c).restore(state)); }
-fmi2Status fmi2FreeFMUstate(fmi2Component, fmi2FMUstate* state) {
-  Component::free_state(state);
-  return fmi2OK;
+fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
+  return values2(c, "fmi2GetFMUstate", 1, [&](Component& of) { return of.save(state); }, state);
 }
-fmi2Status fmi2SerializedFMUstateSize(fmi2Component, fmi2FMUstate state, size_t* size) {
-  *size = Component::size_of(state);
-  return fmi2OK;
+fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
+  return with2(c, "fmi2SetFMUstate", [&](Component& of) { return of.restore(state); });
+}
+fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* state) {
+  return with2(c, "fmi2FreeFMUstate", [&](Component& of) { return of.free_state(state); });
+}
+fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t* size) {
+  return values2(c, "fmi2SerializedFMUstateSize", 1, [&](Component& of) { return of.size_of(state, size); }, size);
 }
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
-  return status(of(c).serialise(state, bytes, size));
+  return values2(c, "fmi2SerializeFMUstate", 1, [&](Component& of) { return of.serialise(state, bytes, size); }, bytes);
 }
-fmi2Status fmi2DeSerializeFMUstate(fmi2Component, const fmi2Byte bytes[], size_t size, fmi2FMUstate* state) {
-  Component::deserialise(bytes, size, state);
-  return fmi2OK;
+fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate* state) {
+  return values2(
+      c, "fmi2DeSerializeFMUstate", 1, [&](Component& of) { return of.deserialise(bytes, size, state); }, bytes, state);
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[], size_t unknowns,
                                         const fmi2ValueReference known[], size_t knowns, const fmi2Real seed[],
                                         fmi2Real sensitivity[]) {
-  return status(of(c).directional(unknown, unknowns, known, knowns, seed, knowns, sensitivity, unknowns));
+  constexpr const char* function = "fmi2GetDirectionalDerivative";
+  return with2(c, function, [&](Component& of) {
+    if (const int wrong = of.check_values(function, unknowns, {unknown, sensitivity})) return wrong;
+    if (const int wrong = of.check_values(function, knowns, {known, seed})) return wrong;
+    return of.directional(unknown, unknowns, known, knowns, seed, knowns, sensitivity, unknowns);
+  });
 }
 
-fmi2Status fmi2EnterEventMode(fmi2Component c) { return status(of(c).enter_event_mode()); }
+fmi2Status fmi2EnterEventMode(fmi2Component c) {
+  return with2(c, "fmi2EnterEventMode", [](Component& of) { return of.enter_event_mode(); });
+}
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
-  Component::Updated to;
-  const int code = of(c).update_discrete(to);
-  *info = {0, to.terminate, 0, to.states_changed, to.next_event_defined, to.next_event};
-  return status(code);
+  return values2(
+      c, "fmi2NewDiscreteStates", 1,
+      [&](Component& of) {
+        Component::Updated to;
+        const int code = of.update_discrete(to);
+        *info = {0, to.terminate, 0, to.states_changed, to.next_event_defined, to.next_event};
+        return code;
+      },
+      info);
 }
-fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) { return status(of(c).enter_continuous_mode()); }
-fmi2Status fmi2CompletedIntegratorStep(fmi2Component, fmi2Boolean, fmi2Boolean* enter_event_mode,
+fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
+  return with2(c, "fmi2EnterContinuousTimeMode", [](Component& of) { return of.enter_continuous_mode(); });
+}
+fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean, fmi2Boolean* enter_event_mode,
                                        fmi2Boolean* terminate) {
-  *enter_event_mode = 0;
-  *terminate = 0;
-  return fmi2OK;
+  return values2(
+      c, "fmi2CompletedIntegratorStep", 1,
+      [&](Component&) {
+        *enter_event_mode = *terminate = 0;
+        return 0;
+      },
+      enter_event_mode, terminate);
 }
-fmi2Status fmi2SetTime(fmi2Component c, fmi2Real t) { return status(of(c).set_time(t)); }
+fmi2Status fmi2SetTime(fmi2Component c, fmi2Real t) {
+  return with2(c, "fmi2SetTime", [&](Component& of) { return of.set_time(t); });
+}
 fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real y[], size_t n) {
-  return status(of(c).set_states(y, n));
+  return values2(c, "fmi2SetContinuousStates", n, [&](Component& of) { return of.set_states(y, n); }, y);
 }
-fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real dy[], size_t n) { return status(of(c).get_rates(dy, n)); }
+fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real dy[], size_t n) {
+  return values2(c, "fmi2GetDerivatives", n, [&](Component& of) { return of.get_rates(dy, n); }, dy);
+}
 fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real z[], size_t n) {
-  return status(of(c).get_indicators(z, n));
+  return values2(c, "fmi2GetEventIndicators", n, [&](Component& of) { return of.get_indicators(z, n); }, z);
 }
-fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real y[], size_t n) { return status(of(c).get_states(y, n)); }
+fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real y[], size_t n) {
+  return values2(c, "fmi2GetContinuousStates", n, [&](Component& of) { return of.get_states(y, n); }, y);
+}
 fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real sizes[], size_t n) {
-  return status(of(c).get_nominals(sizes, n));
+  return values2(
+      c, "fmi2GetNominalsOfContinuousStates", n, [&](Component& of) { return of.get_nominals(sizes, n); }, sizes);
 }
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference[], size_t n, const fmi2Integer[],
                                        const fmi2Real[]) {
-  return n == 0 ? fmi2OK : unsupported(c, "interpolation of inputs");
+  return none2(c, "fmi2SetRealInputDerivatives", n, "interpolation of inputs");
 }
 fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference[], size_t n, const fmi2Integer[],
                                         fmi2Real[]) {
-  return n == 0 ? fmi2OK : unsupported(c, "derivatives of outputs");
+  return none2(c, "fmi2GetRealOutputDerivatives", n, "derivatives of outputs");
 }
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real from, fmi2Real length, fmi2Boolean) {
-  return status(of(c).step(from, length));
+  return with2(c, "fmi2DoStep", [&](Component& of) { return of.step(from, length); });
 }
-fmi2Status fmi2CancelStep(fmi2Component c) { return unsupported(c, "a step that is under way"); }
+fmi2Status fmi2CancelStep(fmi2Component c) { return none2(c, "fmi2CancelStep", 1, "a step that is under way"); }
 fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind, fmi2Status*) {
-  return unsupported(c, "a step that is under way");
+  return none2(c, "fmi2GetStatus", 1, "a step that is under way");
 }
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real* value) {
   if (kind != fmi2LastSuccessfulTime) return fmi2Discard;
-  *value = of(c).time();
-  return fmi2OK;
+  return values2(
+      c, "fmi2GetRealStatus", 1,
+      [&](Component& of) {
+        *value = of.time();
+        return 0;
+      },
+      value);
 }
 fmi2Status fmi2GetIntegerStatus(fmi2Component, const fmi2StatusKind, fmi2Integer*) { return fmi2Discard; }
 fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean* value) {
   if (kind != fmi2Terminated) return fmi2Discard;
-  *value = of(c).ended();
-  return fmi2OK;
+  return values2(
+      c, "fmi2GetBooleanStatus", 1,
+      [&](Component& of) {
+        *value = of.ended();
+        return 0;
+      },
+      value);
 }
 fmi2Status fmi2GetStringStatus(fmi2Component, const fmi2StatusKind, fmi2String*) { return fmi2Discard; }
 

@@ -5,30 +5,59 @@
 #include "fmu/binary/component.hpp"
 #include "fmu/binary/fmi3_functions.h"
 #include "fmu/binary/resource_path.hpp"
-#include "fmu/dependencies.hpp"
 
 using wingbeat::fmu::Component;
 using wingbeat::fmu::StatusCode;
 
 namespace {
 
-Component& component_of(fmi3Instance c) { return *static_cast<Component*>(c); }
 fmi3Status as3(int code) { return fmi3Status(code); }
 
-fmi3Status not_supported(fmi3Instance c, const char* what) { return as3(component_of(c).unsupported(what)); }
+template <class Work>
+fmi3Status with3(fmi3Instance c, const char* function, const Work& work) noexcept {
+  return as3(wingbeat::fmu::guarded(static_cast<Component*>(c), function, work));
+}
+template <class Work, class... Pointers>
+fmi3Status values3(fmi3Instance c, const char* function, size_t count, const Work& work,
+                   const Pointers*... pointers) noexcept {
+  return as3(wingbeat::fmu::guarded_values(static_cast<Component*>(c), function, count, work, pointers...));
+}
+/// Of `references` variables with as many values, each a number.
+template <class Work, class Value>
+fmi3Status variables3(fmi3Instance c, const char* function, const fmi3ValueReference* r, size_t references,
+                      Value* values, size_t count, const Work& work) noexcept {
+  return values3(
+      c, function, references,
+      [&](Component& of) {
+        if (count != references) return of.refuse(std::string(function) + ": as many values as references are needed");
+        return work(of);
+      },
+      r, values);
+}
+fmi3Status unsupported3(fmi3Instance c, const char* what) noexcept {
+  return with3(c, what, [&](Component& of) { return of.unsupported(what); });
+}
+/// What no variable has or nothing supports: right for none of it.
+fmi3Status none3(fmi3Instance c, size_t count, const char* what) noexcept {
+  return count == 0 && c ? fmi3OK : unsupported3(c, what);
+}
 
-fmi3Instance instantiate(fmi3String token, fmi3String resources, bool co_simulation,
-                         fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger) {
-  const auto log = [=](StatusCode code, const char* category, const std::string& message) {
-    if (logger) logger(environment, as3(code), category, message.c_str());
-  };
+fmi3Instance instantiate3(const char* function, fmi3String token, fmi3String resources, bool co_simulation,
+                          fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger) noexcept {
   try {
-    return new Component(wingbeat::fmu::path_of_uri(resources ? resources : ""), token ? token : "", co_simulation,
-                         log);
-  } catch (const std::exception& problem) {
-    log(wingbeat::fmu::error, "logStatusError", std::string("fmi3Instantiate: ") + problem.what());
-    return nullptr;
+    const auto log = [=](StatusCode code, const char* category, const std::string& message) {
+      if (logger) logger(environment, as3(code), category, message.c_str());
+    };
+    try {
+      return new Component(wingbeat::fmu::path_of_uri(resources ? resources : ""), token ? token : "", co_simulation,
+                           log);
+    } catch (const std::exception& problem) {
+      log(wingbeat::fmu::error, "logStatusError", std::string(function) + ": " + problem.what());
+    }
+  } catch (...) {
+    // Not even the message could be made.
   }
+  return nullptr;
 }
 
 }  // namespace
@@ -40,7 +69,7 @@ fmi3Status fmi3SetDebugLogging(fmi3Instance, fmi3Boolean, size_t, const fmi3Stri
 
 fmi3Instance fmi3InstantiateModelExchange(fmi3String, fmi3String token, fmi3String resources, fmi3Boolean, fmi3Boolean,
                                           fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger) {
-  return instantiate(token, resources, false, environment, logger);
+  return instantiate3("fmi3InstantiateModelExchange", token, resources, false, environment, logger);
 }
 fmi3Instance fmi3InstantiateCoSimulation(fmi3String, fmi3String token, fmi3String resources, fmi3Boolean, fmi3Boolean,
                                          fmi3Boolean event_mode, fmi3Boolean, const fmi3ValueReference[], size_t,
@@ -50,7 +79,7 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String, fmi3String token, fmi3Strin
     if (logger) logger(environment, fmi3Error, "logStatusError", "this FMU has no event mode in co-simulation");
     return nullptr;
   }
-  return instantiate(token, resources, true, environment, logger);
+  return instantiate3("fmi3InstantiateCoSimulation", token, resources, true, environment, logger);
 }
 fmi3Instance fmi3InstantiateScheduledExecution(fmi3String, fmi3String, fmi3String, fmi3Boolean, fmi3Boolean,
                                                fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger,
@@ -63,44 +92,65 @@ void fmi3FreeInstance(fmi3Instance c) { delete static_cast<Component*>(c); }
 
 fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean has_tolerance, fmi3Float64 tolerance,
                                        fmi3Float64 start, fmi3Boolean, fmi3Float64) {
-  return as3(component_of(c).enter_initialisation(has_tolerance, tolerance, start));
+  return with3(c, "fmi3EnterInitializationMode",
+               [&](Component& of) { return of.enter_initialisation(has_tolerance, tolerance, start); });
 }
-fmi3Status fmi3ExitInitializationMode(fmi3Instance c) { return as3(component_of(c).exit_initialisation()); }
-fmi3Status fmi3EnterEventMode(fmi3Instance c) { return as3(component_of(c).enter_event_mode()); }
-fmi3Status fmi3Terminate(fmi3Instance c) { return as3(component_of(c).terminate()); }
-fmi3Status fmi3Reset(fmi3Instance c) { return as3(component_of(c).reset()); }
-fmi3Status fmi3EnterConfigurationMode(fmi3Instance c) { return not_supported(c, "configuration mode"); }
-fmi3Status fmi3ExitConfigurationMode(fmi3Instance c) { return not_supported(c, "configuration mode"); }
-fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance c) { return as3(component_of(c).enter_continuous_mode()); }
-fmi3Status fmi3EnterStepMode(fmi3Instance c) { return not_supported(c, "event mode in co-simulation"); }
-fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance) { return fmi3OK; }
+fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
+  return with3(c, "fmi3ExitInitializationMode", [](Component& of) { return of.exit_initialisation(); });
+}
+fmi3Status fmi3EnterEventMode(fmi3Instance c) {
+  return with3(c, "fmi3EnterEventMode", [](Component& of) { return of.enter_event_mode(); });
+}
+fmi3Status fmi3Terminate(fmi3Instance c) {
+  return with3(c, "fmi3Terminate", [](Component& of) { return of.terminate(); });
+}
+fmi3Status fmi3Reset(fmi3Instance c) {
+  return with3(c, "fmi3Reset", [](Component& of) { return of.reset(); });
+}
+fmi3Status fmi3EnterConfigurationMode(fmi3Instance c) { return unsupported3(c, "configuration mode"); }
+fmi3Status fmi3ExitConfigurationMode(fmi3Instance c) { return unsupported3(c, "configuration mode"); }
+fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance c) {
+  return with3(c, "fmi3EnterContinuousTimeMode", [](Component& of) { return of.enter_continuous_mode(); });
+}
+fmi3Status fmi3EnterStepMode(fmi3Instance c) { return unsupported3(c, "event mode in co-simulation"); }
+fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance c) { return c ? fmi3OK : fmi3Error; }
 
 fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference r[], size_t n, fmi3Float64 values[], size_t count) {
-  return count == n ? as3(component_of(c).get_reals(r, n, values))
-                    : not_supported(c, "a number of values beside that of references");
+  return variables3(c, "fmi3GetFloat64", r, n, values, count,
+                    [&](Component& of) { return of.get_reals(r, n, values); });
 }
 fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference r[], size_t n, const fmi3Float64 values[],
                           size_t count) {
-  return count == n ? as3(component_of(c).set_reals(r, n, values))
-                    : not_supported(c, "a number of values beside that of references");
+  return variables3(c, "fmi3SetFloat64", r, n, values, count,
+                    [&](Component& of) { return of.set_reals(r, n, values); });
 }
 fmi3Status fmi3GetInt32(fmi3Instance c, const fmi3ValueReference r[], size_t n, fmi3Int32 values[], size_t count) {
-  return count == n ? as3(component_of(c).get_wholes(r, n, values))
-                    : not_supported(c, "a number of values beside that of references");
+  return variables3(c, "fmi3GetInt32", r, n, values, count,
+                    [&](Component& of) { return of.get_wholes(r, n, values, false); });
+}
+fmi3Status fmi3GetInt64(fmi3Instance c, const fmi3ValueReference r[], size_t n, fmi3Int64 values[], size_t count) {
+  // Enumerations are got by this function.
+  return variables3(c, "fmi3GetInt64", r, n, values, count, [&](Component& of) {
+    for (size_t k = 0; k < n; ++k) {
+      int value = 0;
+      if (const int code = of.get_wholes(r + k, 1, &value, true)) return code;
+      values[k] = value;
+    }
+    return 0;
+  });
 }
 fmi3Status fmi3GetString(fmi3Instance c, const fmi3ValueReference r[], size_t n, fmi3String values[], size_t count) {
-  return count == n ? as3(component_of(c).get_texts(r, n, values))
-                    : not_supported(c, "a number of values beside that of references");
+  return variables3(c, "fmi3GetString", r, n, values, count, [&](Component& of) { return of.get_texts(r, n, values); });
 }
 
 // Types that no variable has, or none that can be set.
 #define NONE_TO_GET(type)                                                                                \
   fmi3Status fmi3Get##type(fmi3Instance c, const fmi3ValueReference[], size_t n, fmi3##type[], size_t) { \
-    return as3(component_of(c).get_none(n, #type));                                                      \
+    return none3(c, n, "a variable of the type " #type);                                                 \
   }
 #define NONE_TO_SET(type)                                                                                      \
   fmi3Status fmi3Set##type(fmi3Instance c, const fmi3ValueReference[], size_t n, const fmi3##type[], size_t) { \
-    return as3(component_of(c).get_none(n, #type));                                                            \
+    return none3(c, n, "setting a variable of the type " #type);                                               \
   }
 NONE_TO_GET(Float32)
 NONE_TO_GET(Int8)
@@ -108,7 +158,6 @@ NONE_TO_GET(UInt8)
 NONE_TO_GET(Int16)
 NONE_TO_GET(UInt16)
 NONE_TO_GET(UInt32)
-NONE_TO_GET(Int64)
 NONE_TO_GET(UInt64)
 NONE_TO_GET(Boolean)
 NONE_TO_SET(Float32)
@@ -126,146 +175,191 @@ NONE_TO_SET(String)
 #undef NONE_TO_SET
 
 fmi3Status fmi3GetBinary(fmi3Instance c, const fmi3ValueReference[], size_t n, size_t[], fmi3Binary[], size_t) {
-  return as3(component_of(c).get_none(n, "Binary"));
+  return none3(c, n, "a variable of the type Binary");
 }
 fmi3Status fmi3SetBinary(fmi3Instance c, const fmi3ValueReference[], size_t n, const size_t[], const fmi3Binary[],
                          size_t) {
-  return as3(component_of(c).get_none(n, "Binary"));
+  return none3(c, n, "a variable of the type Binary");
 }
 fmi3Status fmi3GetClock(fmi3Instance c, const fmi3ValueReference[], size_t n, fmi3Clock[]) {
-  return as3(component_of(c).get_none(n, "Clock"));
+  return none3(c, n, "a variable of the type Clock");
 }
 fmi3Status fmi3SetClock(fmi3Instance c, const fmi3ValueReference[], size_t n, const fmi3Clock[]) {
-  return as3(component_of(c).get_none(n, "Clock"));
+  return none3(c, n, "a variable of the type Clock");
 }
 fmi3Status fmi3GetIntervalDecimal(fmi3Instance c, const fmi3ValueReference[], size_t n, fmi3Float64[],
                                   fmi3IntervalQualifier[]) {
-  return as3(component_of(c).get_none(n, "Clock"));
+  return none3(c, n, "a variable of the type Clock");
 }
 fmi3Status fmi3GetIntervalFraction(fmi3Instance c, const fmi3ValueReference[], size_t n, fmi3UInt64[], fmi3UInt64[],
                                    fmi3IntervalQualifier[]) {
-  return as3(component_of(c).get_none(n, "Clock"));
+  return none3(c, n, "a variable of the type Clock");
 }
 fmi3Status fmi3GetShiftDecimal(fmi3Instance c, const fmi3ValueReference[], size_t n, fmi3Float64[]) {
-  return as3(component_of(c).get_none(n, "Clock"));
+  return none3(c, n, "a variable of the type Clock");
 }
 fmi3Status fmi3GetShiftFraction(fmi3Instance c, const fmi3ValueReference[], size_t n, fmi3UInt64[], fmi3UInt64[]) {
-  return as3(component_of(c).get_none(n, "Clock"));
+  return none3(c, n, "a variable of the type Clock");
 }
 fmi3Status fmi3SetIntervalDecimal(fmi3Instance c, const fmi3ValueReference[], size_t n, const fmi3Float64[]) {
-  return as3(component_of(c).get_none(n, "Clock"));
+  return none3(c, n, "a variable of the type Clock");
 }
 fmi3Status fmi3SetIntervalFraction(fmi3Instance c, const fmi3ValueReference[], size_t n, const fmi3UInt64[],
                                    const fmi3UInt64[]) {
-  return as3(component_of(c).get_none(n, "Clock"));
+  return none3(c, n, "a variable of the type Clock");
 }
 fmi3Status fmi3SetShiftDecimal(fmi3Instance c, const fmi3ValueReference[], size_t n, const fmi3Float64[]) {
-  return as3(component_of(c).get_none(n, "Clock"));
+  return none3(c, n, "a variable of the type Clock");
 }
 fmi3Status fmi3SetShiftFraction(fmi3Instance c, const fmi3ValueReference[], size_t n, const fmi3UInt64[],
                                 const fmi3UInt64[]) {
-  return as3(component_of(c).get_none(n, "Clock"));
+  return none3(c, n, "a variable of the type Clock");
 }
 
 fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance c, fmi3ValueReference reference, size_t* count) {
-  *count = wingbeat::fmu::dependencies_of(component_of(c).design(), reference).size();
-  return fmi3OK;
+  return values3(
+      c, "fmi3GetNumberOfVariableDependencies", 1,
+      [&](Component& of) {
+        *count = of.dependencies(reference).size();
+        return 0;
+      },
+      count);
 }
 fmi3Status fmi3GetVariableDependencies(fmi3Instance c, fmi3ValueReference dependent, size_t dependent_elements[],
                                        fmi3ValueReference independents[], size_t independent_elements[],
                                        fmi3DependencyKind kinds[], size_t count) {
-  const auto on = wingbeat::fmu::dependencies_of(component_of(c).design(), dependent);
-  if (count != on.size()) return not_supported(c, "another number of dependencies than there are");
-  for (size_t n = 0; n < count; ++n) {
-    dependent_elements[n] = independent_elements[n] = 0;
-    independents[n] = fmi3ValueReference(on[n]);
-    kinds[n] = fmi3Dependent;
-  }
-  return fmi3OK;
+  return values3(
+      c, "fmi3GetVariableDependencies", count,
+      [&](Component& of) {
+        const auto on = of.dependencies(dependent);
+        if (count != on.size()) return of.unsupported("another number of dependencies than there are");
+        for (size_t n = 0; n < count; ++n) {
+          dependent_elements[n] = independent_elements[n] = 0;
+          independents[n] = fmi3ValueReference(on[n]);
+          kinds[n] = fmi3Dependent;
+        }
+        return 0;
+      },
+      dependent_elements, independents, independent_elements, kinds);
 }
 
-fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState* state) { return as3(component_of(c).save(state)); }
-fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state) { return as3(component_of(c).restore(state)); }
-fmi3Status fmi3FreeFMUState(fmi3Instance, fmi3FMUState* state) {
-  Component::free_state(state);
-  return fmi3OK;
+fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState* state) {
+  return values3(c, "fmi3GetFMUState", 1, [&](Component& of) { return of.save(state); }, state);
 }
-fmi3Status fmi3SerializedFMUStateSize(fmi3Instance, fmi3FMUState state, size_t* size) {
-  *size = Component::size_of(state);
-  return fmi3OK;
+fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state) {
+  return with3(c, "fmi3SetFMUState", [&](Component& of) { return of.restore(state); });
+}
+fmi3Status fmi3FreeFMUState(fmi3Instance c, fmi3FMUState* state) {
+  return with3(c, "fmi3FreeFMUState", [&](Component& of) { return of.free_state(state); });
+}
+fmi3Status fmi3SerializedFMUStateSize(fmi3Instance c, fmi3FMUState state, size_t* size) {
+  return values3(c, "fmi3SerializedFMUStateSize", 1, [&](Component& of) { return of.size_of(state, size); }, size);
 }
 fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte bytes[], size_t size) {
-  return as3(component_of(c).serialise(state, bytes, size));
+  return values3(c, "fmi3SerializeFMUState", 1, [&](Component& of) { return of.serialise(state, bytes, size); }, bytes);
 }
-fmi3Status fmi3DeserializeFMUState(fmi3Instance, const fmi3Byte bytes[], size_t size, fmi3FMUState* state) {
-  Component::deserialise(bytes, size, state);
-  return fmi3OK;
+fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[], size_t size, fmi3FMUState* state) {
+  return values3(
+      c, "fmi3DeserializeFMUState", 1, [&](Component& of) { return of.deserialise(bytes, size, state); }, bytes, state);
 }
 
 fmi3Status fmi3GetDirectionalDerivative(fmi3Instance c, const fmi3ValueReference unknown[], size_t unknowns,
                                         const fmi3ValueReference known[], size_t knowns, const fmi3Float64 seed[],
                                         size_t seeds, fmi3Float64 sensitivity[], size_t sensitivities) {
-  return as3(component_of(c).directional(unknown, unknowns, known, knowns, seed, seeds, sensitivity, sensitivities));
+  constexpr const char* function = "fmi3GetDirectionalDerivative";
+  return with3(c, function, [&](Component& of) {
+    if (const int wrong = of.check_values(function, unknowns, {unknown, sensitivity})) return wrong;
+    if (const int wrong = of.check_values(function, knowns, {known, seed})) return wrong;
+    return of.directional(unknown, unknowns, known, knowns, seed, seeds, sensitivity, sensitivities);
+  });
 }
 fmi3Status fmi3GetAdjointDerivative(fmi3Instance c, const fmi3ValueReference[], size_t, const fmi3ValueReference[],
                                     size_t, const fmi3Float64[], size_t, fmi3Float64[], size_t) {
-  return not_supported(c, "the adjoint derivative");
+  return unsupported3(c, "the adjoint derivative");
 }
 
 fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean* again, fmi3Boolean* terminate, fmi3Boolean* nominals,
                                     fmi3Boolean* values, fmi3Boolean* defined, fmi3Float64* next) {
-  Component::Updated to;
-  const int code = component_of(c).update_discrete(to);
-  *again = *nominals = false;
-  *terminate = to.terminate;
-  *values = to.states_changed;
-  *defined = to.next_event_defined;
-  *next = to.next_event;
-  return as3(code);
+  return values3(
+      c, "fmi3UpdateDiscreteStates", 1,
+      [&](Component& of) {
+        Component::Updated to;
+        const int code = of.update_discrete(to);
+        *again = *nominals = false;
+        *terminate = to.terminate;
+        *values = to.states_changed;
+        *defined = to.next_event_defined;
+        *next = to.next_event;
+        return code;
+      },
+      again, terminate, nominals, values, defined, next);
 }
-fmi3Status fmi3CompletedIntegratorStep(fmi3Instance, fmi3Boolean, fmi3Boolean* enter_event_mode,
+fmi3Status fmi3CompletedIntegratorStep(fmi3Instance c, fmi3Boolean, fmi3Boolean* enter_event_mode,
                                        fmi3Boolean* terminate) {
-  *enter_event_mode = *terminate = false;
-  return fmi3OK;
+  return values3(
+      c, "fmi3CompletedIntegratorStep", 1,
+      [&](Component&) {
+        *enter_event_mode = *terminate = false;
+        return 0;
+      },
+      enter_event_mode, terminate);
 }
-fmi3Status fmi3SetTime(fmi3Instance c, fmi3Float64 t) { return as3(component_of(c).set_time(t)); }
+fmi3Status fmi3SetTime(fmi3Instance c, fmi3Float64 t) {
+  return with3(c, "fmi3SetTime", [&](Component& of) { return of.set_time(t); });
+}
 fmi3Status fmi3SetContinuousStates(fmi3Instance c, const fmi3Float64 y[], size_t n) {
-  return as3(component_of(c).set_states(y, n));
+  return values3(c, "fmi3SetContinuousStates", n, [&](Component& of) { return of.set_states(y, n); }, y);
 }
 fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance c, fmi3Float64 dy[], size_t n) {
-  return as3(component_of(c).get_rates(dy, n));
+  return values3(c, "fmi3GetContinuousStateDerivatives", n, [&](Component& of) { return of.get_rates(dy, n); }, dy);
 }
 fmi3Status fmi3GetEventIndicators(fmi3Instance c, fmi3Float64 z[], size_t n) {
-  return as3(component_of(c).get_indicators(z, n));
+  return values3(c, "fmi3GetEventIndicators", n, [&](Component& of) { return of.get_indicators(z, n); }, z);
 }
 fmi3Status fmi3GetContinuousStates(fmi3Instance c, fmi3Float64 y[], size_t n) {
-  return as3(component_of(c).get_states(y, n));
+  return values3(c, "fmi3GetContinuousStates", n, [&](Component& of) { return of.get_states(y, n); }, y);
 }
 fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance c, fmi3Float64 sizes[], size_t n) {
-  return as3(component_of(c).get_nominals(sizes, n));
+  return values3(
+      c, "fmi3GetNominalsOfContinuousStates", n, [&](Component& of) { return of.get_nominals(sizes, n); }, sizes);
 }
 fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance c, size_t* n) {
-  *n = component_of(c).indicator_count();
-  return fmi3OK;
+  return values3(
+      c, "fmi3GetNumberOfEventIndicators", 1,
+      [&](Component& of) {
+        *n = of.indicator_count();
+        return 0;
+      },
+      n);
 }
 fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance c, size_t* n) {
-  *n = component_of(c).state_count();
-  return fmi3OK;
+  return values3(
+      c, "fmi3GetNumberOfContinuousStates", 1,
+      [&](Component& of) {
+        *n = of.state_count();
+        return 0;
+      },
+      n);
 }
 fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, const fmi3ValueReference[], size_t n, const fmi3Int32[],
                                     fmi3Float64[], size_t) {
-  return n == 0 ? fmi3OK : not_supported(c, "derivatives of outputs");
+  return none3(c, n, "derivatives of outputs");
 }
 fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 from, fmi3Float64 length, fmi3Boolean, fmi3Boolean* event_needed,
                       fmi3Boolean* terminate, fmi3Boolean* early_return, fmi3Float64* last_time) {
-  const int code = component_of(c).step(from, length);
-  *event_needed = *early_return = false;
-  *terminate = component_of(c).ended();
-  *last_time = component_of(c).time();
-  return as3(code);
+  return values3(
+      c, "fmi3DoStep", 1,
+      [&](Component& of) {
+        const int code = of.step(from, length);
+        *event_needed = *early_return = false;
+        *terminate = of.ended();
+        *last_time = of.time();
+        return code;
+      },
+      event_needed, terminate, early_return, last_time);
 }
 fmi3Status fmi3ActivateModelPartition(fmi3Instance c, fmi3ValueReference, fmi3Float64) {
-  return not_supported(c, "scheduled execution");
+  return unsupported3(c, "scheduled execution");
 }
 
 }  // extern "C"
