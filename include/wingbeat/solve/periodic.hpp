@@ -37,7 +37,7 @@ enum class PeriodicStatus {
   barrier,         ///< iterates run into the edge of the admissible region: no orbit was found
   too_many_steps,  ///< an iterate needs more steps than allowed
   not_converged,   ///< iterates neither settle nor fail within max_iterates
-  unbalanced       ///< converged, but the energy balance does not close: a caller's verdict
+  unbalanced       ///< converged, but refused by the caller: the energy balance does not close
 };
 
 /// The same in words; empty where nothing was searched for.
