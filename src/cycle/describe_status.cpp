@@ -205,7 +205,7 @@ std::string describe_doubt(const StatusEvidence& e) {
           phase_of(e), describe(e.search));
     case StatusEvidence::Kind::open_balance:
       return format(
-          "the energy balance of the cycle found does not close, with finer steps either: %.2g of the input "
+          "the energy balance of the cycle found does not close, not even with finer steps: %.2g of the input "
           "is left over",
           e.change);
     case StatusEvidence::Kind::no_steady_temperature:

@@ -137,7 +137,7 @@ TEST(DescribeStatus, Undecided) {
             "it rotates when simulated in time, but neither a periodic orbit in crank angle (iterates did not close) "
             "nor a simulated cycle was found that it settles on");
   EXPECT_EQ(describe({.kind = Evidence::open_balance, .change = 2.5e-4}),
-            "the energy balance of the cycle found does not close, with finer steps either: 0.00025 of the input is "
+            "the energy balance of the cycle found does not close, not even with finer steps: 0.00025 of the input is "
             "left over");
   StatusEvidence e{.kind = Evidence::out_of_steps, .frequency = 17.0, .steps = 100};
   EXPECT_EQ(describe(e), "no decision within 100 integration steps; it flaps at 17 Hz then");

@@ -134,8 +134,8 @@ TEST(PowerIdentities, StopsTakeNoNegativePower) {
   }
 }
 
-// An impact after which the gear torque changes its sign had been met twice in one place. The hinge power is that of the
-// simulation in time.
+// An impact after which the gear torque changes its sign had been met twice in one place. The hinge power is that of
+// the simulation in time.
 TEST(PowerIdentities, AnImpactThatTurnsTheGearTorqueOverCountsOnce) {
   const Design<double> d = design_of_case("hinge-41");
   const RunResult r = run_design(d, {.tolerance = 1e-4});

@@ -116,7 +116,7 @@ double scale_of(const Metrics<double>& m, Metric which) {
 }
 
 double apart(const Metrics<double>& a, const Metrics<double>& b, Metric which) {
-  if (which == Metric::floquet_multiplier_max || which == Metric::endurance) return 0.0;
+  if (which == Metric::floquet_multiplier_max || which == Metric::endurance || which == Metric::hover) return 0.0;
   if (std::isnan(a[which]) != std::isnan(b[which])) return INFINITY;
   const double difference = std::abs(a[which] - b[which]);
   return difference > 0.0 ? difference / scale_of(b, which) : 0.0;
