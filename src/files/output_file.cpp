@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
@@ -27,10 +28,12 @@ OutputFile::OutputFile(std::string option, const fs::path& path, const OutputRul
   if (::stat(target_.c_str(), &existing) == 0) mode_ = existing.st_mode & 07777;
   const fs::path folder = target_.parent_path();
   remove_leftovers(folder);
+  // No name comes twice: in messages each stands for one output (FileRecord::with_given_names).
+  static std::atomic<int> number = 0;
   int file = -1;
   for (int attempt = 0; file < 0; ++attempt) {
     // The extension stays: some writers choose the format by it.
-    temporary_ = folder / temporary_name(attempt, target_.extension().string());
+    temporary_ = folder / temporary_name(number++, target_.extension().string());
     file = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode_.value_or(0666));
     if (file < 0 && (errno != EEXIST || attempt > 1000)) {
       const int reason = errno;

@@ -225,65 +225,6 @@ TEST_F(Sweep, AJournalThatAKillLeftBesideTheDataSetGoes) {
   EXPECT_TRUE(fs::exists(path("o.nc.journal")));
 }
 
-TEST_F(Sweep, NoPlaceOnThisMachineIsKept) {
-  const std::string s = small_study();
-  ASSERT_EQ(run({"sweep", s, "-o", path("o.nc")}).status, 0);
-  EXPECT_EQ(wingbeat::NetcdfReader(path("o.nc")).attribute("study_name"), fs::path(s).filename().string());
-  const std::string folder = fs::path(s).parent_path().string();
-  EXPECT_EQ(count_of(read(path("o.nc")), folder), 0U);
-  fs::copy_file(plain, path("unnamed.toml"));
-  std::string text = read(path("unnamed.toml"));
-  const auto named = text.find("name = ");
-  text.erase(named, text.find('\n', named) - named);
-  std::ofstream(path("unnamed.toml")) << text;
-  ASSERT_EQ(run({"run", path("unnamed.toml"), "--waveforms", path("w.nc")}).status, 0);
-  EXPECT_EQ(wingbeat::NetcdfReader(path("w.nc")).attribute("title"), "One flapping cycle of unnamed.toml");
-  EXPECT_EQ(count_of(read(path("w.nc")), folder), 0U);
-}
-
-#ifdef WINGBEAT_MPIRUN
-TEST_F(Sweep, TheScriptForSlurmPassesItsSignalOn) {
-  const std::string script = read(data + "/../scripts/sweep.slurm");
-  // Without B: Slurm would signal the steps of a job alone, and mpirun is none.
-  EXPECT_THAT(script, HasSubstr("\n#SBATCH --signal=B:TERM@"));
-  const std::string s = long_study();
-  ::setenv("ASAN_OPTIONS", "detect_leaks=0", 1);
-  ::setenv("WINGBEAT", WINGBEAT_PROGRAM, 1);
-  ::setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
-  ::setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
-  ::setenv("OMPI_MCA_rmaps_base_oversubscribe", "1", 1);
-  const pid_t batch = ::fork();
-  if (batch == 0) {
-    const int nowhere = ::open("/dev/null", O_RDWR);
-    ::dup2(nowhere, 1);
-    const int errors = ::open(path("stderr.txt").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    ::dup2(errors, 2);
-    ::execl("/bin/bash", "bash", (data + "/../scripts/sweep.slurm").c_str(), s.c_str(), path("o.nc").c_str(), nullptr);
-    ::_exit(99);
-  }
-  int status = 0;
-  bool ended = false;
-  while (!ended && chunks_in(path("o.nc.journal"), 5) < 1) {
-    ended = ::waitpid(batch, &status, WNOHANG) == batch;
-    ::usleep(500);
-  }
-  const long before = chunks_in(path("o.nc.journal"), 5);
-  if (!ended) {
-    ::kill(batch, SIGTERM);  // the batch shell alone, as Slurm does
-    ::waitpid(batch, &status, 0);
-  }
-  ::unsetenv("ASAN_OPTIONS");
-  ::unsetenv("WINGBEAT");
-  if (!fs::exists(path("o.nc"))) {
-    EXPECT_GE(chunks_in(path("o.nc.journal"), 5), before);
-    EXPECT_THAT(read(path("stderr.txt")), HasSubstr("and the same command resumes"));
-    const Outcome o = run({"sweep", s, "-o", path("o.nc")});
-    EXPECT_EQ(o.status, 0) << o.err;
-    EXPECT_THAT(o.out, HasSubstr(" of them from before; "));
-  }
-}
-#endif
-
 TEST_F(Sweep, CtrlCEndsAfterTheChunksUnderWay) {
   const std::string s = long_study();
   Child child({"sweep", s, "-o", path("o.nc"), "--threads", "1"}, path("stderr.txt"));
