@@ -4,12 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <string>
 
+#include "vehicle/case_design.hpp"
 #include "vehicle/reference_vehicle.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
-#include "wingbeat/files/design_file.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {
@@ -18,11 +17,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-Design<double> case_of(const std::string& name) {
-  return read_design(std::string(WINGBEAT_CASES) + "/" + name + ".toml");
-}
-
-SteadyFlapping orbit_of(const Design<double>& design, double tolerance = 1e-6) {
+SteadyFlapping orbit_to(const Design<double>& design, double tolerance = 1e-6) {
   return find_steady_flapping(resolve(design), {.tolerance = tolerance}, start_up_in_time());
 }
 
@@ -43,10 +38,10 @@ TEST(QuasiSteadyCurrent, BelowALagOfABillionth) {
 
 TEST(QuasiSteadyCurrent, PeaksAreThoseWithoutInductance) {
   for (const char* name : {"peak-9", "peak-382", "peak-61", "peak-6"}) {
-    Design<double> d = case_of(name);
-    const SteadyFlapping with = orbit_of(d);
+    Design<double> d = case_design(name);
+    const SteadyFlapping with = orbit_to(d);
     d.motor.constants.armature_inductance = 0.0;
-    const SteadyFlapping without = orbit_of(d);
+    const SteadyFlapping without = orbit_to(d);
     ASSERT_EQ(with.status, without.status) << name;
     if (with.status != FlappingStatus::flapping) continue;
     for (const Metric m : {Metric::current_peak, Metric::rod_force_peak, Metric::frequency}) {
@@ -56,19 +51,19 @@ TEST(QuasiSteadyCurrent, PeaksAreThoseWithoutInductance) {
 }
 
 TEST(QuasiSteadyCurrent, ForcesOfBatchesAreThoseOfTheOrbit) {
-  const Design<double> d = case_of("peak-6");
+  const Design<double> d = case_design("peak-6");
   const EnsembleMember member{resolve(d), reporting_of(d)};
   EnsembleOutcome batched;
   solve_ensemble({&member, 1}, {}, start_up_in_time(), {&batched, 1});
-  const SteadyFlapping exact = orbit_of(d, 1e-9);
+  const SteadyFlapping exact = orbit_to(d, 1e-9);
   ASSERT_EQ(batched.status, FlappingStatus::flapping);
   EXPECT_NEAR(batched.metrics[Metric::rod_force_peak] / exact.metrics[Metric::rod_force_peak], 1.0, 1e-6);
 }
 
 /// A heavy rotor whose speed a cycle hardly returns, behind a current that does at once.
 TEST(SlowContraction, IsSeenAndTheEstimateHolds) {
-  const Design<double> d = case_of("tol-90");
-  const SteadyFlapping found = orbit_of(d), exact = orbit_of(d, 1e-9);
+  const Design<double> d = case_design("tol-90");
+  const SteadyFlapping found = orbit_to(d), exact = orbit_to(d, 1e-9);
   ASSERT_EQ(found.status, FlappingStatus::flapping);
   const double estimate = found.summary.error_estimate;
   EXPECT_LT(estimate, 2e-6);
@@ -79,7 +74,7 @@ TEST(SlowContraction, IsSeenAndTheEstimateHolds) {
 }
 
 TEST(SlowContraction, OfASimulationIsSaidWithItsError) {
-  const Vehicle<double> v = resolve(case_of("p182"));
+  const Vehicle<double> v = resolve(case_design("p182"));
   const TransientResult in_time = simulate_start_up(v);
   ASSERT_EQ(in_time.status, FlappingStatus::flapping);
   const SteadyFlapping orbit = find_steady_flapping(v, {}, start_up_in_time());
@@ -87,11 +82,13 @@ TEST(SlowContraction, OfASimulationIsSaidWithItsError) {
   const Metric loss = Metric::power_loss;
   const double off = std::abs((*in_time.metrics)[loss] / orbit.metrics[loss] - 1.0);
   EXPECT_LT(off, 2.0 * std::max(in_time.closure, 1e-6));
-  if (in_time.closure > 1e-6) EXPECT_THAT(describe(in_time.evidence), HasSubstr("of where they converge"));
+  if (in_time.closure > 1e-6) {
+    EXPECT_THAT(describe(in_time.evidence), HasSubstr("of where they converge"));
+  }
 }
 
 TEST(StandingPitch, HasNoPhaseAndDoesNotOverRotate) {
-  const Vehicle<double> v = resolve(case_of("pitch-6"));
+  const Vehicle<double> v = resolve(case_design("pitch-6"));
   const SteadyFlapping orbit = find_steady_flapping(v, {}, start_up_in_time());
   const TransientResult in_time = simulate_start_up(v);
   ASSERT_EQ(orbit.status, FlappingStatus::flapping);

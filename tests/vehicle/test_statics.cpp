@@ -4,40 +4,37 @@
 
 #include <cmath>
 #include <random>
-#include <string>
 
+#include "vehicle/case_design.hpp"
 #include "vehicle/reference_vehicle.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
-#include "wingbeat/files/design_file.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {
 namespace {
 
-Design<double> case_of(const std::string& name) {
-  return read_design(std::string(WINGBEAT_CASES) + "/" + name + ".toml");
-}
-
-double logarithmic(std::mt19937_64& random, double from, double to) {
+double drawn_over_decades(std::mt19937_64& random, double from, double to) {
   return std::exp(std::uniform_real_distribution<double>(std::log(from), std::log(to))(random));
 }
-double linear(std::mt19937_64& random, double from, double to) {
+double drawn_between(std::mt19937_64& random, double from, double to) {
   return std::uniform_real_distribution<double>(from, to)(random);
 }
 
 /// Long cranks with small hinge offsets, four-bars and tables: what is narrow of them lies at any angle.
-AnyTransmission<double> random_transmission(std::mt19937_64& random, int n) {
+AnyTransmission<double> narrow_transmission(std::mt19937_64& random, int n) {
   AnyTransmission<double> t{};
   if (n % 3 == 0) {
-    const double crank = logarithmic(random, 1e-3, 4e-2), rod = crank * logarithmic(random, 1.05, 8.0);
-    t.slider_crank = {crank, rod, crank * logarithmic(random, 0.03, 4.0), rod + crank * linear(random, -0.5, 0.5),
+    const double crank = drawn_over_decades(random, 1e-3, 4e-2), rod = crank * drawn_over_decades(random, 1.05, 8.0);
+    t.slider_crank = {crank, rod, crank * drawn_over_decades(random, 0.03, 4.0),
+                      rod + crank * drawn_between(random, -0.5, 0.5),
                       n % 2 == 0 ? Formulation::rod_force : Formulation::virtual_work};
   } else if (n % 3 == 1) {
     t.type = TransmissionType::four_bar;
     for (bool valid = false; !valid;) {
-      t.four_bar = {logarithmic(random, 1e-4, 5e-3), logarithmic(random, 2e-3, 2e-2), logarithmic(random, 2e-3, 2e-2),
-                    logarithmic(random, 2e-3, 2e-2), logarithmic(random, 0.3, 10.0)};
+      t.four_bar = {drawn_over_decades(random, 1e-4, 5e-3), drawn_over_decades(random, 2e-3, 2e-2),
+                    drawn_over_decades(random, 2e-3, 2e-2), drawn_over_decades(random, 2e-3, 2e-2),
+                    drawn_over_decades(random, 0.3, 10.0)};
       try {
         validate(t.four_bar);
         t.four_bar.ground_angle = centred_ground_angle(t.four_bar);
@@ -50,28 +47,28 @@ AnyTransmission<double> random_transmission(std::mt19937_64& random, int n) {
     std::vector<std::pair<double, double>> law;
     for (int k = 0; k < rows; ++k) {
       const double angle = two_pi * k / rows;
-      law.emplace_back(angle + 0.3, std::sin(angle) + 0.01 * linear(random, -1.0, 1.0));
+      law.emplace_back(angle + 0.3, std::sin(angle) + 0.01 * drawn_between(random, -1.0, 1.0));
     }
     t.tabulated = {std::make_shared<const StrokeCurve>(law), 1.3, 2e-3};
   }
   return t;
 }
 
-Vehicle<double> random_vehicle(std::mt19937_64& random, int n) {
+Vehicle<double> narrow_vehicle(std::mt19937_64& random, int n) {
   Vehicle<double> v = reference_vehicle();
-  v.transmission = random_transmission(random, n);
-  v.friction.radius = linear(random, 0.0, 1.0) < 0.7 ? logarithmic(random, 1e-5, 5e-3) : 0.0;
-  v.friction.torque = linear(random, 0.0, 1.0) < 0.3 ? logarithmic(random, 1e-5, 1e-3) : 0.0;
-  v.motor.friction_torque = linear(random, 0.0, 1.0) < 0.3 ? logarithmic(random, 1e-5, 1e-3) : 0.0;
-  v.motor.gear_efficiency = linear(random, 0.0, 1.0) < 0.3 ? linear(random, 0.5, 1.0) : 1.0;
-  v.spring.stiffness = logarithmic(random, 1e-5, 1e-2);
-  v.motor.inertia = logarithmic(random, 1e-9, 1e-6);
-  v.voltage = logarithmic(random, 0.5, 10.0);
+  v.transmission = narrow_transmission(random, n);
+  v.friction.radius = drawn_between(random, 0.0, 1.0) < 0.7 ? drawn_over_decades(random, 1e-5, 5e-3) : 0.0;
+  v.friction.torque = drawn_between(random, 0.0, 1.0) < 0.3 ? drawn_over_decades(random, 1e-5, 1e-3) : 0.0;
+  v.motor.friction_torque = drawn_between(random, 0.0, 1.0) < 0.3 ? drawn_over_decades(random, 1e-5, 1e-3) : 0.0;
+  v.motor.gear_efficiency = drawn_between(random, 0.0, 1.0) < 0.3 ? drawn_between(random, 0.5, 1.0) : 1.0;
+  v.spring.stiffness = drawn_over_decades(random, 1e-5, 1e-2);
+  v.motor.inertia = drawn_over_decades(random, 1e-9, 1e-6);
+  v.voltage = drawn_over_decades(random, 0.5, 10.0);
   return v;
 }
 
 /// Below the limit no sample is less than the value found; beyond it both are.
-void expect_least(double found, double sampled, double limit, int n) {
+void expect_least_value(double found, double sampled, double limit, int n) {
   if (sampled < limit) {
     EXPECT_LE(found, sampled + 1e-12 * limit) << n;
   } else {
@@ -84,7 +81,7 @@ TEST(Statics, LeastValuesAreThoseOfEveryAngle) {
   constexpr int samples = 4001;
   int locking = 0, jamming = 0;
   for (int n = 0; n < 150; ++n) {
-    const Vehicle<double> v = random_vehicle(random, n);
+    const Vehicle<double> v = narrow_vehicle(random, n);
     const StaticBalance statics = static_balance(v);
     double inertia = infinity, lever = infinity, advance = infinity;
     for (int k = 0; k < samples; ++k) {
@@ -94,10 +91,10 @@ TEST(Statics, LeastValuesAreThoseOfEveryAngle) {
       inertia = std::min(inertia, min_inertia(v, kinematics));
       advance = std::min(advance, advance_torque(v, angle));
     }
-    expect_least(statics.lever_min, lever, 0.1 * typical_lever(v.transmission), n);
+    expect_least_value(statics.lever_min, lever, 0.1 * typical_lever(v.transmission), n);
     if (!(lever > 0.0)) continue;
-    expect_least(statics.inertia_min, inertia, 0.3 * v.motor.inertia, n);
-    expect_least(statics.advance_min, advance, 0.2 * statics.stall_torque, n);
+    expect_least_value(statics.inertia_min, inertia, 0.3 * v.motor.inertia, n);
+    expect_least_value(statics.advance_min, advance, 0.2 * statics.stall_torque, n);
     locking += statics.can_lock();
     jamming += statics.can_jam();
   }
@@ -125,7 +122,7 @@ void expect_all_locks(const Vehicle<double>& v, int n) {
 TEST(Statics, LockIntervalsAreAllThereAre) {
   std::mt19937_64 random(18);
   for (int n = 0, seen = 0; seen < 24; ++n) {
-    const Vehicle<double> v = random_vehicle(random, n);
+    const Vehicle<double> v = narrow_vehicle(random, n);
     const StaticBalance statics = static_balance(v);
     if (statics.lever_min <= 0.0 || !statics.can_lock()) continue;
     ++seen;
@@ -135,7 +132,7 @@ TEST(Statics, LockIntervalsAreAllThereAre) {
 
 TEST(Statics, AnIntervalOfAMillionthOfAnAngle) {
   // The stall torque is just what springs and friction hold at most, less a trillionth.
-  Vehicle<double> v = resolve(case_of("locks-at-26-deg"));
+  Vehicle<double> v = resolve(case_design("locks-at-26-deg"));
   const StaticBalance before = static_balance(v);
   v.voltage *= (before.stall_torque - before.advance_min) * (1.0 - 1e-12) / before.stall_torque;
   EXPECT_TRUE(static_balance(v).can_lock());
@@ -183,9 +180,9 @@ TEST(Statics, NearestJamsOnEitherSide) {
   EXPECT_EQ(nearest_jams(v, 0.0, 0.0).above, infinity);
 }
 
-SteadyFlapping by_orbit(const Vehicle<double>& v) { return find_steady_flapping(v, {}, start_up_in_time()); }
+SteadyFlapping decided_by_orbit(const Vehicle<double>& v) { return find_steady_flapping(v, {}, start_up_in_time()); }
 
-FlappingStatus batched(const Vehicle<double>& v) {
+FlappingStatus status_in_batch(const Vehicle<double>& v) {
   const EnsembleMember member{v, {}};
   EnsembleOutcome outcome;
   solve_ensemble({&member, 1}, {}, start_up_in_time(), {&outcome, 1});
@@ -193,26 +190,26 @@ FlappingStatus batched(const Vehicle<double>& v) {
 }
 
 TEST(Statics, ACrankThatANarrowIntervalHoldsIsLockedByEveryMethod) {
-  const Vehicle<double> v = resolve(case_of("locks-at-26-deg"));
-  const SteadyFlapping orbit = by_orbit(v);
+  const Vehicle<double> v = resolve(case_design("locks-at-26-deg"));
+  const SteadyFlapping orbit = decided_by_orbit(v);
   ASSERT_EQ(orbit.status, FlappingStatus::locked) << describe(orbit.evidence);
   EXPECT_NEAR(orbit.evidence.angle * degrees_per_radian, 25.94, 0.01);
   const TransientResult in_time = simulate_start_up(v);
   ASSERT_EQ(in_time.status, FlappingStatus::locked) << describe(in_time.evidence);
   EXPECT_NEAR(*in_time.lock_angle * degrees_per_radian, 25.94, 0.01);
-  EXPECT_EQ(batched(v), FlappingStatus::locked);
+  EXPECT_EQ(status_in_batch(v), FlappingStatus::locked);
   ASSERT_EQ(lock_intervals(v).size(), 4u);
 }
 
 TEST(Statics, AStallComesBeforeAJamByEveryMethod) {
-  const Vehicle<double> v = resolve(case_of("stalled-and-jammed"));
+  const Vehicle<double> v = resolve(case_design("stalled-and-jammed"));
   ASSERT_TRUE(static_balance(v).stalled());
   ASSERT_TRUE(static_balance(v).can_jam());
-  EXPECT_EQ(by_orbit(v).status, FlappingStatus::stalled);
+  EXPECT_EQ(decided_by_orbit(v).status, FlappingStatus::stalled);
   const TransientResult in_time = simulate_start_up(v);
   EXPECT_EQ(in_time.status, FlappingStatus::stalled) << describe(in_time.evidence);
   EXPECT_FALSE(in_time.jam_angle);
-  EXPECT_EQ(batched(v), FlappingStatus::stalled);
+  EXPECT_EQ(status_in_batch(v), FlappingStatus::stalled);
 }
 
 }  // namespace
