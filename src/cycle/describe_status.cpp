@@ -229,6 +229,10 @@ std::string describe(const StatusEvidence& e) {
                      : e.kind < Kind::no_orbit       ? describe_stall(e)
                      : e.kind < Kind::unstable_orbit ? describe_lock_or_jam(e)
                                                      : describe_doubt(e);
+  const bool simulated = e.kind >= Kind::out_of_steps;
+  if (simulated && e.search != solver::PeriodicStatus::not_tried && e.search != solver::PeriodicStatus::converged) {
+    text += format("; the search for an orbit ended without one before (%s)", describe(e.search));
+  }
   if (std::isfinite(e.faster_orbit)) {
     text += format("; a rotating orbit at %.4g Hz exists for a faster start", e.faster_orbit);
   }

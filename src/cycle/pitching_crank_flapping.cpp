@@ -185,6 +185,7 @@ SteadyFlapping PitchingCrankSearch<N>::run(const StartUp& start_up, SharedSearch
     if (outcome.status != FlappingStatus::flapping) {
       result.status = outcome.status;
       result.evidence = outcome.evidence;
+      if (result.status == FlappingStatus::undecided) result.evidence.search = last_.status;
       if (!stable_.empty()) result.evidence.faster_orbit = stable_.front().frequency();
       return result;
     }

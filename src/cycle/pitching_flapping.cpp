@@ -132,6 +132,7 @@ SteadyFlapping PitchingSearch<N>::run(const StartUp& start_up, SharedSearch& sha
     if (outcome.status != FlappingStatus::flapping) {
       result.status = outcome.status;
       result.evidence = outcome.evidence;
+      if (result.status == FlappingStatus::undecided) result.evidence.search = last.status;
       return result;
     }
     const auto reached_by = [&](const State& reached) {

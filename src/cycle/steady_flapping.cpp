@@ -67,6 +67,7 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
     if (outcome->status != FlappingStatus::flapping) {
       result.status = outcome->status;
       result.evidence = outcome->evidence;
+      if (result.status == FlappingStatus::undecided) result.evidence.search = orbit.summary().status;
       if (found) result.evidence.faster_orbit = orbit.frequency();
       result.summary = orbit.summary();
       return result;

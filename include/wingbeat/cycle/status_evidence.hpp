@@ -62,7 +62,8 @@ struct StatusEvidence {
     open_balance,  ///< change: of the input, what the energy balance of the cycle found leaves open; search or direct
     no_steady_temperature,  ///< winding_temperature, the last of a search around cycles that flap
     no_cycle,  ///< it rotates in time, but neither an orbit (search, direct) nor a simulated cycle was found
-    // Undecided, in time; a crank also has `range` of its angles, or the frequency where it revolves
+    // Undecided, in time; a crank also has `range` of its angles, or the frequency where it revolves; `search` where an
+    // orbit was sought before
     out_of_steps,            ///< steps, as many as allowed
     out_of_time,             ///< time allowed
     cycles_differ,           ///< change from one to the next after `cycles`, as many as allowed; direct
