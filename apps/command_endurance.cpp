@@ -46,16 +46,16 @@ int run(const EnduranceArguments& arguments) {
   const EnduranceResult result = simulate_discharge(design, options);
   const bool flies = result.endurance() > 0.0;
   if (flies && output) {
-    write_endurance(
-        result,
-        {.title = fmt::format("Discharge of the battery of {}", design.name.empty() ? written_name(arguments.vehicle) : design.name),
-         .command = "endurance",
-         .version = version,
-         .vehicle = write_design(design),
-         .condition = "air",
-         .method = "orbit",
-         .tolerance = options.tolerance},
-        output->temporary());
+    write_endurance(result,
+                    {.title = fmt::format("Discharge of the battery of {}",
+                                          design.name.empty() ? written_name(arguments.vehicle) : design.name),
+                     .command = "endurance",
+                     .version = version,
+                     .vehicle = write_design(design),
+                     .condition = "air",
+                     .method = "orbit",
+                     .tolerance = options.tolerance},
+                    output->temporary());
     output->commit();
   }
   if (flies && plot) {
