@@ -42,7 +42,8 @@ TEST(EnergyAudit, OrbitsThatLeaveItOpenAreRefused) {
   const DirectSystem<double, 3> of(v, {0.5, 60.0, 0.1});
   for (const double leak : {1.0, 1.0 + 3e-6, 1.0 + 3e-5, 1.001}) {
     const SteadyOptions options{.tolerance = 1e-6};
-    detail::OrbitSearch<LeakyDirect<double>> orbit({of, leak}, options);
+    solver::WorkBudget work;
+    detail::OrbitSearch<LeakyDirect<double>> orbit({of, leak}, options, work);
     const bool within = leak < 1.0 + 1e-5;
     EXPECT_EQ(orbit.search({}), within) << leak;
     EXPECT_EQ(orbit.summary().status, within ? solver::PeriodicStatus::converged : solver::PeriodicStatus::unbalanced);

@@ -23,7 +23,7 @@ Design<double> four_bar_design() {
   return d;
 }
 
-SteadyFlapping orbit_of(const Vehicle<double>& v, double tolerance) {
+SteadyFlapping mechanism_orbit(const Vehicle<double>& v, double tolerance) {
   SteadyOptions options;
   options.tolerance = tolerance;
   return find_steady_flapping(v, options, start_up_in_time());
@@ -33,7 +33,7 @@ TEST(FourBarVehicle, FlapsToEitherSideWithAClosedEnergyBalance) {
   Design<double> d = four_bar_design();
   validate(d);
   for (const double tolerance : {1e-6, 1e-10}) {
-    const SteadyFlapping found = orbit_of(resolve(d), tolerance);
+    const SteadyFlapping found = mechanism_orbit(resolve(d), tolerance);
     ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
     const EnergyAudit audit = energy_audit(found.metrics);
     EXPECT_NEAR(audit.imbalance, 0.0, tolerance * audit.electrical);
@@ -61,7 +61,7 @@ TEST(FourBarVehicle, LongRockerFlapsAsASliderCrankByVirtualWork) {
     bars.transmission.ground_length = std::hypot(p, l);
     bars.transmission.stroke_ratio = p / H;
     bars.transmission.ground_angle = pi - std::atan(l / p);
-    const SteadyFlapping one = orbit_of(resolve(slider), 1e-9), other = orbit_of(resolve(bars), 1e-9);
+    const SteadyFlapping one = mechanism_orbit(resolve(slider), 1e-9), other = mechanism_orbit(resolve(bars), 1e-9);
     ASSERT_EQ(one.status, FlappingStatus::flapping) << describe(one.evidence);
     ASSERT_EQ(other.status, FlappingStatus::flapping) << describe(other.evidence);
     double off = 0.0;
@@ -91,7 +91,7 @@ TEST(TabulatedVehicle, FlapsAsTheLawThatItSamples) {
   v.transmission = {};
   v.transmission.type = TransmissionType::tabulated;
   v.transmission.tabulated = {std::make_shared<const StrokeCurve>(rows), 1.0, law.radius};
-  const SteadyFlapping found = orbit_of(v, 1e-8);
+  const SteadyFlapping found = mechanism_orbit(v, 1e-8);
   ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
   using System = CrankSystem<double, 2, StrokeLawVehicle<double>>;
   const double speed = 0.6 * no_load_speed(exact);
@@ -110,7 +110,7 @@ TEST_P(WideMechanism, OrbitAndSimulationInTimeAgree) {
   for (std::uint32_t n = 0; n < 24; ++n) {
     const WideVehicle drawn = wide_vehicle(GetParam(), n);
     const Vehicle<double> v = resolve(drawn.design, drawn.condition);
-    const SteadyFlapping orbit = orbit_of(v, 1e-8);
+    const SteadyFlapping orbit = mechanism_orbit(v, 1e-8);
     TransientOptions options;
     options.tolerance = 1e-7;
     const TransientResult time = simulate_start_up(v, options);
