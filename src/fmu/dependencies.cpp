@@ -70,8 +70,9 @@ std::vector<std::size_t> known_on_side(const Design<double>& design, VariableKin
     else if (number < layout.first_sum()) k.input(InputId::frequency);
     else if (sum == 0) lift();
     else if (sum <= 2) current();
-    else if (sum == 3) electrical_power();
-    else if (sum == 4) mechanics();
+    else if (sum == 3) k.state(1);
+    else if (sum == 4) electrical_power();
+    else if (sum == 5) mechanics();
     else aerodynamics();
   } else if (kind == VariableKind::output) {
     switch (OutputId(number)) {

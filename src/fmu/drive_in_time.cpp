@@ -337,7 +337,7 @@ std::vector<double> DriveInTime::nominals() const {
         // Of the sums what a tenth of a second gives, about.
         const double current = std::max(std::abs(inputs_.voltage), 1e-3) / circuit_resistance(model.vehicle);
         const double power = std::max(std::abs(inputs_.voltage), 1e-3) * current;
-        for (const double rate : {1e-2, current, current * current, power, power, power}) {
+        for (const double rate : {1e-2, current, current * current, square(typical[1]), power, power, power}) {
           sizes.push_back(0.1 * rate);
         }
         return sizes;

@@ -82,6 +82,8 @@ inline constexpr ExposedSum exposed_sums[] = {
     {"sum_lift", "N.s", "lift, integrated over time", Integral::lift},
     {"sum_current", "A.s", "current, integrated over time", Integral::current},
     {"sum_current_square", "A2.s", "square of the current, integrated over time", Integral::current_square},
+    {"sum_speed_square", "rad2/s", "square of the speed of crank or shaft, integrated over time",
+     Integral::speed_square},
     {"sum_power_electrical", "J", "electrical energy taken", Integral::electrical_work},
     {"sum_power_friction", "J", "energy lost in friction", Integral::friction_work},
     {"sum_power_aerodynamic", "J", "energy given to the air", Integral::aero_work}};

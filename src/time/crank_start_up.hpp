@@ -58,6 +58,7 @@ class CrankStartUp {
   double cycle_time(std::size_t cycle) const { return crossings_[cycle].cycle; }
   bool repeats_after(std::size_t cycles) const;
   double time_of_steadiness(double period) const;
+  double load_power() const;  ///< of the cycles measured last [W]
   double cycle_scatter(std::size_t cycles) const;
   void add_variation();
 

@@ -34,7 +34,7 @@ pitch_coefficient = "5e-3 s"
 angle_of_attack_min = "45 deg"
 )";
 
-std::string with(const std::string& old, const std::string& replacement) {
+std::string direct_with(const std::string& old, const std::string& replacement) {
   std::string text = direct_file;
   const auto at = text.find(old);
   EXPECT_NE(at, std::string::npos) << old;
@@ -71,7 +71,7 @@ TEST(DirectFile, IsReadAndWrittenBack) {
 }
 
 TEST(DirectFile, TiesAreReadAndWrittenBack) {
-  const std::string tied = with("frequency = \"22 Hz\"", "resonance_ratio = 1.05");
+  const std::string tied = direct_with("frequency = \"22 Hz\"", "resonance_ratio = 1.05");
   std::string text = tied;
   text.replace(text.find("resonance_ratio = 1\n"), 19, "stiffness = \"2e-3 N m/rad\"");
   text.replace(text.find("inertia = \"7.205e-8 kg m2\""), 26, "resonance = \"15 Hz\"");
@@ -84,47 +84,49 @@ TEST(DirectFile, TiesAreReadAndWrittenBack) {
 TEST(DirectFile, RefusesWithPlaceAndKey) {
   EXPECT_EQ(refusal(direct_file), "accepted");
   EXPECT_EQ(refusal("[vehicle]\nmass = \"3 g\"\n" +
-                    with("type = \"direct\"", "type = \"direct\"\nrod_linear_density = \"1 g/m\"")),
+                    direct_with("type = \"direct\"", "type = \"direct\"\nrod_linear_density = \"1 g/m\"")),
             "v.toml:15:1: transmission.rod_linear_density: a direct drive has no rod");
   EXPECT_EQ(
-      refusal(with("type = \"constant\"\ntorque = \"1e-4 N m\"", "type = \"load-proportional\"\nradius = 0.002")),
+      refusal(
+          direct_with("type = \"constant\"\ntorque = \"1e-4 N m\"", "type = \"load-proportional\"\nradius = 0.002")),
       "v.toml:14:1: friction.type: load-proportional friction follows the rod force, and a direct drive has no rod; "
       "expected none, viscous, quadratic or constant");
-  EXPECT_EQ(refusal(with("type = \"sine\"\namplitude = \"3 V\"\nfrequency = \"22 Hz\"",
-                         "type = \"constant\"\nvoltage = 3\n")),
+  EXPECT_EQ(refusal(direct_with("type = \"sine\"\namplitude = \"3 V\"\nfrequency = \"22 Hz\"",
+                                "type = \"constant\"\nvoltage = 3\n")),
             "v.toml:2:1: supply.type: a direct drive swings as its supply does: expected sine or battery-sine");
-  EXPECT_EQ(refusal(with("type = \"direct\"", "type = \"direct\"\ncrank_radius = \"5 mm\"")),
+  EXPECT_EQ(refusal(direct_with("type = \"direct\"", "type = \"direct\"\ncrank_radius = \"5 mm\"")),
             "v.toml:13:1: transmission.crank_radius: belongs to transmission.type = slider-crank or four-bar, but "
             "transmission.type is \"direct\"");
   EXPECT_EQ(
-      refusal(with("type = \"direct\"", "type = \"direct\"\nformulation = \"virtual-work\"")),
+      refusal(direct_with("type = \"direct\"", "type = \"direct\"\nformulation = \"virtual-work\"")),
       "v.toml:13:1: transmission.formulation: belongs to transmission.type = slider-crank, but transmission.type is "
       "\"direct\"");
   EXPECT_EQ(
-      refusal(with("frequency = \"22 Hz\"\n", "")),
+      refusal(direct_with("frequency = \"22 Hz\"\n", "")),
       "v.toml:1:2: supply.frequency: missing in [supply]; expected a frequency such as \"22 Hz\", or resonance_ratio "
       "instead");
-  EXPECT_EQ(refusal(with("frequency = \"22 Hz\"\n", "frequency = \"22 Hz\"\nresonance_ratio = 1\n")),
+  EXPECT_EQ(refusal(direct_with("frequency = \"22 Hz\"\n", "frequency = \"22 Hz\"\nresonance_ratio = 1\n")),
             "v.toml:5:1: supply.resonance_ratio: give frequency or resonance_ratio, not both");
   EXPECT_EQ(
-      refusal(with("frequency = \"22 Hz\"\n", "resonance_ratio = 1\n")),
+      refusal(direct_with("frequency = \"22 Hz\"\n", "resonance_ratio = 1\n")),
       "v.toml:4:1: supply.resonance_ratio: ties the frequency to the springs, which spring.resonance_ratio ties to "
       "the frequency; give one of them");
-  EXPECT_EQ(refusal(with("resonance_ratio = 1\n", "resonance_ratio = 0\n")),
+  EXPECT_EQ(refusal(direct_with("resonance_ratio = 1\n", "resonance_ratio = 0\n")),
             "v.toml:17:1: spring.resonance_ratio: must be > 0 [1], got 0");
-  EXPECT_EQ(refusal(with("resonance_ratio = 1\n", "resonance_ratio = \"22 Hz\"\n")).substr(0, 37),
+  EXPECT_EQ(refusal(direct_with("resonance_ratio = 1\n", "resonance_ratio = \"22 Hz\"\n")).substr(0, 37),
             "v.toml:17:1: spring.resonance_ratio: ");
-  EXPECT_EQ(refusal(with("resonance_ratio = 1\n", "resonance_ratio = 1\nstiffness = 1\n")),
+  EXPECT_EQ(refusal(direct_with("resonance_ratio = 1\n", "resonance_ratio = 1\nstiffness = 1\n")),
             "v.toml:17:1: spring.resonance_ratio: give stiffness or resonance_ratio, not both");
-  EXPECT_EQ(refusal(with("inertia = \"7.205e-8 kg m2\"", "resonance = \"22 Hz\"")),
+  EXPECT_EQ(refusal(direct_with("inertia = \"7.205e-8 kg m2\"", "resonance = \"22 Hz\"")),
             "v.toml:20:1: wing.resonance: gives the inertia that resonates on a known spring; give spring.stiffness");
-  EXPECT_EQ(refusal(with("chord_ratio = 0.25", "chord_ratio = 0")),
+  EXPECT_EQ(refusal(direct_with("chord_ratio = 0.25", "chord_ratio = 0")),
             "v.toml:21:56: wing.planform.chord_ratio: must be > 0 [1], got 0");
-  EXPECT_EQ(refusal(with("chord_ratio = 0.25", "chord_ratio = 0.25, root_chord = 0.01")).substr(0, 13),
+  EXPECT_EQ(refusal(direct_with("chord_ratio = 0.25", "chord_ratio = 0.25, root_chord = 0.01")).substr(0, 13),
             "v.toml:21:56:");
-  EXPECT_EQ(refusal(with("\"45 deg\"", "\"95 deg\"")).substr(0, 74),
+  EXPECT_EQ(refusal(direct_with("\"45 deg\"", "\"95 deg\"")).substr(0, 74),
             "v.toml:25:1: aerodynamics.angle_of_attack_min: must be >= 0 and < pi/2 [ra");
-  EXPECT_EQ(refusal(with("\"45 deg\"", "\"45 s\"")).substr(0, 47), "v.toml:25:1: aerodynamics.angle_of_attack_min: ");
+  EXPECT_EQ(refusal(direct_with("\"45 deg\"", "\"45 s\"")).substr(0, 47),
+            "v.toml:25:1: aerodynamics.angle_of_attack_min: ");
 }
 
 }  // namespace

@@ -152,6 +152,7 @@ TEST(DescribeRun, PwmSuppliesAndSearches) {
 
 TEST(DescribeEndurance, EveryEnd) {
   EnduranceResult r;
+  const std::string no_mass = "the vehicle file gives no mass, so that hover is unknown; ";
   r.end = EnduranceEnd::never_starts;
   r.evidence = stalls;
   r.first_charge = 0.75;
@@ -171,19 +172,28 @@ TEST(DescribeEndurance, EveryEnd) {
             "the terminal voltage of 5.25 V is not above the cut-off voltage, 5.4 V in all, from the start");
   last.time = 120.0;
   last.charge = 0.125;
-  EXPECT_EQ(describe(r),
-            "the terminal voltage falls to the cut-off voltage, 5.4 V in all, after 120 s, at a charge of 0.125");
+  EXPECT_EQ(
+      describe(r),
+      no_mass + "the terminal voltage falls to the cut-off voltage, 5.4 V in all, after 120 s, at a charge of 0.125");
   r.end = EnduranceEnd::empty;
-  EXPECT_EQ(describe(r), "the battery is empty after 120 s");
+  EXPECT_EQ(describe(r), no_mass + "the battery is empty after 120 s");
+  r.hover = Hover::kept;
+  EXPECT_EQ(describe(r), "it hovers to the end; the battery is empty after 120 s");
+  r.hover = Hover::never;
+  last.metrics[Metric::lift_to_weight] = 0.5;
+  EXPECT_EQ(describe(r), "it does not hover: lift is 0.5 of the weight at the start; the battery is empty after 120 s");
+  r.hover = Hover::unknown;
   r.end = EnduranceEnd::stops;
-  EXPECT_EQ(describe(r),
-            "after 120 s, at a charge of 0.125 and 5.25 V at the terminals, the battery no longer turns the crank");
+  EXPECT_EQ(
+      describe(r),
+      no_mass + "after 120 s, at a charge of 0.125 and 5.25 V at the terminals, the battery no longer turns the crank");
   r.end = EnduranceEnd::bridge;
   last.metrics[Metric::voltage] = 5.25;
   EXPECT_EQ(
       describe(r),
-      "the battery's terminal voltage falls to the amplitude of the bridge's sine, 5.25 V, after 120 s, at a charge "
-      "of 0.125");
+      no_mass +
+          "the battery's terminal voltage falls to the amplitude of the bridge's sine, 5.25 V, after 120 s, at a charge "
+          "of 0.125");
   last.time = 0.0;
   last.terminal_voltage = 5.0;
   EXPECT_EQ(describe(r), "under load the battery gives the bridge 5 V, less than the amplitude of its sine, 5.25 V");

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "wingbeat/core/math.hpp"
+#include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
@@ -15,11 +15,10 @@ namespace wingbeat {
 template <class V>
 double energy_gap(const V& v, const CycleIntegrals<double>& work) {
   const auto total = [&](Integral which) { return work[std::size_t(which)]; };
-  const double turned = drive_of(v).rotates ? two_pi : 0.0;
   return total(Integral::electrical_work) - v.motor.armature_resistance * total(Integral::current_square) -
          v.motor.viscous_damping * total(Integral::speed_square) - total(Integral::friction_work) -
          total(Integral::aero_work) - total(Integral::residual_work) - total(Integral::gear_work) -
-         v.load_torque * turned;
+         load_work(v);
 }
 
 /// The same beside the smaller of the electrical work and all losses, of which metrics are means: about what errors
