@@ -294,7 +294,9 @@ def integrate(instance, until, tolerance=1e-9, sample=None):
             instance.put(t, y)
             return np.array(instance.indicators())
 
-        solver = DOP853(rates, time, np.array(instance.states()), stop, rtol=tolerance, atol=absolute)
+        # SciPy's own first step probes far beyond `stop` where hardly anything moves.
+        solver = DOP853(rates, time, np.array(instance.states()), stop, rtol=tolerance, atol=absolute,
+                        first_step=1e-3 * (stop - time))  # fmt: skip
         event = False
         while solver.status == "running" and not event:
             solver.step()

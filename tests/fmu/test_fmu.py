@@ -290,14 +290,14 @@ class Numbers(unittest.TestCase):
 
     def test_restarting_where_the_fmu_says_so_is_enough(self):
         """As importers do that restart their integrators only where valuesOfContinuousStatesChanged is true."""
-        for vehicle, options in ((CRANK, PWM), (HINGED_CRANK, STOPS), (HINGED, STOPS)):
+        for vehicle, options, end in ((CRANK, PWM, 0.06), (HINGED_CRANK, STOPS, 0.2), (HINGED, STOPS, 0.1)):
             package = export(vehicle, 2, *options)
             found = []
             for only_where_told in (False, True):
                 me = Instance(package, False, 0.0)
-                jumps = euler_until(me, 0.06, only_where_told)
+                jumps = euler_until(me, end, only_where_told)
                 found.append(me.states())
-                self.assertGreater(jumps, 5)
+                self.assertGreater(jumps, 3)
                 me.close()
             self.assertEqual(found[0], found[1], vehicle)
 

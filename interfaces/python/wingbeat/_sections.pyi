@@ -154,7 +154,7 @@ class MotorSection(Section):
         """
     @property
     def armature_inductance(self) -> Quantity:
-        """L_a, armature inductance; 0 makes the current algebraic.
+        """L_a, armature inductance; 0, or a lag of the current below 1e-9 rad, makes it algebraic.
         [H] Range: >= 0. Default: required.
         """
     @property
