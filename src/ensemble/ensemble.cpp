@@ -141,14 +141,14 @@ class EnsembleRun {
     for (std::size_t n = 0; n < members_.size(); ++n) {
       const Vehicle<double>& v = members_[n].vehicle;
       if (!takes(v)) continue;
-      if (options_.scalar_only || !has_packs || !suits_packs(v)) {
+      const bool by_packs = !options_.scalar_only && has_packs && suits_packs(v);
+      const bool stalls = stall_torque(v) <= breakaway_torque(v), rotates = drive_of(v).rotates;
+      if (!by_packs || (!stalls && rotates && needs_start_up(v))) {
         solve_by_scalar(n);
-      } else if (stall_torque(v) <= breakaway_torque(v)) {
+      } else if (stalls) {
         settle(n, FlappingStatus::stalled);
-      } else if (!drive_of(v).rotates) {
+      } else if (!rotates) {
         direct_by_kind[direct_kind_of(v)].push_back(n);
-      } else if (needs_start_up(v)) {
-        solve_by_scalar(n);
       } else {
         by_kind[kind_of(v)].push_back(n);
       }

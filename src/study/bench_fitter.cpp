@@ -66,7 +66,8 @@ BenchFitter::BenchFitter(const BenchFit& fit, const ForEach& for_each)
   first_deviations();
 }
 
-BenchFitter::Outcome BenchFitter::solve(std::vector<double> x, const std::vector<std::size_t>& free, int iterations) {
+BenchFitter::Outcome BenchFitter::solve(std::vector<double> x, const std::vector<std::size_t>& free, int iterations,
+                                        double tolerance) {
   Outcome outcome;
   if (free.empty()) {
     outcome.converged = true;
@@ -93,7 +94,7 @@ BenchFitter::Outcome BenchFitter::solve(std::vector<double> x, const std::vector
     problem.SetParameterLowerBound(scaled.data(), int(k), 0.0);
     problem.SetParameterUpperBound(scaled.data(), int(k), 1.0);
   }
-  const ceres::Solver::Options options = least_squares(iterations, 1e-9, 1e-9);
+  const ceres::Solver::Options options = least_squares(iterations, tolerance, 1e-9);
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   outcome.x = callback.natural();

@@ -32,8 +32,9 @@ class BenchFitter {
     std::vector<double> x;
   };
 
-  /// Minimises over the parameters in `free` from x, at the present deviations.
-  Outcome solve(std::vector<double> x, const std::vector<std::size_t>& free, int iterations = 100);
+  /// Minimises over the parameters in `free` from x, at the present deviations, to a relative `tolerance` of the loss.
+  Outcome solve(std::vector<double> x, const std::vector<std::size_t>& free, int iterations = 100,
+                double tolerance = 1e-9);
 
   /// Sum of rho(r^2) at the bench's present state.
   double cost() const;

@@ -14,6 +14,8 @@ ProfileSide profile_loss(const BenchFit& fit, BenchFitter& fitter, const std::ve
   for (const std::size_t f : free) {
     if (f != k) others.push_back(f);
   }
+  // Of the least loss: its rise is wanted to a few hundredths.
+  constexpr double accuracy = 1e-4;
   ProfileSide of;
   // The others start where the straight line through the least and what was last found for them leads to, at first
   // the line that the covariance gives.
@@ -26,7 +28,7 @@ ProfileSide profile_loss(const BenchFit& fit, BenchFitter& fitter, const std::ve
       const double follows = best[f] + slope[f] * (value - best[k]);
       if (std::isfinite(follows)) x[f] = std::clamp(follows, fit.parameters[f].lower, fit.parameters[f].upper);
     }
-    const BenchFitter::Outcome outcome = fitter.solve(x, others, 30);
+    const BenchFitter::Outcome outcome = fitter.solve(x, others, 30, accuracy);
     if (value != best[k]) {
       for (const std::size_t f : others) slope[f] = (outcome.x[f] - best[f]) / (value - best[k]);
     }

@@ -396,17 +396,15 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
     if (summary.status == PeriodicStatus::converged) {
       const double needed = detail::cancellation(system, iterate);
       imbalance = detail::imbalance(system, iterate);
-      const bool open = imbalance > 0.5 * options.tolerance;
+      const bool open = imbalance > 0.5 * options.tolerance, finest = tolerances[2] <= tightest;
       if (open && contracts && !known) {
         contracts = false;  // the return map's derivative tells after all
-      } else if (tolerances[2] <= tightest) {
-        break;
-      } else if (needed > 1.5 * cancellation) {
+      } else if (!finest && needed > 1.5 * cancellation) {
         // Metrics that are small differences of what was controlled: once more, with tighter steps.
         cancellation = needed;
         closed = 0.1 * options.tolerance / cancellation;
         tolerances[2] = std::max(fine / (amplification * cancellation), tightest);
-      } else if (open && rebalanced++ < 4) {
+      } else if (!finest && open && rebalanced++ < 4) {
         // Errors of steps that estimates do not see.
         tolerances[2] = std::max(tolerances[2] * std::clamp(0.2 * options.tolerance / imbalance, 1e-3, 0.2), tightest);
       } else {
