@@ -38,7 +38,13 @@ Exported exported(Design<double> design, int number) {
 /// A crank, on a switched supply too, with wings on hinges and stops, two of them; a direct drive, with friction that
 /// holds it, with wings on hinges and stops, two of them.
 const std::vector<Exported>& vehicles() {
-  static const std::vector<Exported> all = [] {
+  struct All {
+    std::vector<Exported> list;
+    ~All() {
+      for (const Exported& of : list) std::filesystem::remove_all(of.folder);
+    }
+  };
+  static const All all{[] {
     Design<double> crank = reference_design(), pwm = crank, two_cranks = crank, direct = direct_design(),
                    sticking = direct, stopped = hinged_design(1e-3), two = stopped,
                    hinged_crank = on_hinges(crank, 1e-3);
@@ -52,12 +58,9 @@ const std::vector<Exported>& vehicles() {
     for (const auto& design : {crank, pwm, two_cranks, direct, sticking, stopped, two, hinged_crank}) {
       list.push_back(exported(design, int(list.size())));
     }
-    std::atexit([] {
-      for (const Exported& of : vehicles()) std::filesystem::remove_all(of.folder);
-    });
     return list;
-  }();
-  return all;
+  }()};
+  return all.list;
 }
 
 /// The input, byte by byte; zeros behind its end.
