@@ -11,12 +11,12 @@
 #include <cstring>
 #include <deque>
 #include <exception>
-#include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <thread>
+#include <vector>
 
 #include "wingbeat/core/cancellation.hpp"
 #include "wingbeat/files/design_file.hpp"
@@ -149,7 +149,8 @@ class Run {
     // One chunk more than threads, so that nobody waits for the last of a chunk.
     const std::size_t most = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism) + 1;
     std::mutex pool_mutex;
-    std::deque<std::unique_ptr<Work>> pool;
+    std::deque<Work> works;  // those under way, too: where a stage throws, none is lost
+    std::vector<Work*> idle;
     const auto begin = [&](tbb::flow_control& flow) -> Work* {
       const auto chunk = next();
       if (!chunk) {
@@ -157,9 +158,9 @@ class Run {
         return nullptr;
       }
       const std::lock_guard lock(pool_mutex);
-      if (pool.empty()) pool.push_back(std::make_unique<Work>());
-      Work* work = pool.front().release();
-      pool.pop_front();
+      if (idle.empty()) idle.push_back(&works.emplace_back());
+      Work* const work = idle.back();
+      idle.pop_back();
       work->chunk = *chunk;
       return work;
     };
@@ -173,7 +174,7 @@ class Run {
     const auto end = [&](Work* work) {
       keep(work->chunk, work->bytes);
       const std::lock_guard lock(pool_mutex);
-      pool.emplace_back(work);
+      idle.push_back(work);
     };
     tbb::parallel_pipeline(most, tbb::make_filter<void, Work*>(tbb::filter_mode::serial_in_order, begin) &
                                      tbb::make_filter<Work*, Work*>(tbb::filter_mode::parallel, solve) &
