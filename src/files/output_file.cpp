@@ -31,17 +31,20 @@ OutputFile::OutputFile(std::string option, const fs::path& path, const OutputRul
   // No name comes twice: in messages each stands for one output (FileRecord::with_given_names).
   static std::atomic<int> number = 0;
   int file = -1;
-  for (int attempt = 0; file < 0; ++attempt) {
+  for (int attempt = 0;; ++attempt) {
     // The extension stays: some writers choose the format by it.
     temporary_ = folder / temporary_name(number++, target_.extension().string());
+    // Before it is there: a signal between the two would leave it.
+    remembered_ = remember_temporary(temporary_);
     file = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode_.value_or(0666));
-    if (file < 0 && (errno != EEXIST || attempt > 1000)) {
-      const int reason = errno;
+    if (file >= 0) break;
+    const int reason = errno;
+    forget_temporary(remembered_);
+    if (reason != EEXIST || attempt > 1000) {
       FileRecord::of_this_program().withdraw(target_);
       refuse(fmt::format("cannot be written: {}", std::strerror(reason)));
     }
   }
-  remembered_ = remember_temporary(temporary_);
   FileRecord::of_this_program().add_temporary(temporary_, option_);
   ::close(file);
 }
