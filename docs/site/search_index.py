@@ -1,0 +1,99 @@
+"""The index of the manual's search: the sections of every page as text, from the pages that Sphinx has made."""
+import html.parser
+import json
+import re
+
+headings = {"h1", "h2", "h3", "h4"}
+# Without end tag.
+void = {"area", "base", "br", "col", "embed", "hr", "img", "input", "link", "meta", "source", "track", "wbr"}
+silent = {"script", "style", "svg", "noscript", "nav", "button", "form"}
+
+
+def kind_of(page):
+    """What a page is; docs/site/search.js ranks and names the kinds."""
+    if page.startswith("library/") and page.count("/") > 1:
+        return "header"
+    if page.startswith("notebooks/"):
+        return "notebook"
+    if page.startswith("python-reference"):
+        return "python"
+    return "history" if page in ("changelog.html", "contributing.html", "architecture.html") else "page"
+
+
+class Sections(html.parser.HTMLParser):
+    """Title and sections of a page: [heading, anchor, text]."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.stack = []      # [tag, whether it is left out]
+        self.anchors = []    # ids of the sections that are open, with their depth
+        self.sections, self.inside, self.in_heading, self.title = [], False, None, ""
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        attributes = dict(attributes)
+        classes = (attributes.get("class") or "").split()
+        if tag == "article" or tag == "body" and attributes.get("data-search") is not None:
+            self.inside = True
+        if tag in void:
+            self.add(" ")
+            return
+        hidden = tag in silent or bool({"headerlink", "tex", "visually-hidden"} & set(classes))
+        self.stack.append((tag, hidden or bool(self.stack and self.stack[-1][1])))
+        if tag == "section" and attributes.get("id"):
+            self.anchors.append((len(self.stack), attributes["id"]))
+        if self.inside and tag in headings:
+            self.in_heading = tag
+            anchor = attributes.get("id") or (self.anchors[-1][1] if self.anchors else "")
+            self.sections.append(["", "" if tag == "h1" else anchor, ""])
+        elif tag not in ("a", "code", "em", "strong", "span", "sub", "sup", "i", "b"):
+            self.add(" ")
+
+    def handle_endtag(self, tag):
+        if tag in void:
+            return
+        while self.stack and self.stack.pop()[0] != tag:
+            pass
+        while self.anchors and self.anchors[-1][0] > len(self.stack):
+            self.anchors.pop()
+        if tag == self.in_heading:
+            self.in_heading = None
+        if tag == "article":
+            self.inside = False
+        if tag not in ("a", "code", "em", "strong", "span", "sub", "sup", "i", "b"):
+            self.add(" ")
+
+    def handle_data(self, data):
+        self.add(data)
+
+    def add(self, data):
+        if not self.inside or not self.sections or (self.stack and self.stack[-1][1]):
+            return
+        self.sections[-1][0 if self.in_heading else 2] += data
+
+
+def tidy(text):
+    return re.sub(r"\s+", " ", text).strip()
+
+
+def entries(site):
+    """The rows of the index."""
+    rows = []
+    for path in sorted(site.rglob("*.html")):
+        page = path.relative_to(site).as_posix()
+        if page in ("search.html", "genindex.html"):
+            continue
+        sections = Sections(path.read_text(errors="replace")).sections
+        title = tidy(sections[0][0]) if sections else ""
+        for heading, anchor, text in sections:
+            rows.append({"page": page, "title": title, "heading": tidy(heading), "anchor": anchor, "text": tidy(text),
+                         "kind": kind_of(page)})
+    return rows
+
+
+def write(site):
+    """search-index.js of the site; returns its rows."""
+    rows = entries(site)
+    text = json.dumps(rows, ensure_ascii=False, separators=(",", ":")).replace("</", "<\\/")
+    (site / "search-index.js").write_text(f"const searchIndex = {text};\n")
+    return rows
