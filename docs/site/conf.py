@@ -31,6 +31,7 @@ html_static_path = ["static"]
 html_extra_path = ["extra"]
 html_css_files = ["site.css", "katex/katex.min.css"]
 html_copy_source = False
+html_use_index = False
 html_show_sourcelink = False
 html_show_sphinx = False
 html_show_copyright = False
@@ -60,9 +61,10 @@ def displayed(self, node):
     raise nodes.SkipNode
 
 
-def without_unused_styles(app, page, template, context, doctree):
-    """Nothing here uses the extensions that furo has a style sheet for."""
+def without_unused(app, page, template, context, doctree):
+    """Nothing here uses the extensions that furo has a style sheet for, nor the scripts of Sphinx."""
     context["css_files"] = [sheet for sheet in context.get("css_files", []) if "furo-extensions" not in str(sheet)]
+    context["script_files"] = [script for script in context.get("script_files", []) if "furo" in str(script)]
 
 
 def grouped_navigation(app, page, template, context, doctree):
@@ -78,7 +80,7 @@ def grouped_navigation(app, page, template, context, doctree):
 
 def setup(app):
     app.add_html_math_renderer("katex", (plain, None), (displayed, None))
-    app.connect("html-page-context", without_unused_styles, priority=900)
+    app.connect("html-page-context", without_unused, priority=900)
     app.connect("html-page-context", grouped_navigation, priority=901)
 
 

@@ -151,8 +151,10 @@ def prose(text, links):
 
 def linked(piece, links):
     if piece.startswith("`"):
+        # `metrics` may be an argument; `wingbeat.metrics` and `Metric` are names of the package.
         name = piece.strip("`").removeprefix("wingbeat.")
-        return f"[{piece}]({links[name]})" if name in links else piece
+        named = name in links and (piece.startswith("`wingbeat.") or name[0].isupper())
+        return f"[{piece}]({links[name]})" if named else piece
     return re.sub(r"wingbeat\\\.(\w+)|wingbeat\.(\w+(?:\\_\w+)*)", lambda m: (
         f"[`{name}`]({links[name]})" if (name := (m[1] or m[2]).replace("\\", "")) in links else m[0]), escaped(piece))
 
@@ -193,7 +195,7 @@ class Reference:
         main = next((node for node in nodes if "overload" not in decorators(node)), nodes[-1])
         called = f"{owner}{name}" if method else f"wingbeat.{name}"
         shown = overloads if len(overloads) > 1 else [main]
-        lines = [f"{level} {escaped(name)}\n", "```python\n" + "\n".join(
+        lines = [f"{level} {escaped(owner + name)}\n", "```python\n" + "\n".join(
             signature(called, node, method) for node in shown) + "\n```\n"]
         parts = parts_of(ast.get_docstring(main))
         lines.append(prose(parts[""], self.links) + "\n")
@@ -206,7 +208,9 @@ class Reference:
         lines = [table(("parameter", "type", "default", "meaning"),
                        [(name, *types.get(name, ("", "")), meaning) for name, meaning in told.items()], self.links)]
         if "Returns" in parts:
-            lines.append(f"**Returns** {prose(parts['Returns'], self.links)}\n")
+            text = re.sub(r"\b(?:an?|the) ([A-Z]\w+)\b", lambda m: m[0].replace(m[1], f"`{m[1]}`") if m[1] in self.links
+                          else m[0], parts["Returns"], flags=re.I)
+            lines.append(f"**Returns** {prose(text, self.links)}\n")
         lines.append(table(("raises", "when"), parts.get("Raises", []), self.links))
         if "Example" in parts:
             lines.append(f"```pycon\n{parts['Example']}\n```\n")
@@ -226,14 +230,15 @@ class Reference:
 
     def class_(self, module, name, node):
         parts = parts_of(ast.get_docstring(node))
-        start = next((one for one in node.body if isinstance(one, ast.FunctionDef) and one.name == "__init__"), None)
-        made = start is not None and (parts.get("Parameters") or name == "Vehicle")
+        start = next((one for one in node.body if isinstance(one, ast.FunctionDef) and one.name in ("__init__", "__new__")), None)
+        made = start is not None and "Parameters" in parts
         call = signature(f"wingbeat.{name}", start, True) if made else f"class wingbeat.{name}"
         bases = [ast.unparse(base) for base in node.bases]
         lines = [f"## {escaped(name)}\n", f"```python\n{call}\n```\n"]
         known = [f"[{base}]({self.links[base]})" for base in bases if base in self.links]
-        lines.append(f"A {', '.join(known)}. " if known else "")
         lines.append(prose(parts[""], self.links) + "\n")
+        if known:
+            lines.append(f"It is a {', '.join(known)} as well.\n")
         told = split_names(parts.get("Attributes", []))
         fields = self.fields(module, node)
         fields = [(field, kind, told.get(field) or meaning) for field, kind, meaning in fields]

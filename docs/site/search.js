@@ -1,7 +1,7 @@
 /* The search of the manual. scripts/build-site writes the index, `searchIndex`: sections of pages as
 {page, title, heading, anchor, text, kind}; the kinds are those of docs/site/search_index.py. */
 const search = (() => {
-  const weights = { page: 1, python: 0.9, notebook: 0.75, history: 0.35, header: 1 };
+  const weights = { page: 1, python: 0.7, notebook: 0.7, history: 0.35, header: 1 };
   const labels = { page: "Manual", python: "Python", notebook: "Notebook", history: "Project", header: "C++ header" };
 
   const escaped = text => text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&");
@@ -11,7 +11,13 @@ const search = (() => {
       : escaped(term);
     return new RegExp(`(?<![\\p{L}\\p{N}])${stem}`, flags);
   };
-  const termsOf = query => [...new Set(query.toLowerCase().match(/[\p{L}\p{N}_.-]*[\p{L}\p{N}_]/gu) ?? [])];
+  const common = new Set(["a", "an", "and", "are", "by", "can", "do", "does", "for", "how", "i", "in", "is", "it", "of",
+    "on", "or", "the", "to", "what", "which", "with"]);
+  const termsOf = query => {
+    const terms = [...new Set(query.toLowerCase().match(/[\p{L}\p{N}_.-]*[\p{L}\p{N}_]/gu) ?? [])];
+    const rare = terms.filter(term => !common.has(term));
+    return rare.length ? rare : terms;
+  };
   const occurrences = (text, found) => (text.match(found) ?? []).length;
 
   /* The pages for a query, best first, headers of the C++ library behind all others:
@@ -20,7 +26,7 @@ const search = (() => {
     const terms = termsOf(query);
     if (!terms.length) return [];
     const patterns = terms.map(term => pattern(term, "giu"));
-    const whole = terms.map(term => new RegExp(`${pattern(term, "").source}(?![\\p{L}\\p{N}_])`, "iu"));
+    const whole = terms.map(term => new RegExp(`${pattern(term, "").source}s?(?![\\p{L}\\p{N}_])`, "iu"));
     const counts = index.map(entry => patterns.map(found => ({
       title: occurrences(entry.title, found), heading: occurrences(entry.heading, found),
       text: occurrences(entry.text, found)
@@ -42,7 +48,8 @@ const search = (() => {
       });
       if (!matched) return;
       score *= (matched / terms.length) ** 3 * weights[entry.kind];
-      const named = text => text.toLowerCase() === query.trim().toLowerCase();
+      const bare = text => text.trim().toLowerCase().replace(/s$/, "");
+      const named = text => bare(text) === bare(query);
       if (named(entry.title) || named(entry.heading)) score *= 2;
       else if (phrase && `${entry.heading} ${entry.text}`.toLowerCase().includes(phrase)) score *= 1.5;
       const page = pages.get(entry.page) ?? { page: entry.page, title: entry.title, kind: entry.kind, sections: [] };
@@ -87,6 +94,13 @@ const search = (() => {
     return pieces;
   };
 
+  /* Of the sections of a page the text that shows most of the terms. */
+  const textOf = (page, query) => {
+    const patterns = termsOf(query).map(term => pattern(term, "iu"));
+    const shown = entry => patterns.filter(found => found.test(entry.text)).length;
+    return page.sections.reduce((best, entry) => shown(entry) > shown(best) ? entry : best).text;
+  };
+
   const make = (parent, tag, text, attributes = {}) => {
     const node = parent.appendChild(document.createElement(tag));
     if (text) node.textContent = text;
@@ -102,7 +116,7 @@ const search = (() => {
     const name = first.heading && first.heading !== page.title ? `${page.title}: ${first.heading}` : page.title;
     marked(make(item, "a", "", { href: address(first) }), excerpt(name, query, 1000));
     make(item, "span", ` ${labels[page.kind]}`, { class: "where" });
-    marked(make(item, "p"), excerpt(first.text, query));
+    marked(make(item, "p"), excerpt(textOf(page, query), query));
     const more = page.sections.slice(1, 4).filter(entry => entry.heading && entry.heading !== first.heading);
     if (!more.length) return;
     const also = make(item, "p", "also: ", { class: "also" });
@@ -124,7 +138,7 @@ const search = (() => {
     more.addEventListener("click", () => show(query, pages.length));
   };
 
-  return { rank, excerpt, show };
+  return { rank, excerpt, textOf, show };
 })();
 
 if (typeof document !== "undefined") {

@@ -6,12 +6,14 @@ import re
 headings = {"h1", "h2", "h3", "h4"}
 # Without end tag.
 void = {"area", "base", "br", "col", "embed", "hr", "img", "input", "link", "meta", "source", "track", "wbr"}
+# Tables of names: each row is a section of its own, found by its name.
+tables = {"metrics.html", "vehicle-file.html", "waveforms.html"}
 silent = {"script", "style", "svg", "noscript", "nav", "button", "form"}
 
 
 def kind_of(page):
     """What a page is; docs/site/search.js ranks and names the kinds."""
-    if page.startswith("library/") and page.count("/") > 1:
+    if page.startswith("library/"):
         return "header"
     if page.startswith("notebooks/"):
         return "notebook"
@@ -21,10 +23,11 @@ def kind_of(page):
 
 
 class Sections(html.parser.HTMLParser):
-    """Title and sections of a page: [heading, anchor, text]."""
+    """Title and sections of a page: [heading, anchor, text]; rows of tables are sections where `rows`."""
 
-    def __init__(self, text):
+    def __init__(self, text, rows=False):
         super().__init__()
+        self.rows, self.row, self.in_name = rows, None, False
         self.stack = []      # [tag, whether it is left out]
         self.anchors = []    # ids of the sections that are open, with their depth
         self.sections, self.inside, self.in_heading, self.title = [], False, None, ""
@@ -33,7 +36,7 @@ class Sections(html.parser.HTMLParser):
     def handle_starttag(self, tag, attributes):
         attributes = dict(attributes)
         classes = (attributes.get("class") or "").split()
-        if tag == "article" or tag == "body" and attributes.get("data-search") is not None:
+        if tag in ("article", "main"):
             self.inside = True
         if tag in void:
             self.add(" ")
@@ -42,9 +45,13 @@ class Sections(html.parser.HTMLParser):
         self.stack.append((tag, hidden or bool(self.stack and self.stack[-1][1])))
         if tag == "section" and attributes.get("id"):
             self.anchors.append((len(self.stack), attributes["id"]))
+        if self.rows and self.inside and tag == "tr" and self.sections:
+            self.row = ["", self.sections[-1][1], ""]
+        self.in_name = self.in_name or tag == "code" and self.row is not None and not self.row[0]
         if self.inside and tag in headings:
             self.in_heading = tag
-            anchor = attributes.get("id") or (self.anchors[-1][1] if self.anchors else "")
+            above = self.anchors[-1][1] if self.anchors else self.sections[-1][1] if self.sections else ""
+            anchor = attributes.get("id") or above
             self.sections.append(["", "" if tag == "h1" else anchor, ""])
         elif tag not in ("a", "code", "em", "strong", "span", "sub", "sup", "i", "b"):
             self.add(" ")
@@ -54,11 +61,22 @@ class Sections(html.parser.HTMLParser):
             return
         while self.stack and self.stack.pop()[0] != tag:
             pass
+        if tag == "code":
+            self.in_name = False
+        if tag == "tr" and self.row is not None:
+            heading = self.sections[-1]
+            # A row without a name belongs to the section.
+            if self.row[0]:
+                self.sections.append(self.row)
+                self.sections.append(["", heading[1], ""])
+            else:
+                heading[2] += self.row[2]
+            self.row = None
         while self.anchors and self.anchors[-1][0] > len(self.stack):
             self.anchors.pop()
         if tag == self.in_heading:
             self.in_heading = None
-        if tag == "article":
+        if tag in ("article", "main"):
             self.inside = False
         if tag not in ("a", "code", "em", "strong", "span", "sub", "sup", "i", "b"):
             self.add(" ")
@@ -68,6 +86,11 @@ class Sections(html.parser.HTMLParser):
 
     def add(self, data):
         if not self.inside or not self.sections or (self.stack and self.stack[-1][1]):
+            return
+        if self.row is not None:
+            self.row[2] += data
+            if self.in_name:
+                self.row[0] += data
             return
         self.sections[-1][0 if self.in_heading else 2] += data
 
@@ -83,11 +106,12 @@ def entries(site):
         page = path.relative_to(site).as_posix()
         if page in ("search.html", "genindex.html"):
             continue
-        sections = Sections(path.read_text(errors="replace")).sections
+        sections = Sections(path.read_text(errors="replace"), page in tables).sections
         title = tidy(sections[0][0]) if sections else ""
         for heading, anchor, text in sections:
-            rows.append({"page": page, "title": title, "heading": tidy(heading), "anchor": anchor, "text": tidy(text),
-                         "kind": kind_of(page)})
+            if heading or tidy(text):
+                rows.append({"page": page, "title": title, "heading": tidy(heading), "anchor": anchor,
+                             "text": tidy(text), "kind": kind_of(page)})
     return rows
 
 

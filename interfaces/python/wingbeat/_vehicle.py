@@ -293,13 +293,13 @@ class Vehicle(Sections):
         return simulate(self, **options)
 
     def simulation(self, **options: Any) -> Simulation:
-        """It in time, to be stepped under commanded voltages: see wingbeat.Simulation."""
+        """A simulation in time, stepped under commanded voltages: see wingbeat.Simulation."""
         from ._simulation import Simulation
 
         return Simulation(self, **options)
 
     def solve_columns(self, columns: Mapping[str, Any], **options: Any) -> Ensemble:
-        """Very many vehicles like it: see wingbeat.solve."""
+        """Very many vehicles like it: see wingbeat.solve_columns."""
         from ._ensemble import solve_columns
 
         return solve_columns(columns, vehicle=self, **options)
