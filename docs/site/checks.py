@@ -115,9 +115,10 @@ def dead_styles(site, pages):
 # A query and the page that must be the first found, "" for any; C++ headers stand behind all pages.
 queries = [
     ("friction", ""), ("crank_kinematics", ""), ("hover", ""), ("pitch hinge", "pitch-hinges.html"),
-    ("lift_mean_n", "metrics.html"), ("motor.armature_inductance", "vehicle-file.html"), ("InputError", "python-reference/vehicles.html"),
-    ("sweep", "sweep.html"), ("motor data sheet", "motors.html"), ("how long does a battery last", "endurance.html"), ("fmu", "fmu.html"),
-    ("Dickinson", "bibliography.html"), ("solve_columns", "python-reference/ensembles.html"), ("install", "install.html"),
+    ("lift_mean_n", "metrics.html"), ("motor.armature_inductance", "vehicle-file.html"), ("sweep", "sweep.html"),
+    ("InputError", "python-reference/vehicles.html"), ("solve_columns", "python-reference/ensembles.html"),
+    ("motor data sheet", "motors.html"), ("how long does a battery last", "endurance.html"), ("fmu", "fmu.html"),
+    ("Dickinson", "bibliography.html"), ("install", "install.html"),
     ("tolerance", "tolerance.html"), ("Reynolds number", "domain.html"), ("gallery", "gallery.html"),
 ]
 
@@ -152,14 +153,15 @@ console.log(JSON.stringify(JSON.parse(process.argv[3]).map(query => {
 
 
 def faint_texts(site, names, required):
-    """Texts of the pages `names` that are hard to read in either theme, as Chromium shows them: by the system's theme and
-    by the page's button. None where there is no Chromium."""
+    """Texts of the pages `names` that are hard to read in either theme, as Chromium shows them: by the system's theme
+    and by the page's button. None where there is no Chromium."""
     chromium = shutil.which("chromium") or shutil.which("chromium-browser")
     if not chromium:
         return None
     harness = site / "contrast-check.html"
-    harness.write_text(f"<!doctype html><title>contrast</title><pre id=\"found\"></pre><script>const names = {json.dumps(names)};"
-                       f"const required = {required};{(here / 'contrast.js').read_text()}</script>")
+    harness.write_text('<!doctype html><title>contrast</title><pre id="found"></pre><script>'
+                       f"const names = {json.dumps(names)}, required = {required};"
+                       f"{(here / 'contrast.js').read_text()}</script>")
     found = []
     try:
         for system, scheme in (("light", 1), ("dark", 0)):
@@ -167,7 +169,8 @@ def faint_texts(site, names, required):
                 done = subprocess.run(
                     [chromium, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={profile}",
                      "--allow-file-access-from-files", f"--blink-settings=preferredColorScheme={scheme}",
-                     "--window-size=1280,900", "--virtual-time-budget=60000", "--dump-dom", harness.as_uri() + f"#{system}"],
+                     "--window-size=1280,900", "--virtual-time-budget=60000", "--dump-dom",
+                     f"{harness.as_uri()}#{system}"],
                     capture_output=True, text=True, timeout=300)
             text = re.search(r'<pre id="found">(.*?)</pre>', done.stdout, re.S)
             if not text or not text[1].startswith("{"):

@@ -17,8 +17,8 @@ light = {
     "color-background-item": "#d0d3d7", "color-brand-primary": "#005a8c", "color-brand-content": "#00639c",
     "color-highlighted-background": "#d7e9fb", "color-highlight-on-target": "#fff8d6",
     "color-admonition-background": "#f4f6f8", "color-card-border": "#f8f9fb", "color-card-background": "#f6f8fa",
-    "color-card-marginals-background": "#eaeff4", "color-problematic": "#b3261e", "color-inline-code-background": "#f3f5f7",
-    "color-mark": "#fff1a8",
+    "color-card-marginals-background": "#eaeff4", "color-problematic": "#b3261e",
+    "color-inline-code-background": "#f3f5f7", "color-mark": "#fff1a8",
 }
 dark = {
     "color-foreground-primary": "#dfe2e6", "color-foreground-secondary": "#a8adb4", "color-foreground-muted": "#979da5",
@@ -28,8 +28,8 @@ dark = {
     "color-background-item": "#444444", "color-brand-primary": "#7cc4ee", "color-brand-content": "#7cc4ee",
     "color-highlighted-background": "#083563", "color-highlight-on-target": "#333300",
     "color-admonition-background": "#18181a", "color-card-border": "#1a1c1e", "color-card-background": "#1d2024",
-    "color-card-marginals-background": "#23272b", "color-problematic": "#ff8a80", "color-inline-code-background": "#1d2125",
-    "color-mark": "#5a4a00",
+    "color-card-marginals-background": "#23272b", "color-problematic": "#ff8a80",
+    "color-inline-code-background": "#1d2125", "color-mark": "#5a4a00",
 }
 # What stands on what.
 pairs = [(text, ground) for text in ("color-foreground-primary", "color-foreground-secondary", "color-foreground-muted",
@@ -42,8 +42,8 @@ pairs += [("color-foreground-primary", ground) for ground in ("color-mark", "col
 
 def _styles(text, comment, keyword, string, number, name, error):
     return {
-        Token: text, Text: text, Whitespace: text, Punctuation: text, Operator: text, Name: text, Comment: f"italic {comment}",
-        Comment.Preproc: f"noitalic {keyword}", Comment.PreprocFile: f"noitalic {string}", Keyword: keyword,
+        Token: text, Text: text, Whitespace: text, Punctuation: text, Operator: text, Name: text,
+        Comment: f"italic {comment}", Comment.Preproc: f"noitalic {keyword}", Comment.PreprocFile: f"noitalic {string}", Keyword: keyword,
         Operator.Word: keyword, Name.Builtin: name, Name.Function: name, Name.Class: name, Name.Decorator: name,
         Name.Tag: name, Name.Attribute: name, Literal: number, Number: number, String: string, Error: error,
         Generic: text, Generic.Output: text, Generic.Prompt: comment, Generic.Traceback: error, Generic.Error: error,
@@ -87,15 +87,16 @@ def contrast(text, ground):
 
 def code_colours(style):
     """The colours in which a style shows code: (token, text, ground)."""
-    return [(str(token), "#" + (kind["color"] or "000000"), "#" + kind["bgcolor"] if kind["bgcolor"] else style.background_color)
-            for token, kind in style]
+    return [(str(token), f"#{kind['color'] or '000000'}",
+             f"#{kind['bgcolor']}" if kind["bgcolor"] else style.background_color) for token, kind in style]
 
 
 def too_faint():
     """What is hard to read, a sentence each."""
     found = []
     for theme, colours, style in (("light", light, Light), ("dark", dark, Dark)):
-        shown = [(f"{text} on {ground}", colours[text], colours[ground]) for text, ground in pairs] + code_colours(style)
+        shown = [(f"{text} on {ground}", colours[text], colours[ground]) for text, ground in pairs]
+        shown += code_colours(style)
         found += [f"{theme}: {what}: {contrast(text, ground):.2f}" for what, text, ground in shown
                   if contrast(text, ground) < required]
     return found

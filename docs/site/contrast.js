@@ -26,7 +26,8 @@ below `required` stands in #found as JSON. docs/site/checks.py makes the page ar
     const walk = window.document.createTreeWalker(window.document.body, NodeFilter.SHOW_TEXT);
     for (let text = walk.nextNode(); text; text = walk.nextNode()) {
       const node = text.parentElement;
-      if (!text.data.trim() || !node.checkVisibility?.() || node.closest(".visually-hidden, script, style, noscript")) continue;
+      if (!text.data.trim() || !node.checkVisibility?.()) continue;
+      if (node.closest(".visually-hidden, script, style, noscript")) continue;
       const style = window.getComputedStyle(node), ground = groundOf(window, node);
       if (Number(style.opacity) === 0 || style.visibility === "hidden") continue;
       const painted = node.namespaceURI === "http://www.w3.org/2000/svg" ? style.fill : style.color;

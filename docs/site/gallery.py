@@ -30,7 +30,8 @@ def draw(commands, program, data, work, figures):
     figures.mkdir(parents=True)
 
     def one(command):
-        return subprocess.run([program, *shlex.split(command)[1:]], cwd=work / "gallery", capture_output=True, text=True)
+        return subprocess.run([program, *shlex.split(command)[1:]], cwd=work / "gallery", capture_output=True,
+                              text=True)
 
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for command, name, done in zip(commands, names, pool.map(one, commands)):
@@ -60,7 +61,8 @@ def page(text, program, data, work, figures, reproduction):
             sections.append(f'{heading}\n\n<div class="gallery">\n\n' + "\n".join(cards) + "\n</div>\n\n")
         else:
             sections.append(section)
-    cards = [card(caption, "wingbeat reproduce friction2022 -o reproduction", address) for address, caption in reproduction]
+    command = "wingbeat reproduce friction2022 -o reproduction"
+    cards = [card(caption, command, address) for address, caption in reproduction]
     return "".join(sections) + '\n<div class="gallery">\n\n' + "\n".join(cards) + "\n</div>\n"
 
 

@@ -126,8 +126,11 @@ def parts_of(doc):
             continue
         # What follows the last entry after an empty line is text again.
         body, _, after = body.strip("\n").partition("\n\n")
-        found[title] = [tuple(part.strip() for part in re.sub(r"\s*\n\s+", " ", row).partition(" : ")[::2])
-                        for row in re.split(r"\n(?=\S)", body)] if title != "Returns" else re.sub(r"\s*\n\s*", " ", body)
+        if title == "Returns":
+            found[title] = re.sub(r"\s*\n\s*", " ", body)
+        else:
+            found[title] = [tuple(part.strip() for part in re.sub(r"\s*\n\s+", " ", row).partition(" : ")[::2])
+                            for row in re.split(r"\n(?=\S)", body)]
         if after.strip():
             found[""] += "\n\n" + after.strip()
     return found
@@ -230,7 +233,8 @@ class Reference:
 
     def class_(self, module, name, node):
         parts = parts_of(ast.get_docstring(node))
-        start = next((one for one in node.body if isinstance(one, ast.FunctionDef) and one.name in ("__init__", "__new__")), None)
+        start = next((one for one in node.body
+                      if isinstance(one, ast.FunctionDef) and one.name in ("__init__", "__new__")), None)
         made = start is not None and "Parameters" in parts
         call = signature(f"wingbeat.{name}", start, True) if made else f"class wingbeat.{name}"
         bases = [ast.unparse(base) for base in node.bases]

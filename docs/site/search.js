@@ -7,8 +7,7 @@ const search = (() => {
   const escaped = text => text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&");
   /* A term stands at the beginning of a word; words of names such as lift_mean_n count, and so does a plural. */
   const pattern = (term, flags) => {
-    const stem = term.length > 4 && term.endsWith("s") && !term.endsWith("ss") ? `${escaped(term.slice(0, -1))}s?`
-      : escaped(term);
+    const stem = term.length > 3 ? `${escaped(term.replace(/(?<!s)s$/, ""))}s?` : escaped(term);
     return new RegExp(`(?<![\\p{L}\\p{N}])${stem}`, flags);
   };
   const common = new Set(["a", "an", "and", "are", "by", "can", "do", "does", "for", "how", "i", "in", "is", "it", "of",
@@ -26,7 +25,7 @@ const search = (() => {
     const terms = termsOf(query);
     if (!terms.length) return [];
     const patterns = terms.map(term => pattern(term, "giu"));
-    const whole = terms.map(term => new RegExp(`${pattern(term, "").source}s?(?![\\p{L}\\p{N}_])`, "iu"));
+    const whole = terms.map(term => new RegExp(`${pattern(term, "").source}(?![\\p{L}\\p{N}_])`, "iu"));
     const counts = index.map(entry => patterns.map(found => ({
       title: occurrences(entry.title, found), heading: occurrences(entry.heading, found),
       text: occurrences(entry.text, found)
@@ -69,7 +68,8 @@ const search = (() => {
   const excerpt = (text, query, width = 220) => {
     const terms = termsOf(query), hits = [];
     terms.forEach((term, n) => {
-      for (const hit of text.matchAll(pattern(term, "giu"))) hits.push({ at: hit.index, end: hit.index + hit[0].length, n });
+      for (const hit of text.matchAll(pattern(term, "giu")))
+        hits.push({ at: hit.index, end: hit.index + hit[0].length, n });
     });
     hits.sort((a, b) => a.at - b.at || b.end - a.end);
     let start = 0, best = -1;
