@@ -30,7 +30,9 @@ class Sections(html.parser.HTMLParser):
         self.rows, self.row, self.in_name = rows, None, False
         self.stack = []      # [tag, whether it is left out]
         self.anchors = []    # ids of the sections that are open, with their depth
-        self.sections, self.inside, self.in_heading, self.title = [], False, None, ""
+        self.sections, self.inside, self.in_heading = [], False, None
+        # The heading of the page, which the report of a reproduction has before its <main>.
+        self.title, self.in_title = "", False
         self.feed(text)
 
     def handle_starttag(self, tag, attributes):
@@ -38,6 +40,7 @@ class Sections(html.parser.HTMLParser):
         classes = (attributes.get("class") or "").split()
         if tag in ("article", "main"):
             self.inside = True
+        self.in_title = self.in_title or tag == "h1" and not self.title
         if tag in void:
             self.add(" ")
             return
@@ -76,6 +79,8 @@ class Sections(html.parser.HTMLParser):
             self.anchors.pop()
         if tag == self.in_heading:
             self.in_heading = None
+        if tag == "h1":
+            self.in_title = False
         if tag in ("article", "main"):
             self.inside = False
         if tag not in ("a", "code", "em", "strong", "span", "sub", "sup", "i", "b"):
@@ -85,6 +90,8 @@ class Sections(html.parser.HTMLParser):
         self.add(data)
 
     def add(self, data):
+        if self.in_title and not self.stack[-1][1]:
+            self.title += data
         if not self.inside or not self.sections or (self.stack and self.stack[-1][1]):
             return
         if self.row is not None:
@@ -106,9 +113,9 @@ def entries(site):
         page = path.relative_to(site).as_posix()
         if page in ("search.html", "genindex.html"):
             continue
-        sections = Sections(path.read_text(errors="replace"), page in tables).sections
-        title = tidy(sections[0][0]) if sections else ""
-        for heading, anchor, text in sections:
+        found = Sections(path.read_text(errors="replace"), page in tables)
+        title = tidy(found.title)
+        for heading, anchor, text in found.sections:
             if heading or tidy(text):
                 rows.append({"page": page, "title": title, "heading": tidy(heading), "anchor": anchor,
                              "text": tidy(text), "kind": kind_of(page)})

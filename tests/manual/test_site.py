@@ -64,7 +64,8 @@ class Colours(unittest.TestCase):
 
 class Checks(Folder):
     def site(self, sheet, extra=""):
-        self.write("index.html", '<link rel="stylesheet" href="_static/site.css"><a href="other.html#there">x</a>' + extra)
+        self.write("index.html", '<link rel="stylesheet" href="_static/site.css">'
+                   '<a href="other.html#there">x</a>' + extra)
         self.write("other.html", '<p id="there">y</p><a href="index.html">x</a>')
         self.write("_static/site.css", sheet)
         return checks.pages_of(self.folder)
@@ -124,6 +125,13 @@ class Search(Folder):
         self.assertEqual(rows["metrics.html", "lift_mean_n"]["text"], "lift_mean_n mean lift")
         self.assertEqual(rows["library/run/sweep.html", "sweep.hpp"]["kind"], "header")
 
+    def test_titles_may_stand_before_the_text(self):
+        self.write("report.html", "<header><h1>The <i>report</i></h1></header>"
+                   "<main><h2 id='summary'>1. Answer</h2><p>Yes.</p></main>")
+        row, = [row for row in search_index.entries(self.folder) if row["page"] == "report.html"]
+        self.assertEqual([row[name] for name in ("title", "heading", "anchor", "text")],
+                         ["The report", "1. Answer", "summary", "Yes."])
+
     def test_pages_stand_before_headers(self):
         self.assertEqual([page for page, *_ in self.asked("sweep")], ["sweep.html", "library/run/sweep.html"])
 
@@ -169,7 +177,8 @@ class PythonReference(Folder):
         for page, text in pages.items():
             for target, anchor in re.findall(r"\]\(([\w/-]+\.md)#([\w-]+)\)", text):
                 known = pages[str(pathlib.PurePosixPath(page).parent / target).removeprefix("./")]
-                headings = {re.sub(r"[^\w-]", "", heading.lower()) for heading in re.findall(r"^##+ (.*)$", known, re.M)}
+                headings = {re.sub(r"[^\w-]", "", heading.lower())
+                            for heading in re.findall(r"^##+ (.*)$", known, re.M)}
                 self.assertIn(anchor, headings)
 
 
