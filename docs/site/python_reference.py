@@ -30,9 +30,10 @@ class Package:
     def __init__(self, folder):
         self.folder = folder
         self.sources, self.trees = {}, {}
-        for path in sorted(folder.glob("*.py")):
-            self.sources[path.stem] = path.read_text().splitlines()
-            self.trees[path.stem] = ast.parse("\n".join(self.sources[path.stem]))
+        inner = {path.parent.name: path for path in sorted(folder.glob("*/__init__.py"))}
+        for name, path in ({path.stem: path for path in sorted(folder.glob("*.py"))} | inner).items():
+            self.sources[name] = path.read_text().splitlines()
+            self.trees[name] = ast.parse("\n".join(self.sources[name]))
         start = self.trees["__init__"]
         self.homes = {name.asname or name.name: (statement.module, name.name) for statement in start.body
                       if isinstance(statement, ast.ImportFrom) and statement.level for name in statement.names}
@@ -73,7 +74,9 @@ def decorators(node):
 
 
 def annotation(node):
-    return re.sub(r"'([^'\"]*)'", r'"\1"', ast.unparse(node)) if node is not None else ""
+    if node is None:
+        return ""
+    return re.sub(r"'([^'\"]*)'", r'"\1"', ast.unparse(node))
 
 
 def listed(given):
@@ -101,7 +104,7 @@ def signature(name, node, method=False):
     texts = listed(node.args)
     if method and "staticmethod" not in decorators(node):
         texts = texts[1:]
-    returned = annotation(node.returns)
+    returned = annotation(node.returns).strip('"')
     returned = f" -> {returned}" if returned and returned != "None" else ""
     text = f"{name}({', '.join(texts)}){returned}"
     return text if len(text) <= 100 else f"{name}(\n    " + ",\n    ".join(texts) + f",\n){returned}"
@@ -192,11 +195,11 @@ class Reference:
             self.groups.append(("other", "Other names", "What else the package has.", rest))
         self.links = {name: f"{file}.md#{name.lower()}" for file, *_, names in self.groups for name in names}
 
-    def function(self, module, name, nodes, level="##", owner=""):
+    def function(self, module, name, nodes, level="##", owner="", package="wingbeat"):
         method = bool(owner)
         overloads = [node for node in nodes if "overload" in decorators(node)]
         main = next((node for node in nodes if "overload" not in decorators(node)), nodes[-1])
-        called = f"{owner}{name}" if method else f"wingbeat.{name}"
+        called = f"{owner}{name}" if method else f"{package}.{name}"
         shown = overloads if len(overloads) > 1 else [main]
         lines = [f"{level} {escaped(owner + name)}\n", "```python\n" + "\n".join(
             signature(called, node, method) for node in shown) + "\n```\n"]
@@ -231,12 +234,12 @@ class Reference:
                 rows.append((one.name, annotation(one.returns), f"{doc['']} {raises}".strip()))
         return rows
 
-    def class_(self, module, name, node):
+    def class_(self, module, name, node, package="wingbeat"):
         parts = parts_of(ast.get_docstring(node))
         start = next((one for one in node.body
                       if isinstance(one, ast.FunctionDef) and one.name in ("__init__", "__new__")), None)
         made = start is not None and "Parameters" in parts
-        call = signature(f"wingbeat.{name}", start, True) if made else f"class wingbeat.{name}"
+        call = signature(f"{package}.{name}", start, True) if made else f"class {package}.{name}"
         bases = [ast.unparse(base) for base in node.bases]
         lines = [f"## {escaped(name)}\n", f"```python\n{call}\n```\n"]
         known = [f"[{base}]({self.links[base]})" for base in bases if base in self.links]
@@ -283,9 +286,10 @@ class Reference:
         for node in self.package.trees[name].body:
             if isinstance(node, (ast.FunctionDef, ast.ClassDef)) and not node.name.startswith("_"):
                 found.setdefault(node.name, []).append(node)
+        package = f"wingbeat.{name}"
         for own, nodes in found.items():
-            lines.append(self.class_(name, own, nodes[0]) if isinstance(nodes[0], ast.ClassDef)
-                         else self.function(name, own, nodes).replace(f"wingbeat.{own}(", f"wingbeat.{name}.{own}(", 1))
+            lines.append(self.class_(name, own, nodes[0], package) if isinstance(nodes[0], ast.ClassDef)
+                         else self.function(name, own, nodes, package=package))
         return "\n".join(lines)
 
     def write(self, folder, introduction):
