@@ -44,7 +44,8 @@ def _styles(text, comment, keyword, string, number, name, error):
     return {
         Token: text, Text: text, Whitespace: text, Punctuation: text, Operator: text, Name: text,
         Comment: f"italic {comment}", Comment.Preproc: f"noitalic {keyword}",
-        Comment.PreprocFile: f"noitalic {string}", Keyword: keyword, Operator.Word: keyword, Name.Builtin: name, Name.Function: name, Name.Class: name, Name.Decorator: name,
+        Comment.PreprocFile: f"noitalic {string}", Keyword: keyword, Operator.Word: keyword, Name.Builtin: name,
+        Name.Function: name, Name.Class: name, Name.Decorator: name,
         Name.Tag: name, Name.Attribute: name, Literal: number, Number: number, String: string, Error: error,
         Generic: text, Generic.Output: text, Generic.Prompt: comment, Generic.Traceback: error, Generic.Error: error,
     }

@@ -1,5 +1,5 @@
 /* Measures the contrast of every text of the pages `names` in the themes that the system and the button give; what is
-below `required` stands in #found as JSON. docs/site/checks.py makes the page around it. */
+below `required`, or not of that theme, stands in #found as JSON. docs/site/checks.py makes the page around it. */
 (async () => {
   const found = new Map();
   let texts = 0;
@@ -45,9 +45,17 @@ below `required` stands in #found as JSON. docs/site/checks.py makes the page ar
     frame.style = "width: 1280px; height: 900px";
     await new Promise(done => { frame.onload = done; frame.src = name; });
     const window = frame.contentWindow, body = window.document.body;
-    measure(window, name, `${system} system`);
-    body.dataset.theme = system === "dark" ? "light" : "dark";
-    measure(window, name, `${body.dataset.theme} by the button on a ${system} system`);
+    const turn = theme => {
+      const dark = luminance(groundOf(window, body)) < 0.2;
+      if (dark !== (theme === "dark")) found.set(name + theme, `${name} is not ${theme} on a ${system} system`);
+      measure(window, name, `${theme} on a ${system} system`);
+    };
+    turn(system);
+    /* Of the button's three themes the second is the other one. */
+    window.document.querySelector(".theme-toggle-content .theme-toggle").click();
+    turn(system === "dark" ? "light" : "dark");
+    /* The next page begins with the theme of the system. */
+    window.localStorage.removeItem("theme");
     frame.remove();
   }
   document.getElementById("found").textContent = JSON.stringify({ texts, found: [...found.values()] });
