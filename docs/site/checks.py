@@ -167,8 +167,8 @@ def faint_texts(site, names, required):
         for system, scheme in (("light", 1), ("dark", 0)):
             with tempfile.TemporaryDirectory() as profile:
                 done = subprocess.run(
-                    ["timeout", "300", chromium, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={profile}",
-                     "--allow-file-access-from-files", f"--blink-settings=preferredColorScheme={scheme}",
+                    ["timeout", "300", chromium, "--headless", "--no-sandbox", "--disable-gpu",
+                     f"--user-data-dir={profile}", "--allow-file-access-from-files", f"--blink-settings=preferredColorScheme={scheme}",
                      "--window-size=1280,900", "--virtual-time-budget=60000", "--dump-dom",
                      f"{harness.as_uri()}#{system}"],
                     capture_output=True, text=True)
