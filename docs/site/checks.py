@@ -168,7 +168,8 @@ def faint_texts(site, names, required):
             with tempfile.TemporaryDirectory() as profile:
                 done = subprocess.run(
                     ["timeout", "300", chromium, "--headless", "--no-sandbox", "--disable-gpu",
-                     f"--user-data-dir={profile}", "--allow-file-access-from-files", f"--blink-settings=preferredColorScheme={scheme}",
+                     f"--user-data-dir={profile}", "--allow-file-access-from-files",
+                     f"--blink-settings=preferredColorScheme={scheme}",
                      "--window-size=1280,900", "--virtual-time-budget=60000", "--dump-dom",
                      f"{harness.as_uri()}#{system}"],
                     capture_output=True, text=True)
