@@ -289,10 +289,10 @@ def anchor_of(name):
 
 def page_of(header):
     path = pathlib.PurePosixPath(header)
-    return f"{storey_of(header)}/{path.stem}"
+    return f"{layer_of(header)}/{path.stem}"
 
 
-def storey_of(header):
+def layer_of(header):
     parts = pathlib.PurePosixPath(header).parts
     return parts[1] if len(parts) > 2 else "door"
 
@@ -309,29 +309,30 @@ def first_sentence(path):
 
 
 def write_pages(xml, include, folder, described, introduction):
-    """library.md and a page for each storey and header in `folder`; returns the names of the pages of storeys, in the
-    order of `described`, which says what each storey is."""
+    """library.md and a page for each layer and header in `folder`; returns the names of the pages of layers, in the
+    order of `described`, which says what each layer is."""
     library = Library(xml, include)
-    storeys = {}
+    layers = {}
     for header in library.headers():
-        storeys.setdefault(storey_of(header), []).append(header)
-    order = sorted(storeys, key=lambda name: (list(described).index(name) if name in described else -1))
+        layers.setdefault(layer_of(header), []).append(header)
+    order = sorted(layers, key=lambda name: (list(described).index(name) if name in described else -1))
     index, pages = introduction, []
-    for storey in order:
-        text = described.get(storey, "All that most users of the library need, by one include")
+    for layer in order:
+        text = described.get(layer, "All that most users of the library need, by one include")
         text = text[:1].upper() + text[1:]
-        title = "wingbeat.hpp" if storey == "door" else storey
+        title = "wingbeat.hpp" if layer == "door" else layer
         body = f"# {title}\n\n{text}.\n\n| header | what is in it |\n| --- | --- |\n"
         entries = []
-        for header in storeys[storey]:
+        for header in layers[layer]:
             place = folder / "library" / f"{page_of(header)}.md"
             place.parent.mkdir(parents=True, exist_ok=True)
             place.write_text(library.page(header))
             entries.append(page_of(header))
             body += f"| [{place.stem}.hpp]({page_of(header)}.md) | {escaped(first_sentence(include / header))} |\n"
         body += "\n```{toctree}\n:hidden:\n\n" + "\n".join(entries) + "\n```\n"
-        (folder / "library" / f"{storey}.md").write_text(body)
-        pages.append(f"library/{storey}.md")
-        index += f"| [{storey}](library/{storey}.md) | {text} |\n"
+        (folder / "library" / f"{layer}.md").write_text(body)
+        pages.append(f"library/{layer}.md")
+        index += f"| [{layer}](library/{layer}.md) | {text} |\n"
+    index += "\n```{toctree}\n:hidden:\n\n" + "\n".join(page.removesuffix(".md") for page in pages) + "\n```\n"
     (folder / "library.md").write_text(index)
     return ["library.md", *pages]

@@ -26,6 +26,15 @@ class Ensemble:
     """What became of each design, as arrays in the order of the designs.
 
     Metrics are attributes: `result.lift_mean`, NaN where a design does not have one.
+
+    Example
+    -------
+    >>> vehicle = wb.read("data/designs/friction2022.toml")
+    >>> found = wb.solve_columns({"supply.voltage": [0, 3, 4]}, vehicle=vehicle)
+    >>> found
+    <3 designs: 2 flapping, 1 stalled>
+    >>> found.flapping
+    array([False,  True,  True])
     """
 
     #: A code for each design: `statuses[code]` is its name, 0 flapping.
@@ -70,7 +79,12 @@ class Ensemble:
         return sorted({*object.__dir__(self), *(metric_rows[k].name for k in self._columns)})
 
     def to_xarray(self) -> xarray.Dataset:
-        """All of it over the dimension `design`, with units and long names."""
+        """All of it over the dimension `design`, with units and long names.
+
+        Raises
+        ------
+        ImportError : where xarray is not installed
+        """
         import xarray
 
         made: dict[str, Any] = {
@@ -135,7 +149,23 @@ def solve_columns(
     progress : True shows a bar (tqdm where it is installed), a function is called with designs done and designs
 
     A design out of its physical range has the status "invalid". Other Python threads run meanwhile; Ctrl-C ends it.
-    Raises InputError for a key that is unknown or has no place in the vehicle.
+
+    Returns
+    -------
+    An Ensemble, in the order of the rows.
+
+    Raises
+    ------
+    InputError : for a key that is unknown or has no place in the vehicle
+    ValueError : where no key has an array, or arrays differ in length
+
+    Example
+    -------
+    >>> vehicle = wb.read("data/designs/friction2022.toml")
+    >>> voltage = np.linspace(2, 5, 4)
+    >>> found = wb.solve_columns({"supply.voltage": voltage, "friction.radius": "2 mm"}, vehicle=vehicle)
+    >>> np.round(found.frequency, 1)
+    array([16.5, 22.7, 28.5, 34.2])
     """
     if not is_columns(columns):
         raise wrong_type("columns", "a dict or DataFrame of columns", columns)

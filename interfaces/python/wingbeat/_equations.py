@@ -23,9 +23,22 @@ class EquationsOfMotion:
     Rates are continuous but for standstill, where friction changes its direction, and for what the supply does; they
     have kinks where the rod force, the stroke velocity, the pitch velocity or the torque of a lossy gearbox changes sign.
     Standstill is no part of them: where friction holds a crank, they are those of a crank about to turn forwards. Nor
-    are the stops of hinges: they are those of wings that go on beyond them. `wingbeat.Simulation` knows both.
+    are the stops of hinges: they are those of wings that go on beyond them. `wingbeat.Simulation` has both.
 
-    Raises InputError for a condition that there is not.
+    Parameters
+    ----------
+    vehicle : a Vehicle
+    condition : "air", "vacuum" or "wingless"
+
+    Raises
+    ------
+    InputError : for a condition that there is not
+
+    Example
+    -------
+    >>> equations = wb.read("data/designs/friction2022.toml").equations_of_motion()
+    >>> equations.states
+    ('crank_angle', 'crank_speed', 'current')
     """
 
     #: Names of the states.
@@ -41,8 +54,23 @@ class EquationsOfMotion:
 
         Parameters
         ----------
-        state : a number for each of `states`, or an array with a column for each of many states
+        time : since the start [s]
+        state : a number for each of `states`, or an array with a column for each of many states [SI]
         voltage : what drives the motor in place of the supply [V], through the same resistance
+
+        Returns
+        -------
+        An array of the shape of `state`.
+
+        Raises
+        ------
+        InputError : for a state of another size, and numbers that are not finite
+
+        Example
+        -------
+        >>> equations = wb.read("data/designs/friction2022.toml").equations_of_motion()
+        >>> equations.rates(0, [0, 100, 0])[0]
+        100.0
         """
         return self._equations.rates(
             number("time", time, "s"), array("state", state), optional_number("voltage", voltage, "V")

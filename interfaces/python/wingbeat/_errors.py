@@ -14,6 +14,14 @@ class InputError(ValueError):
     line, column : from 1, or None
     key : the key or option it is about, "" where it is about none
     others : what else is wrong, each an InputError
+
+    Example
+    -------
+    >>> try:
+    ...     wb.read("data/designs/friction2022.toml").replace({"motor.inertia": -1})
+    ... except wb.InputError as error:
+    ...     print(error.key, "|", error)
+    motor.inertia | motor.inertia: must be > 0 [kg m2], got -1
     """
 
     file: str | None = None

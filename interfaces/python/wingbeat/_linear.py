@@ -29,6 +29,12 @@ class LinearModel:
     """Matrices A, B, C, D with the names of states, inputs and outputs, all of them deviations in SI units.
 
     `dt` [s] is the time step, None of a model in continuous time.
+
+    Example
+    -------
+    >>> model = wb.read("data/designs/friction2022.toml").linearise(maps=False).discrete
+    >>> model.states, model.A.shape, f"{model.dt:.5f} s"
+    (['crank_speed', 'current'], (2, 2), '0.04555 s')
     """
 
     def __init__(self, model: dict[str, Any], inputs: list[str], outputs: list[str], dt: float | None) -> None:
@@ -42,13 +48,23 @@ class LinearModel:
         self.D = _matrix(model["D"], len(inputs))
 
     def to_scipy(self) -> Any:
-        """As scipy.signal.StateSpace, with `dt` where it has one."""
+        """As scipy.signal.StateSpace, with `dt` where it has one.
+
+        Raises
+        ------
+        ImportError : where SciPy is not installed
+        """
         signal = importlib.import_module("scipy.signal")
         matrices = (self.A, self.B, self.C, self.D)
         return signal.StateSpace(*matrices) if self.dt is None else signal.StateSpace(*matrices, dt=self.dt)
 
     def to_control(self) -> Any:
-        """As control.StateSpace of the package `control`, with names."""
+        """As control.StateSpace of the package `control`, with names.
+
+        Raises
+        ------
+        ImportError : where `control` is not installed
+        """
         control = importlib.import_module("control")
         return control.ss(
             self.A,
@@ -67,7 +83,14 @@ class LinearModel:
 
 
 class ControlModels(StudyResult):
-    """Linear models about steady flapping, static maps and body derivatives: the keys of `wingbeat linearise --json`."""
+    """Linear models about steady flapping, static maps and body derivatives: the keys of `wingbeat linearise --json`.
+
+    Example
+    -------
+    >>> models = wb.read("data/designs/friction2022.toml").linearise(maps=False)
+    >>> models.discrete.inputs
+    ['voltage', 'load_torque']
+    """
 
     def _model(self) -> dict[str, Any]:
         model = self["model"]
@@ -77,13 +100,23 @@ class ControlModels(StudyResult):
 
     @property
     def discrete(self) -> LinearModel:
-        """From one cycle to the next. Raises ValueError where the vehicle does not flap."""
+        """From one cycle to the next.
+
+        Raises
+        ------
+        ValueError : where the vehicle does not flap
+        """
         model = self._model()
         return LinearModel(model, _names(model["inputs"]), _names(model["outputs"]), float(model["period_s"]))
 
     @property
     def continuous(self) -> LinearModel:
-        """The same in continuous time, without what settles within a cycle. Raises as `discrete`."""
+        """The same in continuous time, without what settles within a cycle.
+
+        Raises
+        ------
+        ValueError : where the vehicle does not flap
+        """
         model = self._model()
         return LinearModel(model["continuous"], _names(model["inputs"]), _names(model["outputs"]), None)
 
@@ -103,14 +136,28 @@ def linearise(
 
     Parameters
     ----------
+    vehicle : a Vehicle
     condition : "air", "vacuum" or "wingless"
-    frequency, lift : of the operating point, which the voltage follows [Hz], [N]
+    frequency : of the operating point, which the voltage follows [Hz]
+    lift : of the operating point, in place of a frequency [N]
     allow_extrapolation : searches for them outside the model's domain too
     cycles : of the step responses; 0: about five time constants
     hinge_offset : from the body's middle plane to the axis of a wing's stroke [m]
     maps : False: without the static maps, which take most of the time
 
-    Raises InputError.
+    Returns
+    -------
+    The ControlModels; `discrete` and `continuous` are the linear models.
+
+    Raises
+    ------
+    InputError : for options that cannot be used
+
+    Example
+    -------
+    >>> models = wb.linearise(wb.read("data/designs/friction2022.toml"), frequency="22 Hz", maps=False)
+    >>> f"{models['model']['period_s']:.5f} s"
+    '0.04545 s'
     """
     one_of(frequency=frequency, lift=lift)
     found = _core.linearise(

@@ -25,7 +25,22 @@ if TYPE_CHECKING:
 
 
 class Front(Found):
-    """The designs that no other beats in every objective; `vehicle` is that at the knee, None where none was found."""
+    """The designs that no other beats in every objective; `vehicle` is that at the knee, None where none was found.
+
+    Example
+    -------
+    >>> fronts = {
+    ...     "search": {"population": 40, "generations": 5},
+    ...     "objective": [
+    ...         {"maximise": "lift_mean_n", "reference": 0},
+    ...         {"minimise": "power_electrical_w", "reference": "4 W"},
+    ...     ],
+    ...     "parameter": [{"key": "supply.voltage", "lower": 2, "upper": 8}],
+    ... }
+    >>> front = wb.optimise(fronts, vehicle=wb.read("data/designs/friction2022.toml"))
+    >>> len(front.all_vehicles) == front.designs.sizes["design"]
+    True
+    """
 
     #: The vehicles of the front, by the first objective, best first; as `designs`.
     all_vehicles: tuple[Vehicle, ...]
@@ -55,7 +70,18 @@ class Front(Found):
 
 
 class OwnOptimum(Found):
-    """An optimum by functions of the user's own: `value`, `parameters`, `outcome`, how the searches ended."""
+    """An optimum by functions of the user's own: `value`, `parameters`, `outcome`, how the searches ended.
+
+    Example
+    -------
+    >>> study = {
+    ...     "objective": {"minimise": lambda result: (result.frequency - 22) ** 2, "starts": 1},
+    ...     "parameter": [{"key": "supply.voltage", "lower": 2, "upper": 5}],
+    ... }
+    >>> found = wb.optimise(study, vehicle=wb.read("data/designs/friction2022.toml"))
+    >>> f"{found.result.frequency:.2f} Hz"
+    '22.00 Hz'
+    """
 
     #: What the vehicle that was found does; None where none was.
     result: RunResult | None
@@ -93,8 +119,26 @@ def optimise(
     (COBYLA) and takes more designs. Such a search starts from the vehicle and from the best of `screen` designs (default
     32 a parameter), `starts` times (default 4), on one thread. None or NaN: the design does not count.
 
-    Returns a Found; of several objectives a Front, by functions an OwnOptimum. Ctrl-C ends it. Raises
-    InputError, and what a function raises.
+    Ctrl-C ends it.
+
+    Returns
+    -------
+    A Found; of several objectives a Front, by functions an OwnOptimum.
+
+    Raises
+    ------
+    InputError : for a study that cannot be used
+    Exception : whatever a function raises
+
+    Example
+    -------
+    >>> study = {
+    ...     "objective": {"maximise": "efficiency_system"},
+    ...     "parameter": [{"key": "transmission.crank_radius", "lower": 0.004, "upper": 0.007}],
+    ... }
+    >>> found = wb.optimise(study, vehicle=wb.read("data/designs/friction2022.toml"))
+    >>> 0.004 <= found.vehicle.transmission.crank_radius <= 0.007
+    True
     """
     overrides, extrapolate = values_of(values), flag("allow_extrapolation", allow_extrapolation)
     threads, tells = threads_of(threads), callback(progress)

@@ -4,7 +4,24 @@ from __future__ import annotations
 
 
 class Quantity(float):
-    """A float with `unit` (UDUNITS) and `long_name`. Whatever is computed with it is a plain float."""
+    """A float with `unit` (UDUNITS) and `long_name`. Whatever is computed with it is a plain float.
+
+    Parameters
+    ----------
+    value : the number, SI
+    unit : its unit, "1" for a plain number
+    long_name : what it is
+
+    Raises
+    ------
+    ValueError : for what is not a number
+
+    Example
+    -------
+    >>> length = wb.Quantity(0.005, "m", "crank radius")
+    >>> length, 2 * length, length.unit
+    (0.005 m, 0.01, 'm')
+    """
 
     __slots__ = ("unit", "long_name")
     unit: str

@@ -27,7 +27,14 @@ CYCLE_POINTS = 361
 
 
 class Event(NamedTuple):
-    """What happens to a vehicle in time."""
+    """What happens to a vehicle in time.
+
+    Example
+    -------
+    >>> start = wb.read("data/designs/friction2022.toml").simulate()
+    >>> start.events[0].kind
+    'breakaway'
+    """
 
     time: float  #: [s]
     crank_angle: float  #: not wrapped; of a direct drive the stroke angle [rad]
@@ -35,15 +42,22 @@ class Event(NamedTuple):
 
 
 class EnergyBalance(NamedTuple):
-    """Mean powers of a cycle [W]: the electrical input and where it goes."""
+    """Mean powers of a cycle [W]: the electrical input and where it goes.
 
-    electrical: float
-    copper: float
-    viscous: float
-    gear: float
-    friction: float
-    hinge: float
-    aerodynamic: float
+    Example
+    -------
+    >>> balance = wb.read("data/designs/friction2022.toml").solve(tolerance=1e-9).energy_balance
+    >>> abs(balance.error) < 1e-6
+    True
+    """
+
+    electrical: float  #: the input [W]
+    copper: float  #: heat of the winding [W]
+    viscous: float  #: viscous loss of the motor [W]
+    gear: float  #: loss of the gearbox [W]
+    friction: float  #: loss by friction of the mechanism [W]
+    hinge: float  #: loss in the hinges of the wings [W]
+    aerodynamic: float  #: to the air [W]
     residual: float  #: what the transmission's formulation fails to conserve; 0 for virtual-work
     imbalance: float  #: the input minus all of these: the error of the solution
 
@@ -57,6 +71,14 @@ class RunResult(WithMetrics):
     """What a vehicle does from rest. A vehicle that does not flap is a result like another.
 
     Metrics are attributes: `result.lift_mean`, None where there is none (no flapping, no mass given).
+
+    Example
+    -------
+    >>> result = wb.read("data/designs/friction2022.toml").solve(voltage="3 V")
+    >>> result.status, f"{1e3 * result.lift_mean:.2f} mN"
+    ('flapping', '8.74 mN')
+    >>> result.cycle.lift.sizes["time"]
+    361
     """
 
     #: "flapping", "stalled", "locked", "jammed", "undecided", or "unreached": it flaps, but not as asked for.
@@ -97,7 +119,9 @@ class RunResult(WithMetrics):
     def cycle(self) -> xarray.Dataset:
         """One flapping cycle, over time [s], with units and long names; computed when first asked for.
 
-        Raises ValueError unless flapping.
+        Raises
+        ------
+        ValueError : unless flapping
         """
         if self._cycle is None:
             if self.status != "flapping":
@@ -114,8 +138,26 @@ class RunResult(WithMetrics):
         """Exact derivatives of a metric by numeric keys of the vehicle, SI per SI, in the order of `keys`.
 
         The voltage is held; where the result was asked for by its frequency, the frequency is. NaN unless flapping,
-        and for metrics without derivatives (floquet_multiplier_max). Raises InputError for an unknown key and for one
-        without a value in the vehicle.
+        and for metrics without derivatives (floquet_multiplier_max).
+
+        Parameters
+        ----------
+        metric : the name of a metric
+        keys : a key, or a list of keys
+
+        Returns
+        -------
+        A number for a key, an array for a list of keys [unit of the metric per unit of the key].
+
+        Raises
+        ------
+        InputError : for an unknown key or metric, and for a key without a value in the vehicle
+
+        Example
+        -------
+        >>> result = wb.read("data/designs/friction2022.toml").solve(tolerance=1e-9)
+        >>> f"{result.gradient('frequency', 'supply.voltage'):.3f} Hz/V"
+        '5.669 Hz/V'
         """
         index = metric_called(text("metric", metric))
         options = self._options
@@ -198,7 +240,23 @@ def solve(vehicle: Vehicle | Mapping[str, Any], /, **options: Any) -> RunResult 
     allow_extrapolation : a search for a frequency or a lift may leave the model's domain
     endurance : of a vehicle on a battery: how long it hovers and how long it flaps, too, which costs a flight
 
-    Not flapping is a result, never an exception. Raises InputError.
+    Returns
+    -------
+    A RunResult, whether it flaps or not; of columns an Ensemble.
+
+    Raises
+    ------
+    InputError : for options that cannot be used, and for more than one of voltage, frequency and lift
+    TypeError : for what is neither a vehicle nor columns
+
+    Example
+    -------
+    >>> vehicle = wb.read("data/designs/friction2022.toml")
+    >>> result = wb.solve(vehicle, frequency="22 Hz")
+    >>> f"{result.frequency:.2f} Hz at {result.vehicle.supply.voltage:.3f} V"
+    '22.00 Hz at 3.008 V'
+    >>> vehicle.solve(voltage=0).status
+    'stalled'
     """
     from ._vehicle import Vehicle
 
@@ -250,7 +308,14 @@ def _solve(
 
 
 class StartUp(WithMetrics):
-    """A start-up in time. Metrics of the cycle it settles in are attributes, None where there is none."""
+    """A start-up in time. Metrics of the cycle it settles in are attributes, None where there is none.
+
+    Example
+    -------
+    >>> start = wb.read("data/designs/friction2022.toml").simulate()
+    >>> start.status, start.samples.crank_speed.units
+    ('flapping', 'rad/s')
+    """
 
     status: str  #: "flapping", "stalled", "locked", "jammed" or "undecided"
     evidence: str  #: one sentence: what shows the status
@@ -258,7 +323,7 @@ class StartUp(WithMetrics):
     end_time: Quantity  #: time simulated [s]
     time_to_steady: Quantity  #: until every cycle's frequency is within 1 % of the last one's, or until rest [s]
     inrush_current: Quantity  #: highest current of the whole start-up [A]
-    inrush_current_time: Quantity  #: [s]
+    inrush_current_time: Quantity  #: when it flows [s]
     cycles: int  #: revolutions of the crank
     events: list[Event]  #: what happened on the way
 
@@ -306,13 +371,28 @@ def simulate(
 
     Parameters
     ----------
+    vehicle : a Vehicle
     condition : "air", "vacuum" or "wingless"
     tolerance : wanted relative accuracy of the metrics of steady flapping, 1e-11 to 1e-2
     max_time : gives up after this time [s]; 0: chosen from the vehicle's own time scales
-    crank_angle, crank_speed, current : at the start [rad, rad/s, A]
+    crank_angle : at the start [rad]
+    crank_speed : at the start [rad/s]
+    current : at the start [A]
     record_interval : between samples [s]; 0: every step of the integrator
 
-    Raises InputError.
+    Returns
+    -------
+    A StartUp, whether it ends in flapping or not.
+
+    Raises
+    ------
+    InputError : for options that cannot be used
+
+    Example
+    -------
+    >>> start = wb.simulate(wb.read("data/designs/friction2022.toml"), record_interval="1 ms")
+    >>> start.settled, start.inrush_current > 0.1
+    (True, True)
     """
     for name, value in (("max_time", max_time), ("record_interval", record_interval)):
         if number(name, value, "s") < 0.0:

@@ -8,7 +8,14 @@ from ._tables import parameters
 
 
 class Section:
-    """A section of a vehicle: its keys are attributes, numbers in SI with their units, None where there is no value."""
+    """A section of a vehicle: its keys are attributes, numbers in SI with their units, None where there is no value.
+
+    Example
+    -------
+    >>> motor = wb.read("data/designs/friction2022.toml").motor
+    >>> motor.torque_constant, motor.gear_efficiency
+    (0.01 N m/A, 1.0)
+    """
 
     __slots__ = ("_vehicle",)
     _vehicle: Any

@@ -24,9 +24,16 @@ class SimulationState(NamedTuple):
     """Everything that moves, and what commands the voltage: what `Simulation.save` returns and `restore` takes.
 
     Can be compared, copied and pickled; with a function that commands, where that can be.
+
+    Example
+    -------
+    >>> flight = wb.read("data/designs/friction2022.toml").simulation()
+    >>> events = flight.step("10 ms")
+    >>> flight.save().time
+    0.01
     """
 
-    numbers: tuple[float, ...]
+    numbers: tuple[float, ...]  #: everything that moves, SI
     voltage: Any  #: as `Simulation.voltage`
 
     @property
@@ -41,17 +48,32 @@ class Simulation:
     Parameters
     ----------
     vehicle : a Vehicle, at rest at time 0 unless another state is given
-    voltage : what commands the voltage, see the attribute
+    voltage : what commands the voltage [V], see the attribute
     condition : "air", "vacuum" or "wingless"
     tolerance : admissible relative error of an integration step, 1e-12 to 1e-2
-    angle, speed, current, pitch_angle, pitch_velocity : at the start [rad, rad/s, A, rad, rad/s]: of the crank or, of a
-        direct drive, of the stroke; the pitch of wings on hinges
+    angle : of the crank or, of a direct drive, of the stroke at the start [rad]
+    speed : likewise [rad/s]
+    current : at the start [A]
+    pitch_angle : of wings on hinges at the start [rad]
+    pitch_velocity : likewise [rad/s]
 
     Sticking, jamming, stops of hinges and the switching of a pwm supply are part of it. The motor is as warm as its
     surroundings. A simulation has one user at a time: another thread, or a commanding function, must not step it
     meanwhile. `copy.copy` makes one that goes its own way; it can be pickled.
 
-    Raises InputError.
+    Raises
+    ------
+    InputError : for options that cannot be used
+
+    Example
+    -------
+    >>> flight = wb.Simulation(wb.read("data/designs/friction2022.toml"), voltage="3 V")
+    >>> events = flight.step_to("0.2 s")
+    >>> len(events) > 2, flight.stands
+    (True, False)
+    >>> flight.voltage = "2.5 V"
+    >>> flight.step(1, until="revolution")[-1].kind
+    'revolution'
     """
 
     #: Names of the numbers in `state`: "crank_angle" and "crank_speed" (of a direct drive "stroke_angle" and
@@ -150,28 +172,61 @@ class Simulation:
 
         Parameters
         ----------
+        time : where to [s]; not in the past
         until : stops behind the first event of this kind: "revolution" (the crank angle passes a multiple of 2 pi
             forwards), "force-sign-change" (of the rod), "standstill", "breakaway", "supply-switch", "stop-impact", "jam"
 
         It ends early where the mechanism jams. Other Python threads run meanwhile. What a commanding function raises,
-        and Ctrl-C, leave the simulation where the call began. Raises InputError for a time in the past.
+        and Ctrl-C, leave the simulation where the call began.
+
+        Returns
+        -------
+        The events on the way, each an Event.
+
+        Raises
+        ------
+        InputError : for a time in the past, and for a kind of event that there is not
         """
         end = number("time", time, "s")
         kind = None if until is None else text("until", until)
         return [Event(*event) for event in self._simulation.step_to(end, kind)]
 
     def step(self, duration: float | str, *, until: str | None = None) -> list[Event]:
-        """Goes on for a time [s], which is not negative: see step_to."""
+        """Goes on for a time: see step_to.
+
+        Parameters
+        ----------
+        duration : for how long [s]; not negative
+        until : as in step_to
+
+        Returns
+        -------
+        The events on the way, each an Event.
+
+        Raises
+        ------
+        InputError : for a negative duration, and for a kind of event that there is not
+        """
         span = number("duration", duration, "s")
         if span < 0.0:
             raise refused("duration", f"must be >= 0 s, got {duration}")
         return self.step_to(self.time + span, until=until)
 
     def record(self, times: Any) -> xarray.Dataset:
-        """Steps to each of these moments [s], which must not fall, and returns everything that acts there over time.
+        """Steps to each of these moments and returns everything that acts there over time.
 
-        The variables are those of `RunResult.cycle`, with units and long names, NaN behind a jam; over the dimension
-        `event`: `event`, `event_time` and `event_crank_angle` of what has happened on the way.
+        Parameters
+        ----------
+        times : array [s], which must not fall
+
+        Returns
+        -------
+        A data set over `time` with the variables of `RunResult.cycle`, with units and long names, NaN behind a jam; over
+        the dimension `event`: `event`, `event_time` [s] and `event_crank_angle` [rad] of what has happened on the way.
+
+        Raises
+        ------
+        InputError : for times in the past, or that fall
         """
         columns, events = self._simulation.record(array("times", times, "s").ravel().tolist())
         made = _waveform(columns)
@@ -184,11 +239,26 @@ class Simulation:
         )
 
     def save(self) -> SimulationState:
-        """Its state, from which the same steps give the same bits, in this and in other simulations of the vehicle."""
+        """Its state, from which the same steps give the same bits, in this and in other simulations of the vehicle.
+
+        Returns
+        -------
+        A SimulationState.
+        """
         return SimulationState(self._simulation.save(), self._voltage)
 
     def restore(self, state: SimulationState) -> None:
-        """Goes back, or on, to a saved state. Raises InputError for one of another kind of vehicle."""
+        """Goes back, or on, to a saved state.
+
+        Parameters
+        ----------
+        state : what `save` has returned
+
+        Raises
+        ------
+        InputError : for a state of another kind of vehicle
+        TypeError : for what is not a state
+        """
         if not isinstance(state, SimulationState):
             raise wrong_type("state", "a wingbeat.SimulationState", state)
         self._simulation.restore(array("state", state.numbers).ravel().tolist())

@@ -30,6 +30,12 @@ class StudyResult(Mapping[str, Any]):
     """What a study found: a mapping with the keys of `--json` of the program's command of that name, in SI units.
 
     `print(result)` is the program's readable report.
+
+    Example
+    -------
+    >>> flight = wb.read("data/designs/friction2022-battery.toml").endurance()
+    >>> flight["status"], len(flight) > 5
+    ('flapping', True)
     """
 
     def __init__(self, found: dict[str, Any]) -> None:
@@ -53,7 +59,14 @@ class StudyResult(Mapping[str, Any]):
 
 
 class Flight(StudyResult):
-    """A flight to the end of the battery."""
+    """A flight to the end of the battery.
+
+    Example
+    -------
+    >>> flight = wb.read("data/designs/friction2022-battery.toml").endurance()
+    >>> flight.trajectory.time.units
+    's'
+    """
 
     def __init__(self, found: dict[str, Any]) -> None:
         super().__init__(found)
@@ -78,7 +91,13 @@ class Flight(StudyResult):
 
 
 class Identification(StudyResult):
-    """A motor identified from its data sheet."""
+    """A motor identified from its data sheet.
+
+    Example
+    -------
+    >>> print(wb.identify_motor("data/motors/0816K003SR.toml").motor.splitlines()[0])
+    # Faulhaber 0816K003SR with a 20:1 gearbox
+    """
 
     #: The section [motor] of a vehicle file, with what it rests on as comments; None where the sheet does not determine
     #: the motor.
@@ -90,7 +109,14 @@ class Identification(StudyResult):
 
 
 class Found(StudyResult):
-    """A fit or an optimum."""
+    """A fit or an optimum.
+
+    Example
+    -------
+    >>> found = wb.fit("data/bench/flapper.toml", profiles=False)
+    >>> found["converged"], found.vehicle.friction.type
+    (True, 'load-proportional')
+    """
 
     #: The vehicle that was found; None where none was.
     vehicle: Vehicle | None
@@ -139,9 +165,22 @@ def endurance(vehicle: Vehicle, *, allow_extrapolation: bool = False) -> Flight:
 
     Parameters
     ----------
+    vehicle : a Vehicle on a battery
     allow_extrapolation : flight outside the model's domain may hover
 
-    Raises InputError for a vehicle without a battery.
+    Returns
+    -------
+    A Flight: `flight["hover_s"]` and `flight["endurance_s"]` [s], `flight.trajectory` over time.
+
+    Raises
+    ------
+    InputError : for a vehicle without a battery
+
+    Example
+    -------
+    >>> flight = wb.endurance(wb.read("data/designs/friction2022-battery.toml"))
+    >>> f"{flight['endurance_s']:.0f} s"
+    '492 s'
     """
     return Flight(_core.endurance(vehicle_of(vehicle)._design, flag("allow_extrapolation", allow_extrapolation)))
 
@@ -158,12 +197,25 @@ def identify_motor(
 
     Parameters
     ----------
+    sheet : the path of the data sheet
     frequency : [Hz], that the user has in mind, for the remark about the inductance
     assume_steel_cylinder : where the sheet says nothing of the inertia, that of a steel cylinder of the rotor's size
     assume_typical_damping : where it says nothing of the viscous loss, that of a small coreless motor
     shaft : "output" or "motor": where the constants of `motor` stand
 
-    A sheet that does not determine the motor is a result. Raises InputError.
+    Returns
+    -------
+    An Identification; a sheet that does not determine the motor is a result as well.
+
+    Raises
+    ------
+    InputError : for a sheet that cannot be read or used
+
+    Example
+    -------
+    >>> found = wb.identify_motor("data/motors/0816K003SR.toml")
+    >>> found["name"], found["complete"], "[motor]" in found.motor
+    ('Faulhaber 0816K003SR with a 20:1 gearbox', True, True)
     """
     return Identification(
         _core.identify_motor(
@@ -194,7 +246,21 @@ def fit(
     compare_friction : fits one law of friction after the other as well
     threads : at most so many; 0: one for each core. What is found does not depend on it
 
-    Other Python threads run meanwhile; Ctrl-C ends it. Raises InputError.
+    Other Python threads run meanwhile; Ctrl-C ends it.
+
+    Returns
+    -------
+    A Found: the keys of `wingbeat fit --json`, and the vehicle with the fitted values.
+
+    Raises
+    ------
+    InputError : for a bench file or logs that cannot be used
+
+    Example
+    -------
+    >>> found = wb.fit("data/bench/flapper.toml", profiles=False)
+    >>> f"{1e3 * found.vehicle.friction.radius:.2f} mm"
+    '2.48 mm'
     """
     return Found(
         _core.fit(
@@ -227,7 +293,21 @@ def tolerance(
     threads : at most so many; 0: one for each core
     progress : True shows a bar (tqdm where it is installed), a function is called with designs done and designs
 
-    Raises InputError.
+    Returns
+    -------
+    A StudyResult: the keys of `wingbeat tolerance --json`.
+
+    Raises
+    ------
+    InputError : for a study that cannot be used
+
+    Example
+    -------
+    >>> spread = {"key": "friction.radius", "distribution": "normal", "relative_deviation": 0.05}
+    >>> study = {"samples": {"count": 128}, "parameter": [spread]}
+    >>> found = wb.tolerance(study, vehicle=wb.read("data/designs/friction2022.toml"))
+    >>> found["method"], [parameter["key"] for parameter in found["parameters"]]
+    ('sobol', ['friction.radius'])
     """
     overrides, extrapolate = values_of(values), flag("allow_extrapolation", allow_extrapolation)
     with _file_of(study, vehicle) as file, shown(callback(progress), 0) as tell:

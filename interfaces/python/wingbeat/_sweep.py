@@ -43,6 +43,7 @@ def sweep(
 
     Parameters
     ----------
+    vehicle : a Vehicle
     axes : keys of the vehicle, "frequency", "condition" or "springs", each with its values: SI numbers, texts with
         units, names; the last varies fastest
     output : a file (.nc) that keeps the data set, as `wingbeat sweep -o` writes it: interrupted, the same call goes on
@@ -50,14 +51,30 @@ def sweep(
     frequency : [Hz], held by all designs: the voltage is found for each
     tolerance : wanted relative accuracy of every metric, 1e-12 to 1e-2
     metrics : those wanted; default: all that the vehicle has but hover and endurance
+    title : of the data set
     threads : at most so many; 0: one for each core
     force : replaces a file that is not of this sweep
     progress : True shows a bar (tqdm where it is installed), a function is called with designs done and designs
 
-    Returns the data set of docs/sweep.md: what the program writes, loaded. Its variables have the names of data sets,
-    `data["lift_mean_n"]`, and `data["status"]` is a number; as attributes they are as here: `data.lift_mean`,
-    `data.status == "flapping"`. Other Python threads run meanwhile; Ctrl-C ends it. Raises
-    InputError.
+    Other Python threads run meanwhile; Ctrl-C ends it.
+
+    Returns
+    -------
+    The data set that `wingbeat sweep` writes, loaded. Its variables have the names of data sets, `data["lift_mean_n"]`,
+    and `data["status"]` is a number; as attributes they are as here: `data.lift_mean`, `data.status == "flapping"`.
+
+    Raises
+    ------
+    InputError : for axes and options that cannot be used, and for a file that is not of this sweep
+
+    Example
+    -------
+    >>> vehicle = wb.read("data/designs/friction2022.toml")
+    >>> data = wb.sweep(vehicle, {"supply.voltage": [3, 4], "transmission.crank_radius": ["5 mm", "6 mm"]})
+    >>> data.lift_mean.dims
+    ('supply_voltage', 'transmission_crank_radius')
+    >>> bool((data.status == "flapping").all())
+    True
     """
     design, threads, replaces = vehicle_of(vehicle)._design, threads_of(threads), flag("force", force)
     values = {key: axis_values(key, along, _is_number(key)) for key, along in mapping("axes", axes).items()}
@@ -87,7 +104,30 @@ def _is_number(key: str) -> bool:
 
 
 def open_dataset(file: str | os.PathLike[str]) -> SweepData:
-    """A data set that the program or `sweep` has written, loaded; attributes as those of what `sweep` returns."""
+    """A data set that the program or `sweep` has written, loaded; attributes as those of what `sweep` returns.
+
+    Parameters
+    ----------
+    file : the path of the file (.nc)
+
+    Returns
+    -------
+    The data set.
+
+    Raises
+    ------
+    FileNotFoundError : where there is no such file
+
+    Example
+    -------
+    >>> import os, tempfile
+    >>> vehicle = wb.read("data/designs/friction2022.toml")
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = os.path.join(folder, "sweep.nc")
+    ...     data = vehicle.sweep({"supply.voltage": [3, 4]}, output=file)
+    ...     bool((wb.open_dataset(file).lift_mean == data.lift_mean).all())
+    True
+    """
     import xarray
 
     from ._accessor import SweepData

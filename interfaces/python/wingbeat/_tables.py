@@ -8,16 +8,22 @@ from . import _core
 
 
 class Parameter(NamedTuple):
-    """A key of the vehicle file."""
+    """A key of the vehicle file.
 
-    key: str
+    Example
+    -------
+    >>> wb.parameters["motor.inertia"].unit
+    'kg m2'
+    """
+
+    key: str  #: with its section: "motor.inertia"
     unit: str  #: SI unit, "1" for a plain number, "" where it is not a number
-    range: str
-    default: str
-    meaning: str
+    range: str  #: of its values, in words
+    default: str  #: in words; "required" where there is none
+    meaning: str  #: with the symbol
     only_with: str  #: the choice it belongs to, "friction.type = viscous"; "" where it belongs everywhere
     alternatives: tuple[str, ...]  #: keys that may be given in its place
-    example: str
+    example: str  #: a value as a vehicle file states it
 
     @property
     def always(self) -> bool:
@@ -38,15 +44,23 @@ class Parameter(NamedTuple):
 
 
 class Metric(NamedTuple):
-    """A metric of a flapping cycle, or a column of its waveform."""
+    """A metric of a flapping cycle, or a column of its waveform.
+
+    Example
+    -------
+    >>> wb.metrics["lift_mean"].key, wb.metrics["lift_mean"].unit
+    ('lift_mean_n', 'N')
+    """
 
     key: str  #: in JSON and data sets: "lift_mean_n"
     name: str  #: here: "lift_mean"
     unit: str  #: UDUNITS
-    long_name: str
+    long_name: str  #: what it is, in words
 
 
+#: The keys of the vehicle file, each a `Parameter`, by key.
 parameters: dict[str, Parameter] = {row[0]: Parameter(*row) for row in _core.parameters()}
+#: The metrics of a flapping cycle, each a `Metric`, by the name that they have in Python.
 metrics: dict[str, Metric] = {row[1]: Metric(*row) for row in _core.metrics()}
 waveforms: dict[str, Metric] = {row[1]: Metric(*row) for row in _core.waveforms()}
 statuses: tuple[str, ...] = tuple(_core.statuses())

@@ -92,7 +92,23 @@ class Vehicle(Sections):
     A vehicle never changes: `replace` makes another one. Equal vehicles have equal values; they can be pickled, and
     be keys of a dict. `to_toml` writes one as a vehicle file that reads back to the bit.
 
-    Raises InputError with all that is wrong.
+    Parameters
+    ----------
+    values : the keys with their values, nested by section or with dots
+
+    Raises
+    ------
+    InputError : for keys and values that cannot be used, with all that is wrong
+    TypeError : where `values` is not a dict
+
+    Example
+    -------
+    >>> vehicle = wb.read("data/designs/friction2022.toml")
+    >>> vehicle.motor.inertia, vehicle["transmission.crank_radius"]
+    (1.5e-07 kg m2, 0.005 m)
+    >>> other = wb.Vehicle(vehicle.to_dict() | {"vehicle": {"name": "copy", "mass": "3.34 g"}})
+    >>> other.name, other == vehicle
+    ('copy', False)
     """
 
     __slots__ = ("_design", "_toml")
@@ -116,7 +132,17 @@ class Vehicle(Sections):
 
     @classmethod
     def from_toml(cls, toml: str, name: str = "vehicle") -> Vehicle:
-        """The vehicle in the text of a vehicle file, in which tables stand in place. `name` stands in messages."""
+        """The vehicle in the text of a vehicle file, in which tables stand in place.
+
+        Parameters
+        ----------
+        toml : the text
+        name : what messages call it
+
+        Raises
+        ------
+        InputError : with line and column of all that is wrong
+        """
         return cls._of(_core.parse(text("toml", toml), text("name", name)))
 
     def to_toml(self) -> str:
@@ -133,7 +159,19 @@ class Vehicle(Sections):
     def replace(self, values: Mapping[str, Any]) -> Vehicle:
         """The vehicle with other values of these keys; alternatives (hinge_offset, stroke_amplitude) replace each other.
 
-        Raises InputError.
+        Parameters
+        ----------
+        values : the keys with their values, nested by section or with dots
+
+        Raises
+        ------
+        InputError : for keys and values that cannot be used
+
+        Example
+        -------
+        >>> vehicle = wb.read("data/designs/friction2022.toml")
+        >>> vehicle.replace({"transmission.crank_radius": "6 mm"}).transmission.crank_radius
+        0.006 m
         """
         return Vehicle._of(_core.with_values(_assignments(mapping("values", values)), self._design))
 
@@ -209,7 +247,13 @@ class Vehicle(Sections):
     def drawing(self, stroke_amplitude: float = 1.0) -> str:
         """Its mechanism as SVG, to be shown in a page; "" where gnuplot, which draws it, is not installed.
 
-        `stroke_amplitude` [rad] is that of a direct drive; a crank has its own.
+        Parameters
+        ----------
+        stroke_amplitude : of a direct drive [rad]; a crank has its own
+
+        Raises
+        ------
+        InputError : for an angle that is not finite
         """
         svg = _core.mechanism_svg(self._design, number("stroke_amplitude", stroke_amplitude, "rad"))
         return svg[max(0, svg.find("<svg")) :]
@@ -249,13 +293,13 @@ class Vehicle(Sections):
         return simulate(self, **options)
 
     def simulation(self, **options: Any) -> Simulation:
-        """It in time, to be stepped under commanded voltages: see wingbeat.Simulation."""
+        """A simulation in time, stepped under commanded voltages: see wingbeat.Simulation."""
         from ._simulation import Simulation
 
         return Simulation(self, **options)
 
     def solve_columns(self, columns: Mapping[str, Any], **options: Any) -> Ensemble:
-        """Very many vehicles like it: see wingbeat.solve."""
+        """Very many vehicles like it: see wingbeat.solve_columns."""
         from ._ensemble import solve_columns
 
         return solve_columns(columns, vehicle=self, **options)
@@ -310,8 +354,21 @@ def _restored(toml: str) -> Vehicle:
 def read(file: str | os.PathLike[str] | IO[str]) -> Vehicle:
     """The vehicle in a vehicle file (TOML): a path, or a file open for reading text.
 
-    CSV files that it names are sought beside it; in an open file, tables stand in place. Raises InputError with file,
-    line and column of all that is wrong.
+    CSV files that it names are sought beside it; in an open file, tables stand in place.
+
+    Parameters
+    ----------
+    file : the path of the file, or the file open for reading text
+
+    Raises
+    ------
+    InputError : with file, line and column of all that is wrong
+    TypeError : for what is neither a path nor an open file
+
+    Example
+    -------
+    >>> wb.read("data/designs/friction2022.toml").supply.voltage
+    3.0 V
     """
     if isinstance(file, (str, bytes, os.PathLike)):
         return Vehicle._of(_core.read(path("file", file)))
