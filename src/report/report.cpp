@@ -92,10 +92,12 @@ void power_group(Table& table, const Metrics<double>& m) {
   power("electrical input", a.electrical, "v i");
   power("  copper loss", a.copper, "R_a i^2");
   power("  viscous loss of the motor", a.viscous, "b omega^2");
+  if (a.motor_friction != 0.0) power("  friction of the motor", a.motor_friction, "T_c,m omega");
   if (a.gear != 0.0) power("  gearbox", a.gear, "(1 - e) T_g omega");
-  power("  friction", a.friction, "T_f omega");
+  power(a.motor_friction != 0.0 ? "  friction of the mechanism" : "  friction", a.friction, "T_f omega");
   if (std::isfinite(m[Metric::power_hinge])) power("  pitch hinges", a.hinge, "c_psi psi'^2, impacts on stops");
-  power("  aerodynamic", a.aerodynamic, "M_aero beta'");
+  const bool hinged = std::isfinite(m[Metric::power_hinge]);
+  power("  aerodynamic", a.aerodynamic, hinged ? "M_aero beta' + M_pitch psi'" : "M_aero beta'");
   power("  formulation residual", a.residual, "F (h omega - g beta')");
   const double error = std::abs(a.imbalance / a.electrical);
   table.line("  energy-balance error", readable(a.imbalance, "W"),

@@ -151,10 +151,11 @@ std::span<const Parameter<S>> parameter_table() {
           row(motor_key::viscous_damping, "required",
               "b, motor and gearbox at the output shaft; b_m of the motor with gear_ratio", {}, "3.6e-6 N m s/rad"),
           [](auto& d) -> auto& { return d.motor.constants.viscous_damping; }),
-      number<S>(row(motor_key::friction_torque, "0 N m",
-                    "constant friction torque of the motor itself, at the motor shaft with gear_ratio; "
-                    "adds to every friction law"),
-                [](auto& d) -> auto& { return d.motor.constants.friction_torque; }),
+      number<S>(
+          row(motor_key::friction_torque, "0 N m",
+              "constant friction torque of the motor itself, before its gearbox, at the motor shaft with gear_ratio; "
+              "in addition to every friction law, and it heats the motor"),
+          [](auto& d) -> auto& { return d.motor.constants.friction_torque; }),
       number<S, Weighed>({"motor.mass", "kg", range::not_negative, "none: in vehicle.mass",
                           "mass of one motor with its gearbox, in addition to vehicle.mass"},
                          [](auto& d) -> auto& { return d.masses.motor; }),

@@ -37,7 +37,7 @@ class WithMetrics:
         """Bench estimate of the motor output power [W]."""
     @property
     def power_friction(self) -> Quantity | None:
-        """Mean friction loss [W]."""
+        """Mean friction loss of the transmission [W]."""
     @property
     def power_aerodynamic(self) -> Quantity | None:
         """Mean aerodynamic power [W]."""
@@ -50,6 +50,9 @@ class WithMetrics:
     @property
     def power_viscous(self) -> Quantity | None:
         """Mean viscous loss of the motor [W]."""
+    @property
+    def power_motor_friction(self) -> Quantity | None:
+        """Mean loss in the motor's own constant friction [W]."""
     @property
     def power_gear(self) -> Quantity | None:
         """Mean loss of the gearbox under load [W]."""
