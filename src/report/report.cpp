@@ -213,6 +213,9 @@ std::string wrapped(std::string_view text, int width, int indent) {
 std::vector<std::string> warnings_of(const RunResult& result) {
   std::vector<std::string> sentences;
   if (result.residual_share) sentences.push_back(residual_warning(*result.residual_share));
+  if (result.added_mass_lift) {
+    sentences.push_back(added_mass_warning(*result.added_mass_lift, result.design.pitch.edge_suction));
+  }
   if (result.hot_winding) {
     const double allowed = *result.hot_winding + result.metrics[Metric::winding_temperature_margin];
     sentences.push_back(winding_warning(*result.hot_winding, allowed));
@@ -249,6 +252,10 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
   table.text(wrapped(fmt::format("{}: {}.", name_of(result.status), describe(result)), table_width, 2) + "\n");
   if (result.residual_share) {
     table.text(wrapped(fmt::format("warning: {}.", residual_warning(*result.residual_share)), table_width, 2) + "\n");
+  }
+  if (result.added_mass_lift) {
+    const std::string sentence = added_mass_warning(*result.added_mass_lift, result.design.pitch.edge_suction);
+    table.text(wrapped(fmt::format("warning: {}.", sentence), table_width, 2) + "\n");
   }
   std::string how = fmt::format(
       "{}, by {}, tolerance {:.0e}", name_of(options.condition),

@@ -382,6 +382,10 @@ std::span<const Parameter<S>> parameter_table() {
                               "C_rd, drag coefficient of a wing that turns about its "
                               "leading edge"),
                           [](auto& d) -> auto& { return d.pitch.damping_coefficient; }),
+      number<S, Pitching>(row(pitch_key::edge_suction, "0",
+                              "s_L, share of the added mass's force along the chord that counts as lift: with 1 added "
+                              "mass has no mean lift"),
+                          [](auto& d) -> auto& { return d.pitch.edge_suction; }),
 
       number<S>(row(aerodynamics_key::air_density, "required", "rho, air density", {}, "1.225 kg/m3"),
                 [](auto& d) -> auto& { return d.aerodynamics.air_density; }),

@@ -110,6 +110,7 @@ double scale_of(const Metrics<double>& m, Metric which) {
     case Metric::efficiency_system: return std::max(size, input / std::abs(m[Metric::power_electrical]));
     case Metric::efficiency_mechanism: return std::max(size, input / std::abs(m[Metric::power_motor]));
     case Metric::lift_mean: return std::max(size, m[Metric::lift_peak]);
+    case Metric::lift_added_mass_share: return std::max(size, m[Metric::lift_peak] / std::abs(m[Metric::lift_mean]));
     case Metric::lift_to_weight: return std::abs(m[Metric::lift_peak] * m[which] / m[Metric::lift_mean]);
     case Metric::crank_speed_min: return m[Metric::crank_speed_max];
     case Metric::current_mean: return std::max(size, 0.01 * m[Metric::current_peak]);

@@ -54,6 +54,7 @@ enum class Metric {
   pitch_amplitude,
   pitch_phase,
   angle_of_attack_max,
+  lift_added_mass_share,
   reynolds_number,
   hover,     ///< as the next
   endurance  ///< of a flight, not of a cycle: absent unless a study asks for it
@@ -260,8 +261,8 @@ Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, cons
   m[Metric::added_mass_inertia_ratio] =
       select(weighs, ratio(v.wings.added_inertia, v.wing_count * v.wing_inertia), S(absent));
   // Of wings that pitch: see PitchMetrics.
-  for (const Metric which :
-       {Metric::power_hinge, Metric::pitch_amplitude, Metric::pitch_phase, Metric::angle_of_attack_max}) {
+  for (const Metric which : {Metric::power_hinge, Metric::pitch_amplitude, Metric::pitch_phase,
+                             Metric::angle_of_attack_max, Metric::lift_added_mass_share}) {
     m[which] = S(absent);
   }
   m[Metric::reynolds_number] = v.wing_limits.reynolds_number_per_speed * (S(4.0) * m[Metric::stroke_amplitude] * f);

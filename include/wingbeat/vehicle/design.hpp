@@ -153,10 +153,12 @@ struct PitchDesign {
   std::optional<S> stop;                                      ///< psi_max [rad]; none unless given
   bool rotational_lift = true;                                ///< the force that a pitching wing's circulation adds
   S damping_coefficient = S(rotational_damping_coefficient);  ///< C_rd [1]
+  S edge_suction = S(0);                                      ///< s_L of the added mass [1]
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
-    return use(of.stiffness, of.damping, of.stop, of.rotational_lift, of.damping_coefficient);
+    return use(of.stiffness, of.damping, of.stop, of.rotational_lift, of.damping_coefficient,
+               of.edge_suction);
   }
 };
 

@@ -113,6 +113,7 @@ PitchingWings<S> pitching_wings_of(const Design<S>& design, const S& count, cons
   if (design.aerodynamics.added_mass) of.air = pitch_added_mass(air_density, of.moments);
   if (!p.rotational_lift) of.rotational_coefficient = S(0.0);
   of.damping_coefficient = p.damping_coefficient;
+  of.edge_suction = p.edge_suction;
   if (design.aerodynamics.coefficients_name == normal_force_set) of.normal_force = NormalForce::normal_force;
   return of;
 }

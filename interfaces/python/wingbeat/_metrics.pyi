@@ -129,6 +129,9 @@ class WithMetrics:
     def angle_of_attack_max(self) -> Quantity | None:
         """Largest angle of attack of wings that pitch on a hinge [degree]."""
     @property
+    def lift_added_mass_share(self) -> Quantity | None:
+        """Part of the mean lift that comes from the added mass of wings on pitch hinges [1]."""
+    @property
     def reynolds_number(self) -> Quantity | None:
         """Reynolds number of the mean chord at the mean speed of the wing tips [1]."""
     @property

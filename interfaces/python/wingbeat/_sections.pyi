@@ -559,7 +559,13 @@ class PitchSection(Section):
     @property
     def damping_coefficient(self) -> Quantity | None:
         """C_rd, drag coefficient of a wing that turns about its leading edge.
-        Number. Range: >= 0. Default: 5.
+        Number. Range: >= 0. Default: 0, with normal-force-robofly 5.
+        Only with pitch.stiffness.
+        """
+    @property
+    def leading_edge_suction(self) -> Quantity | None:
+        """s_L, share of the added mass's force along the chord that counts as lift: with 1 added mass has no mean lift.
+        Number. Range: 0 to 1. Default: 0.
         Only with pitch.stiffness.
         """
 
