@@ -60,6 +60,20 @@ inline std::optional<ForceCoefficients<double>> named_coefficients(std::string_v
   return std::nullopt;
 }
 
+/// What a set of coefficients goes with where wings pitch. Both terms oppose rotation: together they may count its
+/// damping twice.
+struct RotationTerms {
+  bool lift;       ///< F_rot of the circulation
+  double damping;  ///< C_rd [1]
+};
+
+/// normal-force-robofly was used for wings on hinges with C_rd = 5 and no F_rot (Whitney and Wood 2010), the
+/// coefficients of translational-2022 with F_rot alone (Sane and Dickinson 2002, on the same wing); others as these.
+inline RotationTerms rotation_with(std::string_view coefficients) {
+  if (coefficients == normal_force_set) return {false, rotational_damping_coefficient};
+  return {true, 0.0};
+}
+
 /// Where the coefficient of the force normal to the chord comes from.
 enum class NormalForce {
   lift_and_drag,  ///< C_L cos(alpha) + C_D sin(alpha) of the ForceCoefficients

@@ -174,7 +174,7 @@ class MotorSection(Section):
         """
     @property
     def friction_torque(self) -> Quantity:
-        """constant friction torque of the motor itself, at the motor shaft with gear_ratio; adds to every friction law.
+        """constant friction torque of the motor itself, before its gearbox, at the motor shaft with gear_ratio; in addition to every friction law, and it heats the motor.
         [N m] Range: >= 0. Default: 0 N m.
         """
     @property
@@ -553,7 +553,7 @@ class PitchSection(Section):
     @property
     def rotational_lift(self) -> bool:
         """the force that the circulation of a pitching wing adds, C_rot = 0.75 pi.
-        Range: true or false. Default: true.
+        Range: true or false. Default: true, with normal-force-robofly false.
         Only with pitch.stiffness.
         """
     @property
@@ -607,7 +607,7 @@ class AerodynamicsSection(Section):
         """
     @property
     def coefficients(self) -> str | None:
-        """lift and drag coefficient against angle of attack, eqs (12, 13).
+        """lift and drag coefficient against angle of attack, eqs (12, 13); normal-force-robofly: C_L = 1.8 sin(2 alpha), C_D = 1.95 - 1.5 cos(2 alpha), of both the component normal to the chord.
         Range: translational-2022, normal-force-robofly (with pitch.stiffness), or a table of the keys below. Default: translational-2022.
         """
 
