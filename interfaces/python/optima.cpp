@@ -116,6 +116,7 @@ py::dict find_own(const std::string& name, const std::vector<std::string>& overr
     run.domain = point.domain;
     run.domain_evidence = domain_evidence(vehicle, point.metrics);
     run.residual_share = notable_residual(vehicle, point.metrics);
+    run.added_mass_lift = notable_added_mass_lift(point.metrics);
     const py::dict found = outcome_of(run);
     std::vector<OwnTerm> made;
     for (const py::handle term : evaluate(design, found).cast<py::list>()) made.push_back(term_of(term));

@@ -63,6 +63,13 @@ std::string residual_warning(double share) {
                 100.0 * share);
 }
 
+std::string added_mass_warning(double share, double suction) {
+  return format(
+      "%.3g %% of the mean lift comes from added mass, since %s of its force along the chord counts; with "
+      "pitch.leading_edge_suction = 1 it has no mean lift",
+      100.0 * share, suction > 0.0 ? format("%.3g %%", 100.0 * suction).c_str() : "none");
+}
+
 std::string winding_warning(double temperature, double allowed) {
   return format("the winding heats up to %.4g degC, above motor.winding_temperature_max = %.4g degC", temperature,
                 allowed);

@@ -247,6 +247,12 @@ std::optional<double> notable_residual(const Vehicle<double>& v, const Metrics<d
   return share;
 }
 
+std::optional<double> notable_added_mass_lift(const Metrics<double>& m) {
+  const double share = m[Metric::lift_added_mass_share];
+  if (!(std::abs(share) > added_mass_lift_warn)) return std::nullopt;
+  return share;
+}
+
 std::optional<double> hot_winding(const Vehicle<double>& v, const Metrics<double>& m) {
   const double T_w = m[Metric::winding_temperature];
   if (!heats_up(v.thermal) || !(T_w + zero_celsius > v.thermal.winding_temperature_max)) return std::nullopt;

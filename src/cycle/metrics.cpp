@@ -15,11 +15,12 @@ const std::array<MetricInfo, metric_count>& metric_table() {
       {"power_electrical_w", "W", "mean electrical input power"},
       {"power_motor_w", "W", "mean motor output power"},
       {"power_motor_reference_w", "W", "bench estimate of the motor output power"},
-      {"power_friction_w", "W", "mean friction loss"},
+      {"power_friction_w", "W", "mean friction loss of the transmission"},
       {"power_aerodynamic_w", "W", "mean aerodynamic power"},
       {"power_reactive_w", "W", "mean absolute reactive power"},
       {"power_copper_w", "W", "mean copper loss of the motor"},
       {"power_viscous_w", "W", "mean viscous loss of the motor"},
+      {"power_motor_friction_w", "W", "mean loss in the motor's own constant friction"},
       {"power_gear_w", "W", "mean loss of the gearbox under load"},
       {"power_loss_w", "W", "mean total loss"},
       {"power_residual_w", "W", "mean power the transmission formulation fails to conserve"},
@@ -45,6 +46,7 @@ const std::array<MetricInfo, metric_count>& metric_table() {
       {"pitch_amplitude_deg", "degree", "pitch amplitude, half peak to peak"},
       {"pitch_phase_deg", "degree", "lead of the pitching over the pitch that opposes the flapping velocity"},
       {"angle_of_attack_max_deg", "degree", "largest angle of attack of wings that pitch on a hinge"},
+      {"lift_added_mass_share", "1", "part of the mean lift that comes from the added mass of wings on pitch hinges"},
       {"reynolds_number", "1", "Reynolds number of the mean chord at the mean speed of the wing tips"},
       {"hover_s", "s", "flight time until lift falls below the weight"},
       {"endurance_s", "s", "flight time until the battery's end"},
@@ -84,6 +86,9 @@ const char* lacking_for(Metric metric, const Design<double>& design) {
     case Metric::pitch_amplitude:
     case Metric::pitch_phase:
     case Metric::angle_of_attack_max: return design.pitch.stiffness ? nullptr : pitch_key::stiffness.path;
+    case Metric::lift_added_mass_share:
+      if (!design.pitch.stiffness) return pitch_key::stiffness.path;
+      return design.aerodynamics.added_mass ? nullptr : "aerodynamics.added_mass";
     default: return lacking_of_heat(metric, design);
   }
 }
@@ -98,6 +103,8 @@ double error_scale(const Metrics<double>& metrics, Metric which) {
     case Metric::power_hinge:
     case Metric::power_residual: return std::max(size, std::abs(metrics[Metric::power_electrical]));
     case Metric::lift_mean: return std::max(size, 1e-3 * metrics[Metric::lift_peak]);
+    case Metric::lift_added_mass_share:
+      return std::max({size, 1.0, 1e-3 * metrics[Metric::lift_peak] / std::abs(metrics[Metric::lift_mean])});
     case Metric::lift_to_weight:
       return std::max(size, 1e-3 * metrics[Metric::lift_peak] * std::abs(metrics[which] / metrics[Metric::lift_mean]));
     case Metric::crank_speed_min: return std::max(size, 1e-2 * metrics[Metric::crank_speed_max]);

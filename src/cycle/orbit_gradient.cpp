@@ -48,6 +48,7 @@ OrbitGradient repeat_recorded(const SteadyFlapping& orbit, const RecordedCycle<S
   g.metrics = cycle_metrics(vehicle, cycle.integrals(), extremes, J(orbit.metrics[Metric::floquet_multiplier_max]), {});
   if constexpr (CycleGradient<System>::pitching) {
     g.metrics[Metric::power_hinge] = cycle.hinge_power();
+    g.metrics[Metric::lift_added_mass_share] = added_mass_share(vehicle.pitch, cycle.chordwise_share(), J(1.0));
     if (options.peaks) set_pitch_metrics(cycle.pitch_gradient(), g.metrics);
   }
   const J bench = voltage_varies ? given.bench_torque_constant : J(absent);

@@ -27,7 +27,7 @@ PitchMotion<double> EquationsOfMotion::motion(const double* state, double curren
       const Instant<double> at = instant_at(vehicle_, k, N_k_beta, omega, current, voltage, branch.stroke,
                                             branch.direction, branch.pitching, branch.gear);
       branch.force = sign_of(at.force_switch);
-      return {motion_on(vehicle_, at, current, voltage, branch), 0.0, 0.0, 0.0};
+      return {motion_on(vehicle_, at, current, voltage, branch), 0.0, 0.0, 0.0, 0.0};
     }
     const double psi = state[state_count() - 2], velocity = state[state_count() - 1];
     const auto on_force_branch = [&] {

@@ -68,6 +68,9 @@ class Reader {
     check_alternatives();
     attempt([&] { read_coefficients(d.aerodynamics); });
     attempt([&] { read_flag("aerodynamics.added_mass", d.aerodynamics.added_mass); });
+    const RotationTerms rotation = rotation_with(d.aerodynamics.coefficients_name);
+    d.pitch.rotational_lift = rotation.lift;
+    d.pitch.damping_coefficient = rotation.damping;
     attempt([&] { read_flag("pitch.rotational_lift", d.pitch.rotational_lift); });
     attempt([&] {
       if (document_.has_section("pitch") && !document_.find(pitch_key::stiffness.path)) {

@@ -78,7 +78,8 @@ std::vector<std::size_t> known_on_side(const Design<double>& design, VariableKin
     switch (OutputId(number)) {
       case OutputId::crank_angle: k.state(0); break;
       case OutputId::crank_speed:
-      case OutputId::power_viscous: k.state(1); break;
+      case OutputId::power_viscous:
+      case OutputId::power_motor_friction: k.state(1); break;
       case OutputId::stroke_angle: k.state(0); break;
       case OutputId::flapping_velocity: velocity(); break;
       case OutputId::pitch_angle: k.state(at.pitch); break;

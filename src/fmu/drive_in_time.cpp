@@ -308,6 +308,7 @@ S DriveInTime::output(OutputId which, const Everything<S>& at) const {
     case OutputId::power_aerodynamic: return m.aero.power;
     case OutputId::power_copper: return v.motor.armature_resistance * m.current * m.current;
     case OutputId::power_viscous: return v.motor.viscous_damping * at.shaft_speed * at.shaft_speed;
+    case OutputId::power_motor_friction: return v.motor.friction_torque * sign_of(at.shaft_speed) * at.shaft_speed;
     case OutputId::power_load: return at.load_torque * at.shaft_speed;
     case OutputId::roll_moment:
     case OutputId::pitch_moment:

@@ -31,13 +31,14 @@ constexpr Row output_rows[] = {
     {"drag_moment", "N.m", "moment of the air on all wings about their hinges"},
     {"rod_force", "N", "force in one rod, positive as it raises the stroke angle"},
     {"motor_torque", "N.m", "motor torque on crank or shaft"},
-    {"friction_torque", "N.m", "friction torque on crank or shaft"},
+    {"friction_torque", "N.m", "friction torque of the transmission on crank or shaft"},
     {"power_electrical", "W", "electrical input power"},
-    {"power_motor", "W", "motor output power"},
-    {"power_friction", "W", "friction loss"},
+    {"power_motor", "W", "motor output power, behind its gearbox and its own friction"},
+    {"power_friction", "W", "friction loss of the transmission"},
     {"power_aerodynamic", "W", "power given to the air"},
     {"power_copper", "W", "loss in the armature resistance"},
     {"power_viscous", "W", "viscous loss of the motor"},
+    {"power_motor_friction", "W", "loss in the motor's own constant friction"},
     {"power_load", "W", "power given to the external load"},
     {"roll_moment", "N.m", "moment of the air on the body, positive with the right wing down"},
     {"pitch_moment", "N.m", "moment of the air on the body, positive with the nose up"},
@@ -48,7 +49,7 @@ constexpr Row mean_rows[] = {{"frequency_mean", "Hz", "flapping frequency"},
                              {"lift_mean", "N", "mean lift"},
                              {"current_mean", "A", "mean current"},
                              {"power_electrical_mean", "W", "mean electrical power"},
-                             {"power_friction_mean", "W", "mean friction loss"},
+                             {"power_friction_mean", "W", "mean friction loss of the transmission"},
                              {"power_aerodynamic_mean", "W", "mean power given to the air"},
                              {"power_copper_mean", "W", "mean loss in the armature resistance"}};
 static_assert(std::size(mean_rows) == std::size_t(MeanId::last));
@@ -239,6 +240,7 @@ bool has_total(OutputId output) {
     case OutputId::power_aerodynamic:
     case OutputId::power_copper:
     case OutputId::power_viscous:
+    case OutputId::power_motor_friction:
     case OutputId::power_load:
     case OutputId::roll_moment:
     case OutputId::pitch_moment:

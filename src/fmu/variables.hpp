@@ -48,6 +48,7 @@ enum class OutputId {
   power_aerodynamic,
   power_copper,
   power_viscous,
+  power_motor_friction,
   power_load,
   roll_moment,  ///< these of two drives together alone
   pitch_moment,
@@ -85,7 +86,7 @@ inline constexpr ExposedSum exposed_sums[] = {
     {"sum_speed_square", "rad2/s", "square of the speed of crank or shaft, integrated over time",
      Integral::speed_square},
     {"sum_power_electrical", "J", "electrical energy taken", Integral::electrical_work},
-    {"sum_power_friction", "J", "energy lost in friction", Integral::friction_work},
+    {"sum_power_friction", "J", "energy lost in friction of the transmission", Integral::friction_work},
     {"sum_power_aerodynamic", "J", "energy given to the air", Integral::aero_work}};
 inline constexpr std::size_t exposed_sum_count = std::size(exposed_sums);
 

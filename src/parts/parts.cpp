@@ -68,6 +68,7 @@ void validate(const PitchingWings<double>& w, double stroke_inertia) {
   require(pitch_key::pitch_inertia, w.pitch_inertia);
   require(pitch_key::mass_product, w.mass_product);
   require(pitch_key::damping_coefficient, w.damping_coefficient);
+  require(pitch_key::edge_suction, w.edge_suction);
   const double largest = std::sqrt(stroke_inertia * w.pitch_inertia);
   if (!(std::abs(w.mass_product) < largest)) {
     throw ParameterError(pitch_key::mass_product.path,

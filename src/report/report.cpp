@@ -92,10 +92,12 @@ void power_group(Table& table, const Metrics<double>& m) {
   power("electrical input", a.electrical, "v i");
   power("  copper loss", a.copper, "R_a i^2");
   power("  viscous loss of the motor", a.viscous, "b omega^2");
+  if (a.motor_friction != 0.0) power("  friction of the motor", a.motor_friction, "T_c,m omega");
   if (a.gear != 0.0) power("  gearbox", a.gear, "(1 - e) T_g omega");
-  power("  friction", a.friction, "T_f omega");
+  power(a.motor_friction != 0.0 ? "  friction of the mechanism" : "  friction", a.friction, "T_f omega");
   if (std::isfinite(m[Metric::power_hinge])) power("  pitch hinges", a.hinge, "c_psi psi'^2, impacts on stops");
-  power("  aerodynamic", a.aerodynamic, "M_aero beta'");
+  const bool hinged = std::isfinite(m[Metric::power_hinge]);
+  power("  aerodynamic", a.aerodynamic, hinged ? "M_aero beta' + M_pitch psi'" : "M_aero beta'");
   power("  formulation residual", a.residual, "F (h omega - g beta')");
   const double error = std::abs(a.imbalance / a.electrical);
   table.line("  energy-balance error", readable(a.imbalance, "W"),
@@ -211,6 +213,9 @@ std::string wrapped(std::string_view text, int width, int indent) {
 std::vector<std::string> warnings_of(const RunResult& result) {
   std::vector<std::string> sentences;
   if (result.residual_share) sentences.push_back(residual_warning(*result.residual_share));
+  if (result.added_mass_lift) {
+    sentences.push_back(added_mass_warning(*result.added_mass_lift, result.design.pitch.edge_suction));
+  }
   if (result.hot_winding) {
     const double allowed = *result.hot_winding + result.metrics[Metric::winding_temperature_margin];
     sentences.push_back(winding_warning(*result.hot_winding, allowed));
@@ -247,6 +252,10 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
   table.text(wrapped(fmt::format("{}: {}.", name_of(result.status), describe(result)), table_width, 2) + "\n");
   if (result.residual_share) {
     table.text(wrapped(fmt::format("warning: {}.", residual_warning(*result.residual_share)), table_width, 2) + "\n");
+  }
+  if (result.added_mass_lift) {
+    const std::string sentence = added_mass_warning(*result.added_mass_lift, result.design.pitch.edge_suction);
+    table.text(wrapped(fmt::format("warning: {}.", sentence), table_width, 2) + "\n");
   }
   std::string how = fmt::format(
       "{}, by {}, tolerance {:.0e}", name_of(options.condition),

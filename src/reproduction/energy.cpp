@@ -13,11 +13,12 @@ namespace wingbeat {
 
 EnergyFlow energy_flow(const EnergyAudit& a) {
   EnergyFlow flow{a.electrical,
-                  a.electrical - a.copper - a.viscous,
+                  a.electrical - a.copper - a.viscous - a.motor_friction - a.gear,
                   {{"copper", a.copper}, {"motor viscous", a.viscous}},
                   {{"friction", a.friction}, {"form. residual", a.residual}},
                   a.aerodynamic};
-  if (a.gear != 0.0) flow.transmission.insert(flow.transmission.begin(), {"gearbox", a.gear});
+  if (a.motor_friction != 0.0) flow.motor.push_back({"motor friction", a.motor_friction});
+  if (a.gear != 0.0) flow.motor.push_back({"gearbox", a.gear});
   return flow;
 }
 

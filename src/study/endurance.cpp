@@ -381,8 +381,9 @@ class Flight {
       const Load load = load_of(m, open_circuit_voltage(battery_, std::max(first - drawn, 0.0)));
       const double per_charge = battery_.capacity / load.current;
       if (!std::isfinite(per_charge)) return std::nullopt;
-      const double P_cu = m[Metric::power_copper], P_visc = m[Metric::power_viscous];
-      const MotorTemperatures<double> target = settled_temperatures(thermal, P_cu, P_visc);
+      const double P_cu = m[Metric::power_copper];
+      const double P_case = m[Metric::power_viscous] + m[Metric::power_motor_friction];
+      const MotorTemperatures<double> target = settled_temperatures(thermal, P_cu, P_case);
       return Path{per_charge,
                   m[Metric::power_electrical] * per_charge,
                   load.internal_power * per_charge,

@@ -208,6 +208,7 @@ void note_domain(const Vehicle<double>& vehicle, RunResult& result) {
   result.domain = domain_of(vehicle, result.metrics);
   result.domain_evidence = domain_evidence(vehicle, result.metrics);
   result.residual_share = notable_residual(vehicle, result.metrics);
+  result.added_mass_lift = notable_added_mass_lift(result.metrics);
   result.hot_winding = hot_winding(vehicle, result.metrics);
 }
 

@@ -356,8 +356,8 @@ void CrankStartUp::take_metrics(int cycles) {
     const auto total = [&](Integral which) { return integrals[std::size_t(which)]; };
     integrals[std::size_t(Integral::gear_work)] =
         total(Integral::electrical_work) - m.armature_resistance * total(Integral::current_square) -
-        m.viscous_damping * total(Integral::speed_square) - total(Integral::motor_work) -
-        (model_.motor_energy() - motor_mark_) / cycles;
+        m.viscous_damping * total(Integral::speed_square) - m.friction_torque * total(Integral::travel) -
+        total(Integral::motor_work) - (model_.motor_energy() - motor_mark_) / cycles;
   }
   if (model_.pitching) {
     // Of a crank that stands for a while, what rounding leaves of the speed is none.

@@ -20,6 +20,7 @@ class CrankPitchReading {
     lowest_psi_ = infinity;
     highest_psi_ = -infinity;
     loss_ = -model.now.impact_loss;
+    chordwise_ = 0.0;
     points_.clear();
   }
 
@@ -39,7 +40,9 @@ class CrankPitchReading {
       const double psi = y[at], velocity = model.now.held ? 0.0 : y[at + 1];
       points_.push_back({t, half * weights[k], stroke_angle(kinematics), psi});
       loss_ += half * weights[k] * hinge_loads(model.vehicle.pitch.hinge, psi, velocity).loss;
-      const double stroke = sign_of(kinematics.stroke_slope * y[1]);
+      const double stroke_velocity = kinematics.stroke_slope * y[1], stroke = sign_of(stroke_velocity);
+      const PitchState<double> state = pitch_state<double>(psi, velocity, stroke_velocity);
+      chordwise_ += half * weights[k] * chordwise_lift(model.vehicle.pitch, state);
       if (stroke * psi > still_pitch) metrics_.over_rotation += half * weights[k];
       if (k == 2) sign = stroke;
     }
@@ -65,7 +68,8 @@ class CrankPitchReading {
     metrics_.phase = std::arg(psi / (std::complex<double>(0.0, -1.0) * stroke));
     metrics_.hinge_power = (loss_ + model.now.impact_loss) / (end - start);
     metrics_.over_rotation /= end - start;
-    set_pitch_metrics(metrics_, metrics);
+    metrics_.chordwise = chordwise_ / (end - start);
+    set_pitch_metrics(metrics_, model.vehicle.pitch, metrics);
   }
 
   void add_to(StatusEvidence& evidence, const CrankModel& model) const {
@@ -79,7 +83,8 @@ class CrankPitchReading {
   std::vector<Point> points_;  ///< of Gauss's rule on each step
   PitchMetrics metrics_{};
   double lowest_psi_ = 0.0, highest_psi_ = 0.0;
-  double loss_ = 0.0;  ///< in the hinges since begin(), less the impacts before [J]
+  double loss_ = 0.0;       ///< in the hinges since begin(), less the impacts before [J]
+  double chordwise_ = 0.0;  ///< integral of chordwise_lift() since then [N s]
 };
 
 }  // namespace wingbeat::detail

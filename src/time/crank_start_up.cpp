@@ -70,6 +70,7 @@ void CrankStartUp::prepare() {
       case Integral::current: return model_.current_scale;
       case Integral::current_square: return square(model_.current_scale);
       case Integral::speed_square: return square(model_.speed_scale);
+      case Integral::travel: return model_.speed_scale;
       case Integral::lift:
         return model_.vehicle.wings.air_density * model_.vehicle.wings.s2 *
                    square(model_.speed_scale * typical_stroke_slope(model_.vehicle.transmission)) +

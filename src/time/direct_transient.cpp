@@ -102,6 +102,7 @@ DirectStartUp<Model>::DirectStartUp(const Vehicle<double>& vehicle, const Transi
       case Integral::current: return current_scale;
       case Integral::current_square: return square(current_scale);
       case Integral::speed_square: return square(speed_scale);
+      case Integral::travel: return speed_scale;
       case Integral::lift:
         return model_.vehicle.wings.air_density * model_.vehicle.wings.s2 * square(speed_scale) +
                1e-6 * m.torque_constant * current_scale;

@@ -68,7 +68,8 @@ class PeriodReading<PitchDirectModel> {
     const std::complex<double> stroke(other[PitchDirectModel::stroke_cosine], -other[PitchDirectModel::stroke_sine]),
         psi(other[PitchDirectModel::pitch_cosine], -other[PitchDirectModel::pitch_sine]);
     metrics_.phase = std::arg(psi / (std::complex<double>(0.0, -1.0) * stroke));
-    set_pitch_metrics(metrics_, metrics);
+    metrics_.chordwise = other[PitchDirectModel::chordwise] / model.period;
+    set_pitch_metrics(metrics_, model.vehicle.pitch, metrics);
   }
 
   void add_to(StatusEvidence& evidence, const PitchDirectModel& model) const {

@@ -51,6 +51,7 @@ bool PitchDirectModel::rates(double t, const double* y, double* dy, bool quadrat
     double* other = dy + coupled + quadrature_count;
     const double c = std::cos(w * t), s = std::sin(w * t);
     other[hinge_work] = m.hinge_loss;
+    other[chordwise] = m.chordwise_lift;
     other[stroke_cosine] = y[0] * c;
     other[stroke_sine] = y[0] * s;
     other[pitch_cosine] = y[2] * c;
@@ -90,6 +91,7 @@ std::optional<TransientEvent::Kind> PitchDirectModel::interrupt() {
 
 void PitchDirectModel::other_scales(double power, double* scales) const {
   scales[hinge_work] = period * power;
+  scales[chordwise] = period * vehicle.wings.air_density * vehicle.wings.s2 * square(scale[1]) + 1e-6 * power / w;
   scales[stroke_cosine] = scales[stroke_sine] = period * scale[0];
   scales[pitch_cosine] = scales[pitch_sine] = period * scale[2];
 }

@@ -17,9 +17,9 @@ namespace wingbeat::detail {
 /// TimeModel. Of a vehicle without constant friction.
 class PitchDirectModel : public DrivenShaft {
  public:
-  /// Behind `quadratures`: loss in the damping of the hinges [J]; integrals of stroke and pitch times cosine and sine
-  /// of the supply's phase [rad s].
-  enum Other { hinge_work, stroke_cosine, stroke_sine, pitch_cosine, pitch_sine, other_quadratures };
+  /// Behind `quadratures`: loss in the damping of the hinges [J]; chordwise_lift() [N s]; integrals of stroke and pitch
+  /// times cosine and sine of the supply's phase [rad s].
+  enum Other { hinge_work, chordwise, stroke_cosine, stroke_sine, pitch_cosine, pitch_sine, other_quadratures };
 
   /// Everything that moves: copied to save it, assigned to go back.
   struct State {

@@ -15,7 +15,7 @@ namespace wingbeat::detail {
 constexpr Integral quadratures[] = {Integral::current,         Integral::current_square, Integral::speed_square,
                                     Integral::electrical_work, Integral::motor_work,     Integral::friction_work,
                                     Integral::aero_work,       Integral::residual_work,  Integral::lift,
-                                    Integral::rod_force};
+                                    Integral::rod_force,       Integral::travel};
 constexpr int quadrature_count = int(std::size(quadratures));
 
 /// Where among them an integral is.

@@ -167,9 +167,14 @@ void validate(const Design<double>& d) {
                          "needs the wing's outline: give a planform with a shape, or wing.inertia");
   }
   if ((d.wing.rib_count > 0.0) != (d.wing.rib_density > 0.0)) {
-    throw ParameterError(
-        d.wing.rib_count > 0.0 ? wing_material_key::rib_density.path : wing_material_key::rib_count.path,
-        "missing: give both rib_count and rib_density, or neither");
+    const bool counted = d.wing.rib_count > 0.0;
+    throw ParameterError(counted ? wing_material_key::rib_density.path : wing_material_key::rib_count.path,
+                         counted ? detail::format("0 or missing beside wing.rib_count = %g: a rib has a mass over its "
+                                                  "length",
+                                                  d.wing.rib_count)
+                                 : detail::format("0 or missing beside wing.rib_density = %.4g kg/m: there is no rib "
+                                                  "to have it",
+                                                  d.wing.rib_density));
   }
   const AerodynamicsDesign<double>& air = d.aerodynamics;
   if (air.reynolds_number_min && air.reynolds_number_max && !(*air.reynolds_number_min < *air.reynolds_number_max)) {

@@ -151,10 +151,11 @@ std::span<const Parameter<S>> parameter_table() {
           row(motor_key::viscous_damping, "required",
               "b, motor and gearbox at the output shaft; b_m of the motor with gear_ratio", {}, "3.6e-6 N m s/rad"),
           [](auto& d) -> auto& { return d.motor.constants.viscous_damping; }),
-      number<S>(row(motor_key::friction_torque, "0 N m",
-                    "constant friction torque of the motor itself, at the motor shaft with gear_ratio; "
-                    "adds to every friction law"),
-                [](auto& d) -> auto& { return d.motor.constants.friction_torque; }),
+      number<S>(
+          row(motor_key::friction_torque, "0 N m",
+              "constant friction torque of the motor itself, before its gearbox, at the motor shaft with gear_ratio; "
+              "in addition to every friction law, and it heats the motor"),
+          [](auto& d) -> auto& { return d.motor.constants.friction_torque; }),
       number<S, Weighed>({"motor.mass", "kg", range::not_negative, "none: in vehicle.mass",
                           "mass of one motor with its gearbox, in addition to vehicle.mass"},
                          [](auto& d) -> auto& { return d.masses.motor; }),
@@ -374,13 +375,20 @@ std::span<const Parameter<S>> parameter_table() {
       text<S, Pitching>({"pitch.rotational_lift",
                          "",
                          {"true or false"},
-                         "true",
+                         "true, with normal-force-robofly false",
                          "the force that the circulation of a pitching wing adds, C_rot = 0.75 pi"},
-                        [](const D& d) { return std::string(d.pitch.rotational_lift ? "" : "false"); }),
-      number<S, Pitching>(row(pitch_key::damping_coefficient, "5",
+                        [](const D& d) {
+                          if (!Pitching::holds(d)) return std::string();
+                          return std::string(d.pitch.rotational_lift ? "true" : "false");
+                        }),
+      number<S, Pitching>(row(pitch_key::damping_coefficient, "0, with normal-force-robofly 5",
                               "C_rd, drag coefficient of a wing that turns about its "
                               "leading edge"),
                           [](auto& d) -> auto& { return d.pitch.damping_coefficient; }),
+      number<S, Pitching>(row(pitch_key::edge_suction, "0",
+                              "s_L, share of the added mass's force along the chord that counts as lift: with 1 added "
+                              "mass has no mean lift"),
+                          [](auto& d) -> auto& { return d.pitch.edge_suction; }),
 
       number<S>(row(aerodynamics_key::air_density, "required", "rho, air density", {}, "1.225 kg/m3"),
                 [](auto& d) -> auto& { return d.aerodynamics.air_density; }),
@@ -406,17 +414,19 @@ std::span<const Parameter<S>> parameter_table() {
       number<S>(row(wing_limits_key::reynolds_number_max, "of a named set of coefficients 26000, else none",
                     "highest Reynolds number for which the coefficients hold"),
                 [](auto& d) -> auto& { return d.aerodynamics.reynolds_number_max; }),
-      text<S>({"aerodynamics.coefficients",
-               "",
-               {"translational-2022, normal-force-robofly (with pitch.stiffness), or a table of the keys below"},
-               "translational-2022",
-               "lift and drag coefficient against angle of attack, eqs (12, 13)",
-               {},
-               "translational-2022"},
-              [](const D& d) {
-                const std::string& name = d.aerodynamics.coefficients_name;
-                return name == "custom" || d.aerodynamics.coefficients.table ? std::string() : name;
-              }),
+      text<S>(
+          {"aerodynamics.coefficients",
+           "",
+           {"translational-2022, normal-force-robofly (with pitch.stiffness), or a table of the keys below"},
+           "translational-2022",
+           "lift and drag coefficient against angle of attack, eqs (12, 13); normal-force-robofly: C_L = 1.8 sin(2 alpha), "
+           "C_D = 1.95 - 1.5 cos(2 alpha), of both the component normal to the chord",
+           {},
+           "translational-2022"},
+          [](const D& d) {
+            const std::string& name = d.aerodynamics.coefficients_name;
+            return name == "custom" || d.aerodynamics.coefficients.table ? std::string() : name;
+          }),
       wave_number<S>({"aerodynamics.coefficients.lift.offset", "1", range::any,
                       "required unless coefficients is a name", "A of C_L = A + B sin(C alpha + D)"},
                      [](auto& c) -> auto& { return c.lift.offset; }),

@@ -43,7 +43,7 @@ TEST_F(Examples, EachFlapsHoversAndKeepsItsEnergyBalance) {
     EXPECT_NEAR(json["frequency_hz"].get<double>(), frequency, 0.01 * frequency) << name;
     EXPECT_NEAR(json["voltage_v"].get<double>(), voltage, 0.01 * voltage) << name;
     double spent = 0.0;
-    for (const char* power : {"copper", "viscous", "friction", "gear", "aerodynamic", "residual"}) {
+    for (const char* power : {"copper", "viscous", "motor_friction", "friction", "gear", "aerodynamic", "residual"}) {
       spent += json[std::string("power_") + power + "_w"].get<double>();
     }
     const double input = json["power_electrical_w"].get<double>();

@@ -14,7 +14,7 @@ using testing::Not;
 
 const std::string hinged = data + "/designs/pitch-hinge.toml", hinged_crank = data + "/designs/pitch-hinge-crank.toml";
 constexpr const char* pitch_metric_keys[] = {"power_hinge_w", "pitch_amplitude_deg", "pitch_phase_deg",
-                                             "angle_of_attack_max_deg"};
+                                             "angle_of_attack_max_deg", "lift_added_mass_share"};
 
 class Pitch : public Program {
  protected:
@@ -65,6 +65,42 @@ TEST_F(Pitch, TheTableNamesItsLossAndItsAngles) {
   EXPECT_THAT(run({"run", direct}).out, Not(HasSubstr("pitch hinges")));
   const Json json = run({"run", direct, "--json"}).json();
   for (const char* key : pitch_metric_keys) EXPECT_TRUE(json[key].is_null()) << key;
+}
+
+TEST_F(Pitch, ARunWarnsOfTheLiftOfTheAddedMass) {
+  const std::string sentence = "of the mean lift comes from added mass", one = "pitch.leading_edge_suction=1";
+  for (const std::string& vehicle : {hinged, hinged_crank}) {
+    EXPECT_THAT(run({"run", vehicle}).out, HasSubstr(sentence));
+    const Json json = run({"run", vehicle, "--json"}).json(),
+               whole = run({"run", vehicle, "--json", "--set", one}).json();
+    const double share = json["lift_added_mass_share"].get<double>();
+    EXPECT_GT(share, 0.1);
+    EXPECT_THAT(json["warnings"].dump(), HasSubstr(sentence));
+    EXPECT_THAT(whole["warnings"].dump(), Not(HasSubstr(sentence)));
+    EXPECT_NEAR(whole["lift_mean_n"].get<double>() / json["lift_mean_n"].get<double>(), 1.0 - share, 1e-5);
+  }
+  EXPECT_THAT(complaint({"pitch.leading_edge_suction=2"}), HasSubstr("must lie between 0 and 1"));
+}
+
+// The terms that oppose rotation follow the set of coefficients, unless the file states them.
+TEST_F(Pitch, EachSetOfCoefficientsHasItsRotationTerms) {
+  std::string text = read(hinged);
+  for (const std::string line : {"rotational_lift = true\n", "damping_coefficient = 5\n"}) {
+    text.erase(text.find(line), line.size());
+  }
+  std::ofstream(path("unstated.toml")) << text;
+  const auto lift = [&](std::vector<std::string> set) {
+    std::vector<std::string> arguments{"run", path("unstated.toml"), "--json"};
+    for (const std::string& s : set) arguments.insert(arguments.end(), {"--set", s});
+    return run(arguments).json()["lift_mean_n"].get<double>();
+  };
+  const std::string robofly = "aerodynamics.coefficients=normal-force-robofly",
+                    translational = "aerodynamics.coefficients=translational-2022";
+  const std::string on = "pitch.rotational_lift=true", off = "pitch.rotational_lift=false",
+                    five = "pitch.damping_coefficient=5", none = "pitch.damping_coefficient=0";
+  EXPECT_EQ(lift({robofly}), lift({robofly, off, five}));
+  EXPECT_EQ(lift({translational}), lift({translational, on, none}));
+  EXPECT_GT(std::abs(lift({robofly, on}) / lift({robofly}) - 1.0), 0.01);
 }
 
 TEST_F(Pitch, WaveformsHaveThePitchAngle) {

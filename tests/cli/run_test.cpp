@@ -40,6 +40,7 @@ const std::vector<std::string> contract_keys = {"status",
                                                 "power_reactive_w",
                                                 "power_copper_w",
                                                 "power_viscous_w",
+                                                "power_motor_friction_w",
                                                 "power_gear_w",
                                                 "power_loss_w",
                                                 "power_residual_w",
@@ -65,6 +66,7 @@ const std::vector<std::string> contract_keys = {"status",
                                                 "pitch_amplitude_deg",
                                                 "pitch_phase_deg",
                                                 "angle_of_attack_max_deg",
+                                                "lift_added_mass_share",
                                                 "reynolds_number",
                                                 "hover_s",
                                                 "endurance_s"};
@@ -89,8 +91,9 @@ TEST_F(Run, JsonIsOneObjectWithTheContractsKeysAndNothingElse) {
   for (std::size_t k = 5; k < contract_keys.size(); ++k) {
     const std::string& key = contract_keys[k];
     const bool option = key.find("temperature") != std::string::npos || key == "added_mass_inertia_ratio" ||
-                        key.find("pitch") == 0 || key == "power_hinge_w" || key == "angle_of_attack_max_deg" ||
-                        key == "reynolds_number" || key == "hover_s" || key == "endurance_s";
+                        key == "lift_added_mass_share" || key.find("pitch") == 0 || key == "power_hinge_w" ||
+                        key == "angle_of_attack_max_deg" || key == "reynolds_number" || key == "hover_s" ||
+                        key == "endurance_s";
     EXPECT_EQ(json[key].is_number(), !option) << key;
   }
   EXPECT_EQ(json["voltage_v"], 3.0);

@@ -70,6 +70,30 @@ TEST(DesignFile, WritesWhatReadsBackBitIdentical) {
   }
 }
 
+TEST(DesignFile, NamedCoefficientsBringTheirRotationTerms) {
+  std::string text = without_line("pitch_coefficient = \"5e-3 s\"");
+  text += "[pitch]\nstiffness = \"6e-4 N m/rad\"\n";
+  const Overrides wing = {"wing.pitch_inertia=3e-9", "wing.mass_product=8e-9",
+                          "wing.planform={shape='semi-ellipse', length='63 mm', root_chord='25 mm'}"};
+  const auto read = [&](Overrides more) {
+    more.insert(more.end(), wing.begin(), wing.end());
+    const Design<double> d = parse_design(text, "v.toml", more);
+    EXPECT_EQ(fingerprint(parse_design(write_design(d), "w.toml")), fingerprint(d)) << write_design(d);
+    EXPECT_EQ(parse_design(write_design(d), "w.toml").pitch.rotational_lift, d.pitch.rotational_lift);
+    return d.pitch;
+  };
+  const std::string robofly = "aerodynamics.coefficients=normal-force-robofly";
+  EXPECT_TRUE(read({}).rotational_lift);
+  EXPECT_EQ(read({}).damping_coefficient, 0.0);
+  EXPECT_FALSE(read({robofly}).rotational_lift);
+  EXPECT_EQ(read({robofly}).damping_coefficient, 5.0);
+  // What a file states holds.
+  EXPECT_TRUE(read({robofly, "pitch.rotational_lift=true"}).rotational_lift);
+  EXPECT_FALSE(read({"pitch.rotational_lift=false"}).rotational_lift);
+  EXPECT_EQ(read({"pitch.damping_coefficient=2", "pitch.leading_edge_suction=0.5"}).damping_coefficient, 2.0);
+  EXPECT_EQ(read({"pitch.leading_edge_suction=0.5"}).edge_suction, 0.5);
+}
+
 TEST(DesignFile, MassesAreStatedBesideTheVehicles) {
   const Overrides masses = {"vehicle.mass=1.5 g",    "supply.mass=0.8 g", "motor.mass=0.6 g",
                             "spring.stiffness=1e-3", "spring.mass=50 mg", "transmission.rod_linear_density=5 g/m"};

@@ -76,14 +76,14 @@ TEST(Motion, SatisfiesTheEquationsOnBothBranches) {
                       v.wing_count * v.spring.stiffness * stroke_angle(k), -m.rod_force * k.wing_lever});
       // (6) and the other laws, |F| being force_sign F on this branch
       const double T_f = direction * v.friction.radius * force_sign * m.rod_force + v.friction.damping * omega +
-                         v.friction.quadratic * omega * std::abs(omega) +
-                         direction * (v.friction.torque + v.motor.friction_torque);
+                         v.friction.quadratic * omega * std::abs(omega) + direction * v.friction.torque;
       EXPECT_NEAR(m.friction_torque, T_f, 1e-12 * (std::abs(T_f) + std::abs(v.friction.radius * m.rod_force)));
       // (5)
       expect_balance({m.motor_torque, -m.rod_force * k.crank_lever, -m.friction_torque});
       // (9, 10)
       expect_balance({v.motor.torque_constant * at.current, -m.rod_force * k.crank_lever, -T_f,
-                      -v.motor.inertia * m.crank_acceleration, -v.motor.viscous_damping * omega});
+                      -direction * v.motor.friction_torque, -v.motor.inertia * m.crank_acceleration,
+                      -v.motor.viscous_damping * omega});
       // (11)
       expect_balance({at.voltage, -m.inductive_voltage, -v.motor.armature_resistance * at.current,
                       -v.motor.torque_constant * omega});
@@ -152,7 +152,8 @@ TEST(Motion, PowerBalancesAtEveryInstant) {
     const auto& k = m.kinematics;
     const double formulation = m.rod_force * (k.crank_lever * omega - k.wing_lever * m.stroke_velocity);
     expect_balance({voltage * i, -v.motor.armature_resistance * i * i, -v.motor.viscous_damping * omega * omega,
-                    -m.friction_torque * omega, -m.aero.moment * m.stroke_velocity, -stored, -formulation});
+                    -v.motor.friction_torque * std::abs(omega), -m.friction_torque * omega,
+                    -m.aero.moment * m.stroke_velocity, -stored, -formulation});
     EXPECT_GE(m.friction_torque * omega, 0.0);
     EXPECT_GE(m.aero.moment * m.stroke_velocity, 0.0);
     if (v.transmission.slider_crank.formulation == Formulation::virtual_work) {
@@ -183,6 +184,7 @@ TEST(Motion, IntegrandsAreTheirDefinitions) {
     EXPECT_DOUBLE_EQ(value(Integral::reactive_work), std::abs(m.stored_moment * m.stroke_velocity));
     EXPECT_DOUBLE_EQ(value(Integral::lift), aero_loads(v.wings, std::abs(m.stroke_velocity)).lift);
     EXPECT_DOUBLE_EQ(value(Integral::rod_force), std::abs(m.rod_force));
+    EXPECT_DOUBLE_EQ(value(Integral::travel), std::abs(at.omega));
   });
 }
 

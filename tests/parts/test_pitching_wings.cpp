@@ -211,6 +211,57 @@ TEST(PitchingWings, WingsThatStandUprightMeetTheAirAsUnderALawWithoutPitching) {
   }
 }
 
+// Under the pitch law the stroke pays for what turns the wings: docs/model.md, section 10 against section 12.
+TEST(PitchingWings, HeldToThePitchLawTheyTakeTheMomentOfTheAddedMassUnderIt) {
+  PitchingPair of = pitching_pair();
+  const double J_a = of.p.air.rr, C_alpha = 5e-3;
+  of.p.air = {};
+  of.p.air.rr = J_a;
+  of.p.pitch_inertia = 1e-30;
+  of.p.mass_product = 0.0;
+  of.p.hinge = {};
+  of.w.air_density = 0.0;
+  of.w.pitch_coefficient = C_alpha;
+  of.w.added_inertia = J_a;
+  for (const double velocity : {-150.0, -20.0, 60.0, 200.0}) {
+    const double acceleration = 2.5e4, stroke = sign_of(velocity);
+    const PitchState<double> at = pitch_state(-C_alpha * velocity, -C_alpha * acceleration, velocity);
+    const auto wings = wings_at_pitch(of.w, of.p, 0.0, at, stroke, sign_of(at.velocity), -1.0);
+    const double stroke_power = (wings.inertia * acceleration + wings.moment) * velocity;
+    const double turning_power = -wings.pitching_moment * at.velocity;
+    const double law = aero_loads(of.w, velocity, stroke, 1.0).added_inertia * acceleration * velocity;
+    EXPECT_NEAR(stroke_power + turning_power, law, 1e-12 * std::abs(law));
+    EXPECT_GT(std::abs(turning_power), 1e-3 * std::abs(law));
+  }
+}
+
+// With the force along the chord in full the lift of the added mass is the rate of the air's momentum.
+TEST(PitchingWings, AllOfTheEdgeSuctionMakesTheLiftARateOfMomentum) {
+  PitchingPair of = pitching_pair();
+  using J = Jet<1>;
+  const PitchingWings<J> dual = cast<J>(of.p);
+  of.w.air_density = 0.0;  // the added mass stays
+  for (const auto& [psi, velocity, stroke] : {std::array{0.5, 150.0, 80.0}, {-0.9, 60.0, -40.0}, {0.2, -220.0, 0.0}}) {
+    const double stroke_acceleration = 3e4, pitch_acceleration = -5e4;
+    J at_psi(psi), at_velocity(velocity), at_stroke(stroke);
+    at_psi.v[0] = velocity;
+    at_velocity.v[0] = pitch_acceleration;
+    at_stroke.v[0] = stroke_acceleration;
+    const PitchState<J> moving = pitch_state(at_psi, at_velocity, at_stroke);
+    const double rate = J(air_momentum(dual, moving) * moving.sin_psi).v[0];
+    const PitchState<double> at = pitch_state(psi, velocity, stroke);
+    const auto wings = wings_at_pitch(of.w, of.p, pair_inertia, at, sign_of(stroke), sign_of(velocity), 1.0);
+    const auto lift = [&](double suction) {
+      of.p.edge_suction = suction;
+      return lift_at_pitch(of.p, wings, at, stroke_acceleration, pitch_acceleration);
+    };
+    EXPECT_NEAR(lift(1.0), -rate, 1e-13 * std::abs(rate));
+    EXPECT_NEAR(lift(0.0) - lift(1.0), chordwise_lift(of.p, at), 1e-12 * std::abs(rate));
+    EXPECT_GT(std::abs(lift(0.0) - lift(1.0)), 1e-6);
+    EXPECT_NEAR(lift(0.25), 0.75 * lift(0.0) + 0.25 * lift(1.0), 1e-13 * std::abs(rate));
+  }
+}
+
 TEST(PitchingWings, DragMakesThePitchLagAndLagLifts) {
   for (const NormalForce normal_force : {NormalForce::lift_and_drag, NormalForce::normal_force}) {
     PitchingPair of = pitching_pair(normal_force);
@@ -311,6 +362,8 @@ TEST(PitchingWings, RefusesWhatNoWingIs) {
   EXPECT_EQ(refused([](P& p) { p.hinge.stop = 0.0; }), "pitch.stop: must be > 0 and < pi [rad], got 0");
   EXPECT_EQ(refused([](P& p) { p.pitch_inertia = 0.0; }), "wing.pitch_inertia: must be > 0 [kg m2], got 0");
   EXPECT_EQ(refused([](P& p) { p.damping_coefficient = -5.0; }), "pitch.damping_coefficient: must be >= 0 [1], got -5");
+  EXPECT_EQ(refused([](P& p) { p.edge_suction = 1.5; }),
+            "pitch.leading_edge_suction: must lie between 0 and 1 [1], got 1.5");
   EXPECT_EQ(refused([](P& p) { p.mass_product = -4e-8; }),
             "wing.mass_product: no wing has that much: its square must be below wing.inertia times "
             "wing.pitch_inertia, |P| < 3.395e-08 of 4e-08 kg m2 in all wings");

@@ -36,6 +36,7 @@ Vehicle<double> generic_vehicle(Formulation formulation) {
   v.pitch.mass_product = 1e-8;
   v.pitch.moments = {1.2e-6, 4.2e-8, 1.2e-6, 2.5e-8, 2.6e-8};
   v.pitch.air = {4e-8, 1.2e-8, 7e-9, 1.2e-6, 6e-7};
+  v.pitch.edge_suction = 0.3;
   v.wing_limits = {82.0, 100.0, 26000.0, 1.6};
   return v;
 }
@@ -212,8 +213,8 @@ struct MetricsOf {
     for (std::size_t n = 0; n < extremes.size(); ++n) extremes[n] = numbers[motion_size + integrals.size() + n];
     Metrics<S> m = cycle_metrics(in.vehicle, integrals, extremes, S(0.01), ReportingOf<S>{S(3.34e-3), S(7.664e-3)});
     // Those of wings that pitch come from the cycle itself.
-    for (const Metric which :
-         {Metric::power_hinge, Metric::pitch_amplitude, Metric::pitch_phase, Metric::angle_of_attack_max}) {
+    for (const Metric which : {Metric::power_hinge, Metric::pitch_amplitude, Metric::pitch_phase,
+                               Metric::angle_of_attack_max, Metric::lift_added_mass_share}) {
       m[which] = S(1.0);
     }
     return m.values;

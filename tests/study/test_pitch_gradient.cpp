@@ -15,6 +15,7 @@ constexpr const char* keys[] = {"pitch.stiffness",
                                 "pitch.damping",
                                 "pitch.stop",
                                 "pitch.damping_coefficient",
+                                "pitch.leading_edge_suction",
                                 "wing.areal_density",
                                 "wing.planform.root_chord",
                                 "motor.inertia",
@@ -43,6 +44,7 @@ void expect_gradients_of_direct_drives(std::uint64_t seed, bool stops, double to
     SCOPED_TRACE(inductance);
     Design<double> d = random_hinged_design(random, stops);
     d.motor.constants.armature_inductance = inductance;
+    d.pitch.edge_suction = 0.3;
     if (stops) {
       EXPECT_NEAR(accurate_orbit(d).metrics[Metric::pitch_amplitude], degrees_per_radian * *d.pitch.stop, 1e-9);
     }

@@ -21,6 +21,7 @@ inline Design<double> on_hinges(Design<double> d, double stiffness) {
   d.wing.spar_density = 0.614e-3;
   d.pitch.stiffness = stiffness;
   d.pitch.damping = 2e-8;
+  d.pitch.damping_coefficient = rotational_damping_coefficient;
   d.aerodynamics.pitch_coefficient = 0.0;
   d.aerodynamics.added_mass = true;
   d.aerodynamics.coefficients_name = normal_force_set;

@@ -51,14 +51,16 @@ class PowerIdentities {
     const EnergyAudit a = energy_audit(m_);
     require(closes(a, tolerance_), "the input is the sum of the rows", a.imbalance / a.electrical);
     const double motor = at(Metric::power_motor);
-    same(motor, a.electrical - a.copper - a.viscous - a.gear, "motor = input - copper - viscous - gear");
+    same(motor, a.electrical - a.copper - a.viscous - a.motor_friction - a.gear,
+         "motor = input - copper - viscous - own friction - gear");
     same(motor, a.friction + a.hinge + a.aerodynamic + a.residual, "motor = friction + hinge + aerodynamic + residual");
     exactly(at(Metric::power_loss), a.electrical - a.aerodynamic, "loss = input - aerodynamic");
   }
 
   void parts() {
-    for (const Metric which : {Metric::power_copper, Metric::power_viscous, Metric::power_gear, Metric::power_friction,
-                               Metric::power_hinge, Metric::power_reactive}) {
+    for (const Metric which :
+         {Metric::power_copper, Metric::power_viscous, Metric::power_motor_friction, Metric::power_gear,
+          Metric::power_friction, Metric::power_hinge, Metric::power_reactive}) {
       not_negative(which);
     }
     const bool formulation = v_.transmission.type == TransmissionType::slider_crank &&
@@ -66,7 +68,13 @@ class PowerIdentities {
     if (!formulation) same(at(Metric::power_residual), 0.0, "residual = 0");
     if (!has_gear_loss(v_.motor)) require(at(Metric::power_gear) == 0.0, "gear = 0", at(Metric::power_gear));
     const Friction<double>& f = v_.friction;
-    if (f.radius + f.damping + f.quadratic + f.torque + v_.motor.friction_torque == 0.0) {
+    if (v_.motor.friction_torque == 0.0) {
+      require(at(Metric::power_motor_friction) == 0.0, "own friction = 0", at(Metric::power_motor_friction));
+    } else if (drive_of(v_).rotates) {
+      const double turning = v_.motor.friction_torque * two_pi * at(Metric::frequency);
+      same(at(Metric::power_motor_friction), turning, "own friction = T_c,m times mean speed");
+    }
+    if (f.radius + f.damping + f.quadratic + f.torque == 0.0) {
       require(at(Metric::power_friction) == 0.0, "friction = 0", at(Metric::power_friction));
     }
     require(std::isfinite(m_[Metric::power_hinge]) == pitches(v_), "hinge exists where wings pitch");

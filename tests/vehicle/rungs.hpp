@@ -52,6 +52,7 @@ inline void add_rung(Design<double>& d, Rung rung, std::uint32_t n, std::uint32_
     d.pitch.damping = std::sqrt(*d.pitch.stiffness * inertia) * logarithmic(1e-3, 1.0);
     if (uniform(0.0, 1.0) < 0.5) d.pitch.stop = uniform(0.1, 1.2);
     d.pitch.rotational_lift = uniform(0.0, 1.0) < 0.7;
+    d.pitch.damping_coefficient = rotational_damping_coefficient;
     d.aerodynamics.added_mass = uniform(0.0, 1.0) < 0.7;
     d.aerodynamics.angle_of_attack_min.reset();
     d.aerodynamics.pitch_coefficient = 0.0;

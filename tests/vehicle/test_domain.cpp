@@ -357,6 +357,22 @@ TEST(Domain, RodForceWarnsAboveOnePerCent) {
   EXPECT_FALSE(notable_residual(reference_vehicle(), m));
 }
 
+TEST(Domain, LiftOfTheAddedMassWarnsAboveFivePerCent) {
+  Metrics<double> m = ordinary_metrics();
+  m[Metric::lift_added_mass_share] = absent;
+  EXPECT_FALSE(notable_added_mass_lift(m));
+  m[Metric::lift_added_mass_share] = 0.0499;
+  EXPECT_FALSE(notable_added_mass_lift(m));
+  m[Metric::lift_added_mass_share] = -0.0512;
+  EXPECT_EQ(notable_added_mass_lift(m), -0.0512);
+  EXPECT_EQ(added_mass_warning(0.2132, 0.0),
+            "21.3 % of the mean lift comes from added mass, since none of its force along the chord counts; with "
+            "pitch.leading_edge_suction = 1 it has no mean lift");
+  EXPECT_EQ(added_mass_warning(0.12, 0.4),
+            "12 % of the mean lift comes from added mass, since 40 % of its force along the chord counts; with "
+            "pitch.leading_edge_suction = 1 it has no mean lift");
+}
+
 TEST(Domain, SlopesAgreeWithDifferences) {
   Metrics<double> m = ordinary_metrics(), slopes;
   slopes.values.fill(0.0);

@@ -73,7 +73,7 @@ TEST(DrawnWing, MayHaveRibs) {
   Design<double> d = drawn();
   const double plain = resolve(d).wing_inertia;
   d.wing.rib_count = 1.0;
-  EXPECT_EQ(refusal(d), "wing.rib_density: missing: give both rib_count and rib_density, or neither");
+  EXPECT_EQ(refusal(d), "wing.rib_density: 0 or missing beside wing.rib_count = 1: a rib has a mass over its length");
   d.wing.rib_density = 3e-4;
   EXPECT_EQ(refusal(d), "accepted");
   // One rib at half the length, where the chord is c_0 sqrt(3)/2.
@@ -82,7 +82,8 @@ TEST(DrawnWing, MayHaveRibs) {
   d.wing.rib_count = 2.5;
   EXPECT_EQ(refusal(d), "wing.rib_count: must be a whole number from 0 to 1000 [1], got 2.5");
   d.wing.rib_count = 0.0;
-  EXPECT_EQ(refusal(d), "wing.rib_count: missing: give both rib_count and rib_density, or neither");
+  EXPECT_EQ(refusal(d),
+            "wing.rib_count: 0 or missing beside wing.rib_density = 0.0003 kg/m: there is no rib to have it");
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ TEST(EnergyAudit, OrbitsThatLeaveItOpenAreRefused) {
 }
 
 TEST(EnergyAudit, CountsAsClosedUpToTenTimesTheTolerance) {
-  EnergyAudit a{1.0, 0.4, 0.1, 0.1, 0.1, 0.1, 0.2 - 1e-6, 0.0, 1e-6};
+  EnergyAudit a{1.0, 0.4, 0.1, 0.0, 0.1, 0.1, 0.1, 0.2 - 1e-6, 0.0, 1e-6};
   EXPECT_TRUE(closes(a, 1e-6));
   EXPECT_TRUE(closes(a, 1.01e-7));
   EXPECT_FALSE(closes(a, 0.99e-7));

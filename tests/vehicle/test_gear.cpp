@@ -49,7 +49,7 @@ TEST(GearEfficiency, OneBranchHoldsAndTheGearboxOnlyTakes) {
         const double T_g = motor.torque_constant * i - motor.viscous_damping * omega - motor.friction_torque -
                            motor.inertia * m.crank_acceleration;
         const double e = gear > 0.0 ? motor.gear_efficiency : 1.0 / motor.gear_efficiency;
-        const double behind = m.motor_torque - motor.friction_torque;
+        const double behind = m.motor_torque;
         const double size = std::abs(T_g) + std::abs(m.rod_force * k.crank_lever) + std::abs(m.friction_torque);
         EXPECT_NEAR(m.gear_torque, T_g, 1e-12 * size);
         EXPECT_NEAR(behind, e * T_g, 1e-11 * size);
@@ -77,7 +77,11 @@ TEST(GearEfficiency, ConstantSpeedIsTheClosedForm) {
     const SteadyFlapping found = orbit_of(v, 1e-10);
     ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
     EXPECT_NEAR(two_pi * found.metrics[Metric::frequency] / omega, 1.0, 1e-9);
-    EXPECT_NEAR(found.metrics[Metric::power_gear], (1.0 / eta - 1.0) * b_f * square(omega), 1e-9);
+    const Metrics<double>& m = found.metrics;
+    EXPECT_NEAR(m[Metric::power_gear], (1.0 / eta - 1.0) * b_f * square(omega), 1e-9);
+    EXPECT_NEAR(m[Metric::power_motor_friction], T_own * omega, 1e-9);
+    EXPECT_NEAR(m[Metric::power_friction], b_f * square(omega), 1e-9);
+    EXPECT_NEAR(m[Metric::power_motor], b_f * square(omega), 1e-9);
     EXPECT_NEAR(energy_audit(found.metrics).imbalance, 0.0, 1e-9 * found.metrics[Metric::power_electrical]);
   }
 }
@@ -120,9 +124,8 @@ TEST(GearEfficiency, OrbitsOfRandomVehiclesAgreeWithTheSimulationAndCloseTheEner
     EXPECT_NEAR(audit.imbalance, 0.0, 1e-7 * audit.electrical) << n;
     EXPECT_GE(audit.gear, 0.0) << n;
     // Before the gearbox: what the motor gives is what it passes on and loses.
-    EXPECT_NEAR(audit.electrical - audit.copper - audit.viscous - audit.gear, orbit.metrics[Metric::power_motor],
-                1e-7 * audit.electrical)
-        << n;
+    const double lost = audit.copper + audit.viscous + audit.motor_friction + audit.gear;
+    EXPECT_NEAR(audit.electrical - lost, orbit.metrics[Metric::power_motor], 1e-7 * audit.electrical) << n;
   }
   EXPECT_GE(flapping, 70);
   EXPECT_GE(others, 3);

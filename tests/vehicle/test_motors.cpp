@@ -29,6 +29,7 @@ bool is_sum(Metric m) {
     case Metric::power_reactive:
     case Metric::power_copper:
     case Metric::power_viscous:
+    case Metric::power_motor_friction:
     case Metric::power_gear:
     case Metric::power_loss:
     case Metric::power_residual:

@@ -69,6 +69,49 @@ TEST(PitchFlapping, EnsemblesLeaveItToTheScalarSolver) {
   expect_left_to_scalar_solver(hinged_design(3e-4), {Metric::lift_mean, Metric::pitch_amplitude, Metric::power_hinge});
 }
 
+/// Lift of the added mass by the force normal to the chord alone and by all of it, by either method.
+void expect_share_of_added_mass(Design<double> d) {
+  const auto metrics = [&](Method method, double suction) {
+    d.pitch.edge_suction = suction;
+    const RunResult r = run_design(d, {.method = method, .tolerance = 1e-7});
+    EXPECT_EQ(r.status, FlappingStatus::flapping) << describe(r.evidence);
+    const double share = r.metrics[Metric::lift_added_mass_share];
+    EXPECT_EQ(r.added_mass_lift.has_value(), std::abs(share) > 0.05) << share;
+    return r.metrics;
+  };
+  const Metrics<double> normal = metrics(Method::orbit, 0.0), whole = metrics(Method::orbit, 1.0);
+  const double share = normal[Metric::lift_added_mass_share];
+  EXPECT_GT(std::abs(share), 0.01);
+  EXPECT_EQ(whole[Metric::lift_added_mass_share], 0.0);
+  // Nothing moves because of it.
+  for (const Metric m : {Metric::power_electrical, Metric::frequency, Metric::pitch_amplitude}) {
+    EXPECT_NEAR(whole[m] / normal[m], 1.0, 1e-6) << metric_info(m).key;
+  }
+  EXPECT_NEAR(whole[Metric::lift_mean] / normal[Metric::lift_mean], 1.0 - share, 1e-6);
+  const Metrics<double> half = metrics(Method::orbit, 0.5);
+  EXPECT_NEAR(half[Metric::lift_added_mass_share], 0.5 * share / (1.0 - 0.5 * share), 1e-6);
+  const Metrics<double> in_time = metrics(Method::transient, 0.5);
+  EXPECT_NEAR(in_time[Metric::lift_added_mass_share], half[Metric::lift_added_mass_share], 1e-6);
+  EXPECT_NEAR(in_time[Metric::lift_mean] / half[Metric::lift_mean], 1.0, 1e-6);
+}
+
+TEST(PitchFlapping, LiftOfTheAddedMassComesFromWhatIsLeftOutAlongTheChord) {
+  for (const bool stops : {false, true}) {
+    SCOPED_TRACE(stops);
+    Design<double> d = hinged_design(3e-4);
+    if (stops) d.pitch.stop = 0.4;
+    expect_share_of_added_mass(d);
+    Design<double> crank = on_hinges(reference_design(), 6e-4);
+    if (stops) crank.pitch.stop = 0.25;
+    expect_share_of_added_mass(crank);
+  }
+  Design<double> none = hinged_design(3e-4);
+  none.aerodynamics.added_mass = false;
+  const RunResult r = run_design(none);
+  EXPECT_TRUE(std::isnan(r.metrics[Metric::lift_added_mass_share]));
+  EXPECT_FALSE(r.added_mass_lift);
+}
+
 // A soft hinge turns the wing late, beyond 90 degrees of attack after each reversal: that is said.
 TEST(PitchFlapping, OverRotationIsNamed) {
   Design<double> d = hinged_design(3e-5);

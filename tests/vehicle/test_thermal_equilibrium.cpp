@@ -120,12 +120,14 @@ TEST(ThermalEquilibrium, LossesLeadToTheTemperaturesTheyWereComputedAt) {
     Design<double> d = warm_design(4.0);
     d.motor.thermal.magnet_temperature_coefficient = -0.0011;
     d.motor.thermal.ambient_temperature = 310.0;
+    d.motor.constants.friction_torque = 2e-4;
     const SteadyFlapping found = flapping_of(d, tolerance);
     ASSERT_EQ(found.status, FlappingStatus::flapping);
     const Metrics<double>& m = found.metrics;
     const Vehicle<double> hot = with_motor_at(resolve(d), found.temperatures);
     const double P_cu = hot.motor.armature_resistance * square(m[Metric::current_rms]);
-    const MotorTemperatures<double> T = settled_temperatures(hot.thermal, P_cu, m[Metric::power_viscous]);
+    const double P_friction = 2e-4 * two_pi * m[Metric::frequency];
+    const MotorTemperatures<double> T = settled_temperatures(hot.thermal, P_cu, m[Metric::power_viscous] + P_friction);
     EXPECT_NEAR(T.winding, found.temperatures.winding, 300.0 * tolerance);
     EXPECT_NEAR(T.casing, found.temperatures.casing, 300.0 * tolerance);
     // The same vehicle with the hot motor's constants stated outright.

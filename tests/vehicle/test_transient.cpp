@@ -28,8 +28,8 @@ TransientOptions with_tolerance(double tolerance) {
 }
 
 double audit_residual(const Metrics<double>& m) {
-  return (m[Metric::power_copper] + m[Metric::power_viscous] + m[Metric::power_friction] +
-          m[Metric::power_aerodynamic] + m[Metric::power_residual]) /
+  return (m[Metric::power_copper] + m[Metric::power_viscous] + m[Metric::power_motor_friction] +
+          m[Metric::power_friction] + m[Metric::power_aerodynamic] + m[Metric::power_residual]) /
              m[Metric::power_electrical] -
          1.0;
 }

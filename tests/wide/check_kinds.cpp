@@ -82,13 +82,15 @@ Answer run(const WideVehicle& vehicle, Method method) {
 /// What is left of the input beside the sum of what enters and leaves.
 double open_share(const Metrics<double>& m) {
   const EnergyAudit a = energy_audit(m);
-  const double size = std::abs(a.electrical) + std::abs(a.copper) + std::abs(a.viscous) + std::abs(a.gear) +
-                      std::abs(a.friction) + std::abs(a.hinge) + std::abs(a.aerodynamic) + std::abs(a.residual);
+  const double size = std::abs(a.electrical) + std::abs(a.copper) + std::abs(a.viscous) + std::abs(a.motor_friction) +
+                      std::abs(a.gear) + std::abs(a.friction) + std::abs(a.hinge) + std::abs(a.aerodynamic) +
+                      std::abs(a.residual);
   const double share = size > 0.0 ? std::abs(a.imbalance) / size : 0.0;
   // Motor output is what the input leaves after the motor's own losses and the gearbox; losses are not negative.
-  const double motor = a.electrical - a.copper - a.viscous - a.gear;
+  const double motor = a.electrical - a.copper - a.viscous - a.motor_friction - a.gear;
   const double output = size > 0.0 ? std::abs(m[Metric::power_motor] - motor) / size : 0.0;
-  const double negative = size > 0.0 ? -std::min({0.0, a.copper, a.viscous, a.gear, a.friction, a.hinge}) / size : 0.0;
+  const double negative =
+      size > 0.0 ? -std::min({0.0, a.copper, a.viscous, a.motor_friction, a.gear, a.friction, a.hinge}) / size : 0.0;
   return std::max({share, output, negative});
 }
 
@@ -108,6 +110,7 @@ double scale_of(const Metrics<double>& m, Metric which) {
     case Metric::efficiency_system: return std::max(size, input / std::abs(m[Metric::power_electrical]));
     case Metric::efficiency_mechanism: return std::max(size, input / std::abs(m[Metric::power_motor]));
     case Metric::lift_mean: return std::max(size, m[Metric::lift_peak]);
+    case Metric::lift_added_mass_share: return std::max(size, m[Metric::lift_peak] / std::abs(m[Metric::lift_mean]));
     case Metric::lift_to_weight: return std::abs(m[Metric::lift_peak] * m[which] / m[Metric::lift_mean]);
     case Metric::crank_speed_min: return m[Metric::crank_speed_max];
     case Metric::current_mean: return std::max(size, 0.01 * m[Metric::current_peak]);

@@ -153,6 +153,13 @@ class CycleGradient {
     return total(totals_[System::hinge_work] / totals_[std::size_t(Integral::time)]);
   }
 
+  /// Mean of chordwise_lift() over the mean lift [1].
+  J chordwise_share() const
+    requires pitching
+  {
+    return total(totals_[System::chordwise] / totals_[std::size_t(Integral::lift)]);
+  }
+
   /// What pitch_metrics() finds on plain numbers.
   PitchGradient pitch_gradient() const
     requires pitching

@@ -40,6 +40,7 @@ inline constexpr double tan_law_stroke_max_deg = 85.0;
 inline constexpr double other_stroke_max_deg = 180.0;  ///< of any other drive: beyond, a wing turns past its own start
 inline constexpr double formulation_residual_max = 0.05;   ///< of the input power
 inline constexpr double formulation_residual_warn = 0.01;  ///< of the input power: said beside the result
+inline constexpr double added_mass_lift_warn = 0.05;       ///< of the mean lift: said beside the result
 inline constexpr double efficiency_slack = 1e-4;           ///< efficiencies are as exact as the tolerance of the orbit
 /// Largest speed of the wings at the radius S_3/S_2, two thirds of a semi-ellipse's length [m/s]: Mach 0.3 at 20 degC.
 inline constexpr double flow_speed_max = 103.0;
@@ -113,6 +114,13 @@ std::optional<double> notable_residual(const Vehicle<double>& vehicle, const Met
 
 /// The sentence that says so.
 std::string residual_warning(double share);
+
+/// The part of the mean lift that added mass gives because its force along the chord is left out [1], where its
+/// magnitude exceeds added_mass_lift_warn.
+std::optional<double> notable_added_mass_lift(const Metrics<double>& metrics);
+
+/// The sentence that says so, `suction` being the share of that force that counts.
+std::string added_mass_warning(double share, double suction);
 
 /// The winding temperature [degC], where it is above the largest that the vehicle allows.
 std::optional<double> hot_winding(const Vehicle<double>& vehicle, const Metrics<double>& metrics);

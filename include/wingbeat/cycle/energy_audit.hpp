@@ -10,24 +10,26 @@
 
 namespace wingbeat {
 
-/// Mean powers of a cycle [W]. P_e = copper + viscous + gear + friction + hinge + aerodynamic + residual, to the
-/// solver's accuracy.
+/// Mean powers of a cycle [W]. P_e = copper + viscous + motor_friction + gear + friction + hinge + aerodynamic +
+/// residual, to the solver's accuracy; what follows the gearbox is the motor's output.
 struct EnergyAudit {
-  double electrical;   ///< P_e
-  double copper;       ///< R_a mean(i^2)
-  double viscous;      ///< b mean(omega^2)
-  double gear;         ///< mean((1 - e) T_g omega)
-  double friction;     ///< mean(T_f omega)
-  double hinge;        ///< mean of c_psi psi'^2 and of what stops take in impacts; 0 where wings have no pitch hinge
-  double aerodynamic;  ///< mean(M_aero beta')
-  double residual;     ///< what the formulation fails to conserve; zero to rounding for virtual-work
-  double imbalance;    ///< P_e minus all of these: zero but for the error of the solution
+  double electrical;      ///< P_e
+  double copper;          ///< R_a mean(i^2)
+  double viscous;         ///< b mean(omega^2)
+  double motor_friction;  ///< T_c,m mean(|omega|)
+  double gear;            ///< mean((1 - e) T_g omega)
+  double friction;        ///< mean(T_f omega) of the transmission
+  double hinge;           ///< mean of c_psi psi'^2 and of what stops take in impacts; 0 where wings have no pitch hinge
+  double aerodynamic;     ///< mean(M_aero beta' + M_pitch psi')
+  double residual;        ///< what the formulation fails to conserve; zero to rounding for virtual-work
+  double imbalance;       ///< P_e minus all of these: zero but for the error of the solution
 };
 
 namespace detail {
 
 inline EnergyAudit with_imbalance(EnergyAudit a) {
-  a.imbalance = a.electrical - a.copper - a.viscous - a.gear - a.friction - a.hinge - a.aerodynamic - a.residual;
+  a.imbalance = a.electrical - a.copper - a.viscous - a.motor_friction - a.gear - a.friction - a.hinge - a.aerodynamic -
+                a.residual;
   return a;
 }
 
@@ -36,8 +38,8 @@ inline EnergyAudit with_imbalance(EnergyAudit a) {
 inline EnergyAudit energy_audit(const Metrics<double>& m) {
   const double hinge = std::isfinite(m[Metric::power_hinge]) ? m[Metric::power_hinge] : 0.0;
   return detail::with_imbalance({m[Metric::power_electrical], m[Metric::power_copper], m[Metric::power_viscous],
-                                 m[Metric::power_gear], m[Metric::power_friction], hinge, m[Metric::power_aerodynamic],
-                                 m[Metric::power_residual], 0.0});
+                                 m[Metric::power_motor_friction], m[Metric::power_gear], m[Metric::power_friction],
+                                 hinge, m[Metric::power_aerodynamic], m[Metric::power_residual], 0.0});
 }
 
 /// What a load takes in a cycle [J].
@@ -52,8 +54,9 @@ inline EnergyAudit energy_audit(const Vehicle<double>& v, const CycleIntegrals<d
   const auto mean = [&](Integral which) { return f * integrals[std::size_t(which)]; };
   EnergyAudit audit = detail::with_imbalance(
       {mean(Integral::electrical_work), v.motor.armature_resistance * mean(Integral::current_square),
-       v.motor.viscous_damping * mean(Integral::speed_square), mean(Integral::gear_work), mean(Integral::friction_work),
-       f * hinge_work, mean(Integral::aero_work), mean(Integral::residual_work), 0.0});
+       v.motor.viscous_damping * mean(Integral::speed_square), v.motor.friction_torque * mean(Integral::travel),
+       mean(Integral::gear_work), mean(Integral::friction_work), f * hinge_work, mean(Integral::aero_work),
+       mean(Integral::residual_work), 0.0});
   audit.imbalance -= f * load_work(v);
   return audit;
 }

@@ -16,8 +16,9 @@ template <class V>
 double energy_gap(const V& v, const CycleIntegrals<double>& work) {
   const auto total = [&](Integral which) { return work[std::size_t(which)]; };
   return total(Integral::electrical_work) - v.motor.armature_resistance * total(Integral::current_square) -
-         v.motor.viscous_damping * total(Integral::speed_square) - total(Integral::friction_work) -
-         total(Integral::aero_work) - total(Integral::residual_work) - total(Integral::gear_work) - load_work(v);
+         v.motor.viscous_damping * total(Integral::speed_square) - v.motor.friction_torque * total(Integral::travel) -
+         total(Integral::friction_work) - total(Integral::aero_work) - total(Integral::residual_work) -
+         total(Integral::gear_work) - load_work(v);
 }
 
 /// The same beside the smaller of the electrical work and all losses, of which metrics are means: about what errors

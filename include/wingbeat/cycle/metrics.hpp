@@ -28,6 +28,7 @@ enum class Metric {
   power_reactive,
   power_copper,
   power_viscous,
+  power_motor_friction,
   power_gear,
   power_loss,
   power_residual,
@@ -53,6 +54,7 @@ enum class Metric {
   pitch_amplitude,
   pitch_phase,
   angle_of_attack_max,
+  lift_added_mass_share,
   reynolds_number,
   hover,     ///< as the next
   endurance  ///< of a flight, not of a cycle: absent unless a study asks for it
@@ -98,15 +100,16 @@ enum class Integral {
   speed_square,     ///< omega^2
   electrical_work,  ///< v i [J] (eq 15)
   motor_work,       ///< T_m omega [J] (eq 16)
-  friction_work,    ///< T_f omega [J] (eq 18)
-  aero_work,        ///< M_aero beta' [J] (eq 19)
+  friction_work,    ///< T_f omega [J] (eq 18), without the motor's own friction
+  aero_work,        ///< M_aero beta' [J] (eq 19), of wings on pitch hinges with M_pitch psi'
   reactive_work,    ///< |(N_w J_w beta'' + N_w k beta) beta'| [J] (eq 23)
   residual_work,    ///< F (h omega - g beta') [J]: what the formulation fails to conserve
   lift,             ///< lift [N s]
   rod_force,        ///< |F| [N s]
-  gear_work         ///< (1 - e) T_g omega [J], lost in the gearbox
+  gear_work,        ///< (1 - e) T_g omega [J], lost in the gearbox
+  travel            ///< |omega|: what crank or shaft turns by [rad]
 };
-inline constexpr int integral_count = int(Integral::gear_work) + 1;
+inline constexpr int integral_count = int(Integral::travel) + 1;
 
 template <Scalar S>
 using CycleIntegrals = std::array<S, integral_count>;
@@ -127,7 +130,8 @@ CycleIntegrals<S> integrands(const Motion<S>& m, const S& omega, const Branch<S>
           m.rod_force * (m.kinematics.crank_lever * omega - m.kinematics.wing_lever * m.stroke_velocity),
           m.aero.lift,
           branch.force * m.rod_force,
-          m.gear_loss};
+          m.gear_loss,
+          branch.direction * omega};
 }
 
 /// What an impact on a stop adds to the integrals at once.
@@ -222,6 +226,7 @@ Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, cons
   m[Metric::power_reactive] = f * total(Integral::reactive_work);
   m[Metric::power_copper] = v.motor.armature_resistance * current_square;
   m[Metric::power_viscous] = v.motor.viscous_damping * f * total(Integral::speed_square);
+  m[Metric::power_motor_friction] = v.motor.friction_torque * f * total(Integral::travel);
   m[Metric::power_gear] = f * total(Integral::gear_work);
   m[Metric::power_loss] = m[Metric::power_electrical] - m[Metric::power_aerodynamic];
   m[Metric::power_residual] = f * total(Integral::residual_work);
@@ -247,7 +252,8 @@ Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, cons
   m[Metric::efficiency_mechanism] = ratio(m[Metric::power_aerodynamic], m[Metric::power_motor]);
   m[Metric::floquet_multiplier_max] = floquet_multiplier_max;
   m[Metric::lift_to_weight] = m[Metric::lift_mean] / (reporting.mass * S(standard_gravity));
-  const MotorTemperatures<S> T = settled_temperatures(v.thermal, m[Metric::power_copper], m[Metric::power_viscous]);
+  const MotorTemperatures<S> T = settled_temperatures(v.thermal, m[Metric::power_copper],
+                                                      S(m[Metric::power_viscous] + m[Metric::power_motor_friction]));
   m[Metric::winding_temperature] = T.winding - S(zero_celsius);
   m[Metric::case_temperature] = T.casing - S(zero_celsius);
   m[Metric::winding_temperature_margin] = v.thermal.winding_temperature_max - T.winding;
@@ -255,8 +261,8 @@ Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, cons
   m[Metric::added_mass_inertia_ratio] =
       select(weighs, ratio(v.wings.added_inertia, v.wing_count * v.wing_inertia), S(absent));
   // Of wings that pitch: see PitchMetrics.
-  for (const Metric which :
-       {Metric::power_hinge, Metric::pitch_amplitude, Metric::pitch_phase, Metric::angle_of_attack_max}) {
+  for (const Metric which : {Metric::power_hinge, Metric::pitch_amplitude, Metric::pitch_phase,
+                             Metric::angle_of_attack_max, Metric::lift_added_mass_share}) {
     m[which] = S(absent);
   }
   m[Metric::reynolds_number] = v.wing_limits.reynolds_number_per_speed * (S(4.0) * m[Metric::stroke_amplitude] * f);

@@ -144,7 +144,7 @@ class OrbitSearch {
     result.metrics = cycle_metrics(system_.vehicle, result.record.integrals(), extremes,
                                    summary_.floquet_multiplier_max, options_.get().reporting);
     if constexpr (pitching) {
-      set_pitch_metrics(of_pitch, result.metrics);
+      set_pitch_metrics(of_pitch, system_.vehicle.pitch, result.metrics);
       result.evidence.over_rotation = of_pitch.over_rotation_of_moving();
     }
   }

@@ -19,8 +19,9 @@ struct PitchCrankSystem : CrankTurn<S> {
   using Real = S;
   using State = std::array<S, N>;
   static constexpr std::size_t shaft = 0, pitch = 1;
-  static constexpr std::size_t hinge_work = integral_count;  ///< behind the integrals that all vehicles have
-  using Quadrature = std::array<S, integral_count + 1>;
+  /// Behind the integrals that all vehicles have: loss in the hinges [J]; chordwise_lift() [N s].
+  static constexpr std::size_t hinge_work = integral_count, chordwise = integral_count + 1;
+  using Quadrature = std::array<S, integral_count + 2>;
   /// Signs, those of switches first: rod force, gear torque, pitch velocity, stop, stored moment; stroke velocity, and
   /// those of pitch_stops.
   enum Sign { force, gear, turn, stop, stored, stroke, held, impacts };
@@ -133,6 +134,7 @@ struct PitchCrankSystem : CrankTurn<S> {
       const CycleIntegrals<S> in_time = integrands(m.stroke, y[0], branch(signs));
       for (std::size_t q = 0; q < in_time.size(); ++q) r.dq[q] = in_time[q] * per_omega;
       r.dq[hinge_work] = m.hinge_loss * per_omega;
+      r.dq[chordwise] = m.chordwise_lift * per_omega;
     }
     return r;
   }

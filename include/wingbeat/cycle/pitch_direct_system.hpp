@@ -19,8 +19,9 @@ struct PitchDirectSystem {
   using Real = S;
   using State = std::array<S, N>;
   static constexpr std::size_t shaft = 1, pitch = 2;
-  static constexpr std::size_t hinge_work = integral_count;  ///< behind the integrals that all vehicles have
-  using Quadrature = std::array<S, integral_count + 1>;
+  /// Behind the integrals that all vehicles have: loss in the hinges [J]; chordwise_lift() [N s].
+  static constexpr std::size_t hinge_work = integral_count, chordwise = integral_count + 1;
+  using Quadrature = std::array<S, integral_count + 2>;
   /// Signs, those of switches first: stroke velocity, pitch velocity, stop, stored moment; those of pitch_stops.
   enum Sign { velocity, turn, stop, stored, held, impacts };
   using Switches = std::array<S, 4>;
@@ -144,6 +145,7 @@ struct PitchDirectSystem {
       const CycleIntegrals<S> in_time = integrands(m.stroke, m.stroke.stroke_velocity, branch(signs));
       for (std::size_t q = 0; q < in_time.size(); ++q) r.dq[q] = in_time[q] * per_phase_rate;
       r.dq[hinge_work] = m.hinge_loss * per_phase_rate;
+      r.dq[chordwise] = m.chordwise_lift * per_phase_rate;
     }
     return r;
   }

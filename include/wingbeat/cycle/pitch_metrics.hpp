@@ -24,20 +24,29 @@ struct PitchMetrics {
   double phase;
   double angle_of_attack_min, angle_of_attack_max;  ///< [rad]; beyond pi/2 the wing over-rotates, its lift is negative
   double hinge_power;                               ///< mean loss in damping and stops of all hinges [W]
-  double over_rotation;  ///< share of the period with alpha beyond pi/2 by more than still_pitch, roughly [1]
+  double over_rotation;    ///< share of the period with alpha beyond pi/2 by more than still_pitch, roughly [1]
+  double chordwise = 0.0;  ///< mean of chordwise_lift() [N]
 
   bool stands_still() const { return !(amplitude > still_pitch); }
   /// over_rotation of wings that rotate.
   double over_rotation_of_moving() const { return stands_still() ? 0.0 : over_rotation; }
 };
 
-/// What the metrics of a vehicle are under the pitch law and, of wings that pitch, are not.
-inline void set_pitch_metrics(const PitchMetrics& pitching, Metrics<double>& m) {
+/// Part of a mean lift [N] that the added mass gives, where there is some, `chordwise` being the mean of
+/// chordwise_lift() [N]: normal to the chord it gives as much, along it the share that counts takes away.
+template <Scalar S>
+S added_mass_share(const PitchingWings<S>& p, const S& chordwise, const S& lift) {
+  return value_of(p.air.rr) > 0.0 ? S((S(1.0) - p.edge_suction) * chordwise / lift) : S(absent);
+}
+
+/// What the metrics of a vehicle with the wings `p` are under the pitch law and, of wings that pitch, are not.
+inline void set_pitch_metrics(const PitchMetrics& pitching, const PitchingWings<double>& p, Metrics<double>& m) {
   m[Metric::angle_of_attack_min] = degrees_per_radian * pitching.angle_of_attack_min;
   m[Metric::angle_of_attack_max] = degrees_per_radian * pitching.angle_of_attack_max;
   m[Metric::pitch_amplitude] = degrees_per_radian * pitching.amplitude;
   m[Metric::pitch_phase] = pitching.stands_still() ? absent : degrees_per_radian * pitching.phase;
   m[Metric::power_hinge] = pitching.hinge_power;
+  m[Metric::lift_added_mass_share] = added_mass_share(p, pitching.chordwise, m[Metric::lift_mean]);
 }
 
 namespace detail {
@@ -84,8 +93,10 @@ PitchMetrics pitch_metrics(const System& system, const solver::Iterate<System>& 
     }
     period += step.dq[std::size_t(Integral::time)];
     m.hinge_power += step.dq[System::hinge_work];
+    m.chordwise += step.dq[System::chordwise];
   }
   m.hinge_power /= period;
+  m.chordwise /= period;
   m.amplitude = 0.5 * (highest - lowest);
 
   // Integrals of stroke and pitch times exp(-j w t), by Gauss's rule on each step.

@@ -30,7 +30,7 @@ struct WaveformRow {
   double power_electrical;     ///< v i [W]
   double power_motor;          ///< T_m omega [W]
   double power_friction;       ///< T_f omega [W]
-  double power_aerodynamic;    ///< M_aero beta' [W]
+  double power_aerodynamic;    ///< M_aero beta', of wings on pitch hinges with M_pitch psi' [W]
   double spring_moment;        ///< N_w k beta of all hinge springs [N m], towards stroke angle zero
   double inertial_moment;      ///< N_w J_w beta'' of all wings [N m]
   double pitch_angle;          ///< psi [rad]; absent where it follows from the angle of attack by the pitch law

@@ -181,6 +181,7 @@ Metrics<L> DirectPackOrbit<L, N>::solve(const L& mass, const L& bench_torque_con
   total(Integral::friction_work) = fine.friction_work;
   total(Integral::aero_work) = fine.aero_work;
   total(Integral::motor_work) = fine.friction_work + fine.aero_work;
+  total(Integral::travel) = L(4.0) * fine.stroke;
   total(Integral::lift) = fine.lift;
   total(Integral::reactive_work) = fine.reactive_work;
   CycleExtremes<L> extremes;

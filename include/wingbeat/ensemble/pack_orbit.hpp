@@ -420,6 +420,7 @@ Metrics<L> PackOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   for (std::size_t q = 0; q < pack_integrals.size(); ++q) total(pack_integrals[q]) = integrals_[q];
   total(Integral::electrical_work) =
       vehicle_.voltage * total(Integral::current) - vehicle_.source_resistance * total(Integral::current_square);
+  total(Integral::travel) = L(two_pi);
   total(Integral::motor_work) =
       total(Integral::friction_work) + total(Integral::aero_work) + total(Integral::residual_work);
   const auto is_wanted = [&](Quantity q) { return wanted_[std::size_t(q)]; };

@@ -21,7 +21,8 @@ inline constexpr double copper_melting_point = 1357.77;    ///< [K], fixed point
 inline constexpr double copper_resistance_slope = 0.0039;  ///< a_Cu of annealed copper [1/K], IEC 60028 rounded
 
 /// Two lumps: the copper loss heats the winding, which passes it on to the case, which passes it on to the air together
-/// with the motor's viscous loss. Not a number for both resistances: the motor keeps its constants at any load.
+/// with what the motor loses in viscous damping and in its own friction. Not a number for both resistances: the motor
+/// keeps its constants at any load.
 template <Scalar S>
 struct MotorThermal {
   S resistance_winding = S(std::numeric_limits<double>::quiet_NaN());  ///< R_th1 [K/W], >= 0
@@ -61,10 +62,11 @@ bool heats_up(const MotorThermal<S>& t) {
   return !std::isnan(value_of(t.resistance_winding));
 }
 
-/// Temperatures [K] at which the motor settles under steady losses [W]; not a number without thermal resistances.
+/// Temperatures [K] at which the motor settles under steady losses [W], P_case being those in viscous damping and in
+/// its own friction; not a number without thermal resistances.
 template <Scalar S>
-MotorTemperatures<S> settled_temperatures(const MotorThermal<S>& t, const S& P_copper, const S& P_viscous) {
-  const S T_case = t.ambient_temperature + t.resistance_case * (P_copper + P_viscous);
+MotorTemperatures<S> settled_temperatures(const MotorThermal<S>& t, const S& P_copper, const S& P_case) {
+  const S T_case = t.ambient_temperature + t.resistance_case * (P_copper + P_case);
   return {T_case + t.resistance_winding * P_copper, T_case};
 }
 

@@ -60,6 +60,20 @@ inline std::optional<ForceCoefficients<double>> named_coefficients(std::string_v
   return std::nullopt;
 }
 
+/// What a set of coefficients goes with where wings pitch. Both terms oppose rotation: together they may count its
+/// damping twice.
+struct RotationTerms {
+  bool lift;       ///< F_rot of the circulation
+  double damping;  ///< C_rd [1]
+};
+
+/// normal-force-robofly was used for wings on hinges with C_rd = 5 and no F_rot (Whitney and Wood 2010), the
+/// coefficients of translational-2022 with F_rot alone (Sane and Dickinson 2002, on the same wing); others as these.
+inline RotationTerms rotation_with(std::string_view coefficients) {
+  if (coefficients == normal_force_set) return {false, rotational_damping_coefficient};
+  return {true, 0.0};
+}
+
 /// Where the coefficient of the force normal to the chord comes from.
 enum class NormalForce {
   lift_and_drag,  ///< C_L cos(alpha) + C_D sin(alpha) of the ForceCoefficients
@@ -101,11 +115,12 @@ struct PitchingWings {
   S damping_coefficient = S(rotational_damping_coefficient);          ///< C_rd [1], >= 0
   NormalForce normal_force = NormalForce::lift_and_drag;
   NormalForceCoefficient<S> coefficient = {S(3.6), S(0.15)};
+  S edge_suction = S(0);  ///< s_L: share of the added mass's force along the chord that counts as lift, 0 to 1
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
     return use(of.hinge, of.pitch_inertia, of.mass_product, of.moments, of.air, of.rotational_coefficient,
-               of.damping_coefficient, of.normal_force, of.coefficient);
+               of.damping_coefficient, of.normal_force, of.coefficient, of.edge_suction);
   }
 };
 
@@ -114,6 +129,7 @@ namespace pitch_key {
 inline constexpr ParameterKey pitch_inertia{"wing.pitch_inertia", "kg m2", range::positive};
 inline constexpr ParameterKey mass_product{"wing.mass_product", "kg m2", range::any};
 inline constexpr ParameterKey damping_coefficient{"pitch.damping_coefficient", "1", range::not_negative};
+inline constexpr ParameterKey edge_suction{"pitch.leading_edge_suction", "1", range::zero_to_one};
 }  // namespace pitch_key
 
 /// `stroke_inertia`: N_w J_w [kg m2], within which the mass product must stay (Cauchy and Schwarz).
@@ -247,14 +263,27 @@ WingsAtPitch<S> wings_at_pitch(const BladeElement<S>& w, const PitchingWings<S>&
   return of;
 }
 
+/// Momentum of the air that moves with the wings, normal to the chord [N s].
+template <Scalar S>
+S air_momentum(const PitchingWings<S>& p, const PitchState<S>& at) {
+  return p.air.r * at.stroke_velocity * at.cos_psi + p.air.p * at.velocity;
+}
+
+/// Lift that the added mass's force along the chord takes away where it counts in full [N]: its momentum turns with the
+/// wings. Over a closed cycle its mean is that of the force normal to the chord (model.md section 12).
+template <Scalar S>
+S chordwise_lift(const PitchingWings<S>& p, const PitchState<S>& at) {
+  return air_momentum(p, at) * at.velocity * at.cos_psi;
+}
+
 /// Lift of all wings normal to the stroke plane [N] at the accelerations beta'' and psi'' [rad/s2]: that of the forces
-/// normal to the chord, of which the air's inertia is one.
+/// normal to the chord, of which the air's inertia is one, and of the share of its force along the chord that counts.
 template <Scalar S>
 S lift_at_pitch(const PitchingWings<S>& p, const WingsAtPitch<S>& of, const PitchState<S>& at,
                 const S& stroke_acceleration, const S& pitch_acceleration) {
   const S F_am = p.air.r * (stroke_acceleration * at.cos_psi - at.stroke_velocity * at.velocity * at.sin_psi) +
                  p.air.p * pitch_acceleration;
-  return -(of.aero.normal_force + F_am) * at.sin_psi;
+  return -(of.aero.normal_force + F_am) * at.sin_psi - p.edge_suction * chordwise_lift(p, at);
 }
 
 }  // namespace wingbeat

@@ -24,7 +24,7 @@ struct EnergyFlow {
 };
 
 /// Of a cycle: supply = losses of the motor + motor_output, motor_output = losses of the transmission + air, each to
-/// the solver's accuracy. A motor's own constant friction counts as friction.
+/// the solver's accuracy. Gearbox and the motor's own friction are losses of the motor.
 EnergyFlow energy_flow(const EnergyAudit& audit);
 
 }  // namespace wingbeat

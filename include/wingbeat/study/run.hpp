@@ -45,6 +45,7 @@ struct RunResult {
   DomainStatus domain;           ///< limits of the model that the cycle exceeds; none unless flapping
   std::vector<DomainEvidence> domain_evidence;  ///< the same with numbers
   std::optional<double> residual_share;         ///< notable_residual(), of a vehicle that flaps
+  std::optional<double> added_mass_lift;        ///< notable_added_mass_lift(), of a vehicle that flaps
   std::optional<double> hot_winding;            ///< hot_winding(), of a vehicle that flaps [degC]
   std::vector<WaveformRow> cycle;
   solver::PeriodicSummary orbit;            ///< of Method::orbit

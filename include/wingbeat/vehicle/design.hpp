@@ -148,15 +148,16 @@ struct WingDesign {
 /// stiffness is given.
 template <Scalar S>
 struct PitchDesign {
-  std::optional<S> stiffness;                                 ///< k_psi of one hinge [N m/rad]
-  S damping = S(0);                                           ///< c_psi of one hinge [N m s/rad]
-  std::optional<S> stop;                                      ///< psi_max [rad]; none unless given
-  bool rotational_lift = true;                                ///< the force that a pitching wing's circulation adds
-  S damping_coefficient = S(rotational_damping_coefficient);  ///< C_rd [1]
+  std::optional<S> stiffness;    ///< k_psi of one hinge [N m/rad]
+  S damping = S(0);              ///< c_psi of one hinge [N m s/rad]
+  std::optional<S> stop;         ///< psi_max [rad]; none unless given
+  bool rotational_lift = true;   ///< the force that a pitching wing's circulation adds; see rotation_with()
+  S damping_coefficient = S(0);  ///< C_rd [1]; see rotation_with()
+  S edge_suction = S(0);         ///< s_L of the added mass [1]
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
-    return use(of.stiffness, of.damping, of.stop, of.rotational_lift, of.damping_coefficient);
+    return use(of.stiffness, of.damping, of.stop, of.rotational_lift, of.damping_coefficient, of.edge_suction);
   }
 };
 

@@ -19,6 +19,7 @@ struct PitchMotion {
   Motion<S> stroke;  ///< its `aero` holds what the air does to stroke and pitch, lift with the air's inertia
   S acceleration;    ///< psi'' [rad/s2]
   S hinge_loss;      ///< in the damping of all hinges [W]
+  S chordwise_lift;  ///< chordwise_lift() [N]
   S stop_moment;     ///< with which the wings press on a stop that holds them, towards a positive psi [N m]; else 0
 };
 
@@ -40,6 +41,7 @@ PitchMotion<S> pitch_motion_on(const V<S>& v, const PitchingWings<S>& p, const C
   m.acceleration = wings.free_acceleration + wings.coupling * m.stroke.stroke_acceleration;
   m.stroke.aero.lift = lift_at_pitch(p, wings, state, m.stroke.stroke_acceleration, m.acceleration);
   m.hinge_loss = wings.hinge.loss;
+  m.chordwise_lift = chordwise_lift(p, state);
   m.stop_moment = select(pitch.held >= S(0.0), S(0.0),
                          S(wings.pitching_moment + wings.coupling_moment * m.stroke.stroke_acceleration));
   return m;

@@ -113,6 +113,7 @@ PitchingWings<S> pitching_wings_of(const Design<S>& design, const S& count, cons
   if (design.aerodynamics.added_mass) of.air = pitch_added_mass(air_density, of.moments);
   if (!p.rotational_lift) of.rotational_coefficient = S(0.0);
   of.damping_coefficient = p.damping_coefficient;
+  of.edge_suction = p.edge_suction;
   if (design.aerodynamics.coefficients_name == normal_force_set) of.normal_force = NormalForce::normal_force;
   return of;
 }
@@ -237,8 +238,8 @@ struct Motion {
   S stroke_velocity;      ///< beta' [rad/s]
   S stroke_acceleration;  ///< beta'' [rad/s2]
   AeroLoads<S> aero;      ///< of all wings
-  S friction_torque;      ///< T_f on the crank, the motor's own friction included [N m]
-  S motor_torque;         ///< T_m = F h + T_f [N m] (eq 5)
+  S friction_torque;      ///< T_f of the mechanism [N m]; of a shaft that stands, all that holds it
+  S motor_torque;         ///< T_m = F h + T_f [N m] (eq 5), behind the motor's own friction; standing, K i
   S gear_torque;          ///< T_g that the gearbox takes from the motor, along omega [N m] (model.md section 9)
   S gear_loss;            ///< (1 - e) T_g omega [W]
   S stored_moment;        ///< N_w J_w beta'' + N_w k beta [N m]
@@ -287,8 +288,8 @@ struct Instant {
   S stroke_velocity;  ///< beta' [rad/s]
   AeroLoads<S> aero;  ///< of all wings
   S spring_moment;    ///< N_w k beta [N m]
-  S load_free;        ///< friction on the crank that does not depend on F [N m]
-  S drive;            ///< K i - b omega - load_free - T_x [N m]; behind a gearbox, which the motor's share of it passes
+  S load_free;        ///< friction of the mechanism that does not depend on F [N m]
+  S drive;            ///< K i - b omega - T_c,m - load_free - T_x [N m]; the motor's share of it behind a gearbox
   S gear_ratio;       ///< e, torque behind the gearbox over torque before it [1]
   S inertia;          ///< e J [kg m2]
   S A_g;              ///< A g of F = A omega' + C [kg m2]
@@ -313,10 +314,10 @@ template <template <Scalar> class V, Scalar S>
   at.spring_moment = N_k_beta;
   // The motor's own friction acts before the gearbox.
   const S mechanism = load_free_friction(v.friction, omega, direction), own = direction * v.motor.friction_torque;
-  at.load_free = mechanism + own;
+  at.load_free = mechanism;
   at.gear_ratio = gear_torque_ratio(v.motor, gear);
   at.inertia = v.motor.inertia;
-  at.drive = at.motor.torque - at.motor.drag_torque - at.load_free;
+  at.drive = at.motor.torque - at.motor.drag_torque - (mechanism + own);
   if (has_gear_loss(v.motor)) {
     at.inertia = at.gear_ratio * v.motor.inertia;
     at.drive = at.gear_ratio * (at.motor.torque - at.motor.drag_torque - own) - mechanism;

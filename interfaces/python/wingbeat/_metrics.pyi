@@ -37,7 +37,7 @@ class WithMetrics:
         """Bench estimate of the motor output power [W]."""
     @property
     def power_friction(self) -> Quantity | None:
-        """Mean friction loss [W]."""
+        """Mean friction loss of the transmission [W]."""
     @property
     def power_aerodynamic(self) -> Quantity | None:
         """Mean aerodynamic power [W]."""
@@ -50,6 +50,9 @@ class WithMetrics:
     @property
     def power_viscous(self) -> Quantity | None:
         """Mean viscous loss of the motor [W]."""
+    @property
+    def power_motor_friction(self) -> Quantity | None:
+        """Mean loss in the motor's own constant friction [W]."""
     @property
     def power_gear(self) -> Quantity | None:
         """Mean loss of the gearbox under load [W]."""
@@ -125,6 +128,9 @@ class WithMetrics:
     @property
     def angle_of_attack_max(self) -> Quantity | None:
         """Largest angle of attack of wings that pitch on a hinge [degree]."""
+    @property
+    def lift_added_mass_share(self) -> Quantity | None:
+        """Part of the mean lift that comes from the added mass of wings on pitch hinges [1]."""
     @property
     def reynolds_number(self) -> Quantity | None:
         """Reynolds number of the mean chord at the mean speed of the wing tips [1]."""

@@ -174,7 +174,7 @@ class MotorSection(Section):
         """
     @property
     def friction_torque(self) -> Quantity:
-        """constant friction torque of the motor itself, at the motor shaft with gear_ratio; adds to every friction law.
+        """constant friction torque of the motor itself, before its gearbox, at the motor shaft with gear_ratio; in addition to every friction law, and it heats the motor.
         [N m] Range: >= 0. Default: 0 N m.
         """
     @property
@@ -553,13 +553,19 @@ class PitchSection(Section):
     @property
     def rotational_lift(self) -> bool:
         """the force that the circulation of a pitching wing adds, C_rot = 0.75 pi.
-        Range: true or false. Default: true.
+        Range: true or false. Default: true, with normal-force-robofly false.
         Only with pitch.stiffness.
         """
     @property
     def damping_coefficient(self) -> Quantity | None:
         """C_rd, drag coefficient of a wing that turns about its leading edge.
-        Number. Range: >= 0. Default: 5.
+        Number. Range: >= 0. Default: 0, with normal-force-robofly 5.
+        Only with pitch.stiffness.
+        """
+    @property
+    def leading_edge_suction(self) -> Quantity | None:
+        """s_L, share of the added mass's force along the chord that counts as lift: with 1 added mass has no mean lift.
+        Number. Range: 0 to 1. Default: 0.
         Only with pitch.stiffness.
         """
 
@@ -601,7 +607,7 @@ class AerodynamicsSection(Section):
         """
     @property
     def coefficients(self) -> str | None:
-        """lift and drag coefficient against angle of attack, eqs (12, 13).
+        """lift and drag coefficient against angle of attack, eqs (12, 13); normal-force-robofly: C_L = 1.8 sin(2 alpha), C_D = 1.95 - 1.5 cos(2 alpha), of both the component normal to the chord.
         Range: translational-2022, normal-force-robofly (with pitch.stiffness), or a table of the keys below. Default: translational-2022.
         """
 
