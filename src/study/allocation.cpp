@@ -109,7 +109,9 @@ class Sides {
   static long long key_of(double voltage) { return std::llround(1e12 * voltage); }
 
   static SideMeans scaled(const SideMeans& m, double by) {
-    return {by * m.lift, by * m.lift_sideways, by * m.lift_forward, by * m.yaw, by * m.frequency};
+    const auto no_minus = [](double x) { return x == 0.0 ? 0.0 : x; };
+    return {no_minus(by * m.lift), no_minus(by * m.lift_sideways), no_minus(by * m.lift_forward), no_minus(by * m.yaw),
+            no_minus(by * m.frequency)};
   }
 
   SideMeans side_of(const WingLoads& all) const {

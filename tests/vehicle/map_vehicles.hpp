@@ -7,6 +7,7 @@
 
 #include "vehicle/hinged_design.hpp"
 #include "vehicle/wide_boxes.hpp"
+#include "wingbeat/cycle/steady_flapping.hpp"
 
 namespace wingbeat {
 
@@ -29,16 +30,26 @@ inline Design<double> map_vehicle(MapKind kind, bool stops, std::uint32_t n, std
     case MapKind::hinged_crank: d = random_hinged_crank(n, seed); break;
     case MapKind::hinged_direct: d = random_hinged_design(random, stops); break;
   }
-  const bool hinged = kind == MapKind::hinged_crank || kind == MapKind::hinged_direct;
-  if (hinged) {
-    d.pitch.stop.reset();
-    if (stops) d.pitch.stop = uniform(0.1, 0.8);
-  } else {
-    d.aerodynamics.angle_of_attack_min.reset();
-    if (stops) d.aerodynamics.angle_of_attack_min = uniform(0.3, 1.2);
-  }
   d.wing.count = 1.0;
   d.motors = 2.0;
+  d.aerodynamics.angle_of_attack_min.reset();
+  d.pitch.stop.reset();
+  const double share = uniform(0.3, 0.9);
+  if (!stops) return d;
+  try {
+    validate(d);
+  } catch (const ParameterError&) {
+    return d;
+  }
+  // Within what the wings do without stops.
+  const SteadyFlapping free = find_steady_flapping(resolve(d), {.tolerance = 1e-6, .stability = false});
+  if (free.status != FlappingStatus::flapping) return d;
+  if (kind == MapKind::hinged_crank || kind == MapKind::hinged_direct) {
+    d.pitch.stop = share * free.metrics[Metric::pitch_amplitude] / degrees_per_radian;
+  } else {
+    const double least = free.metrics[Metric::angle_of_attack_min] / degrees_per_radian;
+    d.aerodynamics.angle_of_attack_min = 0.5 * pi - share * (0.5 * pi - least);
+  }
   return d;
 }
 
