@@ -160,7 +160,7 @@ TEST(Allocation, SlopesWhereWingsHitStopsAreThoseOfThePoints) {
     ASSERT_TRUE(at.model);
     const std::vector<AllocationMap> maps = allocation_maps(at, 13.95e-3);
     ASSERT_EQ(maps.size(), 5u);
-    EXPECT_LT(lift_slope_apart(at, maps[0]), 1e-8) << amplitude << " V";
+    EXPECT_LT(lift_slope_apart(at, maps[0].slope.lift), 1e-8) << amplitude << " V";
     const SlopeCheck points = slopes_against_points(maps);
     EXPECT_EQ(points.beyond, 0) << amplitude << " V: " << points.where << ' ' << points.worst;
     // A difference of voltages leaves lift and pitch, a split leaves lift and roll: none of that is in their slopes.
@@ -186,7 +186,7 @@ TEST(Allocation, MapsHoldTheMotorsTemperatures) {
   const Linearisation at = linearise(design);
   ASSERT_TRUE(at.model);
   const std::vector<AllocationMap> maps = allocation_maps(at);
-  EXPECT_LT(lift_slope_apart(at, maps[0]), 1e-8);
+  EXPECT_LT(lift_slope_apart(at, maps[0].slope.lift), 1e-8);
   EXPECT_EQ(slopes_against_points(maps).beyond, 0);
 }
 

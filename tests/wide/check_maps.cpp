@@ -3,7 +3,7 @@
 // allowed.
 //
 //   check_maps [COUNT] [--kind crank|four_bar|tabulated|direct|hinged_crank|hinged_direct] [--stops yes|no] [--seed S]
-//              [--vehicle N] [--threads T]
+//              [--vehicle N] [--threads T] [--no-points]
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
@@ -23,7 +23,7 @@ constexpr double gain_apart = 1e-6;  ///< allowed between lift slope and steady 
 struct Arguments {
   std::size_t count = 50, first = 0;
   int kind = -1, stops = -1;
-  bool one = false;
+  bool one = false, points = true;
   std::uint32_t seed = 33;
   unsigned threads = std::thread::hardware_concurrency();
 };
@@ -35,7 +35,7 @@ struct Checked {
   std::string error;
 };
 
-Checked checked(const Design<double>& design) {
+Checked checked(const Design<double>& design, bool points) {
   Checked of;
   try {
     validate(design);
@@ -43,9 +43,8 @@ Checked checked(const Design<double>& design) {
     if (!at.model) return of;
     of.flaps = true;
     of.cycles = slopes_against_cycles(at.orbit);
-    const std::vector<AllocationMap> maps = allocation_maps(at, 4e-3);
-    of.points = slopes_against_points(maps);
-    of.gain = lift_slope_apart(at, maps.front());
+    of.gain = lift_slope_apart(at, wing_load_slopes(at.orbit.record)[0][std::size_t(WingLoad::lift)]);
+    if (points) of.points = slopes_against_points(allocation_maps(at, 4e-3));
   } catch (const ParameterError&) {
   } catch (const std::exception& error) {
     of.error = error.what();
@@ -65,7 +64,8 @@ Row check(MapKind kind, bool stops, const Arguments& arguments) {
   std::atomic<std::size_t> next{0}, flapping{0};
   const auto work = [&] {
     for (std::size_t n = next++; n < most && flapping < arguments.count; n = next++) {
-      found[n] = checked(map_vehicle(kind, stops, std::uint32_t(arguments.first + n), arguments.seed));
+      found[n] =
+          checked(map_vehicle(kind, stops, std::uint32_t(arguments.first + n), arguments.seed), arguments.points);
       if (found[n].flaps) ++flapping;
     }
   };
@@ -130,6 +130,8 @@ Arguments read_arguments(int argc, char** argv) {
       const std::string name = text();
       if (name != "yes" && name != "no") refuse("--stops yes or no");
       a.stops = name == "yes";
+    } else if (word == "--no-points") {
+      a.points = false;
     } else if (word == "--vehicle") {
       a.one = true, a.first = number(text());
     } else if (word == "--seed") {
