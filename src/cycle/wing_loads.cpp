@@ -119,7 +119,7 @@ WingLoadSlopes slopes_of(const RecordedCycle<System>& recorded) {
 template <class Loaded>
 std::optional<solver::Iterate<Loaded>> settled_cycle(const Loaded& system, typename Loaded::State y,
                                                      solver::Method method) {
-  constexpr int max_cycles = 2000;
+  constexpr int max_cycles = 500;
   constexpr double same = 1e-9;  // change of a mean from cycle to cycle, of the lift or the moment
   const solver::IterateOptions options{.method = method, .tolerance = 1e-10, .max_steps = 20000};
   solver::Iterate<Loaded> cycle;
