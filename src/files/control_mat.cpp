@@ -50,7 +50,7 @@ MatVariable cell_of_texts(const char* name, const std::vector<std::string>& text
 MatVariable structure_of(const AllocationMap& map) {
   std::vector<const char*> fields = {"input"};
   for (const AllocationColumn& c : allocation_columns) fields.push_back(c.name);
-  fields.push_back("slope");
+  for (const AllocationSlope& s : allocation_slopes) fields.push_back(s.name);
   std::array<std::size_t, 2> sizes = {1, 1};
   MatVariable of = made(Mat_VarCreateStruct((std::string("map_") + name_of(map.input)).c_str(), 2, sizes.data(),
                                             fields.data(), unsigned(fields.size())));
@@ -63,12 +63,12 @@ MatVariable structure_of(const AllocationMap& map) {
     return row(nullptr, values);
   };
   put("input", column(&AllocationPoint::input));
-  std::vector<double> slope;
-  for (const AllocationColumn& c : allocation_columns) {
-    put(c.name, column(c.member));
-    slope.push_back(map.slope.*c.member);
+  for (const AllocationColumn& c : allocation_columns) put(c.name, column(c.member));
+  for (const AllocationSlope& s : allocation_slopes) {
+    std::vector<double> slope;
+    for (const AllocationColumn& c : allocation_columns) slope.push_back((map.*s.member).*c.member);
+    put(s.name, row(nullptr, slope));
   }
-  put("slope", row(nullptr, slope));
   return of;
 }
 

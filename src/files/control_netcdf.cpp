@@ -127,6 +127,12 @@ void write_control_netcdf(const ControlModels& models, const std::string& versio
     column(name, unit_of(m.input), "commanded", &AllocationPoint::input);
     for (const AllocationColumn& c_of : allocation_columns) {
       column(std::string(c_of.name) + "_by_" + name, c_of.unit, c_of.meaning, c_of.member);
+      const std::string unit = std::string(c_of.unit) + (unit_of(m.input) == std::string("V") ? " V-1" : "");
+      for (const AllocationSlope& s : allocation_slopes) {
+        const std::string variable = std::string(c_of.name) + "_" + s.name + "_by_" + name;
+        put_numbers(data, variable, {}, unit, std::string("slope of the ") + c_of.meaning + ", " + s.meaning,
+                    {(m.*s.member).*c_of.member});
+      }
     }
   }
   data.close();

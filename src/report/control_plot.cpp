@@ -30,6 +30,36 @@ bool changes_steadily(const LinearModel& model, std::size_t input, const std::ve
                      [&](std::size_t k) { return model.steady_gain(Eigen::Index(k), Eigen::Index(input)) != 0.0; });
 }
 
+/// The drawn outputs after a step of an input, each over its steady change or, where one has none, its largest.
+Eigen::MatrixXd drawn_response(const LinearModel& model, std::size_t input, const std::vector<std::size_t>& outputs) {
+  const Eigen::MatrixXd& response = model.step_responses[input];
+  const bool steadily = changes_steadily(model, input, outputs);
+  Eigen::MatrixXd drawn(response.rows(), Eigen::Index(outputs.size()));
+  for (Eigen::Index n = 0; n < drawn.cols(); ++n) {
+    const auto output = Eigen::Index(outputs[std::size_t(n)]);
+    const auto column = response.col(output);
+    const double scale = steadily ? model.steady_gain(output, Eigen::Index(input)) : column.lpNorm<Eigen::Infinity>();
+    drawn.col(n) = column / (scale == 0.0 ? 1.0 : scale);
+  }
+  return drawn;
+}
+
+/// How many cycles show the responses until they have settled, and a little more; at most those that there are.
+Eigen::Index cycles_to_show(const std::vector<Eigen::MatrixXd>& responses) {
+  constexpr double settled = 0.02;  // of the change that a response is drawn over
+  constexpr Eigen::Index after = 2, fewest = 3;
+  Eigen::Index last = 0;
+  for (const Eigen::MatrixXd& response : responses) {
+    const Eigen::Index rows = response.rows();
+    for (Eigen::Index cycle = 0; cycle < rows; ++cycle) {
+      if ((response.row(cycle) - response.row(rows - 1)).lpNorm<Eigen::Infinity>() > settled) {
+        last = std::max(last, cycle);
+      }
+    }
+  }
+  return std::min(std::max(last + 1 + after, fewest), responses.front().rows());
+}
+
 std::string in_words(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;
@@ -41,47 +71,57 @@ void plot_step_responses(const ControlModels& models, PlotFormat format, const s
   const LinearModel& model = *models.linear.model;
   const CycleMap& map = model.map;
   const std::vector<std::size_t> outputs = drawn_outputs(map);
-  const double head = 0.42, foot = 0.42, each = 1.05, gap = 0.48, left = 0.13, right = 0.96;
-  const double inches = head + foot + (each + gap) * double(map.inputs.size());
-  Figure figure(format, 3.5, inches);
+  std::vector<Eigen::MatrixXd> responses;
   for (std::size_t input = 0; input < map.inputs.size(); ++input) {
-    const Eigen::MatrixXd& response = model.step_responses[input];
-    figure.add("$r{} << END\n", input);
-    for (Eigen::Index cycle = 0; cycle < response.rows(); ++cycle) {
-      // Drawn as the means are: constant over their cycle.
-      figure.add("{}", double(cycle) * map.period * 1e3);
-      for (const std::size_t k : outputs) {
-        const auto column = response.col(Eigen::Index(k));
-        const double scale = changes_steadily(model, input, outputs)
-                                 ? model.steady_gain(Eigen::Index(k), Eigen::Index(input))
-                                 : column.lpNorm<Eigen::Infinity>();
-        figure.add(" {}", column[cycle] / (scale == 0.0 ? 1.0 : scale));
-      }
+    responses.push_back(drawn_response(model, input, outputs));
+  }
+  // Who asks for a number of cycles gets them.
+  const Eigen::Index cycles = models.options.step_cycles > 0 ? responses.front().rows() : cycles_to_show(responses);
+  const bool in_seconds = map.period * double(cycles) > 2.0;
+  const double period = (in_seconds ? 1.0 : 1e3) * map.period;
+
+  const double head = 0.62, foot = 0.42, each = 0.8, gap = 0.42, left = 0.15, right = 0.97;
+  const double inches = head + foot + each * double(map.inputs.size()) + gap * double(map.inputs.size() - 1);
+  Figure figure(format, style::single_column, inches);
+  for (std::size_t input = 0; input < map.inputs.size(); ++input) {
+    // Drawn as the means are: constant over their cycle, from the cycle before the step on.
+    figure.add("$r{} << END\n{}", input, -period);
+    for (std::size_t k = 0; k < outputs.size(); ++k) figure.add(" 0");
+    figure.add("\n");
+    for (Eigen::Index cycle = 0; cycle <= cycles; ++cycle) {
+      const auto row = responses[input].row(std::min(cycle, cycles - 1));
+      figure.add("{}", double(cycle) * period);
+      for (const double y : row) figure.add(" {}", y);
       figure.add("\n");
     }
     figure.add("END\n");
   }
   figure.add("set multiplot\nset lmargin at screen {}\nset rmargin at screen {}\n", left, right);
-  figure.add("set yrange [*<-0.05:1.15<*]\nset ytics autofreq\nset xrange [0:*]\n");
+  figure.add("set xrange [{}:{}]\n", -period, double(cycles) * period);
   for (std::size_t input = 0; input < map.inputs.size(); ++input) {
     if (input > 0) figure.next_panel();
-    const double top = 1.0 - (head + gap + (each + gap) * double(input)) / inches;
-    figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", top, top - each / inches);
-    const char* const scale = changes_steadily(model, input, outputs) ? "" : ", as parts of their largest change";
-    figure.text(fmt::format("step of {}{}", in_words(map.inputs[input].name), scale), 7.5,
+    const double top = 1.0 - (head + (each + gap) * double(input)) / inches, bottom = top - each / inches;
+    figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", top, bottom);
+    const bool steadily = changes_steadily(model, input, outputs);
+    const double most = std::max(1.0, responses[input].topRows(cycles).maxCoeff());
+    const double least = std::min(0.0, responses[input].topRows(cycles).minCoeff());
+    figure.add("set yrange [{}:{}]\nset ytics {}\n", least - 0.06 * (most - least), most + 0.1 * (most - least),
+               most - least > 2.2 ? 1.0 : 0.5);
+    figure.text(fmt::format("step of {}", in_words(map.inputs[input].name)), style::heading_size,
                 fmt::format("screen {},{} left", left, top + 0.09 / inches));
+    figure.text(steadily ? "per steady change" : "per largest change", style::text_size,
+                fmt::format("screen 0.03,{} center rotate by 90", 0.5 * (top + bottom)));
     if (input == 0) {
-      figure.text("Means of a cycle after a step, as parts of their steady change", 8.0,
+      figure.text("Change of the means of a cycle after a step", style::title_size,
                   fmt::format("screen 0.5,{} center", 1.0 - 0.12 / inches));
-      figure.text("time since the step (ms)", 7.5,
+      figure.text(in_seconds ? "time since the step (s)" : "time since the step (ms)", style::text_size,
                   fmt::format("screen {},{} center", 0.5 * (left + right), 0.09 / inches));
-      constexpr std::array places = {0.0, 0.22, 0.56};
+      constexpr std::array places = {0.03, 0.29, 0.65};
       for (std::size_t k = 0; k < outputs.size(); ++k) {
-        figure.key_entry(left + places[k], 1.0 - 0.32 / inches, response_styles[k],
-                         in_words(map.outputs[outputs[k]].name));
+        figure.key_entry(places[k], 1.0 - 0.32 / inches, response_styles[k], in_words(map.outputs[outputs[k]].name));
       }
     }
-    std::string plots = "1 with lines lt 1 dt 1 lw 0.5 lc rgb '#909090'";
+    std::string plots = fmt::format("{} with lines lt 1 dt 1 lw 0.5 lc rgb '#909090'", steadily ? 1 : 0);
     for (std::size_t k = 0; k < outputs.size(); ++k) {
       plots += fmt::format(", $r{} using 1:{} with steps {}", input, k + 2, response_styles[k]);
     }

@@ -36,16 +36,20 @@ Json rows_of(const Eigen::MatrixXd& m) {
 
 Json json_of(const AllocationMap& map) {
   Json of = {{"input", name_of(map.input)}, {"unit", unit_of(map.input)}};
-  Json inputs = Json::array(), slope = {{"at", number_or_null(map.slope.input)}};
+  Json inputs = Json::array();
   for (const AllocationPoint& p : map.points) inputs.push_back(number_or_null(p.input));
   of["values"] = std::move(inputs);
   for (const AllocationColumn& c : allocation_columns) {
     Json column = Json::array();
     for (const AllocationPoint& p : map.points) column.push_back(number_or_null(p.*c.member));
     of[c.name] = std::move(column);
-    slope[c.name] = number_or_null(map.slope.*c.member);
   }
-  of["slope"] = std::move(slope);
+  for (const AllocationSlope& s : allocation_slopes) {
+    const AllocationPoint& slope = map.*s.member;
+    Json by_name = {{"at", number_or_null(slope.input)}};
+    for (const AllocationColumn& c : allocation_columns) by_name[c.name] = number_or_null(slope.*c.member);
+    of[s.name] = std::move(by_name);
+  }
   return of;
 }
 
@@ -226,6 +230,8 @@ void put_map(std::string& text, const AllocationMap& map) {
   };
   for (const AllocationPoint& p : map.points) line(number(p.input), p);
   line(fmt::format("slope at {}", number(map.slope.input)), map.slope);
+  line("  from these points", map.slope_of_points);
+  line("  off by at most about", map.slope_of_points_error);
 }
 
 }  // namespace

@@ -33,11 +33,9 @@ Json linearise_schema() {
   for (const char* load : body_loads) {
     for (const char* motion : body_motions) derivatives.push_back({fmt::format("{}_{}", load, motion), number_if_any});
   }
-  const Json map = object(SchemaKeys{{"input", one_of_names<AllocationInput>()},
-                                     {"unit", any_text},
-                                     {"values", values},
-                                     {"slope", object(slopes)}} +
-                          columns);
+  for (const AllocationSlope& slope : allocation_slopes) columns.push_back({slope.name, object(slopes)});
+  const Json map =
+      object(SchemaKeys{{"input", one_of_names<AllocationInput>()}, {"unit", any_text}, {"values", values}} + columns);
   return object(
       {{"written_by", any_text},
        {"vehicle", any_text},

@@ -4,118 +4,25 @@
 #include <cmath>
 #include <map>
 
-#include "wingbeat/time/simulation.hpp"
+#include "wingbeat/cycle/wing_loads.hpp"
 
 namespace wingbeat {
 namespace {
 
-/// Cycle means of half of the wings, as those of the right side.
+/// Cycle means of half of the wings, as those of the right side; or their derivatives.
 struct SideMeans {
-  double lift = absent;
+  double lift = absent;           ///< [N]
   double lift_sideways = absent;  ///< lift times d + r cos beta [N m]
   double lift_forward = absent;   ///< lift times r sin beta [N m]
   double yaw = absent;            ///< of the drag [N m]
   double frequency = absent;      ///< [Hz]
 };
 
-class Sides {
- public:
-  Sides(const Linearisation& at, Condition condition, double hinge_offset)
-      : vehicle_(resolve(at.operating_point.design, condition)),
-        reporting_(reporting_of(at.operating_point.design)),
-        hinge_offset_(hinge_offset),
-        orbit_(at.orbit) {
-    const double s2 = vehicle_.wings.s2;
-    centre_ = s2 > 0.0 ? vehicle_.wings.s3 / s2 : 0.0;
-  }
+/// Right and left.
+using BothSides = std::array<SideMeans, 2>;
 
-  const Vehicle<double>& vehicle() const { return vehicle_; }
-
-  /// In steady flapping at that voltage or amplitude [V].
-  SideMeans steady(double voltage) {
-    const auto known = known_.find(voltage);
-    if (known != known_.end()) return known->second;
-    SideMeans means;
-    Vehicle<double> there = vehicle_;
-    there.voltage = voltage;
-    const SteadyFlapping found = find_steady_flapping(there, {1e-8, false, reporting_}, start_up_in_time());
-    if (found.status == FlappingStatus::flapping && !found.record.empty()) {
-      means = mean_of(found.record.waveform(instants + 1));
-    }
-    known_[voltage] = means;
-    return means;
-  }
-
-  /// Of a direct drive at the operating point's amplitude and frequency, the wave changed.
-  SideMeans under(double bias, double split) const {
-    const double period = 1.0 / vehicle_.drive_frequency, amplitude = vehicle_.voltage;
-    const double mean = 2.0 / pi * amplitude * split;  // of the two halves of different length
-    const auto wave = [=](double t) {
-      const double part = t / period - std::floor(t / period), first = 0.5 * (1.0 + split);
-      const double phase = part < first ? pi * part / first : pi * (1.0 + (part - first) / (1.0 - first));
-      return amplitude * std::sin(phase) - mean + bias;
-    };
-    const std::vector<WaveformRow> start = {orbit_.record.at(0.0)};
-    SimulationOptions options;
-    options.tolerance = 1e-9;
-    options.angle = start[0].stroke_angle;
-    options.speed = start[0].flapping_velocity;
-    options.current = start[0].current;
-    if (pitches(vehicle_)) options.pitch_angle = start[0].pitch_angle;
-    Simulation flight(warm(), {}, options);
-    flight.command(wave);
-    SideMeans means, before;
-    for (int cycle = 0; cycle < max_cycles; ++cycle) {
-      std::vector<WaveformRow> rows = {flight.now()};
-      for (int n = 1; n <= simulated_instants; ++n) {
-        flight.step_to((cycle + double(n) / simulated_instants) * period);
-        rows.push_back(flight.now());
-      }
-      before = means;
-      means = mean_of(rows);
-      const double scale = settled * (means.lift * centre_);
-      if (std::abs(means.lift_forward - before.lift_forward) < scale &&
-          std::abs(means.lift_sideways - before.lift_sideways) < scale && std::abs(means.yaw - before.yaw) < scale) {
-        return means;
-      }
-    }
-    return {};  // it drifts away, as without springs under a bias
-  }
-
- private:
-  static constexpr int instants = 2000, simulated_instants = 500, max_cycles = 2000;
-  static constexpr double settled = 1e-7;  ///< change of a mean from cycle to cycle, of lift times lever
-
-  /// The vehicle with its motor at the operating point's temperatures.
-  Vehicle<double> warm() const {
-    return heats_up(vehicle_.thermal) ? with_motor_at(vehicle_, orbit_.temperatures) : vehicle_;
-  }
-
-  /// Of rows at even distances in time, both ends of the cycle included.
-  SideMeans mean_of(const std::vector<WaveformRow>& rows) const {
-    SideMeans sum{0.0, 0.0, 0.0, 0.0, 1.0 / (rows.back().time - rows.front().time)};
-    for (std::size_t n = 0; n < rows.size(); ++n) {
-      const WaveformRow& row = rows[n];
-      const double weight = (n == 0 || n + 1 == rows.size() ? 0.25 : 0.5) / double(rows.size() - 1);  // of one side
-      const double sideways = centre_ * std::cos(row.stroke_angle);
-      sum.lift += weight * row.lift;
-      sum.lift_sideways += weight * row.lift * (hinge_offset_ + sideways);
-      sum.lift_forward += weight * row.lift * centre_ * std::sin(row.stroke_angle);
-      // The drag M_aero / r acts against beta' at p = (0, d, 0) + r e_r.
-      sum.yaw +=
-          weight * row.aero_moment * (centre_ + hinge_offset_ * std::cos(row.stroke_angle)) / std::max(centre_, 1e-300);
-    }
-    return sum;
-  }
-
-  Vehicle<double> vehicle_;
-  Reporting reporting_;
-  double hinge_offset_, centre_;
-  const SteadyFlapping& orbit_;
-  std::map<double, SideMeans> known_;
-};
-
-AllocationPoint both(double input, const SideMeans& right, const SideMeans& left) {
+AllocationPoint point_of(double input, const BothSides& sides) {
+  const auto& [right, left] = sides;
   return {input,
           right.lift + left.lift,
           left.lift_sideways - right.lift_sideways,
@@ -124,50 +31,173 @@ AllocationPoint both(double input, const SideMeans& right, const SideMeans& left
           left.frequency};
 }
 
-AllocationPoint at_input(Sides& sides, AllocationInput which, double input) {
-  const double voltage = sides.vehicle().voltage;
+/// What an input does to either side.
+struct InputOfSides {
+  DriveInput which;
+  double right, left;  ///< how much of it
+};
+
+InputOfSides effect_of(AllocationInput which) {
   switch (which) {
-    case AllocationInput::voltage: return both(input, sides.steady(input), sides.steady(input));
-    case AllocationInput::differential_voltage:
-      return both(input, sides.steady(voltage - 0.5 * input), sides.steady(voltage + 0.5 * input));
-    case AllocationInput::bias_voltage: {
-      const SideMeans side = sides.under(input, 0.0);
-      return both(input, side, side);
-    }
-    case AllocationInput::split_cycle: return both(input, sides.under(0.0, input), sides.under(0.0, -input));
+    case AllocationInput::voltage: return {DriveInput::voltage, 1.0, 1.0};
+    case AllocationInput::differential_voltage: return {DriveInput::voltage, -0.5, 0.5};
+    case AllocationInput::bias_voltage: return {DriveInput::bias, 1.0, 1.0};
+    case AllocationInput::split_cycle: return {DriveInput::split, 1.0, -1.0};
+    case AllocationInput::split_cycle_cosine: return {DriveInput::cosine_split, 1.0, -1.0};
   }
   return {};
 }
 
-}  // namespace
+DriveWave<double> wave_of(DriveInput which, double value) {
+  DriveWave<double> wave;
+  switch (which) {
+    case DriveInput::voltage: break;
+    case DriveInput::bias: wave.bias = value; break;
+    case DriveInput::split: wave.split = value; break;
+    case DriveInput::cosine_split: wave.cosine_split = value; break;
+  }
+  return wave;
+}
 
-std::vector<AllocationMap> allocation_maps(const Linearisation& at, Condition condition, double hinge_offset) {
-  std::vector<AllocationMap> maps;
-  if (!at.model) return maps;
-  Sides sides(at, condition, hinge_offset);
-  const double voltage = sides.vehicle().voltage;
-  const bool direct = drive_of(sides.vehicle()).alternating, two = sides.vehicle().motors == 2.0;
-  const auto add = [&](AllocationInput which, double from, double to, int count, double centre, double step) {
-    AllocationMap map{which, {}, {}};
-    for (int n = 0; n < count; ++n) {
-      map.points.push_back(at_input(sides, which, from + (to - from) * double(n) / double(count - 1)));
+class Sides {
+ public:
+  Sides(const Linearisation& at, double hinge_offset)
+      : orbit_(at.orbit.record),
+        reporting_(reporting_of(at.operating_point.design)),
+        hinge_offset_(hinge_offset),
+        slopes_(wing_load_slopes(orbit_)) {
+    std::visit([&](const auto& recorded) { vehicle_ = recorded.system.vehicle; }, orbit_.cycles());
+    vehicle_.thermal = {};  // the record's motor is as warm as it gets
+    const double s2 = vehicle_.wings.s2;
+    centre_ = s2 > 0.0 ? vehicle_.wings.s3 / s2 : 0.0;
+    at_orbit_ = side_of(wing_loads(orbit_));
+    by_voltage_[key_of(vehicle_.voltage)] = at_orbit_;
+  }
+
+  const Vehicle<double>& vehicle() const { return vehicle_; }
+
+  /// The points at `count` even distances from `low` to `high`, the operating point in their midst.
+  std::vector<AllocationPoint> points(AllocationInput which, double low, double high, int count, double centre) {
+    const InputOfSides effect = effect_of(which);
+    std::vector<double> inputs;
+    for (int n = 0; n < count; ++n) inputs.push_back(low + (high - low) * double(n) / double(count - 1));
+    std::vector<AllocationPoint> points;
+    if (effect.which == DriveInput::voltage) {
+      for (const double input : inputs) {
+        const auto side = [&](double share) { return at_voltage(vehicle_.voltage + share * (input - centre)); };
+        points.push_back(point_of(input, {side(effect.right), side(effect.left)}));
+      }
+      return points;
     }
-    const AllocationPoint low = at_input(sides, which, centre - step), high = at_input(sides, which, centre + step);
-    const auto slope = [&](double AllocationPoint::* member) {
+    const std::vector<SideMeans> right = under_waves(effect.which, inputs), left = [&] {
+      std::vector<double> opposite = inputs;
+      if (effect.left == effect.right) return right;
+      for (double& input : opposite) input *= effect.left / effect.right;
+      return under_waves(effect.which, opposite);
+    }();
+    for (std::size_t n = 0; n < inputs.size(); ++n) points.push_back(point_of(inputs[n], {right[n], left[n]}));
+    return points;
+  }
+
+  AllocationPoint slope(AllocationInput which, double centre) const {
+    const InputOfSides effect = effect_of(which);
+    const SideMeans by_input = side_of(slopes_[std::size_t(effect.which)]);
+    return point_of(centre, {scaled(by_input, effect.right), scaled(by_input, effect.left)});
+  }
+
+ private:
+  static long long key_of(double voltage) { return std::llround(1e12 * voltage); }
+
+  static SideMeans scaled(const SideMeans& m, double by) {
+    const auto no_minus = [](double x) { return x == 0.0 ? 0.0 : x; };
+    return {no_minus(by * m.lift), no_minus(by * m.lift_sideways), no_minus(by * m.lift_forward), no_minus(by * m.yaw),
+            no_minus(by * m.frequency)};
+  }
+
+  SideMeans side_of(const WingLoads& all) const {
+    const auto of = [&](WingLoad which) { return all[std::size_t(which)]; };
+    const double r = centre_, per_r = hinge_offset_ / std::max(centre_, 1e-300);
+    // The drag M_aero / r acts against beta' at p = (0, d, 0) + r e_r.
+    return {0.5 * of(WingLoad::lift), 0.5 * (hinge_offset_ * of(WingLoad::lift) + r * of(WingLoad::lift_sideways)),
+            0.5 * r * of(WingLoad::lift_forward),
+            0.5 * (of(WingLoad::moment) + (r > 0.0 ? per_r * of(WingLoad::moment_sideways) : 0.0)),
+            of(WingLoad::frequency)};
+  }
+
+  /// In steady flapping at that voltage or amplitude [V], the motor as warm as at the operating point.
+  SideMeans at_voltage(double voltage) {
+    const auto known = by_voltage_.find(key_of(voltage));
+    if (known != by_voltage_.end()) return known->second;
+    SideMeans means;
+    Vehicle<double> there = vehicle_;
+    there.voltage = voltage;
+    const SteadyFlapping found = find_steady_flapping(there, {1e-9, false, reporting_}, start_up_in_time());
+    if (found.status == FlappingStatus::flapping && !found.record.empty()) means = side_of(wing_loads(found.record));
+    by_voltage_[key_of(voltage)] = means;
+    return means;
+  }
+
+  /// Of a direct drive at the operating point's amplitude and frequency, its wave changed by each of the inputs, which
+  /// are symmetrical about 0: followed from there to either end.
+  std::vector<SideMeans> under_waves(DriveInput which, const std::vector<double>& inputs) const {
+    std::vector<SideMeans> means(inputs.size(), at_orbit_);
+    const int middle = int(inputs.size()) / 2;
+    for (const int way : {1, -1}) {
+      std::vector<double> near;
+      for (int n = middle + way; n >= 0 && n < int(inputs.size()); n += way) {
+        const auto found = loads_under_wave(orbit_, wave_of(which, inputs[std::size_t(n)]), near);
+        means[std::size_t(n)] = found ? side_of(found->loads) : SideMeans{};
+        near = found ? found->start : std::vector<double>{};
+      }
+    }
+    return means;
+  }
+
+  Vehicle<double> vehicle_;
+  const CycleRecord& orbit_;
+  Reporting reporting_;
+  double hinge_offset_, centre_;
+  WingLoadSlopes slopes_;
+  SideMeans at_orbit_;
+  std::map<long long, SideMeans> by_voltage_;
+};
+
+/// Fills in the slope that the points on either side of point number `middle` give, and its error.
+void set_slope_of_points(AllocationMap& map, std::size_t middle) {
+  const auto set = [&](double AllocationPoint::* member) {
+    const auto difference = [&](std::size_t away) {
+      const AllocationPoint &low = map.points[middle - away], &high = map.points[middle + away];
       return (high.*member - low.*member) / (high.input - low.input);
     };
-    map.slope = {centre,
-                 slope(&AllocationPoint::lift),
-                 slope(&AllocationPoint::roll),
-                 slope(&AllocationPoint::pitch),
-                 slope(&AllocationPoint::yaw),
-                 slope(&AllocationPoint::frequency)};
+    const double near = difference(1), far = difference(2);
+    map.slope_of_points.*member = (4.0 * near - far) / 3.0;
+    map.slope_of_points_error.*member = std::abs(near - far) / 3.0;
+  };
+  map.slope_of_points.input = map.slope_of_points_error.input = map.slope.input;
+  for (const AllocationColumn& column : allocation_columns) set(column.member);
+}
+
+}  // namespace
+
+std::vector<AllocationMap> allocation_maps(const Linearisation& at, double hinge_offset) {
+  std::vector<AllocationMap> maps;
+  if (!at.model) return maps;
+  Sides sides(at, hinge_offset);
+  const double voltage = sides.vehicle().voltage;
+  const bool direct = drive_of(sides.vehicle()).alternating, two = sides.vehicle().motors == 2.0;
+  const auto add = [&](AllocationInput which, double low, double high, int count, int middle) {
+    const double centre = which == AllocationInput::voltage ? voltage : 0.0;
+    AllocationMap map{which, sides.points(which, low, high, count, centre), sides.slope(which, centre), {}, {}};
+    set_slope_of_points(map, std::size_t(middle));
     maps.push_back(std::move(map));
   };
-  add(AllocationInput::voltage, 0.5 * voltage, 1.3 * voltage, 17, voltage, 1e-3 * voltage);
-  if (two) add(AllocationInput::differential_voltage, -0.5 * voltage, 0.5 * voltage, 11, 0.0, 2e-3 * voltage);
-  if (direct) add(AllocationInput::bias_voltage, -0.2 * voltage, 0.2 * voltage, 9, 0.0, 2e-3 * voltage);
-  if (direct && two) add(AllocationInput::split_cycle, -0.3, 0.3, 7, 0.0, 2e-3);
+  add(AllocationInput::voltage, 0.5 * voltage, 1.3 * voltage, 17, 10);
+  if (two) add(AllocationInput::differential_voltage, -0.5 * voltage, 0.5 * voltage, 11, 5);
+  if (direct) add(AllocationInput::bias_voltage, -0.2 * voltage, 0.2 * voltage, 9, 4);
+  if (direct && two) {
+    add(AllocationInput::split_cycle, -0.3, 0.3, 7, 3);
+    add(AllocationInput::split_cycle_cosine, -0.3, 0.3, 7, 3);
+  }
   return maps;
 }
 

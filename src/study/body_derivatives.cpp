@@ -2,9 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <vector>
 
 #include "wingbeat/core/jet.hpp"
+#include "wingbeat/cycle/cycle_instants.hpp"
 #include "wingbeat/parts/pitching_wings.hpp"
 #include "wingbeat/parts/planform.hpp"
 
@@ -81,15 +81,11 @@ BodyDerivatives side_derivatives(double side, double beta, double beta_dot, cons
 
 BodyDerivatives body_derivatives(const Design<double>& design, const Vehicle<double>& vehicle, const CycleRecord& cycle,
                                  double hinge_offset) {
-  constexpr int instants = 2001;  // the trapezoidal rule, whose error falls with the square of their number
   const Wings wings(vehicle);
   const std::array<double, 3> half = {0.5 * first_moment(design, vehicle), 0.5 * vehicle.wings.s2,
                                       0.5 * vehicle.wings.s3};
-  const std::vector<WaveformRow> rows = cycle.waveform(instants);
   BodyDerivatives mean = BodyDerivatives::Zero();
-  for (std::size_t n = 0; n < rows.size(); ++n) {
-    const WaveformRow& row = rows[n];
-    const double weight = (n == 0 || n + 1 == rows.size() ? 0.5 : 1.0) / double(instants - 1);
+  for (const auto& [row, weight] : cycle_instants(cycle)) {
     const Coefficients c = wings.at(row.angle_of_attack_deg / degrees_per_radian);
     for (const double side : {1.0, -1.0}) {
       mean += weight * side_derivatives(side, row.stroke_angle, row.flapping_velocity, c, vehicle.wings.air_density,

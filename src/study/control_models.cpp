@@ -19,9 +19,7 @@ ControlModels control_models(const Design<double>& design, const ControlOptions&
   const Design<double>& at = models.linear.operating_point.design;
   models.body =
       body_derivatives(at, resolve(at, options.at.condition), models.linear.orbit.record, options.hinge_offset);
-  if (options.allocation_maps) {
-    models.maps = allocation_maps(models.linear, options.at.condition, options.hinge_offset);
-  }
+  if (options.allocation_maps) models.maps = allocation_maps(models.linear, options.hinge_offset);
   return models;
 }
 

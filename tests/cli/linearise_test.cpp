@@ -8,7 +8,7 @@
 namespace {
 
 using namespace cli;
-using testing::HasSubstr;
+using testing::HasSubstr, testing::Not;
 
 class Linearise : public Program {};
 
@@ -18,9 +18,15 @@ TEST_F(Linearise, ReportJsonTomlDataSetAndFigure) {
   for (const char* part : {"One cycle to the next", "Multiplier", "Continuous time", "Cycle-averaged derivatives"}) {
     EXPECT_THAT(report.out, HasSubstr(part));
   }
-  for (const char* part : {"step of voltage", "step of load torque", "lift mean", "crank speed mean"}) {
+  for (const char* part :
+       {"step of voltage", "step of load torque", "lift mean", "crank speed mean", "per steady change"}) {
     EXPECT_THAT(read(path("steps.svg")), HasSubstr(part));
   }
+  // All has settled within two cycles of 46 ms: of the ten that are reported three are drawn.
+  EXPECT_THAT(read(path("steps.svg")), HasSubstr("> 120<"));
+  EXPECT_THAT(read(path("steps.svg")), Not(HasSubstr("> 200<")));
+  ASSERT_EQ(run({"linearise", plain, "--no-maps", "--cycles", "12", "--plot", path("all.svg")}).status, 0);
+  EXPECT_THAT(read(path("all.svg")), HasSubstr("> 500<"));
   const Json json = run({"linearise", plain, "--no-maps", "--json"}).json();
   const Json& model = json["model"];
   EXPECT_EQ(model["states"].size(), 2u);
@@ -45,6 +51,35 @@ TEST_F(Linearise, ReportJsonTomlDataSetAndFigure) {
   EXPECT_THAT(read(path("model.mat")).substr(0, 116), HasSubstr("MATLAB 5.0 MAT-file, Written by wingbeat"));
 }
 
+TEST_F(Linearise, MapsHaveSlopesWithTheErrorOfTheirPoints) {
+  const std::string file = path("model.nc");
+  const Json json = run({"linearise", data + "/designs/two-wing-direct-hinge.toml", "--hinge-offset", "13.95 mm",
+                         "--json", "-o", file})
+                        .json();
+  const Json& maps = json["static_maps"];
+  ASSERT_EQ(maps.size(), 5u);
+  const auto of = [&](std::size_t map, const char* slope, const char* column) {
+    return maps[map][slope][column].get<double>();
+  };
+  EXPECT_EQ(maps[3]["input"], "split_cycle");
+  EXPECT_EQ(maps[4]["input"], "split_cycle_cosine");
+  for (const auto& [map, column] : {std::pair(0, "lift"), std::pair(1, "roll_moment"), std::pair(2, "pitch_moment"),
+                                    std::pair(3, "yaw_moment"), std::pair(4, "yaw_moment")}) {
+    const auto which = std::size_t(map);
+    EXPECT_NEAR(of(which, "slope", column), of(which, "slope_of_points", column),
+                of(which, "slope_of_points_error", column))
+        << maps[which]["input"];
+  }
+  EXPECT_NEAR(of(0, "slope", "lift"), json["model"]["steady_gain"][0][0].get<double>(), 1e-10);
+  EXPECT_LT(std::abs(of(3, "slope", "roll_moment")), 1e-10);
+  const wingbeat::NetcdfReader data_set(file);
+  EXPECT_EQ(data_set.read("yaw_moment_slope_by_split_cycle")[0], of(3, "slope", "yaw_moment"));
+  const std::string report = run({"linearise", data + "/designs/two-wing-direct-hinge.toml"}).out;
+  for (const char* part : {"split_cycle_cosine [1]", "slope at 0", "from these points", "off by at most about"}) {
+    EXPECT_THAT(report, HasSubstr(part));
+  }
+}
+
 TEST_F(Linearise, OctaveAndScipyLoadTheMatFile) {
   const std::string file = path("model.mat");
   ASSERT_EQ(run({"linearise", data + "/designs/two-wing-direct.toml", "-o", file}).status, 0);
@@ -59,7 +94,8 @@ TEST_F(Linearise, OctaveAndScipyLoadTheMatFile) {
       "for k in range(5):\n"
       "    np.testing.assert_allclose(m['step_responses'][k, :, 0], m['C'] @ x + m['D'][:, 0], rtol=1e-9)\n"
       "    x = m['A'] @ x + m['B'][:, 0]\n"
-      "assert m['map_bias_voltage'][0, 0]['pitch_moment'].shape == (1, 9)\n";
+      "assert m['map_bias_voltage'][0, 0]['pitch_moment'].shape == (1, 9)\n"
+      "assert m['map_split_cycle_cosine'][0, 0]['slope_of_points_error'].shape == (1, 5)\n";
   EXPECT_EQ(std::system(("/usr/bin/python3 -c \"" + script + "\"").c_str()), 0);
   const std::string octave = "m = load('" + file +
                              "'); assert(strcmp(m.state_names{1}, 'stroke_angle')); "

@@ -136,8 +136,8 @@ TEST(Allocation, MapsOfTwoDirectDrives) {
   const Linearisation at = linearise(design);
   ASSERT_TRUE(at.model);
   constexpr double offset = 4e-3;
-  const std::vector<AllocationMap> maps = allocation_maps(at, Condition::air, offset);
-  ASSERT_EQ(maps.size(), 4u);
+  const std::vector<AllocationMap> maps = allocation_maps(at, offset);
+  ASSERT_EQ(maps.size(), 5u);
   // Where maps meet the operating point they are it, and slopes are those of the linear model.
   const double lift = at.orbit.metrics[Metric::lift_mean];
   const AllocationMap& common = map_of(maps, AllocationInput::voltage);

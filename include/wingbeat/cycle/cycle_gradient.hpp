@@ -69,6 +69,9 @@ class CycleGradient {
     }
   }
 
+  /// The system on dual numbers: what it has beside its vehicle may be seeded before run().
+  Jets& system() { return jets_; }
+
   /// One cycle from the orbit's start, its states in the first slots. False where the fixed point is singular.
   bool run() {
     JetState y;

@@ -15,17 +15,21 @@ enum class AllocationInput {
   voltage,               ///< of both sides alike [V]
   differential_voltage,  ///< of the left side less that of the right: each has half of it [V]; needs vehicle.motors = 2
   bias_voltage,          ///< added to a direct drive's sine, on both sides [V]
-  split_cycle  ///< delta: the positive half of a direct drive's sine takes (1 + delta)/2 of the period on the right and
-               ///< (1 - delta)/2 on the left, with its mean taken out [1]; needs vehicle.motors = 2
+  split_cycle,  ///< delta: the positive half of a direct drive's sine takes (1 + delta)/2 of the period on the right
+                ///< and (1 - delta)/2 on the left, with its mean taken out [1]; needs vehicle.motors = 2
+  split_cycle_cosine  ///< delta: the same of the half of the voltage that falls from peak to trough, as of a cosine [1]
 };
 template <>
 inline constexpr std::pair<const char*, AllocationInput> names_of<AllocationInput>[] = {
     {"voltage", AllocationInput::voltage},
     {"differential_voltage", AllocationInput::differential_voltage},
     {"bias_voltage", AllocationInput::bias_voltage},
-    {"split_cycle", AllocationInput::split_cycle}};
+    {"split_cycle", AllocationInput::split_cycle},
+    {"split_cycle_cosine", AllocationInput::split_cycle_cosine}};
 
-inline const char* unit_of(AllocationInput input) { return input == AllocationInput::split_cycle ? "1" : "V"; }
+inline const char* unit_of(AllocationInput input) {
+  return input == AllocationInput::split_cycle || input == AllocationInput::split_cycle_cosine ? "1" : "V";
+}
 
 /// Means of a settled cycle; absent where it does not flap there.
 struct AllocationPoint {
@@ -54,12 +58,27 @@ inline constexpr AllocationColumn allocation_columns[] = {
 struct AllocationMap {
   AllocationInput input;
   std::vector<AllocationPoint> points;
-  AllocationPoint slope;  ///< by the input at the operating point, from points next to it [.../V or .../1]
+  AllocationPoint slope;  ///< by the input at the operating point, exact derivatives [.../V or .../1]
+  /// The same from the two points next to the operating point on either side, by Richardson's extrapolation, and what
+  /// that may be off by: how far both differences are apart from it. Where the slope is further off than that, the map
+  /// bends or jumps between its points.
+  AllocationPoint slope_of_points, slope_of_points_error;
 };
+
+/// What a map has of slopes, as it is named outside the program.
+struct AllocationSlope {
+  const char* name;
+  const char* meaning;
+  AllocationPoint AllocationMap::* member;
+};
+inline constexpr AllocationSlope allocation_slopes[] = {
+    {"slope", "at the operating point, exact", &AllocationMap::slope},
+    {"slope_of_points", "at the operating point, from the points next to it", &AllocationMap::slope_of_points},
+    {"slope_of_points_error", "estimated error of slope_of_points", &AllocationMap::slope_of_points_error}};
 
 /// The maps that the vehicle has, in the order of AllocationInput, about an operating point that flaps: voltages from
 /// half to 1.3 times its own, differences up to half of it, biases up to a fifth, splits up to 0.3. A pwm supply's
-/// voltage is its mean.
-std::vector<AllocationMap> allocation_maps(const Linearisation& at, Condition condition, double hinge_offset = 0.0);
+/// voltage is its mean. The motor stays at the temperatures of the operating point, as in the linear model.
+std::vector<AllocationMap> allocation_maps(const Linearisation& at, double hinge_offset = 0.0);
 
 }  // namespace wingbeat

@@ -1,0 +1,247 @@
+// A periodic system with what the air does to a body among its integrals, and with the wave of a direct drive changed.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "wingbeat/cycle/record.hpp"
+#include "wingbeat/parts/drive_wave.hpp"
+
+namespace wingbeat::detail {
+
+/// What is integrated beside the integrals of all vehicles, over the time of a cycle.
+enum class BodyIntegral {
+  lift_sideways,    ///< lift cos beta [N s]
+  lift_forward,     ///< lift sin beta [N s]
+  moment,           ///< M_aero [N m s]
+  moment_sideways,  ///< M_aero cos beta [N m s]
+};
+inline constexpr std::size_t body_integral_count = 4;
+
+/// `System` with the loads on a body. Of a direct drive, `vehicle.voltage` remains the amplitude of the wave, whose
+/// halves meet at fixed nodes; of a crank the wave means nothing, and cycles are repeated, not searched for.
+template <class System>
+struct LoadsSystem : System {
+  using Real = typename System::Real;
+  using State = typename System::State;
+  static constexpr std::size_t first_load = std::tuple_size_v<typename System::Quadrature>;
+  using Quadrature = std::array<Real, first_load + body_integral_count>;
+  static constexpr std::size_t wave_half = std::tuple_size_v<typename System::Signs>;  ///< the sign that nodes flip
+  using Signs = std::array<Real, wave_half + 1>;
+  static constexpr bool pitching = requires { System::pitch; };
+  static constexpr bool waved = !System::has_rod;
+
+  DriveWave<Real> wave;
+
+  static constexpr std::size_t index_of(BodyIntegral which) { return first_load + std::size_t(which); }
+
+  template <Scalar T>
+  auto cast() const {
+    using Of = decltype(std::declval<const System&>().template cast<T>());
+    return LoadsSystem<Of>{System::template cast<T>(), {T(wave.bias), T(wave.split), T(wave.cosine_split)}};
+  }
+
+  auto fixed_nodes() const {
+    if constexpr (waved) {
+      std::array<solver::FixedNode, 3> nodes;
+      const std::array<double, 3> at = nodes_of(wave);
+      for (std::size_t n = 0; n < nodes.size(); ++n) nodes[n] = {at[n], wave_half};
+      return nodes;
+    } else {
+      return System::fixed_nodes();
+    }
+  }
+
+  Signs start_signs(const State& y) const
+    requires waved
+  {
+    Signs signs;
+    signs.fill(Real(1.0));
+    take(System::start_signs(y), signs);
+    // What the shaft's own rule sees at phase 0 is the sine, not the wave.
+    if constexpr (pitching) {
+      if (pitch_stops::rests_at_stop(*this, y)) pitch_stops::hold_or_leave(*this, Real(0.0), y, signs);
+    }
+    return signs;
+  }
+
+  void event_transition(std::size_t k, const Real& x, State& y, Signs& signs) const
+    requires(waved && !pitching)
+  {
+    auto own = own_signs(signs);
+    driven(x).event_transition(k, phase(x), y, own);
+    take(own, signs);
+  }
+  void event_transition(std::size_t k, const Real& x, State& y, Signs& signs, Quadrature* totals) const
+    requires pitching
+  {
+    if (!this->jumps(k)) {
+      signs[k] = -signs[k];
+      return;
+    }
+    Quadrature gained{};
+    pitch_stops::event_transition(*this, x, y, signs, &gained);
+    add_impulses(gained, Real(System::stroke_angle(x, y)), totals);
+  }
+
+  template <bool quadratures>
+  void reset_map(const Real& x, State& y, const Signs& from, const Signs& to, Quadrature* totals) const
+    requires(waved && !pitching)
+  {
+    typename System::Quadrature gained{};
+    driven(x).template reset_map<quadratures>(phase(x), y, own_signs(from), own_signs(to), &gained);
+    if (!quadratures || !totals) return;
+    for (std::size_t q = 0; q < gained.size(); ++q) (*totals)[q] = (*totals)[q] + gained[q];
+  }
+  template <bool quadratures>
+  void reset_map(const Real& x, State& y, const Signs& from, const Signs& to, Quadrature* totals) const
+    requires pitching
+  {
+    if constexpr (!quadratures) {
+      pitch_stops::reset_map<false>(*this, x, y, from, to, totals);
+    } else {
+      Quadrature gained{};
+      Real beta = System::stroke_angle(x, y);
+      if (value_of(from[System::impacts]) != value_of(to[System::impacts])) {
+        // Where a neighbouring solution meets the stop.
+        const auto before = rates<false>(x, y, from);
+        const Real room = pitch_stops::side<LoadsSystem>(y) * this->vehicle.pitch.hinge.stop - y[System::pitch];
+        const Real late = room / before.dy[System::pitch];
+        State there = y;
+        for (std::size_t n = 0; n < y.size(); ++n) there[n] = y[n] + before.dy[n] * late;
+        beta = System::stroke_angle(Real(x + late), there);
+      }
+      pitch_stops::reset_map<true>(*this, x, y, from, to, &gained);
+      add_impulses(gained, beta, totals);
+    }
+  }
+
+  auto pitch_motion(const Real& x, const State& y, const Signs& signs) const
+    requires pitching
+  {
+    return driven(x).pitch_motion(phase(x), y, own_signs(signs));
+  }
+
+  template <bool quadratures, class At>
+  solver::Rates<LoadsSystem> rates(const At& x, const State& y, const Signs& signs) const {
+    using std::cos;
+    using std::sin;
+    const auto own = own_signs(signs);
+    const auto& system = driven(x);
+    const At at = phase(x);
+    const auto of = system.template rates<quadratures>(at, y, own);
+    solver::Rates<LoadsSystem> r;
+    r.dy = of.dy;
+    r.switches = of.switches;
+    if constexpr (quadratures) {
+      std::copy(of.dq.begin(), of.dq.end(), r.dq.begin());
+      const Motion<Real> m = system.motion(at, y, own);
+      const Real beta = system.stroke_angle(m, y), time = of.dq[std::size_t(Integral::time)];
+      r.dq[index_of(BodyIntegral::lift_sideways)] = m.aero.lift * cos(beta) * time;
+      r.dq[index_of(BodyIntegral::lift_forward)] = m.aero.lift * sin(beta) * time;
+      r.dq[index_of(BodyIntegral::moment)] = m.aero.moment * time;
+      r.dq[index_of(BodyIntegral::moment_sideways)] = m.aero.moment * cos(beta) * time;
+    }
+    return r;
+  }
+
+ private:
+  /// The system where its supply gives the wave's voltage at x: a copy, which it sees at the peak of a sine.
+  template <class At>
+  decltype(auto) driven([[maybe_unused]] const At& x) const {
+    if constexpr (waved) {
+      System of = *this;
+      of.vehicle.voltage = voltage_of_wave(wave, this->vehicle.voltage, x);
+      return of;
+    } else {
+      return static_cast<const System&>(*this);
+    }
+  }
+  template <class At>
+  static At phase(const At& x) {
+    if constexpr (waved) return At(0.5 * pi);
+    else return x;
+  }
+
+  static typename System::Signs own_signs(const Signs& signs) {
+    typename System::Signs own;
+    std::copy_n(signs.begin(), own.size(), own.begin());
+    return own;
+  }
+  static void take(const typename System::Signs& own, Signs& signs) {
+    std::copy(own.begin(), own.end(), signs.begin());
+  }
+
+  /// Adds what was gained at an impact, at the stroke angle beta: its lift acts there, M_aero has no impulse.
+  static void add_impulses(Quadrature& gained, const Real& beta, Quadrature* totals) {
+    using std::cos;
+    using std::sin;
+    const Real& lift = gained[std::size_t(Integral::lift)];
+    gained[index_of(BodyIntegral::lift_sideways)] = lift * cos(beta);
+    gained[index_of(BodyIntegral::lift_forward)] = lift * sin(beta);
+    if (!totals) return;
+    for (std::size_t q = 0; q < gained.size(); ++q) (*totals)[q] = (*totals)[q] + gained[q];
+  }
+};
+
+/// A cycle of a system as one of the system with loads, without those.
+template <class System>
+solver::Iterate<LoadsSystem<System>> with_loads(const solver::Iterate<System>& cycle) {
+  solver::Iterate<LoadsSystem<System>> of;
+  for (const auto& step : cycle.steps) {
+    solver::Step<LoadsSystem<System>> to{step.x, step.h, step.y, {}, {}, {}};
+    to.signs.fill(1.0);
+    std::copy(step.signs.begin(), step.signs.end(), to.signs.begin());
+    to.first.dy = step.first.dy;
+    to.first.switches = step.first.switches;
+    std::copy(step.first.dq.begin(), step.first.dq.end(), to.first.dq.begin());
+    std::copy(step.dq.begin(), step.dq.end(), to.dq.begin());
+    of.steps.push_back(to);
+  }
+  of.stages = cycle.stages;
+  of.switches = cycle.switches;
+  of.end = cycle.end;
+  of.status = cycle.status;
+  of.method = cycle.method;
+  of.stop = cycle.stop;
+  of.largest_step = cycle.largest_step;
+  of.tolerance = cycle.tolerance;
+  of.error_sum = cycle.error_sum;
+  of.switch_scale = cycle.switch_scale;
+  std::copy(cycle.integral_scale.begin(), cycle.integral_scale.end(), of.integral_scale.begin());
+  return of;
+}
+
+/// Ends a step of a recorded cycle at x, unless one does within rounding.
+template <class System>
+void end_step_at(double x, RecordedCycle<System>& recorded) {
+  auto& steps = recorded.cycle.steps;
+  for (std::size_t n = 0; n < steps.size(); ++n) {
+    constexpr double rounding = 1e-9;
+    if (x < steps[n].x + rounding || x > steps[n].x + steps[n].h - rounding) continue;
+    const System& system = recorded.system;
+    const solver::Method method = recorded.cycle.method;
+    auto first = steps[n], second = steps[n];
+    first.h = x - first.x;
+    second.x = x;
+    second.h = steps[n].x + steps[n].h - x;
+    const auto to_x = solver::take_step<true>(method, system, first.x, first.y, first.h, first.signs, first.first);
+    second.y = to_x.y;
+    second.first = system.template rates<true>(x, second.y, second.signs);
+    const auto on = solver::take_step<true>(method, system, x, second.y, second.h, second.signs, second.first);
+    first.dq = to_x.dq;
+    second.dq = on.dq;
+    steps[n] = first;
+    steps.insert(steps.begin() + std::ptrdiff_t(n) + 1, second);
+    if (auto& stages = recorded.cycle.stages; !stages.empty()) {
+      stages[n] = to_x.stages;
+      stages.insert(stages.begin() + std::ptrdiff_t(n) + 1, on.stages);
+    }
+    return;
+  }
+}
+
+}  // namespace wingbeat::detail

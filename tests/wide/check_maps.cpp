@@ -1,0 +1,179 @@
+// Slopes of static maps against cycles beside the operating point, against the points of the maps and against the
+// steady gain, on random vehicles of each kind, with stops and without. Exit status 1 if any slope is off by more than
+// allowed.
+//
+//   check_maps [COUNT] [--kind crank|four_bar|tabulated|direct|hinged_crank|hinged_direct] [--stops yes|no] [--seed S]
+//              [--vehicle N] [--threads T] [--no-points]
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <thread>
+
+#include "study/slope_differences.hpp"
+#include "vehicle/map_vehicles.hpp"
+#include "wingbeat/files/design_file.hpp"
+
+namespace {
+
+using namespace wingbeat;
+
+constexpr double gain_apart = 1e-6;  ///< allowed between lift slope and steady gain, of either
+
+struct Arguments {
+  std::size_t count = 50, first = 0;
+  int kind = -1, stops = -1;
+  bool one = false, points = true;
+  std::uint32_t seed = 33;
+  unsigned threads = std::thread::hardware_concurrency();
+};
+
+struct Checked {
+  bool flaps = false;
+  SlopeCheck cycles, points;
+  double gain = 0.0;
+  std::string error;
+};
+
+Checked checked(const Design<double>& design, bool points) {
+  Checked of;
+  try {
+    validate(design);
+    const Linearisation at = linearise(design);
+    if (!at.model) return of;
+    of.flaps = true;
+    of.cycles = slopes_against_cycles(at.orbit);
+    of.gain = lift_slope_apart(at, wing_load_slopes(at.orbit.record)[0][std::size_t(WingLoad::lift)]);
+    if (points) of.points = slopes_against_points(allocation_maps(at, 4e-3));
+  } catch (const ParameterError&) {
+  } catch (const std::exception& error) {
+    of.error = error.what();
+  }
+  return of;
+}
+
+struct Row {
+  std::size_t drawn = 0, vehicles = 0, compared = 0, beyond = 0, points = 0, bent = 0, gains = 0, errors = 0;
+  double apart = 0.0, worst = 0.0, gain = 0.0;
+};
+
+/// Draws vehicles in order of their numbers until `count` flap.
+Row check(MapKind kind, bool stops, const Arguments& arguments) {
+  const std::size_t most = arguments.one ? 1 : 20 * arguments.count;
+  std::vector<Checked> found(most);
+  std::atomic<std::size_t> next{0}, flapping{0};
+  const auto work = [&] {
+    for (std::size_t n = next++; n < most && flapping < arguments.count; n = next++) {
+      found[n] =
+          checked(map_vehicle(kind, stops, std::uint32_t(arguments.first + n), arguments.seed), arguments.points);
+      if (found[n].flaps) ++flapping;
+    }
+  };
+  std::vector<std::thread> threads;
+  for (unsigned t = 1; t < arguments.threads; ++t) threads.emplace_back(work);
+  work();
+  for (std::thread& t : threads) t.join();
+
+  Row row;
+  for (std::size_t n = 0; n < most && row.vehicles < arguments.count; ++n) {
+    const Checked& of = found[n];
+    ++row.drawn;
+    const std::size_t number = arguments.first + n;
+    const auto remark = [&](const std::string& text) {
+      std::printf("%s %zu%s: %s\n", map_kind_names[std::size_t(kind)].data(), number, stops ? " with stops" : "",
+                  text.c_str());
+    };
+    if (!of.error.empty()) ++row.errors, remark("threw: " + of.error);
+    if (!of.flaps) continue;
+    ++row.vehicles;
+    row.compared += std::size_t(of.cycles.compared), row.beyond += std::size_t(of.cycles.beyond);
+    row.points += std::size_t(of.points.compared), row.bent += std::size_t(of.points.beyond);
+    row.apart = std::max(row.apart, of.cycles.apart), row.worst = std::max(row.worst, of.cycles.worst);
+    row.gain = std::max(row.gain, of.gain);
+    if (of.cycles.beyond > 0)
+      remark(of.cycles.where + ": " + std::to_string(of.cycles.worst) + " times what is allowed");
+    if (of.gain > gain_apart) ++row.gains, remark("lift slope off the steady gain by " + std::to_string(of.gain));
+    if (arguments.one) {
+      remark("from cycles at worst " + std::to_string(of.cycles.worst) + " (" + of.cycles.where + "), from points " +
+             std::to_string(of.points.worst) + " (" + of.points.where + ") times what is allowed");
+      std::printf("%s", write_design(map_vehicle(kind, stops, std::uint32_t(number), arguments.seed)).c_str());
+    }
+  }
+  return row;
+}
+
+[[noreturn]] void refuse(const std::string& why) {
+  std::fprintf(stderr, "check_maps: %s\n", why.c_str());
+  std::exit(2);
+}
+
+Arguments read_arguments(int argc, char** argv) {
+  Arguments a;
+  for (int k = 1; k < argc; ++k) {
+    const std::string_view word = argv[k];
+    const auto text = [&]() -> std::string {
+      if (k + 1 >= argc) refuse(std::string(word) + " needs a value");
+      return argv[++k];
+    };
+    const auto number = [&](const std::string& of) -> std::size_t {
+      char* end = nullptr;
+      const long value = std::strtol(of.c_str(), &end, 10);
+      if (of.empty() || *end || value < 0) refuse("\"" + of + "\" is not a number");
+      return std::size_t(value);
+    };
+    if (word == "--kind") {
+      const std::string name = text();
+      const auto at = std::find(map_kind_names.begin(), map_kind_names.end(), name);
+      if (at == map_kind_names.end()) refuse("there is no kind \"" + name + "\"");
+      a.kind = int(at - map_kind_names.begin());
+    } else if (word == "--stops") {
+      const std::string name = text();
+      if (name != "yes" && name != "no") refuse("--stops yes or no");
+      a.stops = name == "yes";
+    } else if (word == "--no-points") {
+      a.points = false;
+    } else if (word == "--vehicle") {
+      a.one = true, a.first = number(text());
+    } else if (word == "--seed") {
+      a.seed = std::uint32_t(number(text()));
+    } else if (word == "--threads") {
+      a.threads = unsigned(std::max<std::size_t>(1, number(text())));
+    } else if (word.substr(0, 1) == "-") {
+      refuse("unknown option " + std::string(word));
+    } else {
+      a.count = number(std::string(word));
+    }
+  }
+  return a;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Arguments arguments = read_arguments(argc, argv);
+  std::size_t wrong = 0;
+  std::string table;
+  for (int kind = 0; kind < int(map_kind_names.size()); ++kind) {
+    for (const bool stops : {false, true}) {
+      if ((arguments.kind >= 0 && arguments.kind != kind) || (arguments.stops >= 0 && arguments.stops != int(stops))) {
+        continue;
+      }
+      const Row r = check(MapKind(kind), stops, arguments);
+      char line[200];
+      std::snprintf(line, sizeof line, "%-14s %-6s %5zu %5zu | %6zu %6zu %8.1e %7.2f | %8.1e | %6zu %6zu | %4zu\n",
+                    map_kind_names[std::size_t(kind)].data(), stops ? "stops" : "", r.vehicles, r.drawn, r.compared,
+                    r.beyond, r.apart, r.worst, r.gain, r.points, r.bent, r.errors);
+      table += line;
+      wrong += r.beyond + r.gains + r.errors;
+      if (r.vehicles < arguments.count && !arguments.one) ++wrong;
+      std::fflush(stdout);
+    }
+  }
+  std::printf("%-21s %5s %5s | %6s %6s %8s %7s | %8s | %6s %6s | %4s\n%s", "kind", "flap", "drawn", "slopes", "beyond",
+              "apart", "worst", "gain", "slopes", "beyond", "err", table.c_str());
+  std::printf(
+      "first block: slopes against cycles beside the operating point; apart: largest distance over load by input; worst:\n"
+      "over what is allowed, the error that the differences show and 1e-5; gain: lift slope off the steady gain;\n"
+      "second block: slopes against the points of the maps, beyond their stated error: maps that bend between points\n");
+  return wrong > 0 ? 1 : 0;
+}
