@@ -165,13 +165,14 @@ class Sides {
 /// Fills in the slope that the points on either side of point number `middle` give, and its error.
 void set_slope_of_points(AllocationMap& map, std::size_t middle) {
   const auto set = [&](double AllocationPoint::* member) {
-    const auto difference = [&](std::size_t away) {
-      const AllocationPoint &low = map.points[middle - away], &high = map.points[middle + away];
-      return (high.*member - low.*member) / (high.input - low.input);
-    };
-    const double near = difference(1), far = difference(2);
+    const auto value = [&](int away) { return map.points[std::size_t(int(middle) + away)].*member; };
+    const double step = map.points[middle + 1].input - map.points[middle].input;
+    const double near = (value(1) - value(-1)) / (2.0 * step), far = (value(2) - value(-2)) / (4.0 * step);
     map.slope_of_points.*member = (4.0 * near - far) / 3.0;
-    map.slope_of_points_error.*member = std::abs(near - far) / 3.0;
+    // Where the map bends within the nearer step, the curvatures that both pairs show differ.
+    const double near_curvature = (value(1) - 2.0 * value(0) + value(-1)) / (step * step);
+    const double far_curvature = (value(2) - 2.0 * value(0) + value(-2)) / (4.0 * step * step);
+    map.slope_of_points_error.*member = std::abs(near - far) + step * std::abs(near_curvature - far_curvature);
   };
   map.slope_of_points.input = map.slope_of_points_error.input = map.slope.input;
   for (const AllocationColumn& column : allocation_columns) set(column.member);
