@@ -75,8 +75,8 @@ std::string number_text(double x, const Claim& c) {
   if (!std::isfinite(x)) return "-";
   if (c.unit != "1") return readable(x, c.unit);
   const bool percent = c.published_text.find('%') != std::string::npos;
-  if (percent) return fmt::format("{:.4g} %", 100.0 * x);
-  return c.published_text.find("percentage") != std::string::npos ? fmt::format("{:.3g} points", 100.0 * x)
+  if (percent) return fmt::format("{:#.4g} %", 100.0 * x);
+  return c.published_text.find("percentage") != std::string::npos ? fmt::format("{:#.3g} points", 100.0 * x)
                                                                   : fmt::format("{:#.4g}", x);
 }
 

@@ -15,6 +15,9 @@ std::string page_style();
 std::string page_script();
 void use_page_colours(std::string& svg);
 
+/// Text with minus signs in place of the hyphens before digits that begin a number.
+std::string with_minus_signs(std::string html);
+
 /// The answer to the title question with its numbers.
 std::string answer_html(const Material& m);
 /// What the report says before any figure: how many predictions are met, what is not, errors of the paper, equation

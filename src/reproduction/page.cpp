@@ -67,7 +67,7 @@ table.claims { font-size: .76rem; }
 .strip .beyond { border-style: dotted; background: var(--page); }
 .strip .span { height: 2px; min-width: 1px; background: var(--grey); }
 .strip .span.rod { top: .22rem; } .strip .span.work { top: .62rem; }
-pre { background: var(--band); border: 1px solid var(--line); padding: .7rem .9rem; overflow-x: auto;
+pre { white-space: pre-wrap; background: var(--band); border: 1px solid var(--line); padding: .7rem .9rem; overflow-x: auto;
   font-size: .85rem; line-height: 1.4; }
 code { font-size: .9em; }
 .tools { position: sticky; top: 0; z-index: 2; background: var(--page); padding: .4rem 0;
@@ -88,10 +88,12 @@ body[data-shown=virtual-work] [data-formulation=rod-force] { display: none; }
   .scorecard td[data-label]::before { content: attr(data-label) ": "; color: var(--soft); }
   .scorecard td.yes[data-label]::before { content: "\25CF  " attr(data-label) ": "; }
   .scorecard td.no[data-label]::before { content: "\25CB  " attr(data-label) ": "; } }
-@media print { body { max-width: none; padding: 0; font-size: 10pt; } h2 { break-after: avoid; }
+@media print { body { max-width: none; padding: 0; font-size: 9pt; } h2 { break-after: avoid; }
   figure, tr { break-inside: avoid; }
-  .figures { grid-template-columns: 1fr 1fr; }
-  figure.page .drawing svg { min-width: 0; } .drawing svg { max-height: 205mm; }
+  .figures { display: block; columns: 2; column-gap: 6mm; } figure { margin-bottom: 4mm; }
+  figure.page { column-span: all; } figure.page .drawing svg { min-width: 0; } .drawing svg { max-height: 115mm; }
+  p, ul, ol, .answer { max-width: none; } h2 { margin-top: 1.2rem; }
+  details:not([open]), .moving { display: none; } .scorecard td:nth-child(5), .strip { min-width: 30mm; }
   nav, .tools, .tip { display: none !important; }
   .wide, .drawing { overflow: visible; } table, table.laws { width: 100%; font-size: 6.6pt; }
   th, td { padding: .2rem .3rem; } td:first-child { min-width: 9rem; }
@@ -188,7 +190,6 @@ for (const table of document.querySelectorAll('table.sortable')) {
     head.addEventListener('keydown', event => { if (event.key === 'Enter') sort(); });
   });
 }
-addEventListener('beforeprint', () => { for (const d of document.querySelectorAll('details')) d.open = true; });
 )";
 
 /// A colour of the figures: as they are drawn, as a name of the page's style, and on a dark page.
@@ -242,6 +243,14 @@ std::string page_style() {
   return fmt::format(":root {{ {} }}\n@media screen and (prefers-color-scheme: dark) {{ :root {{ {} }} }}", light,
                      dark) +
          page_rules;
+}
+
+std::string with_minus_signs(std::string html) {
+  for (std::size_t at = 1; at + 1 < html.size(); ++at) {
+    const bool begins = std::string_view(" [(>,").find(html[at - 1]) != std::string_view::npos;
+    if (html[at] == '-' && begins && html[at + 1] >= '0' && html[at + 1] <= '9') html.replace(at, 1, "−");
+  }
+  return html;
 }
 
 std::string page_script() { return script; }

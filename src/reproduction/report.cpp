@@ -63,7 +63,7 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
                      one_formulation ? " data-formulation=\"virtual-work\"" : "");
       if (!s.animation.empty()) {
         fmt::format_to(out,
-                       "<figure><div class=\"drawing\">{0}</div><figcaption><b>Animation.</b> "
+                       "<figure class=\"moving\"><div class=\"drawing\">{0}</div><figcaption><b>Animation.</b> "
                        "One computed cycle, repeated: the crank speed "
                        "is not constant. "
                        "<span class=\"files\">File: <a href=\"{1}-moving.svg\">svg</a></span></figcaption></figure>\n",

@@ -43,7 +43,9 @@ std::string strip(const Claim& c) {
 std::string cell(const Claim& c, std::size_t f) {
   const std::string off = percent_text(c.deviation[f]);
   std::string html = fmt::format("<td class=\"{}\" data-label=\"{}\">", c.within[f] ? "yes" : "no", variant_name(f));
+  const bool range = c.published_text.find(" to ") != std::string::npos;
   if (!std::isfinite(c.ours[f])) html += markup_escaped(c.ours_text[f]);
+  else if (range) html += markup_escaped(c.ours_text[f].substr(0, c.ours_text[f].find(" (")));
   else html += markup_escaped(number_text(c.ours[f], c));
   if (std::isfinite(c.interval[f].low)) {
     html += fmt::format(" <span class=\"files\">[{} to {}]</span>", markup_escaped(number_text(c.interval[f].low, c)),
@@ -70,7 +72,7 @@ std::string scorecard_html(const Assessment& a) {
                           cell(*c, 0), cell(*c, 1), strip(*c));
     }
   }
-  return html + "</tbody></table></div>\n";
+  return with_minus_signs(html + "</tbody></table></div>\n");
 }
 
 std::string uncertainty_html(const Material& m) {

@@ -210,7 +210,7 @@ std::string answer_html(const Material& m) {
       "real joints behave.</p></div>\n",
       drag->drag_factor, input ? 100.0 * input->computed : absent, input ? input->published.published_text : "-",
       load->tests.size(), 100.0 * load->rms, 100.0 * best, 100.0 * worst);
-  return html + commands_of_the_answer(m);
+  return with_minus_signs(html) + commands_of_the_answer(m);
 }
 
 std::string question_html(const Material& m) {
