@@ -162,7 +162,7 @@ std::vector<Sheet> paper_sheets(const Material& m) {
       9, "Input and motor output power with and without springs", false,
       two(Metric::power_electrical) +
           fmt::format(
-              " (electrical, rod-force). Springs raise the input below a frequency and lower it above: {}. Ratio at "
+              " (electrical, rod-force). Springs raise the input below a frequency and lower it above: {}. Change by springs at "
               "{:g} Hz: {}.",
               beside(m.assessment, "springs raise the electrical input"), f0,
               beside(m.assessment, "mean electrical input power, change")),
@@ -179,8 +179,9 @@ std::vector<Sheet> paper_sheets(const Material& m) {
     // The last frequency at which springs add.
     const TrendCurve &with = curve_of(f, on), &without = curve_of(f, off);
     const auto reactive = [](const TrendCurve& c, std::size_t n) { return c.metrics[n][Metric::power_reactive]; };
-    std::string said = fmt::format(" Frequency of its minimum with springs: {}.",
-                                   beside(m.assessment, "with springs the mean absolute reactive power"));
+    std::string said = fmt::format(
+        " Frequency of its dip with springs, searched from 8 to 30 Hz; the lower end of the range lies lower: {}.",
+        beside(m.assessment, "with springs the mean absolute reactive power"));
     for (std::size_t n = f.axis.size(); n-- > 0;) {
       if (!(reactive(with, n) > reactive(without, n))) continue;
       said += fmt::format(" Up to {:.3g} Hz it is higher than without springs: the springs are too stiff there.",
@@ -244,7 +245,7 @@ std::vector<Sheet> paper_sheets(const Material& m) {
       13, "Mean lift with and without springs", false,
       fmt::format("At prescribed frequency springs change the velocity profile, not the stroke amplitude: the wings "
                   "are faster in "
-                  "mid-stroke. Ratio at {:g} Hz: {}.",
+                  "mid-stroke. Change by springs at {:g} Hz: {}.",
                   f0, beside(m.assessment, fmt::format("mean lift, change by springs at {:g} Hz", f0))),
       {{Metric::lift_mean, "mean lift (mN)", ""}}, [&](std::vector<ChartPanel>& panels) {
         mark_published(

@@ -172,7 +172,7 @@ std::string further_html(const Material& m) {
   std::string html = fmt::format(
       "<p>The paper's model has constant motor parameters, no gear loss and no added mass of the air, and its wings "
       "pitch by a law. The program can add each of these. <b>The answer to the title question stays yes:</b> without "
-      "friction the model predicts {:.0f} to {:.0f} % less input at {:g} Hz. Springs change the input by {:+.1f} to "
+      "friction the model predicts {:.0f} to {:.0f} % less input at {:g} Hz (numbers marked ‡ below are outside the domain). Springs change the input by {:+.1f} to "
       "{:+.1f} % and the mean lift at {:g} V by {:+.1f} to {:+.1f} %. Mean lift at {:g} V with springs and the crank "
       "of Table 2 is {:.2f} to {:.2f} of the weight{}.</p>\n",
       -100.0 * least, -100.0 * most, f0, 100.0 * saved_most, 100.0 * saved_least, m.computed.options.voltage,

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "reproduction/html.hpp"
@@ -180,11 +181,11 @@ const LawPrediction* law_of(const Assessment& a, std::size_t rival, std::size_t 
 std::string answer_html(const Material& m) {
   const Assessment& a = m.assessment;
   const LawPrediction* load = law_of(a, load_proportional_rival, 0);
-  const LawPrediction* drag = nullptr;
+  std::array<const LawPrediction*, 2> drag{};  // by rod-force and by virtual-work
   for (const LawPrediction& p : a.laws) {
-    if (p.variant == 0 && rivals[p.rival].own_drag) drag = &p;
+    if (p.variant < 2 && rivals[p.rival].own_drag) drag[p.variant] = &p;
   }
-  if (!load || !drag) return "";
+  if (!load || !drag[0] || !drag[1]) return "";
   const auto [best, worst] = range_of_rivals(a, 0, [](const LawPrediction& p) { return p.rms; });
   const TitleAnswer &work = a.answers[1], &rod = a.answers[0];
   std::string html = fmt::format(
@@ -199,17 +200,26 @@ std::string answer_html(const Material& m) {
         between(rod.with_interval, 1e3, "mW"), milliwatts(work.without), between(work.without_interval, 1e3, "mW"),
         milliwatts(rod.without), between(rod.without_interval, 1e3, "mW"), a.samples);
   }
-  const ComparedValue* input = change_of(*drag, Metric::power_electrical);
+  std::string refitted;
+  for (const std::size_t f : {1, 0}) {
+    const ComparedValue* input = change_of(*drag[f], Metric::power_electrical);
+    if (!input) continue;
+    const bool outside = is_outside(*drag[f], input->published, input->published.design);
+    refitted +=
+        fmt::format("{} {:.2f} times the drag and {:+.1f} % ({}, {} the domain)", refitted.empty() ? "" : ";",
+                    drag[f]->drag_factor, 100.0 * input->computed, variant_name(f), outside ? "outside" : "inside");
+  }
+  const ComparedValue* published = change_of(*load, Metric::power_electrical);
   html += fmt::format(
-      "<p><b>Rivals, refitted.</b> Without friction, {:.2f} times the drag meets the published frequency as well, but "
-      "then springs change the input by {:+.1f} % where {} is published. Calibrated without springs, load-proportional "
-      "friction predicts the {} published values with springs to {:.1f} % (root mean square, changes as printed; "
-      "rod-force), every rival only to {:.0f} to {:.0f} %.</p>\n"
+      "<p><b>Rivals, refitted.</b> Without friction, more drag meets the published frequency as well, but then springs "
+      "raise the input, where {} is published:{}. Calibrated without springs, load-proportional friction predicts the {} "
+      "published values with springs to {:.1f} % (root mean square, changes as printed; rod-force), every rival only to "
+      "{:.0f} to {:.0f} %.</p>\n"
       "<p><b>Simulation against simulation.</b> The published values are those of the paper's simulation. No "
       "measurement is compared here: that this model reproduces them shows what follows from its equations, not how "
       "real joints behave.</p></div>\n",
-      drag->drag_factor, input ? 100.0 * input->computed : absent, input ? input->published.published_text : "-",
-      load->tests.size(), 100.0 * load->rms, 100.0 * best, 100.0 * worst);
+      published ? published->published.published_text : "-", refitted, load->tests.size(), 100.0 * load->rms,
+      100.0 * best, 100.0 * worst);
   return with_minus_signs(html) + commands_of_the_answer(m);
 }
 
