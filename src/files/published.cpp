@@ -35,12 +35,29 @@ constexpr std::pair<const char*, PublishedTrend::Kind> kinds[] = {
     {"constant-load-efficiency", PublishedTrend::Kind::constant_load_efficiency},
     {"spring-resonance", PublishedTrend::Kind::spring_resonance},
     {"weight", PublishedTrend::Kind::weight},
-    {"best-friction-law", PublishedTrend::Kind::best_friction_law}};
+    {"best-friction-law", PublishedTrend::Kind::best_friction_law},
+    {"generally", PublishedTrend::Kind::generally},
+    {"turns", PublishedTrend::Kind::turns},
+    {"ordered-conditions", PublishedTrend::Kind::ordered_conditions},
+    {"wording", PublishedTrend::Kind::wording}};
 
 constexpr std::pair<const char*, PublishedTrend::Bound> bounds[] = {{"below", PublishedTrend::Bound::below},
                                                                     {"above", PublishedTrend::Bound::above}};
 
 using Kind = TomlNode::Kind;
+
+/// One unit of the last digit of a number that reads `text` and is `value`. Zeros at the end of a whole number are not
+/// taken for digits: 30 % is 3 tens.
+double last_digit(const std::string& text, double value) {
+  const auto begin = text.find_first_of("0123456789"), end = text.find_first_not_of("0123456789.", begin);
+  if (begin == std::string::npos || value == 0.0) return absent;
+  const std::string digits = text.substr(begin, end == std::string::npos ? end : end - begin);
+  const auto point = digits.find('.');
+  int power = 0;
+  if (point != std::string::npos) power = -int(digits.size() - point - 1);
+  else power = int(digits.size() - 1 - std::min(digits.size() - 1, digits.find_last_not_of('0')));
+  return std::abs(value) / std::stod(digits) * std::pow(10.0, power);
+}
 
 class Reader : TomlReader {
  public:
@@ -50,7 +67,7 @@ class Reader : TomlReader {
 
   PublishedFile read() {
     PublishedFile file;
-    known_keys(root_, {"title", "source", "tolerance", "designs", "value", "trend"});
+    known_keys(root_, {"title", "source", "tolerance", "designs", "value", "trend", "uncertain"});
     file.title = text_at(root_, "title");
     file.source = text_at(root_, "source");
     if (has(root_, "tolerance")) file.tolerance = tolerance_at(root_, file);
@@ -65,20 +82,43 @@ class Reader : TomlReader {
     if (const TomlNode* trends = root_.find("trend")) {
       for (const TomlNode& trend : tables_of(*trends, "trend")) file.trends.push_back(read_trend(trend, file));
     }
+    if (const TomlNode* uncertain = root_.find("uncertain")) {
+      for (const TomlNode& entry : tables_of(*uncertain, "uncertain")) file.uncertain.push_back(read_uncertain(entry));
+    }
     return file;
   }
 
  private:
+  UncertainPublished read_uncertain(const TomlNode& t) const {
+    known_keys(t, {"key", "relative_deviation", "why"});
+    UncertainPublished u{text_at(t, "key"), number_at(t, "relative_deviation"), text_at(t, "why")};
+    try {
+      design_parameter(u.key);
+    } catch (const ParameterError& e) {
+      refuse(*t.find("key"), "key", e.what());
+    }
+    if (!(u.relative_deviation > 0.0 && u.relative_deviation < 0.3)) {
+      refuse(*t.find("relative_deviation"), "relative_deviation", "must lie between 0 and 0.3");
+    }
+    return u;
+  }
+
   PublishedValue read_value(const TomlNode& t, const PublishedFile& file) {
-    known_keys(t, {"voltage", "frequency", "metric", "design", "ratio", "published", "tolerance", "where", "basis"});
+    known_keys(
+        t, {"voltage", "frequency", "metric", "design", "ratio", "published", "change", "tolerance", "where", "basis"});
     PublishedValue v{};
     if (has(t, "voltage") == has(t, "frequency")) refuse(t, "value", "give one of voltage and frequency");
     if (has(t, "voltage")) v.voltage = quantity_at(t, "voltage", "V");
     if (has(t, "frequency")) v.frequency = quantity_at(t, "frequency", "Hz");
-    v.metric = metric_at(t);
+    v.metric = metric_at(t, "metric");
     std::tie(v.design, v.relative_to) = designs_at(t, file);
+    v.change = has(t, "change");
+    if (v.change && (!v.relative_to || has(t, "published"))) {
+      refuse(*t.find("change"), "change", "belongs to a ratio, in place of published");
+    }
     std::tie(v.published, v.published_text) =
-        published_at(t, "published", v.relative_to ? "1" : metric_info(v.metric).unit);
+        published_at(t, v.change ? "change" : "published", v.relative_to ? "1" : metric_info(v.metric).unit);
+    v.digit = last_digit(v.published_text, v.published);
     v.tolerance = tolerance_at(t, file);
     if (has(t, "where")) v.where = text_at(t, "where");
     if (has(t, "basis")) v.basis = choice_at(t, "basis", names_of<Basis>);
@@ -109,17 +149,30 @@ class Reader : TomlReader {
       trend.unit = std::string("1");  // a literal draws a false warning of GCC 12
       return trend;
     }
-    const bool pair = is({Kind::crossing, Kind::change, Kind::difference, Kind::steadier});
+    if (trend.kind == Kind::wording) {
+      known_keys(t, keys);
+      if (trend.reason.empty()) refuse(t, "reason", "missing: why there is nothing to compute");
+      trend.unit = std::string("1");
+      return trend;
+    }
+    const bool pair =
+        is({Kind::crossing, Kind::change, Kind::difference, Kind::steadier, Kind::generally, Kind::turns});
     also({pair ? "ratio" : "design"});
     std::tie(trend.design, trend.relative_to) = designs_at(t, file);
     if (trend.relative_to.has_value() != pair) {
-      refuse(t, "ratio", "a crossing, change or difference and steadier need a ratio, everything else a design");
+      refuse(t, "ratio",
+             "a crossing, change or difference, steadier, generally and turns need a ratio, everything else a design");
     }
     const bool along = is({Kind::crossing, Kind::peak_at, Kind::trough_at, Kind::peak});
     const bool at_point = is({Kind::value, Kind::change, Kind::difference});
-    if (along || at_point || trend.kind == Kind::best_range) {
+    const bool compared = is({Kind::generally, Kind::turns});
+    if (along || at_point || compared || is({Kind::best_range, Kind::ordered_conditions})) {
       also({"metric"});
-      trend.metric = metric_at(t);
+      trend.metric = metric_at(t, "metric");
+    }
+    if ((along && trend.kind != Kind::crossing) || trend.kind == Kind::value) {
+      also({"share_of"});
+      if (has(t, "share_of")) trend.share_of = metric_at(t, "share_of");
     }
     std::string unit = "Hz";
     if (along || at_point || is({Kind::best_range, Kind::saturates})) {
@@ -138,14 +191,14 @@ class Reader : TomlReader {
       }
       if (has(t, "hold_stroke")) trend.hold_stroke = flag_at(t, "hold_stroke");
     }
-    if (along || is({Kind::best_range, Kind::between, Kind::saturates})) {
+    if (along || compared || is({Kind::best_range, Kind::between, Kind::saturates})) {
       also({"from", "to"});
       const std::string ranged = along || trend.kind == Kind::saturates ? unit : "Hz";
       trend.from = quantity_at(t, "from", ranged.c_str());
       trend.to = quantity_at(t, "to", ranged.c_str());
       if (!(trend.to > trend.from)) refuse(*t.find("to"), "to", "must be above from");
     }
-    const bool held = is({Kind::power_balance, Kind::steadier});
+    const bool held = is({Kind::power_balance, Kind::steadier, Kind::ordered_conditions});
     if (at_point) {
       if (has(t, "voltage") == has(t, "frequency")) refuse(t, "trend", "give one of voltage and frequency");
       also({"voltage", "frequency"});
@@ -160,7 +213,7 @@ class Reader : TomlReader {
       also({"voltage"});
       trend.voltage = quantity_at(t, "voltage", "V");
     }
-    const char* metric_unit = metric_info(trend.metric).unit;
+    const char* metric_unit = trend.share_of ? "1" : metric_info(trend.metric).unit;
     trend.unit = is({Kind::peak, Kind::value, Kind::difference})        ? metric_unit
                  : is({Kind::crossing, Kind::peak_at, Kind::trough_at}) ? unit
                  : is({Kind::best_range, Kind::spring_resonance})       ? "Hz"
@@ -177,11 +230,19 @@ class Reader : TomlReader {
       trend.published = low;
       trend.published_end = high;
       trend.published_text = fmt::format("{} to {}", low_text, high_text);
+      trend.digit = std::min(last_digit(low_text, low), last_digit(high_text, high));
       trend.tolerance = tolerance_at(t, file);
-    } else if (!is({Kind::between, Kind::steadier, Kind::saturates, Kind::initial_guesses})) {
-      also({"published", "tolerance", "bound"});
+    } else if (trend.kind == Kind::generally) {
+      also({"bound"});
+      trend.bound = choice_at(t, "bound", bounds);
+    } else if (!compared &&
+               !is({Kind::between, Kind::steadier, Kind::saturates, Kind::initial_guesses, Kind::ordered_conditions})) {
+      also({"published", "tolerance", "bound", "approximate"});
+      if (has(t, "approximate")) trend.approximate = flag_at(t, "approximate");
       if (has(t, "published")) {
         std::tie(trend.published, trend.published_text) = published_at(t, "published", trend.unit.c_str());
+        trend.digit = last_digit(trend.published_text, *trend.published);
+        if (trend.approximate) trend.published_text = "about " + trend.published_text;
         if (has(t, "bound")) {
           trend.bound = choice_at(t, "bound", bounds);
           trend.published_text = fmt::format("{} {}", text_at(t, "bound"), trend.published_text);
@@ -196,11 +257,11 @@ class Reader : TomlReader {
     return trend;
   }
 
-  Metric metric_at(const TomlNode& t) const {
-    const std::string metric = text_at(t, "metric");
+  Metric metric_at(const TomlNode& t, const char* key) const {
+    const std::string metric = text_at(t, key);
     const int index = metric_index(metric);
     if (index == metric_count) {
-      refuse(*t.find("metric"), "metric", fmt::format("{} is no metric of wingbeat run --json", in_quotes(metric)));
+      refuse(*t.find(key), key, fmt::format("{} is no metric of wingbeat run --json", in_quotes(metric)));
     }
     return Metric(index);
   }

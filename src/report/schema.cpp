@@ -71,6 +71,7 @@ Json compare_schema() {
                              {"metric", metric_key()},
                              {"design", text_if_any},
                              {"ratio", or_null(pair_of(any_text))},
+                             {"change", yes_or_no},
                              {"published", any_number},
                              {"computed", number_if_any},
                              {"deviation", number_if_any},
@@ -311,18 +312,38 @@ Json endurance_schema() {
 
 Json reproduce_schema() {
   const std::vector<std::string> variants = {"rod-force", "virtual-work", "virtual-work-own-calibration"};
-  const Json side = object(
-      {{"value", number_if_any}, {"text", any_text}, {"deviation", number_if_any}, {"within", or_null(yes_or_no)}});
+  const Json interval = or_null(pair_of(any_number));
+  const Json side = object({{"value", number_if_any},
+                            {"text", any_text},
+                            {"deviation", number_if_any},
+                            {"ratio_deviation", number_if_any},
+                            {"interval_95", interval},
+                            {"residual", number_if_any},
+                            {"domain", any_text},
+                            {"within", or_null(yes_or_no)}});
   SchemaKeys met, sides;
   for (const std::string& variant : variants) {
     met.push_back({variant, any_count});
     sides.push_back({variant, side});
   }
-  const SchemaKeys score = {{"statements", any_count},
-                            {"reproduced", any_count},
-                            {"depends_on_the_formulation", any_count},
-                            {"not_reproduced", any_count},
-                            {"met", object({}, met)}};
+  const SchemaKeys counts = {{"reproduced", any_count},
+                             {"depends_on_the_formulation", any_count},
+                             {"not_reproduced", any_count},
+                             {"met", object({}, met)}};
+  const SchemaKeys score = counts + SchemaKeys{{"statements", any_count},
+                                               {"with_changes_as_ratios", object(counts)},
+                                               {"within_printed_digits", object(counts)}};
+  const Json answer = object({{"formulation", any_text},
+                              {"frequency_hz", number_if_any},
+                              {"power_electrical_w", number_if_any},
+                              {"power_electrical_w_95", interval},
+                              {"without_friction_w", number_if_any},
+                              {"without_friction_w_95", interval},
+                              {"change", number_if_any},
+                              {"change_95", interval},
+                              {"residual", number_if_any},
+                              {"residual_without_friction", number_if_any},
+                              {"inside_the_domain", yes_or_no}});
   const Json calibration = object({{"formulation", one_of_names<Formulation>()},
                                    {"s2_m4", number_if_any},
                                    {"s3_m5", number_if_any},
@@ -338,19 +359,25 @@ Json reproduce_schema() {
                              {"published", number_if_any},
                              {"published_text", any_text},
                              {"tolerance", number_if_any},
+                             {"printed_digits", number_if_any},
+                             {"searched_in", text_if_any},
                              {"outcome", any_text}},
                             sides + SchemaKeys{{"reason", any_text}, {"note", any_text}, {"erratum", any_text}});
   const Json law = object({{"law", one_of_names<FrictionLaw>()},
+                           {"drag_factor", any_number},
                            {"formulation", any_text},
                            {"coefficient", any_number},
                            {"calibrated", yes_or_no},
                            {"frequency_hz", number_if_any},
                            {"values", any_count},
-                           {"rms_deviation", number_if_any}});
+                           {"rms_deviation", number_if_any},
+                           {"rms_deviation_as_ratios", number_if_any}});
   return object({{"title", any_text},
                  {"source", any_text},
                  {"predictions", object(score)},
                  {"calibration", listed(calibration)},
+                 {"answer", listed(answer)},
+                 {"samples", any_count},
                  {"claims", listed(claim)},
                  {"friction_laws", listed(law)}},
                 {{"section_5", by_name(object(score + SchemaKeys{{"crank_radius_rms_deviation", number_if_any}}))}});

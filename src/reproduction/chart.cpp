@@ -47,7 +47,7 @@ std::vector<ChartKey> whole_key(const Chart& chart) {
   }
   if (value) key.push_back({"published", {}, nullptr, mark_value});
   if (hollow) key.push_back({"published, used in the calibration", {}, nullptr, mark_hollow});
-  if (place) key.push_back({"published place", {}, nullptr, mark_place});
+  if (place) key.push_back({"published location", {}, nullptr, mark_place});
   if (span) key.push_back({"published range", {style::grey, style::solid, 3.0}});
   return key;
 }

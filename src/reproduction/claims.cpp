@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
+#include "reproduction/intervals.hpp"
 #include "reproduction/statement_answers.hpp"
 #include "wingbeat/core/text.hpp"
+#include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/report/report.hpp"
 #include "wingbeat/study/bench_fit.hpp"
 
@@ -27,13 +30,6 @@ std::string ratio_words(const std::string& design, const std::string& other) {
   return design == "spring_on" && other == "spring_off"
              ? "with / without springs"
              : fmt::format("{} / {}", detail::spaced(design), detail::spaced(other));
-}
-
-/// A number for reading.
-std::string shown(double x, const std::string& unit) {
-  if (!std::isfinite(x)) return "-";
-  if (unit == "1") return fmt::format("{:#.4g}", x);
-  return readable(x, unit);
 }
 
 StatementOutcome outcome_of(const Claim& c) {
@@ -66,23 +62,40 @@ PublishedFile with_formulation(PublishedFile file, Formulation formulation) {
   return file;
 }
 
-LawPrediction predict(PublishedFile file, FrictionLaw law, std::size_t variant) {
+/// The rival with its one free number chosen so that the vehicle without springs has the published frequency.
+LawPrediction calibrated(PublishedFile& file, std::size_t rival, std::size_t variant) {
   const PublishedValue& target = calibration_value(file);
-  Design<double> calibrated = file.designs.at(target.design);
-  calibrated.supply = {SupplyType::constant, *target.voltage, 0.0, 1.0};
+  Design<double> design = file.designs.at(target.design);
+  design.supply = {SupplyType::constant, *target.voltage, 0.0, 1.0};
   LawPrediction p;
   p.variant = variant;
-  p.law = calibrate_friction(calibrated, law, target.published);
-  double stiffness = 0.0;
-  for (auto& [name, design] : file.designs) {
-    design.friction = {law, p.law.coefficient};
-    stiffness = std::max(stiffness, resolve(design).spring.stiffness);
+  p.rival = rival;
+  p.law = calibrate_friction(design, rivals[rival].law, target.published);
+  if (rivals[rival].own_drag) {
+    design.friction = {FrictionLaw::none, 0.0};
+    p.drag_factor = calibrate_drag(design, target.published);
+    p.law.calibrated = std::isfinite(p.drag_factor);
+    if (p.law.calibrated) p.law.frequency = target.published;
+    else p.drag_factor = 1.0;
   }
+  for (auto& [name, of] : file.designs) {
+    of.friction = {rivals[rival].law, p.law.coefficient};
+    if (p.drag_factor != 1.0) of = with_drag_factor(of, p.drag_factor);
+  }
+  return p;
+}
+
+LawPrediction predict(PublishedFile file, std::size_t rival, std::size_t variant) {
+  LawPrediction p = calibrated(file, rival, variant);
+  const PublishedValue& target = calibration_value(file);
+  double stiffness = 0.0;
+  for (const auto& [name, design] : file.designs) stiffness = std::max(stiffness, resolve(design).spring.stiffness);
   p.comparison = compare(file);
-  double squares = 0.0;
+  double squares = 0.0, squares_of_ratios = 0.0;
   std::optional<double> frequency;
   for (std::size_t n = 0; n < p.comparison.values.size(); ++n) {
-    const PublishedValue& v = p.comparison.values[n].published;
+    const ComparedValue& c = p.comparison.values[n];
+    const PublishedValue& v = c.published;
     if (v.design == target.design) continue;
     if (v.frequency) frequency = v.frequency;
     if (v.basis == Basis::calibrated) {
@@ -90,9 +103,13 @@ LawPrediction predict(PublishedFile file, FrictionLaw law, std::size_t variant) 
       continue;
     }
     p.tests.push_back(n);
-    squares += std::pow(p.comparison.values[n].deviation, 2.0);
+    squares += std::pow(c.deviation, 2.0);
+    squares_of_ratios += std::pow(v.change ? c.ratio_deviation : c.deviation, 2.0);
   }
-  p.rms = p.tests.empty() ? absent : std::sqrt(squares / double(p.tests.size()));
+  if (!p.tests.empty()) {
+    p.rms = std::sqrt(squares / double(p.tests.size()));
+    p.rms_of_ratios = std::sqrt(squares_of_ratios / double(p.tests.size()));
+  }
   if (frequency && stiffness > 0.0 && variant != recalibrated) {
     p.loss =
         loss_along_stiffness(file.designs.at(target.design), *frequency, max_loss_stiffness * stiffness, loss_points);
@@ -105,7 +122,9 @@ Claim claim_of(const PublishedValue& v, const Assessment& a, std::size_t n) {
   Claim c;
   const std::string at = operating_point(v.voltage, v.frequency);
   c.statement = v.relative_to
-                    ? fmt::format("{}, ratio {} at {}", info.long_name, ratio_words(v.design, *v.relative_to), at)
+                    ? v.change && v.design == "spring_on"
+                          ? fmt::format("{}, change by springs at {}", info.long_name, at)
+                          : fmt::format("{}, ratio {} at {}", info.long_name, ratio_words(v.design, *v.relative_to), at)
                     : fmt::format("{} {} at {}", info.long_name, design_words(v.design), at);
   c.where = v.where;
   c.basis = v.basis;
@@ -113,9 +132,18 @@ Claim claim_of(const PublishedValue& v, const Assessment& a, std::size_t n) {
   c.published = v.published;
   c.published_text = v.published_text;
   c.tolerance = v.tolerance;
+  c.digits = 0.5 * v.digit;
   for (std::size_t f = 0; f < a.variants; ++f) {
-    c.ours[f] = a.comparisons[f].values[n].computed;
-    c.ours_text[f] = shown(c.ours[f], c.unit);
+    const Comparison& comparison = a.comparisons[f];
+    c.ours[f] = comparison.values[n].computed;
+    c.ratio_deviation[f] = comparison.values[n].ratio_deviation;
+    c.ours_text[f] = v.change ? fmt::format("{:+#.4g} %", 100.0 * c.ours[f]) : number_text(c.ours[f], c);
+    c.residual[f] = std::abs(residual_share(comparison.run_of(v, v.design).result.metrics));
+    if (v.relative_to) {
+      const double other = residual_share(comparison.run_of(v, *v.relative_to).result.metrics);
+      c.residual[f] = std::max(c.residual[f], std::abs(other));
+    }
+    if (const std::string remark = residual_remark(c.residual[f]); !remark.empty()) c.ours_text[f] += "; " + remark;
   }
   return c;
 }
@@ -132,6 +160,11 @@ Claim claim_of(const PublishedTrend& t, const Assessment& a, const std::vector<A
   c.erratum = t.erratum;
   c.restates = t.restates;
   if (t.over == "transmission.crank_radius") c.reading = readings[t.hold_stroke ? 1 : 0];
+  c.digits = (t.approximate ? 1.0 : 0.5) * t.digit;
+  if (t.to > t.from && t.kind != Kind::saturates) {
+    const std::string unit = t.over.empty() || t.kind == Kind::best_range ? "Hz" : design_parameter(t.over).unit;
+    c.window = fmt::format("{} to {}", readable(t.from, unit), readable(t.to, unit));
+  }
   c.published = t.published;
   if (t.published_end) c.published = 0.5 * (*t.published + *t.published_end);
   const bool of_numbers = t.published.has_value();
@@ -142,12 +175,13 @@ Claim claim_of(const PublishedTrend& t, const Assessment& a, const std::vector<A
       c.published_text.replace(at, 2, " percentage points");
     }
   }
-  const bool yes_or_no = t.kind == Kind::between || t.kind == Kind::steadier || t.kind == Kind::saturates;
-  if (yes_or_no || t.kind == Kind::initial_guesses) c.published_text = "as stated";
+  const bool yes_or_no = t.kind == Kind::between || t.kind == Kind::steadier || t.kind == Kind::saturates ||
+                         t.kind == Kind::generally || t.kind == Kind::turns || t.kind == Kind::ordered_conditions;
+  if (yes_or_no || t.kind == Kind::initial_guesses || t.kind == Kind::wording) c.published_text = "as stated";
   for (std::size_t f = 0; f < a.variants; ++f) {
     c.ours[f] = answers[f].value;
     c.ours_text[f] = answers[f].text;
-    c.outside[f] = answers[f].outside;
+    c.residual[f] = answers[f].residual;
     c.within[f] = yes_or_no && answers[f].holds;
     if (of_numbers && t.bound != PublishedTrend::Bound::none) {
       c.within[f] = t.bound == PublishedTrend::Bound::below ? c.ours[f] < *c.published : c.ours[f] > *c.published;
@@ -155,11 +189,16 @@ Claim claim_of(const PublishedTrend& t, const Assessment& a, const std::vector<A
   }
   if (t.kind == Kind::best_friction_law) {
     for (std::size_t f = 0; f < a.variants; ++f) {
-      const auto first = a.laws.begin() + long(f * std::size(compared_friction_laws));
-      const auto best = std::min_element(first, first + long(std::size(compared_friction_laws)),
+      const auto first = a.laws.begin() + long(f * std::size(rivals));
+      const auto best = std::min_element(first, first + long(std::size(rivals)),
                                          [](const LawPrediction& p, const LawPrediction& q) { return p.rms < q.rms; });
-      c.ours_text[f] = fmt::format("{} ({:.1f} % rms)", name_of(best->law.law), 100.0 * best->rms);
-      c.within[f] = t.published_law == best->law.law;
+      c.ours_text[f] = fmt::format("{} ({:.1f} % rms)", rivals[best->rival].name, 100.0 * best->rms);
+      c.within[f] = t.published_law == best->law.law && !rivals[best->rival].own_drag;
+      // Of the runs that the chosen law is scored by.
+      for (const Comparison::Run& run : best->comparison.runs) {
+        const double share = std::abs(residual_share(run.result.metrics));
+        if (std::isfinite(share)) c.residual[f] = std::isfinite(c.residual[f]) ? std::max(c.residual[f], share) : share;
+      }
     }
     c.published_text = t.published_law ? name_of(*t.published_law) : "-";
   }
@@ -169,8 +208,9 @@ Claim claim_of(const PublishedTrend& t, const Assessment& a, const std::vector<A
 /// Deviations, and what is within the tolerance.
 void settle(Claim& c) {
   const bool compared = c.published && std::isfinite(c.tolerance) && c.reason.empty();
-  for (std::size_t f = 0; f < variant_count && compared; ++f) {
-    if (!std::isfinite(c.ours[f])) continue;
+  for (std::size_t f = 0; f < variant_count; ++f) {
+    c.outside[f] = c.residual[f] > formulation_residual_max;
+    if (!compared || !std::isfinite(c.ours[f])) continue;
     c.deviation[f] = c.ours[f] / *c.published - 1.0;
     c.within[f] = std::abs(c.deviation[f]) <= c.tolerance;
   }
@@ -199,16 +239,23 @@ int Assessment::count(StatementOutcome outcome) const {
   return int(std::count_if(claims.begin(), claims.end(), [&](const Claim& c) { return c.outcome == outcome; }));
 }
 
-Score Assessment::score(const std::string& reading, std::optional<double> tolerance) const {
+bool Claim::met(std::size_t variant, Scoring scoring, double accepted) const {
+  if (!std::isfinite(deviation[variant])) return within[variant];
+  if (scoring == Scoring::digits) return std::abs(ours[variant] - *published) <= digits * (1.0 + 1e-9);
+  const bool as_ratio = scoring == Scoring::ratios && std::isfinite(ratio_deviation[variant]);
+  return std::abs(as_ratio ? ratio_deviation[variant] : deviation[variant]) <= accepted;
+}
+
+Score Assessment::score(const std::string& reading, Scoring scoring, std::optional<double> tolerance) const {
   Score s;
   double squares = 0.0;
   int radii = 0;
   for (const Claim& c : claims) {
     if (!c.counted() || c.reading != reading) continue;
     ++s.statements;
-    std::array<bool, variant_count> within = c.within;
+    std::array<bool, variant_count> within{};
     for (std::size_t f = 0; f < variants; ++f) {
-      if (tolerance && std::isfinite(c.tolerance)) within[f] = std::abs(c.deviation[f]) <= *tolerance;
+      within[f] = c.met(f, scoring, tolerance.value_or(c.tolerance));
       s.met[f] += within[f];
     }
     (within[0] && within[1] ? s.reproduced : within[0] || within[1] ? s.depends : s.not_reproduced) += 1;
@@ -221,12 +268,13 @@ Score Assessment::score(const std::string& reading, std::optional<double> tolera
   return s;
 }
 
-double Assessment::rms_of_predicted_values(std::size_t variant) const {
+double Assessment::rms_of_predicted_values(std::size_t variant, Scoring scoring) const {
   double squares = 0.0;
   int count = 0;
   for (const ComparedValue& v : comparisons[variant].values) {
     if (v.published.basis != Basis::predicted) continue;
-    squares += v.deviation * v.deviation;
+    const double off = scoring == Scoring::ratios && v.published.change ? v.ratio_deviation : v.deviation;
+    squares += off * off;
     ++count;
   }
   return count > 0 ? std::sqrt(squares / count) : absent;
@@ -268,10 +316,10 @@ Assessment assess(const PublishedFile& file, const ForEach& for_each, const std:
     }
   }
   if (laws_wanted) {
-    constexpr std::size_t laws = std::size(compared_friction_laws);
-    a.laws.resize(a.variants * laws);
+    constexpr std::size_t count = std::size(rivals);
+    a.laws.resize(a.variants * count);
     for (std::size_t n = 0; n < a.laws.size(); ++n) {
-      tasks.push_back([&, n] { a.laws[n] = predict(files[n / laws], compared_friction_laws[n % laws], n / laws); });
+      tasks.push_back([&, n] { a.laws[n] = predict(files[n / count], n % count, n / count); });
     }
   }
   run_tasks(tasks, for_each, done);
@@ -279,6 +327,7 @@ Assessment assess(const PublishedFile& file, const ForEach& for_each, const std:
   for (std::size_t n = 0; n < file.values.size(); ++n) a.claims.push_back(claim_of(file.values[n], a, n));
   for (std::size_t n = 0; n < trends; ++n) a.claims.push_back(claim_of(file.trends[n], a, answers[n]));
   for (Claim& c : a.claims) settle(c);
+  add_intervals(a, std::span<const PublishedFile>(files.data(), a.variants), for_each);
   return a;
 }
 

@@ -25,14 +25,28 @@ constexpr const char* keys[variant_count] = {"rod-force", "virtual-work", "virtu
 using Json = nlohmann::ordered_json;
 Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
-Json json_score(const Score& s, std::size_t variants) {
+Json counts(const Score& s, std::size_t variants) {
   Json json;
-  json["statements"] = s.statements;
   json["reproduced"] = s.reproduced;
   json["depends_on_the_formulation"] = s.depends;
   json["not_reproduced"] = s.not_reproduced;
   for (std::size_t f = 0; f < variants; ++f) json["met"][keys[f]] = s.met[f];
   return json;
+}
+
+Json json_score(const Assessment& a, const std::string& reading) {
+  Json json{{"statements", a.score(reading).statements}};
+  json.update(counts(a.score(reading), a.variants));
+  json["with_changes_as_ratios"] = counts(a.score(reading, Scoring::ratios), a.variants);
+  json["within_printed_digits"] = counts(a.score(reading, Scoring::digits), a.variants);
+  return json;
+}
+
+Json json_interval(const Interval& i) { return std::isfinite(i.low) ? Json{i.low, i.high} : Json(nullptr); }
+
+/// "29.1 to 37.0 %" in the number's own unit and digits.
+std::string interval_words(const Interval& i, const Claim& c) {
+  return std::isfinite(i.low) ? fmt::format("95 % {} to {}", number_text(i.low, c), number_text(i.high, c)) : "";
 }
 
 }  // namespace
@@ -55,6 +69,21 @@ const std::vector<ClaimGroup>& claim_groups() {
       {"No published value", "No published value",
        [](const Claim& c) { return c.outcome == StatementOutcome::no_published_value; }}};
   return groups;
+}
+
+std::string number_text(double x, const Claim& c) {
+  if (!std::isfinite(x)) return "-";
+  if (c.unit != "1") return readable(x, c.unit);
+  const bool percent = c.published_text.find('%') != std::string::npos;
+  if (percent) return fmt::format("{:#.4g} %", 100.0 * x);
+  return c.published_text.find("percentage") != std::string::npos ? fmt::format("{:#.3g} points", 100.0 * x)
+                                                                  : fmt::format("{:#.4g}", x);
+}
+
+std::string domain_text(const Claim& c, std::size_t variant) {
+  if (!std::isfinite(c.residual[variant])) return "no cycle";
+  return c.outside[variant] ? fmt::format("outside the domain, residual {:.1f} %", 100.0 * c.residual[variant])
+                            : "inside";
 }
 
 std::string percent_text(double deviation) {
@@ -82,11 +111,13 @@ std::string text_claims(const PublishedFile& file, const Assessment& a) {
       std::string line = c.published_text == "-" ? "" : fmt::format("published {}; ", c.published_text);
       for (std::size_t f = 0; f < a.variants; ++f) {
         const std::string off = percent_text(c.deviation[f]);
-        line += fmt::format("{} {}{}; ", f == recalibrated ? "with its own calibration" : variant_name(f),
-                            c.ours_text[f], off.empty() ? "" : ", " + off);
+        line += fmt::format("{} {}{}{}; ", f == recalibrated ? "with its own calibration" : variant_name(f),
+                            c.ours_text[f], off.empty() ? "" : ", " + off,
+                            std::isfinite(c.interval[f].low) ? " (" + interval_words(c.interval[f], c) + ")" : "");
       }
       line += outcome_text(c);
       if (!c.reason.empty()) line += fmt::format(": {}", c.reason);
+      if (!c.window.empty()) line += fmt::format("; searched in {}", c.window);
       fmt::format_to(out, "      {}\n", wrapped(line, 90, 6));
       if (!c.erratum.empty()) fmt::format_to(out, "      {}\n", wrapped("error of the paper: " + c.erratum, 90, 6));
     }
@@ -107,13 +138,21 @@ std::string text_claims(const PublishedFile& file, const Assessment& a) {
                      c.met ? "as published" : "the nearest that it can come to both");
     }
   }
-  const Score s = a.score("");
-  fmt::format_to(
-      out, "\n{}\n",
-      wrapped(fmt::format("{} predictions: {} reproduced in both formulations, {} depend on the formulation, "
-                          "{} not reproduced; {}.",
-                          s.statements, s.reproduced, s.depends, s.not_reproduced, met(s)),
-              96, 0));
+  constexpr std::pair<Scoring, const char*> ways[] = {{Scoring::printed, "as printed"},
+                                                      {Scoring::ratios, "with changes as ratios"},
+                                                      {Scoring::digits, "within the printed digits"}};
+  text += '\n';
+  for (const auto& [scoring, name] : ways) {
+    const Score s = a.score("", scoring);
+    fmt::format_to(
+        out, "{}\n",
+        wrapped(fmt::format("{} predictions, {}{}: {} reproduced in both formulations, {} depend on the "
+                            "formulation, {} not reproduced; {}.",
+                            s.statements, name,
+                            scoring == Scoring::digits ? "" : fmt::format(", to {:g} %", 100.0 * file.tolerance),
+                            s.reproduced, s.depends, s.not_reproduced, met(s)),
+                96, 0));
+  }
   for (const char* reading : readings) {
     const Score r = a.score(reading);
     if (r.statements == 0) continue;
@@ -130,11 +169,11 @@ std::string json_claims(const PublishedFile& file, const Assessment& a) {
   Json json;
   json["title"] = file.title;
   json["source"] = file.source;
-  json["predictions"] = json_score(a.score(""), a.variants);
+  json["predictions"] = json_score(a, "");
   for (const char* reading : readings) {
     const Score s = a.score(reading);
     if (s.statements == 0) continue;
-    Json& entry = json["section_5"][detail::underscored(reading)] = json_score(s, a.variants);
+    Json& entry = json["section_5"][detail::underscored(reading)] = json_score(a, reading);
     entry["crank_radius_rms_deviation"] = number(s.rms_crank_radius);
   }
   json["calibration"] = Json::array();
@@ -146,6 +185,22 @@ std::string json_claims(const PublishedFile& file, const Assessment& a) {
                                    {"published_n", {c.wanted[0], c.wanted[1]}},
                                    {"met", c.met}});
   }
+  json["answer"] = Json::array();
+  for (std::size_t f = 0; f < a.variants; ++f) {
+    const TitleAnswer& t = a.answers[f];
+    json["answer"].push_back({{"formulation", variant_name(f)},
+                              {"frequency_hz", number(t.frequency)},
+                              {"power_electrical_w", number(t.with)},
+                              {"power_electrical_w_95", json_interval(t.with_interval)},
+                              {"without_friction_w", number(t.without)},
+                              {"without_friction_w_95", json_interval(t.without_interval)},
+                              {"change", number(t.change)},
+                              {"change_95", json_interval(t.change_interval)},
+                              {"residual", number(t.residual_with)},
+                              {"residual_without_friction", number(t.residual_without)},
+                              {"inside_the_domain", !t.outside}});
+  }
+  json["samples"] = a.samples;
   json["claims"] = Json::array();
   for (const Claim& c : a.claims) {
     Json entry;
@@ -158,11 +213,17 @@ std::string json_claims(const PublishedFile& file, const Assessment& a) {
     entry["published"] = c.published ? Json(*c.published) : Json(nullptr);
     entry["published_text"] = c.published_text;
     entry["tolerance"] = number(c.tolerance);
+    entry["printed_digits"] = number(c.digits);
+    entry["searched_in"] = c.window.empty() ? Json(nullptr) : Json(c.window);
     for (std::size_t f = 0; f < a.variants; ++f) {
       Json& side = entry[keys[f]];
       side["value"] = number(c.ours[f]);
       side["text"] = c.ours_text[f];
       side["deviation"] = number(c.deviation[f]);
+      side["ratio_deviation"] = number(c.ratio_deviation[f]);
+      side["interval_95"] = json_interval(c.interval[f]);
+      side["residual"] = number(c.residual[f]);
+      side["domain"] = domain_text(c, f);
       side["within"] = has_outcome(c) ? Json(c.within[f]) : Json(nullptr);
     }
     entry["outcome"] = name_of(c.outcome);
@@ -176,12 +237,14 @@ std::string json_claims(const PublishedFile& file, const Assessment& a) {
   for (const LawPrediction& p : a.laws) {
     Json entry;
     entry["law"] = name_of(p.law.law);
+    entry["drag_factor"] = p.drag_factor;
     entry["formulation"] = variant_name(p.variant);
     entry["coefficient"] = p.law.coefficient;
     entry["calibrated"] = p.law.calibrated;
     entry["frequency_hz"] = number(p.law.frequency);
     entry["values"] = p.tests.size();
     entry["rms_deviation"] = number(p.rms);
+    entry["rms_deviation_as_ratios"] = number(p.rms_of_ratios);
     json["friction_laws"].push_back(entry);
   }
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -195,15 +258,21 @@ std::string csv_claims(const Assessment& a) {
   };
   const auto digits = [](double x) { return std::isfinite(x) ? fmt::format("{:.9g}", x) : std::string(); };
   constexpr const char* columns[variant_count] = {"rod_force", "virtual_work", "virtual_work_own_calibration"};
-  std::string text = "statement,where,basis,counted,reading,unit,published,tolerance";
-  for (std::size_t f = 0; f < a.variants; ++f) text += fmt::format(",{0},{0}_text,{0}_deviation", columns[f]);
+  std::string text = "statement,where,basis,counted,reading,searched_in,unit,published,tolerance,printed_digits";
+  for (std::size_t f = 0; f < a.variants; ++f) {
+    text +=
+        fmt::format(",{0},{0}_text,{0}_deviation,{0}_deviation_as_ratio,{0}_low_95,{0}_high_95,{0}_residual,{0}_domain",
+                    columns[f]);
+  }
   text += ",outcome,reason,note,erratum\n";
   for (const Claim& c : a.claims) {
-    text += fmt::format("{},{},{},{},{},{},{},{}", field(c.statement), field(c.where), name_of(c.basis),
-                        c.counted() ? "yes" : "no", c.reading, c.unit, c.published ? digits(*c.published) : "",
-                        digits(c.tolerance));
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{}", field(c.statement), field(c.where), name_of(c.basis),
+                        c.counted() ? "yes" : "no", c.reading, c.window, c.unit,
+                        c.published ? digits(*c.published) : "", digits(c.tolerance), digits(c.digits));
     for (std::size_t f = 0; f < a.variants; ++f) {
-      text += fmt::format(",{},{},{}", digits(c.ours[f]), field(c.ours_text[f]), digits(c.deviation[f]));
+      text += fmt::format(",{},{},{},{},{},{},{},{}", digits(c.ours[f]), field(c.ours_text[f]), digits(c.deviation[f]),
+                          digits(c.ratio_deviation[f]), digits(c.interval[f].low), digits(c.interval[f].high),
+                          digits(c.residual[f]), field(domain_text(c, f)));
     }
     text += fmt::format(",{},{},{},{}\n", name_of(c.outcome), field(c.reason), field(c.note), field(c.erratum));
   }

@@ -6,15 +6,22 @@
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/report/report.hpp"
 
 namespace wingbeat {
-namespace {}  // namespace
 
 int Comparison::outside() const {
   return int(std::count_if(values.begin(), values.end(), [](const ComparedValue& v) { return !v.within; }));
+}
+
+const Comparison::Run& Comparison::run_of(const PublishedValue& value, const std::string& design) const {
+  for (const Run& run : runs) {
+    if (run.design == design && run.voltage == value.voltage && run.frequency == value.frequency) return run;
+  }
+  throw std::runtime_error("a published value was not computed");
 }
 
 Comparison compare(const PublishedFile& file, double tolerance) {
@@ -38,8 +45,10 @@ Comparison compare(const PublishedFile& file, double tolerance) {
   for (const PublishedValue& v : file.values) {
     double computed = run(v.design, v);
     if (v.relative_to) computed /= run(*v.relative_to, v);
+    const double ratio_deviation = v.change ? computed / (1.0 + v.published) - 1.0 : absent;
+    if (v.change) computed -= 1.0;
     const double deviation = computed / v.published - 1.0;
-    comparison.values.push_back({v, computed, deviation, std::abs(deviation) <= v.tolerance});
+    comparison.values.push_back({v, computed, deviation, std::abs(deviation) <= v.tolerance, ratio_deviation});
   }
   return comparison;
 }
@@ -51,7 +60,8 @@ std::string text_comparison(const PublishedFile& file, const Comparison& compari
   for (const ComparedValue& v : comparison.values) {
     const PublishedValue& p = v.published;
     const std::string here = operating_point(p.voltage, p.frequency);
-    const std::string which = detail::spaced(p.design) + (p.relative_to ? " / " + detail::spaced(*p.relative_to) : "");
+    const std::string which = detail::spaced(p.design) + (p.relative_to ? " / " + detail::spaced(*p.relative_to) : "") +
+                              (p.change ? ", change" : "");
     if (here != at) {
       fmt::format_to(out, "\n{:<37}{:>11}{:>12}{:>12}{:>12}\n", "At " + here, "published", "ours", "deviation",
                      "tolerance");
@@ -61,9 +71,10 @@ std::string text_comparison(const PublishedFile& file, const Comparison& compari
     at = here;
     of = which;
     const auto value = [&](double x) {
-      return !p.relative_to     ? readable(x, metric_info(p.metric).unit)
-             : std::isfinite(x) ? fmt::format("{:#.4g}", x)
-                                : "-";
+      return !p.relative_to      ? readable(x, metric_info(p.metric).unit)
+             : !std::isfinite(x) ? "-"
+             : p.change          ? fmt::format("{:+.1f} %", 100.0 * x)
+                                 : fmt::format("{:#.4g}", x);
     };
     fmt::format_to(out, "    {:<33}{:>11}{:>12}{:>10} %{:>10} %  {}\n", metric_info(p.metric).long_name,
                    p.published_text, value(v.computed),
@@ -96,6 +107,7 @@ std::string json_comparison(const PublishedFile& file, const Comparison& compari
     entry["metric"] = metric_info(p.metric).key;
     entry["design"] = p.relative_to ? Json(nullptr) : Json(p.design);
     entry["ratio"] = p.relative_to ? Json{p.design, *p.relative_to} : Json(nullptr);
+    entry["change"] = p.change;
     entry["published"] = p.published;
     entry["computed"] = number(v.computed);
     entry["deviation"] = number(v.deviation);

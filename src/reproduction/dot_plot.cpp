@@ -34,7 +34,7 @@ void draw(const DotPlot& plot, PlotFormat format, const std::filesystem::path& f
   const bool referred =
       std::any_of(plot.panels.begin(), plot.panels.end(), [](const DotPanel& p) { return !p.references.empty(); });
   const double head = (plot.variants > 0 ? 0.22 : 0.05) + (titled ? 0.17 : 0.0) + (referred ? 0.15 : 0.0);
-  constexpr double foot = 0.45, gap = 0.16;
+  const double foot = 0.45, gap = plot.panels.size() > 1 ? 0.3 : 0.16;
   std::vector<double> middle;  // of each row from above [in]
   double y = head;
   for (const DotRow& row : plot.rows) {

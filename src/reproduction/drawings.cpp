@@ -223,8 +223,8 @@ std::string moving(const SliderCrank<double>& crank, const CycleCase& cycle, con
   }
   svg += line("#d55e00", 1.0, origin, pin) + line("#0072b2", 0.7, pin, slider);
   svg += fmt::format("<circle r=\"{:.2f}\" fill=\"#ffffff\" stroke=\"#202020\" stroke-width=\"0.2\"/>\n", 0.14 * H);
-  svg += fmt::format("<text x=\"{:.2f}\" y=\"{:.2f}\">{}, {:g} times slowed</text>\n</svg>\n", -half + 0.3 * H,
-                     -low - 0.25 * H, label, slowed);
+  svg += fmt::format("<text x=\"{:.2f}\" y=\"{:.2f}\" fill=\"{}\">{}, {:g} times slowed</text>\n</svg>\n",
+                     -half + 0.3 * H, -low - 0.25 * H, style::ink, label, slowed);
   return svg;
 }
 

@@ -165,6 +165,12 @@ std::vector<Sheet> energy_sheets(const Material& m) {
         formulation == Formulation::rod_force ? "The formulation residual is what the paper's equation (1) as "
                                                 "printed fails to conserve; it appears in no part of the vehicle."
                                               : "This formulation conserves power: there is no residual.");
+    for (const bool springs_in : {false, true}) {
+      const CycleCase* c = cycle_of(m.computed.at_frequency, formulation, springs_in);
+      if (c && c->run.domain.any()) {
+        s.caption += fmt::format(" {} springs outside the domain.", springs_in ? "With" : "Without");
+      }
+    }
     s.draw = [cases](PlotFormat format, const std::filesystem::path& file) { draw_flows(cases, format, file); };
     sheets.push_back(std::move(s));
   }

@@ -101,13 +101,15 @@ std::vector<Sheet> paper_sheets(const Material& m) {
     sheets.push_back(std::move(s));
   };
   const auto value = [&](const FlappingCase& of, Metric metric) { return at(f, of, metric, f0); };
+  const auto shown = [&](const FlappingCase& of, Metric metric) {
+    return mw(value(of, metric)) + domain_remark_at(f, of, f0);
+  };
   const auto three = [&](Metric metric) {
-    return fmt::format("At {:g} Hz: {} in air, {} in vacuum, {} without wings", f0, mw(value(off, metric)),
-                       mw(value(empty, metric)), mw(value(bare, metric)));
+    return fmt::format("At {:g} Hz: {} in air, {} in vacuum, {} without wings", f0, shown(off, metric),
+                       shown(empty, metric), shown(bare, metric));
   };
   const auto two = [&](Metric metric) {
-    return fmt::format("At {:g} Hz: {} without springs, {} with them", f0, mw(value(off, metric)),
-                       mw(value(on, metric)));
+    return fmt::format("At {:g} Hz: {} without springs, {} with them", f0, shown(off, metric), shown(on, metric));
   };
 
   frequency_sheet(
@@ -150,9 +152,8 @@ std::vector<Sheet> paper_sheets(const Material& m) {
           "reversal, which does not depend on air. The paper says that motor output minus friction equals the "
           "aerodynamic power; ratio at {:g} Hz: {}. The difference by rod-force is its formulation residual.",
           100.0 * value(off, Metric::power_loss) / value(off, Metric::power_electrical), f0,
-          mw(value(off, Metric::power_friction)), mw(value(off, Metric::power_motor)),
-          mw(value(empty, Metric::power_friction)), mw(value(empty, Metric::power_motor)), f0,
-          beside(m.assessment, "motor output minus friction")),
+          shown(off, Metric::power_friction), shown(off, Metric::power_motor), shown(empty, Metric::power_friction),
+          shown(empty, Metric::power_motor), f0, beside(m.assessment, "motor output minus friction")),
       {{Metric::power_electrical, "power (mW)", "electrical input"},
        {Metric::power_loss, "power (mW)", "total loss"},
        {Metric::power_motor, "power (mW)", "motor output"},
@@ -161,22 +162,26 @@ std::vector<Sheet> paper_sheets(const Material& m) {
       9, "Input and motor output power with and without springs", false,
       two(Metric::power_electrical) +
           fmt::format(
-              " (electrical, rod-force). Springs raise the input below a frequency and lower it above: {}. Ratio at "
+              " (electrical, rod-force). Springs raise the input below a frequency and lower it above: {}. Change by springs at "
               "{:g} Hz: {}.",
-              beside(m.assessment, "springs raise"), f0, beside(m.assessment, "mean electrical input power, ratio")),
+              beside(m.assessment, "springs raise the electrical input"), f0,
+              beside(m.assessment, "mean electrical input power, change")),
       {{Metric::power_electrical, "power (mW)", "electrical input"},
        {Metric::power_motor, "power (mW)", "motor output"}},
       [&](std::vector<ChartPanel>& panels) {
-        mark_published(panels[0], j, "mean electrical input power, ratio", style::with_springs,
-                       [&](double ratio) { return std::pair(f0, 1e3 * ratio * value(off, Metric::power_electrical)); });
-        mark_published(panels[0], j, "springs raise", style::ink, [](double hz) { return std::pair(hz, absent); });
+        mark_published(panels[0], j, "mean electrical input power, change", style::with_springs, [&](double change) {
+          return std::pair(f0, 1e3 * (1.0 + change) * value(off, Metric::power_electrical));
+        });
+        mark_published(panels[0], j, "springs raise the electrical input", style::ink,
+                       [](double hz) { return std::pair(hz, absent); });
       });
   {
     // The last frequency at which springs add.
     const TrendCurve &with = curve_of(f, on), &without = curve_of(f, off);
     const auto reactive = [](const TrendCurve& c, std::size_t n) { return c.metrics[n][Metric::power_reactive]; };
-    std::string said = fmt::format(" Frequency of its minimum with springs: {}.",
-                                   beside(m.assessment, "with springs the mean absolute reactive power"));
+    std::string said = fmt::format(
+        " Frequency of its dip with springs, searched from 8 to 30 Hz; the lower end of the range lies lower: {}.",
+        beside(m.assessment, "with springs the mean absolute reactive power"));
     for (std::size_t n = f.axis.size(); n-- > 0;) {
       if (!(reactive(with, n) > reactive(without, n))) continue;
       said += fmt::format(" Up to {:.3g} Hz it is higher than without springs: the springs are too stiff there.",
@@ -184,8 +189,10 @@ std::vector<Sheet> paper_sheets(const Material& m) {
       break;
     }
     frequency_sheet(10, "Mean absolute reactive power with and without springs", false,
-                    two(Metric::power_reactive) + "." + said, {{Metric::power_reactive, "reactive power (mW)", ""}},
-                    [&](std::vector<ChartPanel>& panels) {
+                    two(Metric::power_reactive) + "." + said +
+                        fmt::format(" As a share of the input: {}.",
+                                    beside(m.assessment, "with springs the mean absolute reactive power, as a share")),
+                    {{Metric::power_reactive, "reactive power (mW)", ""}}, [&](std::vector<ChartPanel>& panels) {
                       mark_published(panels[0], j, "with springs the mean absolute reactive power", style::with_springs,
                                      [](double hz) { return std::pair(hz, absent); });
                     });
@@ -198,9 +205,8 @@ std::vector<Sheet> paper_sheets(const Material& m) {
           "speed alone and "
           "is "
           "almost unaffected by the springs.",
-          f0, mw(value(off, Metric::power_loss)), mw(value(on, Metric::power_loss)),
-          mw(value(off, Metric::power_friction)), mw(value(on, Metric::power_friction)),
-          mw(value(off, Metric::power_copper)), mw(value(on, Metric::power_copper))),
+          f0, shown(off, Metric::power_loss), shown(on, Metric::power_loss), shown(off, Metric::power_friction),
+          shown(on, Metric::power_friction), shown(off, Metric::power_copper), shown(on, Metric::power_copper)),
       {{Metric::power_loss, "power (mW)", "all losses"},
        {Metric::power_copper, "power (mW)", "copper"},
        {Metric::power_friction, "power (mW)", "friction"},
@@ -239,12 +245,12 @@ std::vector<Sheet> paper_sheets(const Material& m) {
       13, "Mean lift with and without springs", false,
       fmt::format("At prescribed frequency springs change the velocity profile, not the stroke amplitude: the wings "
                   "are faster in "
-                  "mid-stroke. Ratio at {:g} Hz: {}.",
-                  f0, beside(m.assessment, fmt::format("mean lift, ratio with / without springs at {:g} Hz", f0))),
+                  "mid-stroke. Change by springs at {:g} Hz: {}.",
+                  f0, beside(m.assessment, fmt::format("mean lift, change by springs at {:g} Hz", f0))),
       {{Metric::lift_mean, "mean lift (mN)", ""}}, [&](std::vector<ChartPanel>& panels) {
-        mark_published(panels[0], j, fmt::format("mean lift, ratio with / without springs at {:g} Hz", f0),
-                       style::with_springs,
-                       [&](double ratio) { return std::pair(f0, 1e3 * ratio * value(off, Metric::lift_mean)); });
+        mark_published(
+            panels[0], j, fmt::format("mean lift, change by springs at {:g} Hz", f0), style::with_springs,
+            [&](double change) { return std::pair(f0, 1e3 * (1.0 + change) * value(off, Metric::lift_mean)); });
       });
 
   using R = WaveformRow;
@@ -256,7 +262,7 @@ std::vector<Sheet> paper_sheets(const Material& m) {
                           fmt::format("{} over a cycle at {}", what,
                                       held ? fmt::format("{:g} Hz", f0) : fmt::format("{:g} V", r.options.voltage)),
                           mark);
-    s.caption = said;
+    s.caption = said + domain_remark(held ? r.at_frequency : r.at_voltage);
     sheets.push_back(std::move(s));
   };
   const std::string hz = fmt::format("{:g} Hz", f0), v = fmt::format("{:g} V", r.options.voltage);
@@ -264,8 +270,8 @@ std::vector<Sheet> paper_sheets(const Material& m) {
   const auto ratio_of_peaks = [&](const std::vector<CycleCase>& of, const std::string& statement,
                                   double R::* quantity) {
     return [&, statement, quantity](ChartPanel& panel) {
-      mark_published(panel, j, statement, style::with_springs, [&](double ratio) {
-        return std::pair(peak_of(of, true, quantity).first, ratio * peak_of(of, false, quantity).second);
+      mark_published(panel, j, statement, style::with_springs, [&](double change) {
+        return std::pair(peak_of(of, true, quantity).first, (1.0 + change) * peak_of(of, false, quantity).second);
       });
     };
   };
@@ -284,10 +290,9 @@ std::vector<Sheet> paper_sheets(const Material& m) {
   cycles(14, true, &R::flapping_velocity, 1.0, "flapping_velocity_rad_per_s", "rad/s", "flapping velocity (rad/s)",
          "Flapping velocity",
          fmt::format("With springs the velocity's peaks are higher at the same frequency: springs accelerate the wings "
-                     "after stroke reversal. Ratio of the peaks: {}.",
-                     beside(j, "peak flapping velocity, ratio with / without springs at " + hz)),
-         ratio_of_peaks(r.at_frequency, "peak flapping velocity, ratio with / without springs at " + hz,
-                        &R::flapping_velocity));
+                     "after stroke reversal. Change of the peaks: {}.",
+                     beside(j, "peak flapping velocity, change by springs at " + hz)),
+         ratio_of_peaks(r.at_frequency, "peak flapping velocity, change by springs at " + hz, &R::flapping_velocity));
   cycles(15, true, &R::lift, 1e3, "lift_n", "N", "lift (mN)", "Lift",
          fmt::format("Two peaks, one for each half-stroke. Peak without springs: {}. With springs: {}.",
                      beside(j, "peak lift without springs at " + hz), beside(j, "peak lift with springs at " + hz)),
@@ -307,18 +312,16 @@ std::vector<Sheet> paper_sheets(const Material& m) {
       17, false, &R::lift, 1e3, "lift_n", "N", "lift (mN)", "Lift",
       fmt::format(
           "At the same voltage the vehicle with springs also flaps faster, {:.2f} instead of {:.2f} Hz (rod-force; the "
-          "axis is scaled to each period). Mean lift, ratio with / without springs: {}.",
-          frequency_at(true), frequency_at(false), beside(j, "mean lift, ratio with / without springs at " + v)));
-  cycles(18, false, &R::flapping_velocity, 1.0, "flapping_velocity_rad_per_s", "rad/s", "flapping velocity (rad/s)",
-         "Flapping velocity",
-         fmt::format("Ratio of the peaks, with / without springs: {}.",
-                     beside(j, "peak flapping velocity, ratio with / without springs at " + v)),
-         ratio_of_peaks(r.at_voltage, "peak flapping velocity, ratio with / without springs at " + v,
-                        &R::flapping_velocity));
+          "axis is scaled to each period). Change of the mean lift by springs: {}.",
+          frequency_at(true), frequency_at(false), beside(j, "mean lift, change by springs at " + v)));
+  cycles(
+      18, false, &R::flapping_velocity, 1.0, "flapping_velocity_rad_per_s", "rad/s", "flapping velocity (rad/s)",
+      "Flapping velocity",
+      fmt::format("Change of the peak by springs: {}.", beside(j, "peak flapping velocity, change by springs at " + v)),
+      ratio_of_peaks(r.at_voltage, "peak flapping velocity, change by springs at " + v, &R::flapping_velocity));
   cycles(19, false, &R::rod_force, 1e3, "rod_force_n", "N", "rod force (mN)", "Rod force",
-         fmt::format(
-             "The mean magnitude of the force falls although the wings beat faster, ratio with / without springs: {}.",
-             beside(j, "mean magnitude of the rod force, ratio with / without springs at " + v)));
+         fmt::format("The mean magnitude of the force falls although the wings beat faster. Change by springs: {}.",
+                     beside(j, "mean magnitude of the rod force, change by springs at " + v)));
 
   return sheets;
 }

@@ -77,7 +77,7 @@ std::vector<FurtherVariant> further_physics(const SpringPair& pair, const Reprod
   const std::string text[] = {write_design(pair[0]), write_design(pair[1])};
   struct Task {
     FurtherVariant* variant;
-    Metrics<double> FurtherVariant::* metrics;
+    FurtherRun FurtherVariant::* run;
     bool springs, friction;
     double voltage;  ///< 0: the frequency is held
   };
@@ -100,8 +100,7 @@ std::vector<FurtherVariant> further_physics(const SpringPair& pair, const Reprod
     if (task.voltage > 0.0) design.supply = {SupplyType::constant, task.voltage, 0.0, 1.0};
     else run.frequency = options.frequency;
     const RunResult result = run_design(design, run);
-    task.variant->*task.metrics = result.metrics;
-    if (task.metrics == &FurtherVariant::on) task.variant->domain = result.domain;
+    task.variant->*task.run = {result.metrics, result.domain};
   });
   return variants;
 }
@@ -124,11 +123,10 @@ std::vector<Sheet> further_sheets(const Material& m) {
       {"with springs", fmt::format("lift / weight at {:g} V", m.computed.options.max_voltage), 0.0, 1.2, 0.5}};
   const auto published = [&](DotPanel& panel, const std::string& beginning) {
     const Claim* c = claim_of(m.assessment, beginning);
-    if (c && c->published) panel.references.emplace_back(100.0 * (*c->published - 1.0), "published");
+    if (c && c->published) panel.references.emplace_back(100.0 * *c->published, "published");
   };
-  published(plot.panels[1], "mean electrical input power, ratio");
-  published(plot.panels[2],
-            fmt::format("mean lift, ratio with / without springs at {:g} V", m.computed.options.voltage));
+  published(plot.panels[1], "mean electrical input power, change");
+  published(plot.panels[2], fmt::format("mean lift, change by springs at {:g} V", m.computed.options.voltage));
   plot.panels[3].references.emplace_back(1.0, "hover");
   std::vector<double> place, values[5];
   for (const FurtherVariant& v : m.further) {
@@ -175,7 +173,7 @@ std::string further_html(const Material& m) {
   std::string html = fmt::format(
       "<p>The paper's model has constant motor parameters, no gear loss and no added mass of the air, and its wings "
       "pitch by a law. The program can add each of these. <b>The answer to the title question stays yes:</b> without "
-      "friction the model predicts {:.0f} to {:.0f} % less input at {:g} Hz. Springs change the input by {:+.1f} to "
+      "friction the model predicts {:.0f} to {:.0f} % less input at {:g} Hz (numbers marked ‡ below are outside the domain). Springs change the input by {:+.1f} to "
       "{:+.1f} % and the mean lift at {:g} V by {:+.1f} to {:+.1f} %. Mean lift at {:g} V with springs and the crank "
       "of Table 2 is {:.2f} to {:.2f} of the weight{}.</p>\n",
       -100.0 * least, -100.0 * most, f0, 100.0 * saved_most, 100.0 * saved_least, m.computed.options.voltage,
@@ -187,14 +185,19 @@ std::string further_html(const Material& m) {
       "<th>lift / weight, {0:g} V, springs</th><th>winding, {0:g} V, springs</th></tr></thead><tbody>\n",
       m.computed.options.max_voltage);
   for (const FurtherVariant& v : m.further) {
-    const auto power = [](const Metrics<double>& x) { return readable(x[Metric::power_electrical], "W"); };
+    const auto mark = [](std::initializer_list<const FurtherRun*> runs) {
+      const bool any = std::any_of(runs.begin(), runs.end(), [](const FurtherRun* r) { return r->domain.any(); });
+      return any ? " ‡" : "";
+    };
+    const auto power = [&](const FurtherRun& x) { return readable(x[Metric::power_electrical], "W") + mark({&x}); };
     const double winding = v.on_at_max_voltage[Metric::winding_temperature];
     html += fmt::format(
         "<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{} ({})</td><td class=\"n\">{} ({})</td><td "
-        "class=\"n\">{}</td><td class=\"n\">{:+.2f} percentage points</td><td class=\"n\">{:.3f}</td><td "
+        "class=\"n\">{}{}</td><td class=\"n\">{:+.2f} percentage points{}</td><td class=\"n\">{:.3f}{}</td><td "
         "class=\"n\">{}</td></tr>\n",
         v.name, power(v.off), power(v.no_friction), percent(v.without_friction()), power(v.on), percent(v.saved()),
-        percent(v.lift_gain()), 100.0 * v.efficiency_gain(), v.lift_to_weight(),
+        percent(v.lift_gain()), mark({&v.off_at_voltage, &v.on_at_voltage}), 100.0 * v.efficiency_gain(),
+        mark({&v.off, &v.on}), v.lift_to_weight(), mark({&v.on_at_max_voltage}),
         std::isfinite(winding) ? fmt::format("{:.0f} °C", winding) : std::string("-"));
   }
   html += fmt::format(
@@ -203,7 +206,8 @@ std::string further_html(const Material& m) {
       "to air, a semi-elliptic planform of 63 mm by 25 mm for the added mass, and wings on pitch hinges of 6·10"
       "<sup>-4</sup> N·m/rad that have the paper's inertia, normal-force coefficients and added mass. The wings on "
       "pitch hinges are other wings than the paper's, whose pitch follows a law. Equation (1) is taken as printed, "
-      "also where its formulation residual exceeds 5 % of the input.</p>\n",
+      "also where its formulation residual exceeds 5 % of the input: ‡ marks numbers outside the domain, all others are "
+      "inside.</p>\n",
       f0, m.computed.options.voltage);
   return html;
 }

@@ -9,14 +9,20 @@
 
 namespace wingbeat::reproduction {
 
+/// A result and the limits of the domain that it exceeds.
+struct FurtherRun {
+  Metrics<double> metrics;
+  DomainStatus domain;
+  double operator[](Metric m) const { return metrics[m]; }
+};
+
 /// The paper's vehicles with more physics, by rod-force, each quantity as the paper's statements use it.
 struct FurtherVariant {
   std::string name;
-  std::vector<std::string> settings;     ///< of the vehicle file, KEY=VALUE
-  Metrics<double> off, on, no_friction;  ///< at the frequency, without and with springs, without friction or springs
-  Metrics<double> off_at_voltage, on_at_voltage;  ///< at the voltage of the cycles
-  Metrics<double> on_at_max_voltage;              ///< with springs at the highest voltage
-  DomainStatus domain;                            ///< limits that the cycles with springs at the frequency exceed
+  std::vector<std::string> settings;  ///< of the vehicle file, KEY=VALUE
+  FurtherRun off, on, no_friction;    ///< at the frequency, without and with springs, without friction or springs
+  FurtherRun off_at_voltage, on_at_voltage;  ///< at the voltage of the cycles
+  FurtherRun on_at_max_voltage;              ///< with springs at the highest voltage
 
   double without_friction() const;  ///< relative change of the electrical input when friction is left out [1]
   double saved() const;             ///< relative change of the electrical input by springs [1]

@@ -18,7 +18,8 @@ h2 { font-size: 1.35rem; margin: 2.8rem 0 .6rem; padding-top: .6rem; border-top:
 h3 { font-size: 1.05rem; margin: 1.6rem 0 .4rem; }
 p, ul, ol { max-width: 46rem; }
 .lead { color: var(--soft); }
-.answer { font-size: 1.15rem; border-left: 4px solid var(--accent); padding: .2rem 0 .2rem 1rem; }
+.answer { max-width: 46rem; border-left: 4px solid var(--accent); padding: .2rem 0 .2rem 1rem; }
+.answer p { margin: .5rem 0; } .answer p:first-child { font-size: 1.15rem; }
 nav ol { columns: 2; column-gap: 3rem; padding-left: 1.6rem; }
 nav li { break-inside: avoid; }
 a { color: var(--accent); }
@@ -53,7 +54,20 @@ td.n { text-align: right; white-space: nowrap; }
 .part::before { content: "\25D0  "; color: var(--mixed); }
 .erratum { color: var(--bad); }
 table.claims { font-size: .76rem; }
-pre { background: var(--band); border: 1px solid var(--line); padding: .7rem .9rem; overflow-x: auto;
+.scorecard table { width: 100%; font-size: .78rem; }
+.scorecard td:nth-child(5) { min-width: 11rem; }
+.strip { position: relative; display: block; height: .9rem; min-width: 10rem; border-left: 1px solid var(--line);
+  border-right: 1px solid var(--line); background: linear-gradient(to right, transparent 40%, var(--met) 40%,
+  var(--met) 60%, transparent 60%); }
+.strip i { position: absolute; print-color-adjust: exact; -webkit-print-color-adjust: exact; }
+.strip .dot { width: .5rem; height: .5rem; margin-left: -.25rem; border: 2px solid var(--ink); background: var(--ink); }
+.strip .rod { top: .02rem; } .strip .work { top: .42rem; }
+.strip .dot.rod { border-radius: 50%; }
+.strip .hollow { background: var(--page); }
+.strip .beyond { border-style: dotted; background: var(--page); }
+.strip .span { height: 2px; min-width: 1px; background: var(--grey); }
+.strip .span.rod { top: .22rem; } .strip .span.work { top: .62rem; }
+pre { white-space: pre-wrap; background: var(--band); border: 1px solid var(--line); padding: .7rem .9rem; overflow-x: auto;
   font-size: .85rem; line-height: 1.4; }
 code { font-size: .9em; }
 .tools { position: sticky; top: 0; z-index: 2; background: var(--page); padding: .4rem 0;
@@ -66,11 +80,20 @@ body[data-shown=virtual-work] [data-formulation=rod-force] { display: none; }
 .tip { position: fixed; z-index: 3; pointer-events: none; background: var(--page); border: 1px solid var(--ink);
   padding: .25rem .5rem; font: .78rem/1.4 Arial, Helvetica, sans-serif; max-width: 20rem; display: none; }
 @media (max-width: 40rem) { body { padding: 1rem .75rem 3rem; } nav ol { columns: 1; } td:first-child {
-  min-width: 9rem; } h1 { font-size: 1.5rem; overflow-wrap: anywhere; } }
-@media print { body { max-width: none; padding: 0; font-size: 10pt; } h2 { break-after: avoid; }
+  min-width: 9rem; } h1 { font-size: 1.5rem; overflow-wrap: anywhere; }
+  .scorecard thead { display: none; } .scorecard tr, .scorecard td { display: block; }
+  .scorecard tr { border-bottom: 1px solid var(--line); padding: .3rem 0; }
+  .scorecard td { border: 0; padding: .1rem 0; } .scorecard th.group { display: block; }
+  .scorecard td:first-child { font-weight: bold; }
+  .scorecard td[data-label]::before { content: attr(data-label) ": "; color: var(--soft); }
+  .scorecard td.yes[data-label]::before { content: "\25CF  " attr(data-label) ": "; }
+  .scorecard td.no[data-label]::before { content: "\25CB  " attr(data-label) ": "; } }
+@media print { body { max-width: none; padding: 0; font-size: 9pt; } h2 { break-after: avoid; }
   figure, tr { break-inside: avoid; }
-  .figures { grid-template-columns: 1fr 1fr; }
-  figure.page .drawing svg { min-width: 0; } .drawing svg { max-height: 205mm; }
+  .figures { display: block; columns: 2; column-gap: 6mm; } figure { margin-bottom: 4mm; }
+  figure.page { column-span: all; } figure.page .drawing svg { min-width: 0; } .drawing svg { max-height: 115mm; }
+  p, ul, ol, .answer { max-width: none; } h2 { margin-top: 1.2rem; }
+  details:not([open]), .moving { display: none; } .scorecard td:nth-child(5), .strip { min-width: 30mm; }
   nav, .tools, .tip { display: none !important; }
   .wide, .drawing { overflow: visible; } table, table.laws { width: 100%; font-size: 6.6pt; }
   th, td { padding: .2rem .3rem; } td:first-child { min-width: 9rem; }
@@ -167,7 +190,6 @@ for (const table of document.querySelectorAll('table.sortable')) {
     head.addEventListener('keydown', event => { if (event.key === 'Enter') sort(); });
   });
 }
-addEventListener('beforeprint', () => { for (const d of document.querySelectorAll('details')) d.open = true; });
 )";
 
 /// A colour of the figures: as they are drawn, as a name of the page's style, and on a dark page.
@@ -221,6 +243,14 @@ std::string page_style() {
   return fmt::format(":root {{ {} }}\n@media screen and (prefers-color-scheme: dark) {{ :root {{ {} }} }}", light,
                      dark) +
          page_rules;
+}
+
+std::string with_minus_signs(std::string html) {
+  for (std::size_t at = 1; at + 1 < html.size(); ++at) {
+    const bool begins = std::string_view(" [(>,").find(html[at - 1]) != std::string_view::npos;
+    if (html[at] == '-' && begins && html[at + 1] >= '0' && html[at + 1] <= '9') html.replace(at, 1, "−");
+  }
+  return html;
 }
 
 std::string page_script() { return script; }

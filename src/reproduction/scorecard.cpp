@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "reproduction/dot_plot.hpp"
+#include "reproduction/statement_order.hpp"
 #include "reproduction/trend_figure.hpp"
 #include "wingbeat/report/report.hpp"
 
@@ -13,26 +14,6 @@ namespace wingbeat::reproduction {
 namespace {
 
 constexpr double drawn_bands = 5.0;  ///< deviations beyond are arrowheads at the edge
-
-/// Shorter, for a row of the scorecard.
-std::string short_statement(const Claim& c, const std::string& heading) {
-  std::string text = c.statement;
-  const auto replace = [&](const std::string& from, const std::string& to) {
-    if (const auto at = text.find(from); at != std::string::npos) text.replace(at, from.size(), to);
-  };
-  if (!c.reading.empty() && heading.find(c.reading) != std::string::npos) replace(", " + c.reading, "");
-  replace("ratio with / without springs", "with / without springs");
-  replace("peak magnitude of the rod force", "peak rod force");
-  replace("peak of the rod force (crank reaction force)", "peak rod force");
-  replace("mean magnitude of the rod force", "mean rod force");
-  replace("at this flapping frequency", "at this frequency");
-  replace("flapping frequency", "frequency");
-  replace("at 3 V no design carries the weight", "at 3 V below the weight");
-  replace("at 5 V no crank without springs carries the weight", "at 5 V without springs below the weight");
-  replace("motor output minus friction loss equals the aerodynamic power: their ratio",
-          "(motor output - friction loss) / aerodynamic power");
-  return text;
-}
 
 /// "+5.9, -19.0 %", or whether it holds where there is no number to deviate from.
 std::string deviations(const Claim& c) {
@@ -77,22 +58,8 @@ Sheet scorecard(const Material& m) {
   plot.panels = {{"", "deviation / tolerance", -drawn_bands, drawn_bands, 1.0, 1.0}};
   std::vector<double> row_number, columns[2];
   for (const ClaimGroup& group : claim_groups()) {
-    std::vector<const Claim*> claims;
-    for (const Claim& c : m.assessment.claims) {
-      if (group.holds(c) && c.outcome != StatementOutcome::not_checkable) claims.push_back(&c);
-    }
+    const std::vector<const Claim*> claims = worst_first(m.assessment, group);
     if (claims.empty()) continue;
-    const auto worst = [](const Claim* c) {
-      double most = 0.0;
-      for (std::size_t f = 0; f < 2; ++f) {
-        most = std::max(most, std::isfinite(c->deviation[f]) ? std::abs(c->deviation[f]) : c->within[f] ? 0.0 : 10.0);
-      }
-      return most;
-    };
-    std::stable_sort(claims.begin(), claims.end(), [&](const Claim* p, const Claim* q) {
-      const int a = failures_first(*p), b = failures_first(*q);
-      return a != b ? a < b : worst(p) > worst(q);
-    });
     plot.rows.push_back({.label = group.heading, .heading = true});
     for (const Claim* c : claims) {
       DotRow row{.label = short_statement(*c, group.heading), .note = deviations(*c)};
@@ -121,33 +88,33 @@ Sheet laws_sheet(const Material& m) {
   s.section = "summary";
   const LawPrediction& first = m.assessment.laws.front();
   s.caption = fmt::format(
-      "Each law has one coefficient, calibrated without springs. (a) Root mean square of its deviations from the {} "
-      "published values with springs that were not used in a calibration. (b) By how much springs then cut "
-      "the electrical input at {:g} Hz.",
+      "Each model has one number, calibrated without springs: the coefficient of its friction, or a factor on the drag. "
+      "(a) Root mean square of its deviations from the {} published values with springs that were not used in a "
+      "calibration, changes as the paper prints them. (b) By how much springs then cut the electrical input at {:g} "
+      "Hz. Without friction rod-force is outside the domain.",
       first.tests.size(), m.computed.options.frequency);
   DotPlot plot;
   plot.label_width = 1.05;
   plot.row_height = 0.18;
   plot.note_width = 0.05;
   plot.variants = 2;
-  plot.panels = {{"deviation", "root mean square (%)", 0.0, 16.0, 5.0},
-                 {"saved by springs", "of the input (%)", -5.0, 25.0, 10.0}};
+  plot.panels = {{"deviation", "root mean square (%)", 0.0, 100.0, 25.0},
+                 {"saved by springs", "of the input (%)", -10.0, 25.0, 10.0}};
   std::vector<double> law_number, rms[2], saved[2];
-  for (const FrictionLaw law : compared_friction_laws) {
-    DotRow row{name_of(law)};
+  for (std::size_t n = 0; n < std::size(rivals); ++n) {
+    DotRow row{rivals[n].name};
     row.dots.resize(2);
     for (const LawPrediction& p : m.assessment.laws) {
-      if (p.law.law != law || p.variant == recalibrated) continue;
-      const char* colour = law == FrictionLaw::load_proportional ? style::friction : style::grey;
+      if (p.rival != n || p.variant == recalibrated) continue;
+      const char* colour = n == load_proportional_rival ? style::friction : style::grey;
       row.dots[0].push_back({100.0 * p.rms, p.variant, false, colour});
       rms[p.variant].push_back(p.rms);
       double share = absent;
       for (const ComparedValue& c : p.comparison.values) {
-        if (c.published.metric != Metric::power_electrical || !c.published.relative_to || !c.published.frequency)
-          continue;
-        share = 1.0 - c.computed;
+        if (c.published.metric != Metric::power_electrical || !c.published.change || !c.published.frequency) continue;
+        share = -c.computed;
         if (plot.panels[1].references.empty()) {
-          plot.panels[1].references.emplace_back(100.0 * (1.0 - c.published.published), "published");
+          plot.panels[1].references.emplace_back(-100.0 * c.published.published, "published");
         }
       }
       row.dots[1].push_back({100.0 * share, p.variant, false, colour});
@@ -156,7 +123,7 @@ Sheet laws_sheet(const Material& m) {
     law_number.push_back(double(law_number.size()));
     plot.rows.push_back(std::move(row));
   }
-  s.table.add("law", "1", "none, viscous, quadratic, constant, load-proportional", law_number);
+  s.table.add("law", "1", "none, none with more drag, viscous, quadratic, constant, load-proportional", law_number);
   for (std::size_t f = 0; f < 2; ++f) {
     const std::string tag = f == 0 ? "rod_force" : "virtual_work";
     s.table.add("rms_deviation_" + tag, "1", fmt::format("root mean square deviation, {}", variant_name(f)), rms[f]);
@@ -167,6 +134,43 @@ Sheet laws_sheet(const Material& m) {
 }
 
 }  // namespace
+
+std::string short_statement(const Claim& c, const std::string& heading) {
+  std::string text = c.statement;
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    if (const auto at = text.find(from); at != std::string::npos) text.replace(at, from.size(), to);
+  };
+  if (!c.reading.empty() && heading.find(c.reading) != std::string::npos) replace(", " + c.reading, "");
+  replace("peak magnitude of the rod force", "peak rod force");
+  replace("peak of the rod force (crank reaction force)", "peak rod force");
+  replace("mean magnitude of the rod force", "mean rod force");
+  replace("at this flapping frequency", "at this frequency");
+  replace("flapping frequency", "frequency");
+  replace("at 3 V no design carries the weight", "at 3 V below the weight");
+  replace("at 5 V no crank without springs carries the weight", "at 5 V without springs below the weight");
+  replace("motor output minus friction loss equals the aerodynamic power: their ratio",
+          "(motor output - friction loss) / aerodynamic power");
+  return text;
+}
+
+std::vector<const Claim*> worst_first(const Assessment& a, const ClaimGroup& group) {
+  std::vector<const Claim*> claims;
+  for (const Claim& c : a.claims) {
+    if (group.holds(c) && c.outcome != StatementOutcome::not_checkable) claims.push_back(&c);
+  }
+  const auto worst = [](const Claim* c) {
+    double most = 0.0;
+    for (std::size_t f = 0; f < 2; ++f) {
+      most = std::max(most, std::isfinite(c->deviation[f]) ? std::abs(c->deviation[f]) : c->within[f] ? 0.0 : 10.0);
+    }
+    return most;
+  };
+  std::stable_sort(claims.begin(), claims.end(), [&](const Claim* p, const Claim* q) {
+    const int first = failures_first(*p), second = failures_first(*q);
+    return first != second ? first < second : worst(p) > worst(q);
+  });
+  return claims;
+}
 
 std::vector<Sheet> summary_sheets(const Material& m) {
   std::vector<Sheet> sheets;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -38,6 +39,15 @@ bool is_efficiency(Metric m) {
   return m == Metric::efficiency_system || m == Metric::efficiency_motor || m == Metric::efficiency_mechanism;
 }
 
+/// A statement's quantity.
+double quantity(const PublishedTrend& t, const Metrics<double>& m) {
+  return t.share_of ? m[t.metric] / m[*t.share_of] : m[t.metric];
+}
+
+std::string shown_quantity(double x, const PublishedTrend& t) {
+  return t.share_of ? percent(x) : shown(x, metric_info(t.metric).unit, is_efficiency(t.metric));
+}
+
 /// Runs the designs of a statement.
 class Asked {
  public:
@@ -63,11 +73,13 @@ class Asked {
   }
 
   /// Metrics at a held frequency, or at the supply's voltage; all absent where it does not flap or leaves the domain.
-  Metrics<double> metrics(const std::optional<Design<double>>& d, std::optional<double> frequency) const {
+  Metrics<double> metrics(const std::optional<Design<double>>& d, std::optional<double> frequency,
+                          Condition condition = Condition::air) const {
     Metrics<double> none;
     none.values.fill(absent);
     if (!d) return none;
     RunOptions options;
+    options.condition = condition;
     options.tolerance = 1e-8;
     options.frequency = frequency;
     options.allow_extrapolation = true;  // the domain is assessed with the result, not by the search
@@ -88,32 +100,34 @@ class Asked {
   }
 
   /// At the statement's operating point.
-  Metrics<double> here(const std::string& name) const {
-    return metrics(design(name, t_.over.empty() ? std::nullopt : std::optional(t_.at)), t_.frequency);
+  Metrics<double> here(const std::string& name, Condition condition = Condition::air) const {
+    return counted(
+        metrics(design(name, t_.over.empty() ? std::nullopt : std::optional(t_.at)), t_.frequency, condition));
   }
 
+  /// The same metrics, noted as what the answer rests on.
+  Metrics<double> counted(const Metrics<double>& m) const {
+    const double share = std::abs(residual_share(m));
+    if (std::isfinite(share)) residual_ = std::isfinite(residual_) ? std::max(residual_, share) : share;
+    return m;
+  }
+  double residual() const { return residual_; }
+
  private:
+  mutable double residual_ = absent;
   const PublishedFile& file_;
   const PublishedTrend& t_;
   mutable std::map<std::pair<std::string, double>, Metrics<double>> known_;
 };
 
-/// Of a result beyond the limit of the formulation's residual.
-std::string residual_remark(const Metrics<double>& m) {
-  const double share = m[Metric::power_residual] / m[Metric::power_electrical];
-  return std::abs(share) > formulation_residual_max
-             ? fmt::format("outside the domain, residual {:.1f} %", 100.0 * share)
-             : "";
-}
-
 Answer extreme(const Asked& ask, const PublishedTrend& t) {
-  const auto value = [&](double x) { return ask.along(t.design, x)[t.metric]; };
+  const auto value = [&](double x) { return quantity(t, ask.along(t.design, x)); };
   const bool dip = t.kind == TrendKind::trough_at;
   const TrendPeak peak = dip ? dip_along(value, t.from, t.to) : highest_along(value, t.from, t.to);
-  if (!std::isfinite(peak.at)) return {absent, dip ? "no minimum" : "none flaps inside the domain", false};
+  if (!std::isfinite(peak.at)) return {absent, dip ? "no minimum" : "none flaps inside the domain"};
+  ask.counted(ask.along(t.design, peak.at));
   const std::string unit = t.over.empty() ? "Hz" : design_parameter(t.over).unit;
-  const std::string at = readable(peak.at, unit);
-  const std::string reached = shown(peak.value, metric_info(t.metric).unit, is_efficiency(t.metric));
+  const std::string at = readable(peak.at, unit), reached = shown_quantity(peak.value, t);
   const bool height = t.kind == TrendKind::peak;
   std::string remark = height ? fmt::format("at {}", at) : reached;
   if (!peak.inside) {
@@ -121,10 +135,14 @@ Answer extreme(const Asked& ask, const PublishedTrend& t) {
     const bool at_end = std::abs(peak.at - end) < 1e-3 * (t.to - t.from);
     remark += at_end ? ", end of the range" : ", at the edge of flapping or of the domain";
   }
-  const std::string outside = residual_remark(ask.along(t.design, peak.at));
-  if (!outside.empty()) remark += "; " + outside;
-  return {height ? peak.value : peak.at, fmt::format("{} ({})", height ? reached : at, remark), false,
-          !outside.empty()};
+  if (dip) {
+    // The dip is what a reader sees; an end of the range may lie lower.
+    for (const double end : {t.from, t.to}) {
+      if (value(end) < peak.value)
+        remark += fmt::format("; {} at {}", shown_quantity(value(end), t), readable(end, unit));
+    }
+  }
+  return {height ? peak.value : peak.at, fmt::format("{} ({})", height ? reached : at, remark)};
 }
 
 /// The range of held frequency, `width` wide, with equal values at both ends around the highest one.
@@ -133,20 +151,21 @@ Answer best_range(const Asked& ask, const PublishedTrend& t) {
   const double width = *t.published_end - *t.published;
   const auto value = [&](double f) { return ask.metrics(design, f)[t.metric]; };
   const TrendPeak peak = highest_along(value, t.from, t.to, 13);
-  if (!std::isfinite(peak.at)) return {absent, "none flaps inside the domain", false};
+  if (!std::isfinite(peak.at)) return {absent, "none flaps inside the domain"};
   const double low = std::max(t.from, peak.at - width), high = std::min(peak.at, t.to - width);
   double start = absent;
   if (peak.inside && low < high) {
     start = crossing_along([&](double f) { return value(f + width) - value(f); }, 0.0, low, high, 5);
   }
   if (!std::isfinite(start)) {
-    return {absent, fmt::format("no such range; highest at {}", readable(peak.at, "Hz")), false};
+    ask.counted(ask.metrics(design, peak.at));
+    return {absent, fmt::format("no such range; highest at {}", readable(peak.at, "Hz"))};
   }
+  for (const double f : {start, start + width}) ask.counted(ask.metrics(design, f));
   return {start + 0.5 * width,
           fmt::format("{:.1f} to {:.1f} Hz (at least {} of the maximum of {}, which is at {})", start, start + width,
                       fmt::format("{:.1f} %", 100.0 * value(start) / peak.value), percent(peak.value),
-                      readable(peak.at, "Hz")),
-          false};
+                      readable(peak.at, "Hz"))};
 }
 
 Answer between(const Asked& ask, const PublishedTrend& t) {
@@ -155,6 +174,7 @@ Answer between(const Asked& ask, const PublishedTrend& t) {
   };
   const TrendPeak system = peak(Metric::efficiency_system), motor = peak(Metric::efficiency_motor),
                   mechanism = peak(Metric::efficiency_mechanism);
+  for (const TrendPeak& p : {system, motor, mechanism}) ask.counted(ask.along(t.design, p.at));
   return {absent,
           fmt::format("system {}, motor {}{}, mechanism {}", readable(system.at, "Hz"), readable(motor.at, "Hz"),
                       motor.inside ? "" : " (end of the range)", readable(mechanism.at, "Hz")),
@@ -177,8 +197,8 @@ Answer saturates(const Asked& ask, const PublishedTrend& t) {
   Answer answer{absent, "", true};
   for (const auto& [metric, name] :
        {std::pair(Metric::lift_mean, "lift"), std::pair(Metric::efficiency_system, "efficiency")}) {
-    const double low = ask.along(t.design, t.from)[metric], mid = ask.along(t.design, t.at)[metric],
-                 high = ask.along(t.design, t.to)[metric];
+    const auto at = [&, of = metric](double x) { return ask.counted(ask.along(t.design, x))[of]; };
+    const double low = at(t.from), mid = at(t.at), high = at(t.to);
     answer.text += fmt::format("{}{} {:+.1f} % above, {:+.1f} % below", answer.text.empty() ? "" : "; ", name,
                                100.0 * (high / mid - 1.0), 100.0 * (mid / low - 1.0));
     answer.holds = answer.holds && high / mid < mid / low;
@@ -192,62 +212,110 @@ Answer initial_guesses(const Asked& ask, const PublishedTrend& t) {
   options.tolerance = 1e-8;
   options.waveform_rows = 721;
   const RunResult run = run_design(*design, options);
-  if (run.status != FlappingStatus::flapping) return {absent, "does not flap", false};
+  if (run.status != FlappingStatus::flapping) return {absent, "does not flap"};
+  ask.counted(run.metrics);
   const WaveformRow* largest = &run.cycle.front();
   for (const WaveformRow& row : run.cycle) {
     if (row.lift > largest->lift) largest = &row;
   }
-  return {absent,
-          fmt::format("friction {:.1f} % of the motor output; {:.1f} deg",
-                      100.0 * run.metrics[Metric::power_friction] / run.metrics[Metric::power_motor],
-                      largest->angle_of_attack_deg),
-          false};
+  return {absent, fmt::format("friction {:.1f} % of the motor output; {:.1f} deg",
+                              100.0 * run.metrics[Metric::power_friction] / run.metrics[Metric::power_motor],
+                              largest->angle_of_attack_deg)};
 }
 
-Answer of_number(double x, const PublishedTrend& t, bool share) { return {x, shown(x, t.unit, share), false}; }
+Answer of_number(double x, const PublishedTrend& t, bool share) { return {x, shown(x, t.unit, share)}; }
 
-}  // namespace
+/// How the metric of the first design stands to that of the second along the range.
+Answer compared_along(const Asked& ask, const PublishedTrend& t) {
+  constexpr int samples = 81;
+  const auto ratio = [&](double f) {
+    return ask.along(t.design, f)[t.metric] / ask.along(*t.relative_to, f)[t.metric];
+  };
+  const auto place = [&](int n) { return t.from + (t.to - t.from) * n / (samples - 1); };
+  const bool above = t.bound != PublishedTrend::Bound::below;
+  int held = 0;
+  for (int n = 0; n < samples; ++n) {
+    const double x = ratio(place(n));
+    held += above ? x > 1.0 : x < 1.0;
+  }
+  for (const double end : {t.from, t.to}) {
+    for (const std::string& design : {t.design, *t.relative_to}) ask.counted(ask.along(design, end));
+  }
+  const double at = crossing_along(ratio, 1.0, t.from, t.to), low = ratio(t.from), high = ratio(t.to);
+  const std::string where = std::isfinite(at) ? fmt::format("; equal at {}", readable(at, "Hz")) : "";
+  if (t.kind == TrendKind::turns) {
+    return {absent,
+            fmt::format("{:+.1f} % at {}, {:+.1f} % at {}{}", 100.0 * (low - 1.0), readable(t.from, "Hz"),
+                        100.0 * (high - 1.0), readable(t.to, "Hz"), where),
+            low > 1.0 && high < 1.0};
+  }
+  return {absent,
+          fmt::format("{} in {:.0f} % of {} to {}{}", above ? "higher" : "lower", 100.0 * held / samples,
+                      readable(t.from, "Hz"), readable(t.to, "Hz"), where),
+          2 * held > samples};
+}
 
-Answer answer_to(const PublishedFile& file, const PublishedTrend& t) {
-  const Asked ask(file, t);
+Answer ordered(const Asked& ask, const PublishedTrend& t) {
+  constexpr std::pair<Condition, const char*> conditions[] = {
+      {Condition::wingless, "without wings"}, {Condition::vacuum, "in vacuum"}, {Condition::air, "in air"}};
+  Answer answer{absent, "", true};
+  double before = -INFINITY;
+  for (const auto& [condition, name] : conditions) {
+    const double x = ask.here(t.design, condition)[t.metric];
+    answer.text +=
+        fmt::format("{}{} {}", answer.text.empty() ? "" : ", ", readable(x, metric_info(t.metric).unit), name);
+    answer.holds = answer.holds && x > before;
+    before = x;
+  }
+  return answer;
+}
+
+/// Of a difference, change or other number of one operating point.
+Answer at_point(const Asked& ask, const PublishedTrend& t) {
+  const Metrics<double> one = ask.here(t.design), other = t.relative_to ? ask.here(*t.relative_to) : one;
+  const double x = number_of(t, one, other);
+  const auto watts = [&](const Metrics<double>& m) { return shown_quantity(m[t.metric], t); };
+  switch (t.kind) {
+    case TrendKind::change:
+      return {x, fmt::format("{:+#.4g} % ({} instead of {})", 100.0 * x, watts(one), watts(other))};
+    case TrendKind::difference:
+      if (!is_efficiency(t.metric)) return of_number(x, t, false);
+      return {x, fmt::format("{:+.2f} percentage points, to {}", 100.0 * x, percent(one[t.metric]))};
+    case TrendKind::power_balance: {
+      const double left = one[Metric::power_motor] - one[Metric::power_friction];
+      return {x, fmt::format("{:#.4g} ({} against {})", x, readable(left, "W"),
+                             readable(one[Metric::power_aerodynamic], "W"))};
+    }
+    default: return of_number(x, t, is_efficiency(t.metric) || t.share_of.has_value());
+  }
+}
+
+Answer answer_by(const Asked& ask, const PublishedFile& file, const PublishedTrend& t) {
   switch (t.kind) {
     case TrendKind::crossing: {
       const auto ratio = [&](double x) {
         return ask.along(t.design, x)[t.metric] / ask.along(*t.relative_to, x)[t.metric];
       };
       const double at = crossing_along(ratio, 1.0, t.from, t.to);
-      return std::isfinite(at) ? of_number(at, t, false) : Answer{absent, "never", false};
+      if (!std::isfinite(at)) return {absent, "never"};
+      for (const std::string& name : {t.design, *t.relative_to}) ask.counted(ask.along(name, at));
+      return of_number(at, t, false);
     }
     case TrendKind::peak_at:
     case TrendKind::trough_at:
     case TrendKind::peak: return extreme(ask, t);
-    case TrendKind::value: {
-      const Metrics<double> m = ask.here(t.design);
-      Answer answer = of_number(m[t.metric], t, is_efficiency(t.metric));
-      if (const std::string remark = residual_remark(m); !remark.empty()) {
-        answer.text += fmt::format(" ({})", remark);
-        answer.outside = true;
-      }
-      return answer;
-    }
+    case TrendKind::value:
     case TrendKind::change:
-      return of_number(ask.here(t.design)[t.metric] / ask.here(*t.relative_to)[t.metric] - 1.0, t, true);
-    case TrendKind::difference: {
-      const double one = ask.here(t.design)[t.metric], other = ask.here(*t.relative_to)[t.metric];
-      if (!is_efficiency(t.metric)) return of_number(one - other, t, false);
-      return {one - other, fmt::format("{:+.2f} percentage points, to {}", 100.0 * (one - other), percent(one)), false};
-    }
+    case TrendKind::difference:
+    case TrendKind::power_balance: return at_point(ask, t);
     case TrendKind::best_range: return best_range(ask, t);
-    case TrendKind::power_balance: {
-      const Metrics<double> m = ask.here(t.design);
-      const double left = m[Metric::power_motor] - m[Metric::power_friction], air = m[Metric::power_aerodynamic];
-      return {left / air, fmt::format("{:#.4g} ({} against {})", left / air, readable(left, "W"), readable(air, "W")),
-              false};
-    }
     case TrendKind::between: return between(ask, t);
     case TrendKind::steadier: return steadier(ask, t);
     case TrendKind::saturates: return saturates(ask, t);
     case TrendKind::initial_guesses: return initial_guesses(ask, t);
+    case TrendKind::generally:
+    case TrendKind::turns: return compared_along(ask, t);
+    case TrendKind::ordered_conditions: return ordered(ask, t);
     case TrendKind::constant_load_efficiency:
       return of_number(best_constant_load_efficiency(resolve(file.designs.at(t.design)).motor, *t.voltage), t, true);
     case TrendKind::spring_resonance: {
@@ -256,9 +324,56 @@ Answer answer_to(const PublishedFile& file, const PublishedTrend& t) {
     }
     case TrendKind::weight:
       return of_number(total_mass(file.designs.at(t.design)).value_or(absent) * standard_gravity, t, false);
+    case TrendKind::wording: return {absent, "not computed"};
     case TrendKind::best_friction_law: break;
   }
   return {};
 }
+
+}  // namespace
+
+Answer answer_to(const PublishedFile& file, const PublishedTrend& t) {
+  const Asked ask(file, t);
+  Answer answer = answer_by(ask, file, t);
+  answer.residual = ask.residual();
+  if (const std::string remark = residual_remark(answer.residual); !remark.empty()) answer.text += "; " + remark;
+  return answer;
+}
+
+bool rests_on_points(const PublishedTrend& t) {
+  return t.kind == TrendKind::value || t.kind == TrendKind::change || t.kind == TrendKind::difference ||
+         t.kind == TrendKind::power_balance;
+}
+
+std::vector<Design<double>> designs_of(const PublishedFile& file, const PublishedTrend& t) {
+  const Asked ask(file, t);
+  const auto x = t.over.empty() ? std::nullopt : std::optional(t.at);
+  std::vector<Design<double>> designs;
+  for (const std::string& name : {t.design, t.relative_to.value_or("")}) {
+    if (name.empty()) continue;
+    const auto design = ask.design(name, x);
+    if (!design) return {};
+    designs.push_back(*design);
+  }
+  return designs;
+}
+
+double number_of(const PublishedTrend& t, const Metrics<double>& one, const Metrics<double>& other) {
+  switch (t.kind) {
+    case TrendKind::change: return one[t.metric] / other[t.metric] - 1.0;
+    case TrendKind::difference: return one[t.metric] - other[t.metric];
+    case TrendKind::power_balance:
+      return (one[Metric::power_motor] - one[Metric::power_friction]) / one[Metric::power_aerodynamic];
+    default: return quantity(t, one);
+  }
+}
+
+std::string residual_remark(double share) {
+  return std::abs(share) > formulation_residual_max
+             ? fmt::format("outside the domain, residual {:.1f} %", 100.0 * share)
+             : "";
+}
+
+double residual_share(const Metrics<double>& m) { return m[Metric::power_residual] / m[Metric::power_electrical]; }
 
 }  // namespace wingbeat

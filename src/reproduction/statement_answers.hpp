@@ -2,19 +2,32 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "wingbeat/files/published.hpp"
 
 namespace wingbeat {
 
 struct Answer {
-  double value = absent;  ///< in the statement's unit
-  std::string text;       ///< for reading
-  bool holds = false;     ///< of a statement without a number
-  bool outside = false;   ///< of the domain, by the residual of the formulation alone
+  double value = absent;     ///< in the statement's unit
+  std::string text;          ///< for reading
+  bool holds = false;        ///< of a statement without a number
+  double residual = absent;  ///< largest formulation residual over input of the cycles behind the value; absent: none
 };
 
-/// `file` holds the designs in the formulation, and with the chord moments, to be asked for.
+/// `file` holds the designs in the formulation, and with the chord moments, to be asked for. Of the limits of the
+/// domain that on the formulation residual is not applied: what equation (1) as printed does is itself under test.
 Answer answer_to(const PublishedFile& file, const PublishedTrend& statement);
+
+/// A statement's number where it rests on operating points alone, not on a search along a quantity.
+bool rests_on_points(const PublishedTrend& statement);
+/// Of such a statement: its designs at their operating point, one or two, and the number from their metrics.
+std::vector<Design<double>> designs_of(const PublishedFile& file, const PublishedTrend& statement);
+double number_of(const PublishedTrend& statement, const Metrics<double>& one, const Metrics<double>& other);
+
+/// "outside the domain, residual 6.7 %" of such a share of the input; empty inside.
+std::string residual_remark(double share);
+/// Formulation residual over electrical input.
+double residual_share(const Metrics<double>& metrics);
 
 }  // namespace wingbeat

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "reproduction/html.hpp"
@@ -22,10 +23,16 @@ const char* coefficient_unit(FrictionLaw law) {
   return "";
 }
 
-std::string coefficient(const CalibratedLaw& law) {
+std::string coefficient(const LawPrediction& p) {
+  const CalibratedLaw& law = p.law;
+  if (rivals[p.rival].own_drag) return fmt::format("drag × {:.3f}", p.drag_factor);
   if (law.law == FrictionLaw::none) return "none";
   if (law.law == FrictionLaw::load_proportional) return readable(law.coefficient, "m");
   return fmt::format("{:.4g} {}", law.coefficient, coefficient_unit(law.law));
+}
+
+bool is_outside(const LawPrediction& p, const PublishedValue& v, const std::string& design) {
+  return p.comparison.run_of(v, design).result.domain.any();
 }
 
 /// Every published value with springs, as each law predicts it.
@@ -36,9 +43,9 @@ std::string law_table(const Assessment& a, std::size_t variant) {
   }
   if (laws.empty()) return "";
   std::string html = "<div class=\"wide\"><table class=\"laws\"><thead><tr><th></th><th>published</th>";
-  for (const LawPrediction* p : laws) html += fmt::format("<th>{}</th>", name_of(p->law.law));
+  for (const LawPrediction* p : laws) html += fmt::format("<th>{}</th>", rivals[p->rival].name);
   html += "</tr></thead><tbody>\n<tr><td>coefficient</td><td></td>";
-  for (const LawPrediction* p : laws) html += fmt::format("<td class=\"n\">{}</td>", coefficient(p->law));
+  for (const LawPrediction* p : laws) html += fmt::format("<td class=\"n\">{}</td>", coefficient(*p));
   const PublishedValue& first = laws[0]->comparison.values[0].published;
   html +=
       fmt::format("</tr>\n<tr><td>flapping frequency at {}, without springs (calibrated)</td><td class=\"n\">{}</td>",
@@ -48,19 +55,27 @@ std::string law_table(const Assessment& a, std::size_t variant) {
                         p->law.calibrated ? "" : " (not met)");
   }
   html +=
-      "</tr>\n<tr><th class=\"group\" colspan=\"7\">Published values with springs that no calibration has "
+      "</tr>\n<tr><th class=\"group\" colspan=\"8\">Published values with springs that no calibration has "
       "seen, and the deviation of each law</th></tr>\n";
   const auto rows = [&](const std::vector<std::size_t>& which) {
     for (const std::size_t n : which) {
       const PublishedValue& v = laws[0]->comparison.values[n].published;
       const MetricInfo& info = metric_info(v.metric);
-      const auto shown = [&](double x) { return v.relative_to ? fmt::format("{:#.4g}", x) : readable(x, info.unit); };
+      const auto shown = [&](double x) {
+        return !v.relative_to ? readable(x, info.unit)
+               : v.change     ? fmt::format("{:+.1f} %", 100.0 * x)
+                              : fmt::format("{:#.4g}", x);
+      };
       html += fmt::format("<tr><td>{}, {} at {}</td><td class=\"n\">{}</td>", info.long_name,
-                          v.relative_to ? "ratio with / without springs" : "with springs",
-                          operating_point(v.voltage, v.frequency), shown(v.published));
+                          v.change        ? "change by springs"
+                          : v.relative_to ? "ratio with / without springs"
+                                          : "with springs",
+                          operating_point(v.voltage, v.frequency), v.published_text);
       for (const LawPrediction* p : laws) {
         const ComparedValue& c = p->comparison.values[n];
-        html += fmt::format("<td class=\"n\">{}<br>{}</td>", shown(c.computed), percent_text(c.deviation));
+        const bool outside = is_outside(*p, v, v.design) || (v.relative_to && is_outside(*p, v, *v.relative_to));
+        html += fmt::format("<td class=\"n\">{}{}<br>{}</td>", shown(c.computed), outside ? " ‡" : "",
+                            percent_text(c.deviation));
       }
       html += "</tr>\n";
     }
@@ -68,10 +83,12 @@ std::string law_table(const Assessment& a, std::size_t variant) {
   rows(laws[0]->tests);
   html += "<tr><td><b>root mean square of these</b></td><td></td>";
   for (const LawPrediction* p : laws) html += fmt::format("<td class=\"n\"><b>{:.1f} %</b></td>", 100.0 * p->rms);
-  html += "</tr>\n<tr><th class=\"group\" colspan=\"7\">Used in the calibration of S_2 and S_3, not scored</th></tr>\n";
+  html += "</tr>\n<tr><td>the same with changes as ratios (1.333 for 33.3 %)</td><td></td>";
+  for (const LawPrediction* p : laws) html += fmt::format("<td class=\"n\">{:.1f} %</td>", 100.0 * p->rms_of_ratios);
+  html += "</tr>\n<tr><th class=\"group\" colspan=\"8\">Used in the calibration of S_2 and S_3, not scored</th></tr>\n";
   rows(laws[0]->seen);
   html +=
-      "<tr><th class=\"group\" colspan=\"7\">Without → with springs (no published "
+      "<tr><th class=\"group\" colspan=\"8\">Without → with springs (no published "
       "values)</th></tr>\n";
   const std::pair<Metric, const char*> more[] = {{Metric::power_electrical, "electrical input"},
                                                  {Metric::power_friction, "friction loss"},
@@ -87,128 +104,182 @@ std::string law_table(const Assessment& a, std::size_t variant) {
     for (const auto& [metric, name] : more) {
       html += fmt::format("<tr><td>{} at {}</td><td></td>", name, operating_point(point.first, point.second));
       for (const LawPrediction* p : laws) {
-        double values[2] = {absent, absent};
+        std::string values[2] = {"-", "-"};
         for (const Comparison::Run& run : p->comparison.runs) {
           if (run.voltage != point.first || run.frequency != point.second) continue;
-          values[run.design == first.design ? 0 : 1] = run.result.metrics[metric];
+          values[run.design == first.design ? 0 : 1] =
+              readable(run.result.metrics[metric], metric_info(metric).unit) + (run.result.domain.any() ? " ‡" : "");
         }
-        const char* unit = metric_info(metric).unit;
-        html += fmt::format("<td class=\"n\">{} → {}</td>", readable(values[0], unit), readable(values[1], unit));
+        html += fmt::format("<td class=\"n\">{} → {}</td>", values[0], values[1]);
       }
       html += "</tr>\n";
     }
   }
-  return html + "</tbody></table></div>\n";
+  return html + "</tbody></table></div>\n<p class=\"files\">‡ outside the domain; all other numbers are inside.</p>\n";
 }
 
-const ComparedValue* ratio_of(const LawPrediction& p, Metric metric) {
+const ComparedValue* change_of(const LawPrediction& p, Metric metric) {
   for (const ComparedValue& c : p.comparison.values) {
-    if (c.published.metric == metric && c.published.relative_to && c.published.frequency) return &c;
+    if (c.published.metric == metric && c.published.change && c.published.frequency) return &c;
   }
   return nullptr;
 }
 
-/// A metric of the vehicle with that law at the held frequency; absent where the values do not ask for it.
-double at_frequency(const LawPrediction* p, const std::string& design, Metric metric) {
-  if (!p) return absent;
-  for (const Comparison::Run& run : p->comparison.runs) {
-    if (run.frequency && run.design == design) return run.result.metrics[metric];
-  }
-  return absent;
+std::string milliwatts(double watt) { return std::isfinite(watt) ? fmt::format("{:.0f} mW", 1e3 * watt) : "-"; }
+
+std::string between(const Interval& i, double scale, const char* unit) {
+  return std::isfinite(i.low) ? fmt::format(" ({:.0f} to {:.0f} {})", scale * i.low, scale * i.high, unit) : "";
 }
 
 /// What the vehicle as published takes at the held frequency, and what it takes with its friction left out.
-std::string cost_of_leaving_out(const Material& m, std::size_t f) {
-  const LawPrediction* none = law_of(m.assessment, FrictionLaw::none, f);
-  const CycleCase* with = cycle_of(m.computed.at_frequency, both_formulations[f], false);
-  if (!none || !with) return "";
-  const double included = with->run.metrics[Metric::power_electrical];
-  const double left_out = at_frequency(none, calibration_value(m.file).design, Metric::power_electrical);
-  return fmt::format("<b>{:.0f} mW instead of {:.0f} mW</b> ({}, {:+.0f} %)", 1e3 * left_out, 1e3 * included,
-                     variant_name(f), 100.0 * (left_out / included - 1.0));
+std::string cost_of_leaving_out(const Assessment& a, std::size_t f) {
+  const TitleAnswer& t = a.answers[f];
+  const double residual = std::max(std::abs(t.residual_with), std::abs(t.residual_without));
+  return fmt::format("<b>{} instead of {}</b>, {:+.0f} %{} ({}; {})", milliwatts(t.without), milliwatts(t.with),
+                     100.0 * t.change, between(t.change_interval, 100.0, "%"), variant_name(f),
+                     t.outside ? fmt::format("<b>outside the domain</b>: without friction the formulation residual is "
+                                             "{:.1f} % of the input, at most {:g} % are allowed",
+                                             100.0 * residual, 100.0 * formulation_residual_max)
+                               : "inside the domain");
+}
+
+/// Least and largest of a number of the rivals to load-proportional friction, by a variant.
+template <class Number>
+std::pair<double, double> range_of_rivals(const Assessment& a, std::size_t variant, const Number& number) {
+  double low = INFINITY, high = -INFINITY;
+  for (const LawPrediction& p : a.laws) {
+    if (p.variant != variant || p.rival == load_proportional_rival) continue;
+    low = std::min(low, number(p));
+    high = std::max(high, number(p));
+  }
+  return {low, high};
+}
+
+std::string commands_of_the_answer(const Material& m) {
+  std::string html = "<pre>";
+  for (const bool friction : {true, false}) {
+    for (const std::size_t f : {1, 0}) {
+      html += fmt::format("build/release/wingbeat run data/designs/friction2022.toml --frequency \"{:g} Hz\"{}{}{}\n",
+                          m.computed.options.frequency, f == 1 ? " --set transmission.formulation=virtual-work" : "",
+                          friction ? "" : " --set friction.type=none",
+                          !friction && m.assessment.answers[f].outside ? " --allow-extrapolation" : "");
+    }
+  }
+  html += "build/release/wingbeat tolerance data/studies/tolerance-friction2022.toml\n";
+  return html + "</pre>\n";
 }
 
 }  // namespace
 
-const LawPrediction* law_of(const Assessment& a, FrictionLaw law, std::size_t variant) {
+const LawPrediction* law_of(const Assessment& a, std::size_t rival, std::size_t variant) {
   for (const LawPrediction& p : a.laws) {
-    if (p.law.law == law && p.variant == variant) return &p;
+    if (p.rival == rival && p.variant == variant) return &p;
   }
   return nullptr;
 }
 
 std::string answer_html(const Material& m) {
   const Assessment& a = m.assessment;
-  const LawPrediction* load = law_of(a, FrictionLaw::load_proportional, 0);
-  if (!load) return "";
-  double best = INFINITY, worst = 0.0;
+  const LawPrediction* load = law_of(a, load_proportional_rival, 0);
+  std::array<const LawPrediction*, 2> drag{};  // by rod-force and by virtual-work
   for (const LawPrediction& p : a.laws) {
-    if (p.variant != 0 || &p == load) continue;
-    best = std::min(best, p.rms);
-    worst = std::max(worst, p.rms);
+    if (p.variant < 2 && rivals[p.rival].own_drag) drag[p.variant] = &p;
   }
-  return fmt::format(
-      "<p class=\"answer\"><b>Should friction losses be included? Yes.</b> At {:g} Hz without springs, a model without "
-      "friction predicts an electrical input of {}; {}. The friction must depend on the load: calibrated without "
-      "springs, load-proportional friction predicts the published values with springs to {:.1f} % (root mean square), "
-      "the other laws to {:.1f} to {:.1f} % (rod-force).</p>\n",
-      m.computed.options.frequency, cost_of_leaving_out(m, 0), cost_of_leaving_out(m, 1), 100.0 * load->rms,
+  if (!load || !drag[0] || !drag[1]) return "";
+  const auto [best, worst] = range_of_rivals(a, 0, [](const LawPrediction& p) { return p.rms; });
+  const TitleAnswer &work = a.answers[1], &rod = a.answers[0];
+  std::string html = fmt::format(
+      "<div class=\"answer\"><p><b>Should friction losses be included? Yes, in this model.</b> At {:g} Hz without "
+      "springs, a model without friction predicts an electrical input of {}. By the paper's equation (1) it is {}.</p>\n",
+      m.computed.options.frequency, cost_of_leaving_out(a, 1), cost_of_leaving_out(a, 0));
+  if (a.samples > 0) {
+    html += fmt::format(
+        "<p>With friction the input is {}{} by virtual-work and {}{} by rod-force; without, {}{} and {}{}. In brackets: "
+        "95 % of {} samples of the uncertain parameters, <a href=\"#uncertainty\">whose deviations are assumed</a>.</p>\n",
+        milliwatts(work.with), between(work.with_interval, 1e3, "mW"), milliwatts(rod.with),
+        between(rod.with_interval, 1e3, "mW"), milliwatts(work.without), between(work.without_interval, 1e3, "mW"),
+        milliwatts(rod.without), between(rod.without_interval, 1e3, "mW"), a.samples);
+  }
+  std::string refitted;
+  for (const std::size_t f : {1, 0}) {
+    const ComparedValue* input = change_of(*drag[f], Metric::power_electrical);
+    if (!input) continue;
+    const bool outside = is_outside(*drag[f], input->published, input->published.design);
+    refitted +=
+        fmt::format("{} {:.2f} times the drag and {:+.1f} % ({}, {} the domain)", refitted.empty() ? "" : ";",
+                    drag[f]->drag_factor, 100.0 * input->computed, variant_name(f), outside ? "outside" : "inside");
+  }
+  const ComparedValue* published = change_of(*load, Metric::power_electrical);
+  html += fmt::format(
+      "<p><b>Rivals, refitted.</b> Without friction, more drag meets the published frequency as well, but then springs "
+      "raise the input, where {} is published:{}. Calibrated without springs, load-proportional friction predicts the {} "
+      "published values with springs to {:.1f} % (root mean square, changes as printed; rod-force), every rival only to "
+      "{:.0f} to {:.0f} %.</p>\n"
+      "<p><b>Simulation against simulation.</b> The published values are those of the paper's simulation. No "
+      "measurement is compared here: that this model reproduces them shows what follows from its equations, not how "
+      "real joints behave.</p></div>\n",
+      published ? published->published.published_text : "-", refitted, load->tests.size(), 100.0 * load->rms,
       100.0 * best, 100.0 * worst);
+  return with_minus_signs(html) + commands_of_the_answer(m);
 }
 
 std::string question_html(const Material& m) {
   const Assessment& a = m.assessment;
-  const LawPrediction* load = law_of(a, FrictionLaw::load_proportional, 0);
-  const LawPrediction* none = law_of(a, FrictionLaw::none, 0);
+  const LawPrediction* load = law_of(a, load_proportional_rival, 0);
+  const LawPrediction* none = law_of(a, 0, 0);
   if (!load || !none) return "";
   const PublishedValue& target = calibration_value(m.file);
+  const std::string point = operating_point(target.voltage, target.frequency);
   std::string html = fmt::format(
-      "<p>A model without friction underestimates the electrical input at {:g} Hz without springs: {}; {}. It also "
-      "flaps at {:.1f} Hz instead of the published {} at {}, and no parameter of the friction is left to "
-      "correct that.</p>\n",
-      m.computed.options.frequency, cost_of_leaving_out(m, 0), cost_of_leaving_out(m, 1), none->law.frequency,
-      target.published_text, operating_point(target.voltage, target.frequency));
+      "<p>A model without friction underestimates the electrical input at {:g} Hz without springs: {}; {}. A term that "
+      "is merely taken away proves little: such a model also flaps at {:.1f} Hz instead of the published {} at {}, and "
+      "a model is judged after its free numbers have been fitted. Below, a frictionless model with more drag and one "
+      "with more damping of the crank (viscous) are fitted, too.</p>\n",
+      m.computed.options.frequency, cost_of_leaving_out(a, 1), cost_of_leaving_out(a, 0), none->law.frequency,
+      target.published_text, point);
   html += fmt::format(
-      "<p><b>Which friction?</b> Each law gets one coefficient, chosen so that the vehicle <em>without</em> springs "
-      "flaps "
-      "at the published {} at {}. Then springs are added, nothing else is changed, and the law predicts the {} "
-      "published "
-      "values with springs that were not used in a calibration. Root mean square of the deviations:</p>\n<div "
-      "class=\"wide\"><table><thead><tr><th></th>",
-      target.published_text, operating_point(target.voltage, target.frequency), load->tests.size());
-  for (const FrictionLaw law : compared_friction_laws) html += fmt::format("<th>{}</th>", name_of(law));
+      "<p><b>Which friction?</b> Each model gets one number - the coefficient of its friction, or a factor on the drag "
+      "- chosen so that the vehicle <em>without</em> springs flaps at the published {} at {}. Then springs are added, "
+      "nothing else is changed, and the model predicts the {} published values with springs that were not used in a "
+      "calibration. Root mean square of the deviations, changes as the paper prints them; in brackets with changes as "
+      "ratios (1.333 for 33.3 %), which hides most of a change:</p>\n<div class=\"wide\"><table><thead><tr><th></th>",
+      target.published_text, point, load->tests.size());
+  for (const Rival& rival : rivals) html += fmt::format("<th>{}</th>", rival.name);
   html += "</tr></thead><tbody>\n";
   for (std::size_t f = 0; f < a.variants; ++f) {
     html += fmt::format("<tr><td>{}</td>", variant_name(f));
-    for (const FrictionLaw law : compared_friction_laws) {
-      const LawPrediction* p = law_of(a, law, f);
-      html += fmt::format("<td class=\"n\">{}{}</td>", p ? fmt::format("{:.1f} %", 100.0 * p->rms) : "-",
-                          p && !p->law.calibrated && law != FrictionLaw::none ? " (frequency not met)" : "");
+    for (std::size_t n = 0; n < std::size(rivals); ++n) {
+      const LawPrediction* p = law_of(a, n, f);
+      bool outside = false;
+      for (const std::size_t k : p ? p->tests : std::vector<std::size_t>()) {
+        const PublishedValue& v = p->comparison.values[k].published;
+        outside = outside || is_outside(*p, v, v.design) || (v.relative_to && is_outside(*p, v, *v.relative_to));
+      }
+      html += fmt::format("<td class=\"n\">{}{}{}</td>",
+                          p ? fmt::format("{:.1f} % ({:.1f} %)", 100.0 * p->rms, 100.0 * p->rms_of_ratios) : "-",
+                          outside ? " ‡" : "", p && !p->law.calibrated ? "<br>frequency not met" : "");
     }
     html += "</tr>\n";
   }
-  html += "</tbody></table></div>\n";
-  double power_low = INFINITY, power_high = -INFINITY;
-  for (const LawPrediction& p : a.laws) {
-    if (p.variant != 0 || &p == load || &p == none) continue;
-    if (const ComparedValue* c = ratio_of(p, Metric::power_electrical)) {
-      power_low = std::min(power_low, c->computed);
-      power_high = std::max(power_high, c->computed);
-    }
-  }
-  if (const ComparedValue* c = ratio_of(*load, Metric::power_electrical)) {
+  html +=
+      "</tbody></table></div>\n<p class=\"files\">‡ a number behind it is outside the domain; without the mark all "
+      "are inside.</p>\n";
+  const auto input_of = [](const LawPrediction& p) {
+    const ComparedValue* c = change_of(p, Metric::power_electrical);
+    return c ? c->computed : absent;
+  };
+  const auto [lowest, highest] = range_of_rivals(a, 0, input_of);
+  if (const ComparedValue* c = change_of(*load, Metric::power_electrical)) {
     html += fmt::format(
-        "<p>At {:g} Hz springs cut the published electrical input by {:.0f} %. Load-proportional friction predicts "
-        "{:.0f} "
-        "%, the load-independent laws predict {:.0f} to {:.0f} % (rod-force).</p>\n",
-        m.computed.options.frequency, 100.0 * (1.0 - c->published.published), 100.0 * (1.0 - c->computed),
-        100.0 * (1.0 - power_high), 100.0 * (1.0 - power_low));
+        "<p>At {:g} Hz springs change the published electrical input by {}. Load-proportional friction predicts "
+        "{:+.1f} %, its rivals predict {:+.1f} to {:+.1f} % (rod-force).</p>\n",
+        m.computed.options.frequency, c->published.published_text, 100.0 * c->computed, 100.0 * lowest,
+        100.0 * highest);
   }
   html +=
       "<p><b>Why.</b> At prescribed frequency springs change neither speed nor stroke much: they carry part of the "
-      "inertial load at stroke reversal. A loss that depends on the speed alone - viscous, quadratic, constant - stays "
-      "as "
-      "it is. A loss that depends on the force inside the mechanism falls with it. The laws differ only where the "
+      "inertial load at stroke reversal. A loss that depends on the speed alone - viscous, quadratic, constant, drag - "
+      "stays as it is. A loss that depends on the force inside the mechanism falls with it. The laws differ only where the "
       "force "
       "changes and the speed does not; a single operating point cannot discriminate between laws.</p>\n"
       "<p><b>What this does not show.</b> The published values are themselves the paper's simulation of a vehicle "

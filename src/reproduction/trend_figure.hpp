@@ -47,6 +47,7 @@ inline Sheet sheet(int number, std::string what, std::string section) {
 }
 
 inline void finish(Sheet& s, Chart chart) {
+  s.wide = chart.columns > 1;
   s.draw = [chart = std::move(chart)](PlotFormat format, const std::filesystem::path& file) {
     reproduction::draw(chart, format, file);
   };
@@ -136,7 +137,7 @@ class TrendFigure {
   }
 
  private:
-  /// A point outside the domain is drawn as a grey dotted line in place of the curve, so that it is seen not to count.
+  /// Points outside the domain are drawn as thin dots in the curve's colour, so that they are seen not to count.
   void draw_curve(ChartPanel& panel, const TrendSet& set, const TrendCurve& curve, const std::vector<double>& y,
                   const CurveStyle& style, const std::string& label) {
     std::vector<double> inside = y, outside(y.size(), absent);
@@ -159,12 +160,11 @@ class TrendFigure {
     const bool ends_outside = !outside.empty() && std::isfinite(outside.back());
     panel.curves.push_back({x, std::move(inside), style, name, formulation, ends_outside ? "" : label});
     if (!left) return;
-    CurveStyle grey = style;
-    grey.colour = style::outside_domain;
-    grey.dash = style::dotted;
-    panel.curves.push_back({x, std::move(outside), grey, name + ", outside the domain", formulation,
+    CurveStyle dots = style;
+    dots.dash = style::dotted;
+    panel.curves.push_back({x, std::move(outside), dots, name + ", outside the domain", formulation,
                             ends_outside ? label : "", style.colour});
-    if (!outside_) chart_.key.push_back({"outside the domain", grey});
+    if (!outside_) chart_.key.push_back({"outside the domain", {style::ink, style::dotted}});
     outside_ = true;
   }
 
@@ -204,6 +204,26 @@ inline double at(const TrendSet& set, const FlappingCase& of, Metric metric, dou
   return curve_of(set, of).metrics[best][metric];
 }
 
+/// " (outside the domain)" where the point of the curve nearest to x is; empty inside.
+inline const char* domain_remark_at(const TrendSet& set, const FlappingCase& of, double x) {
+  std::size_t best = 0;
+  for (std::size_t n = 0; n < set.axis.size(); ++n) {
+    if (std::abs(set.axis[n] - x) < std::abs(set.axis[best] - x)) best = n;
+  }
+  return curve_of(set, of).domain[best].any() ? " (outside the domain)" : "";
+}
+
+/// Which of the cycles are outside the domain, as a sentence after a caption.
+inline std::string domain_remark(const std::vector<CycleCase>& cycles) {
+  std::string outside;
+  for (const CycleCase& c : cycles) {
+    if (c.run.domain.none()) continue;
+    outside += fmt::format("{}{} springs, {}", outside.empty() ? "" : "; ", c.of.springs ? "with" : "without",
+                           wingbeat::name_of(c.of.formulation));
+  }
+  return outside.empty() ? " All cycles are inside the domain." : fmt::format(" Outside the domain: {}.", outside);
+}
+
 inline TableColumn frequency_axis(const Reproduction& r) {
   return {"frequency_hz", "Hz", "flapping frequency", r.frequency.axis};
 }
@@ -219,7 +239,7 @@ inline const Claim* claim_of(const Assessment& a, const std::string& beginning) 
   return nullptr;
 }
 
-/// "published 1.142; rod-force 1.144, virtual-work 1.129: reproduced" for the statement of that beginning.
+/// "published 14.2 %; rod-force +14.38 %, virtual-work +12.88 %: reproduced" for the statement of that beginning.
 inline std::string beside(const Assessment& a, const std::string& beginning) {
   const Claim* c = claim_of(a, beginning);
   if (!c) return "not available numerically";

@@ -184,15 +184,25 @@ Reproduction reproduce(const SpringPair& pair, const ReproductionOptions& option
   return r;
 }
 
+namespace {
+
+/// Flapping frequency [Hz], exact enough to calibrate to it; absent where the design does not flap.
+double exact_frequency(const Design<double>& design) {
+  SteadyOptions options;
+  options.tolerance = 1e-11;
+  options.stability = false;
+  const SteadyFlapping found = find_steady_flapping(resolve(design), options, start_up_in_time());
+  return found.status == FlappingStatus::flapping ? found.metrics[Metric::frequency] : absent;
+}
+
+bool is_narrow(const Bracket<double>& b) { return b.after - b.before <= 1e-10 * b.after; }
+
+}  // namespace
+
 CalibratedLaw calibrate_friction(Design<double> design, FrictionLaw law, double frequency) {
-  const StartUp start_up = start_up_in_time();
   const auto flapping_at = [&](double coefficient) {
     design.friction = {law, coefficient};
-    SteadyOptions options;
-    options.tolerance = 1e-11;
-    options.stability = false;
-    const SteadyFlapping found = find_steady_flapping(resolve(design), options, start_up);
-    return found.status == FlappingStatus::flapping ? found.metrics[Metric::frequency] : absent;
+    return exact_frequency(design);
   };
   CalibratedLaw result{law, design.transmission.formulation, 0.0, flapping_at(0.0), false};
   if (law == FrictionLaw::none || !(result.frequency > frequency)) return result;
@@ -209,11 +219,27 @@ CalibratedLaw calibrate_friction(Design<double> design, FrictionLaw law, double 
   }
   // What does not flap counts as too slow, so a plain bisection it is.
   const auto too_fast = [&](double coefficient) { return flapping_at(coefficient) > frequency; };
-  const auto narrow = [](const Bracket<double>& b) { return b.after - b.before <= 1e-10 * b.after; };
-  result.coefficient = bisect(too_fast, low, high, narrow).before;
+  result.coefficient = bisect(too_fast, low, high, is_narrow).before;
   result.frequency = flapping_at(result.coefficient);
   result.calibrated = std::abs(result.frequency / frequency - 1.0) < 1e-8;
   return result;
+}
+
+Design<double> with_drag_factor(Design<double> design, double factor) {
+  const Vehicle<double> vehicle = resolve(design);
+  design.wing.planform = {};
+  design.wing.planform.s2 = vehicle.wings.s2;
+  design.wing.planform.s3 = factor * vehicle.wings.s3;
+  return design;
+}
+
+double calibrate_drag(Design<double> design, double frequency) {
+  const auto too_fast = [&](double factor) { return exact_frequency(with_drag_factor(design, factor)) > frequency; };
+  double high = 1.0;
+  if (!too_fast(high)) return absent;
+  while (high < 64.0 && too_fast(high)) high *= 2.0;
+  if (too_fast(high)) return absent;
+  return bisect(too_fast, 0.5 * high, high, is_narrow).before;
 }
 
 LossCurve loss_along_stiffness(const Design<double>& design, double frequency, double max_stiffness, int points) {

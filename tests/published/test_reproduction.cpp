@@ -97,6 +97,16 @@ TEST(Reproduction, EachLawIsCalibratedToTheFrequency) {
   EXPECT_FALSE(calibrate_friction(design, FrictionLaw::viscous, 30.0).calibrated);
 }
 
+TEST(Reproduction, MoreDragCanStandInForFriction) {
+  Design<double> design = pair()[0];
+  design.friction = {FrictionLaw::none, 0.0};
+  const double factor = calibrate_drag(design, 21.7);
+  EXPECT_NEAR(factor, 2.26, 5e-3);
+  EXPECT_NEAR(tight(with_drag_factor(design, factor)).metrics[Metric::frequency], 21.7, 1e-6);
+  EXPECT_EQ(resolve(with_drag_factor(design, factor)).wings.s2, resolve(design).wings.s2);
+  EXPECT_FALSE(std::isfinite(calibrate_drag(design, 30.0)));  // faster than with the drag as it is
+}
+
 TEST(Reproduction, OnlyLoadProportionalFrictionAnswersToTheForce) {
   const Design<double> design = pair()[0];
   const double stiffness = *pair()[1].spring.stiffness;

@@ -25,6 +25,13 @@ template <>
 inline constexpr std::pair<const char*, Basis> names_of<Basis>[] = {
     {"calibrated", Basis::calibrated}, {"predicted", Basis::predicted}, {"given", Basis::given}};
 
+/// A parameter that the paper states without an interval, and the relative standard deviation that is assumed for it.
+struct UncertainPublished {
+  std::string key;            ///< of the vehicle file
+  double relative_deviation;  ///< of a normal distribution around the vehicle file's value [1]
+  std::string why;            ///< where the assumption comes from
+};
+
 /// One published number: a metric of a design, or its ratio to the same metric of another.
 struct PublishedValue {
   std::optional<double> voltage;    ///< operating point [V], or
@@ -32,8 +39,10 @@ struct PublishedValue {
   Metric metric;
   std::string design;
   std::optional<std::string> relative_to;  ///< the ratio's second design
-  double published;                        ///< in the metric's SI unit, or a ratio
+  double published;                        ///< in the metric's SI unit, a ratio, or the ratio's change
+  bool change = false;                     ///< the paper prints the ratio as a change: `published` is ratio - 1
   std::string published_text;              ///< with the digits of the file, which are those of the paper
+  double digit = absent;                   ///< one unit of the last printed digit, in the unit of `published`
   double tolerance;                        ///< accepted relative deviation [1]
   std::string where;                       ///< in the paper; may be empty
   Basis basis = Basis::predicted;
@@ -58,7 +67,11 @@ struct PublishedTrend {
     constant_load_efficiency,  ///< most efficient constant load of the motor at `voltage` [1]
     spring_resonance,          ///< frequency at which the wings resonate with their springs [Hz]
     weight,                    ///< [N]
-    best_friction_law          ///< the law that predicts the published values of the other designs best
+    best_friction_law,         ///< the law that predicts the published values of the other designs best
+    generally,  ///< is the metric of the first design above (`bound`: below) that of the second in most of the range?
+    turns,      ///< is it above at the low end of the range and below at the high end? The answer is where they cross
+    ordered_conditions,  ///< does the metric rise from wingless over vacuum to air?
+    wording              ///< nothing to compute; `reason` says why
   };
   enum class Bound {
     none,
@@ -69,6 +82,7 @@ struct PublishedTrend {
   Kind kind;
   Basis basis = Basis::predicted;
   Metric metric = Metric::frequency;
+  std::optional<Metric> share_of;  ///< the quantity is the metric over this one
   std::string design;
   std::optional<std::string> relative_to;  ///< of a crossing, change or difference
   std::string over;                        ///< what varies: a key of the vehicle file; empty: the flapping frequency
@@ -80,6 +94,8 @@ struct PublishedTrend {
   std::optional<double> published;         ///< SI; empty: no published value
   std::optional<double> published_end;     ///< of a range, whose start is `published`
   std::string published_text;              ///< with the digits of the file, which are those of the paper
+  double digit = absent;                   ///< one unit of the last printed digit [SI]
+  bool approximate = false;                ///< the paper says "about": a whole unit of the last digit, not half of it
   std::optional<FrictionLaw> published_law;
   Bound bound = Bound::none;
   double tolerance = 0.0;  ///< accepted relative deviation [1]
@@ -97,6 +113,7 @@ struct PublishedFile {
   std::map<std::string, Design<double>> designs;  ///< by the names that the values use
   std::vector<PublishedValue> values;
   std::vector<PublishedTrend> trends;
+  std::vector<UncertainPublished> uncertain;  ///< what intervals of the computed numbers come from; may be empty
 };
 
 /// Reads the file and the vehicle files it names, which are sought beside it. Throws InputError.

@@ -12,9 +12,11 @@ namespace wingbeat {
 
 struct ComparedValue {
   PublishedValue published;
-  double computed;   ///< absent where a design does not flap
+  double computed;   ///< as the published number: of a change it is one, too; absent where a design does not flap
   double deviation;  ///< computed / published - 1
   bool within;       ///< abs(deviation) <= tolerance
+  double
+      ratio_deviation;  ///< of a change the deviation of the ratio, (1 + computed) / (1 + published) - 1; else absent
 };
 
 struct Comparison {
@@ -26,6 +28,8 @@ struct Comparison {
   };
   std::vector<Run> runs;  ///< each design at each operating point, once
   int outside() const;    ///< values not within their tolerance
+  /// The run of a design at the operating point of a value.
+  const Run& run_of(const PublishedValue& value, const std::string& design) const;
 };
 
 Comparison compare(const PublishedFile& file, double tolerance = 1e-9);

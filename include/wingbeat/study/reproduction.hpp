@@ -89,6 +89,12 @@ struct CalibratedLaw {
 /// The coefficient of `law` with which `design` flaps at `frequency` [Hz] at its own voltage, to 1e-9 relative.
 CalibratedLaw calibrate_friction(Design<double> design, FrictionLaw law, double frequency);
 
+/// The factor on S_3 with which `design` flaps at `frequency` [Hz] at its own voltage, to 1e-9 relative; absent where
+/// none between 1 and 64 does.
+double calibrate_drag(Design<double> design, double frequency);
+/// The design with S_3 scaled; its other chord moments stay.
+Design<double> with_drag_factor(Design<double> design, double factor);
+
 /// The loss along a spring of growing stiffness, the frequency held: how a law answers to the force in the mechanism.
 struct LossCurve {
   std::vector<double> stiffness;         ///< of each hinge [N m/rad]
