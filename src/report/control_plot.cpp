@@ -43,7 +43,7 @@ void plot_step_responses(const ControlModels& models, PlotFormat format, const s
   const std::vector<std::size_t> outputs = drawn_outputs(map);
   const double head = 0.42, foot = 0.42, each = 1.05, gap = 0.48, left = 0.13, right = 0.96;
   const double inches = head + foot + (each + gap) * double(map.inputs.size());
-  Figure figure(format, 3.5, inches);
+  Figure figure(format, inches);
   for (std::size_t input = 0; input < map.inputs.size(); ++input) {
     const Eigen::MatrixXd& response = model.step_responses[input];
     figure.add("$r{} << END\n", input);
