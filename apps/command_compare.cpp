@@ -7,6 +7,7 @@
 
 #include "command.hpp"
 #include "options.hpp"
+#include "plot_option.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/output_file.hpp"
 #include "wingbeat/files/published.hpp"
@@ -21,7 +22,7 @@ struct CompareArguments {
   std::vector<std::string> overrides;
   std::string file;
   bool json = false, force = false;
-  std::string plot_power;
+  std::string plot_power, plot_width;
 };
 
 std::string spaced(std::string text) {
@@ -30,13 +31,7 @@ std::string spaced(std::string text) {
 }
 
 int run(const CompareArguments& arguments) {
-  std::optional<PlotFormat> format;
-  if (!arguments.plot_power.empty()) {
-    format = plot_format(arguments.plot_power);
-    if (!format) {
-      throw InputError("--plot-power " + arguments.plot_power, 0, 0, "", "the name must end in .svg, .pdf or .png");
-    }
-  }
+  const auto format = asked_format("--plot-power", arguments.plot_power, arguments.plot_width);
   const PublishedFile file = read_published(arguments.file, arguments.overrides);
   std::optional<OutputFile> plot;
   if (format) plot.emplace("--plot-power", arguments.plot_power, OutputRules{plot_extensions, arguments.force});
@@ -74,6 +69,7 @@ void add_compare(CLI::App& program, Action& action) {
   add_json(command, a->json);
   add_file(command, "--plot-power", a->plot_power, plot_extensions,
            "Plot the power breakdowns to FILE.svg, .pdf or .png");
+  add_plot_width(command, a->plot_width);
   add_force(*command, a->force);
   command->footer(
       "Example:\n"

@@ -9,6 +9,7 @@
 
 #include "command.hpp"
 #include "options.hpp"
+#include "plot_option.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/output_file.hpp"
 #include "wingbeat/report/endurance_report.hpp"
@@ -17,18 +18,14 @@ namespace wingbeat::app {
 namespace {
 
 struct EnduranceArguments {
-  std::string vehicle, output, plot;
+  std::string vehicle, output, plot, plot_width;
   std::vector<std::string> overrides;
   bool json = false, force = false;
   bool allow_extrapolation = false;
 };
 
 int run(const EnduranceArguments& arguments) {
-  std::optional<PlotFormat> format;
-  if (!arguments.plot.empty()) {
-    format = plot_format(arguments.plot);
-    if (!format) throw InputError("--plot " + arguments.plot, 0, 0, "", "the name must end in .svg, .pdf or .png");
-  }
+  const auto format = asked_format("--plot", arguments.plot, arguments.plot_width);
   if (!arguments.output.empty() && std::filesystem::path(arguments.output).extension() != ".nc") {
     throw InputError("-o " + arguments.output, 0, 0, "", "the name must end in .nc");
   }
@@ -79,6 +76,7 @@ void add_endurance(CLI::App& program, Action& action) {
   add_json(command, a->json);
   add_file(command, "-o,--output", a->output, ".nc", "Write the discharge (NetCDF-4)", "FILE.nc");
   add_file(command, "--plot", a->plot, plot_extensions, "Plot the discharge to FILE.svg, .pdf or .png");
+  add_plot_width(command, a->plot_width);
   add_force(*command, a->force);
   command->footer(
       "Example:\n  wingbeat endurance friction2022-battery --plot flight.svg\n\n"

@@ -9,6 +9,7 @@
 
 #include "command.hpp"
 #include "options.hpp"
+#include "plot_option.hpp"
 #include "progress.hpp"
 #include "wingbeat/files/bench_file.hpp"
 #include "wingbeat/files/design_edit.hpp"
@@ -23,17 +24,13 @@ namespace {
 
 struct FitArguments {
   std::vector<std::string> overrides;
-  std::string file, output, plot;
+  std::string file, output, plot, plot_width;
   int threads = 0;
   bool json = false, compare_friction = false, no_profiles = false, force = false;
 };
 
 int run(const FitArguments& arguments) {
-  std::optional<PlotFormat> format;
-  if (!arguments.plot.empty()) {
-    format = plot_format(arguments.plot);
-    if (!format) throw InputError("--plot " + arguments.plot, 0, 0, "", "the name must end in .svg, .pdf or .png");
-  }
+  const auto format = asked_format("--plot", arguments.plot, arguments.plot_width);
   BenchFit fit = read_bench(arguments.file, arguments.overrides);
   fit.profiles = !arguments.no_profiles;
   std::optional<OutputFile> output, covariance, plot;
@@ -110,6 +107,7 @@ void add_fit(CLI::App& program, Action& action) {
   add_json(command, a->json);
   add_threads(command, a->threads);
   add_file(command, "--plot", a->plot, plot_extensions, "Plot the residuals by condition to FILE.svg, .pdf or .png");
+  add_plot_width(command, a->plot_width);
   add_force(*command, a->force);
   command->footer(
       "Example:\n  wingbeat fit flapper -o fitted.toml\n\n"

@@ -8,6 +8,7 @@
 #include "command.hpp"
 #include "operating_point.hpp"
 #include "options.hpp"
+#include "plot_option.hpp"
 #include "wingbeat/files/control_file.hpp"
 #include "wingbeat/files/output_file.hpp"
 #include "wingbeat/report/control_report.hpp"
@@ -19,7 +20,7 @@ constexpr const char* model_extensions = ".toml .json .nc .mat";
 
 struct LineariseArguments {
   OperatingPointArguments at;
-  std::string output, plot, hinge_offset;
+  std::string output, plot, hinge_offset, plot_width;
   int cycles = 0;
   bool no_maps = false, json = false, force = false;
 };
@@ -37,11 +38,7 @@ int run(const LineariseArguments& arguments) {
       extension != ".mat") {
     throw InputError("-o " + arguments.output, 0, 0, "", "the name must end in .toml, .json, .nc or .mat");
   }
-  std::optional<PlotFormat> format;
-  if (!arguments.plot.empty()) {
-    format = plot_format(arguments.plot);
-    if (!format) throw InputError("--plot " + arguments.plot, 0, 0, "", "the name must end in .svg, .pdf or .png");
-  }
+  const auto format = asked_format("--plot", arguments.plot, arguments.plot_width);
   ControlOptions options;
   options.allocation_maps = !arguments.no_maps;
   options.step_cycles = arguments.cycles;
@@ -88,6 +85,7 @@ void add_linearise(CLI::App& program, Action& action) {
       ->type_name("QUANTITY");
   command->add_flag("--no-maps", a->no_maps, "Leave the static maps for allocation out");
   add_json(command, a->json);
+  add_plot_width(command, a->plot_width);
   add_force(*command, a->force);
   command->footer(
       "Example:\n"

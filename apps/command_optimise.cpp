@@ -13,6 +13,7 @@
 
 #include "command.hpp"
 #include "options.hpp"
+#include "plot_option.hpp"
 #include "progress.hpp"
 #include "wingbeat/files/design_edit.hpp"
 #include "wingbeat/files/design_file.hpp"
@@ -31,7 +32,7 @@ namespace {
 
 struct OptimiseArguments {
   std::vector<std::string> overrides;
-  std::string study, output, plot, designs;
+  std::string study, output, plot, plot_width, designs;
   int threads = 0;
   bool json = false, force = false;
   bool allow_extrapolation = false;
@@ -93,11 +94,10 @@ int run_front(const OptimiseArguments& arguments, const OptimiseFile& file, cons
     throw InputError("-o " + arguments.output, 0, 0, "",
                      "several objectives have many best designs: the name must end in .nc; --designs writes vehicles");
   }
-  std::optional<PlotFormat> format;
+  const auto format = asked_format("--plot", arguments.plot, arguments.plot_width);
   std::optional<OutputFile> output, plot;
   if (!arguments.output.empty()) output.emplace("-o", arguments.output, OutputRules{".nc", arguments.force});
   if (!arguments.plot.empty()) {
-    format = plot_format(arguments.plot);
     plot.emplace("--plot", arguments.plot, OutputRules{plot_extensions, arguments.force});
   }
   ProgressLine line("optimise: ");
@@ -128,9 +128,7 @@ int run_front(const OptimiseArguments& arguments, const OptimiseFile& file, cons
 }
 
 int run(const OptimiseArguments& arguments) {
-  if (!arguments.plot.empty() && !plot_format(arguments.plot)) {
-    throw InputError("--plot " + arguments.plot, 0, 0, "", "the name must end in .svg, .pdf or .png");
-  }
+  const auto format = asked_format("--plot", arguments.plot, arguments.plot_width);
   OptimiseFile file = read_optimise_study(arguments.study, arguments.overrides);
   file.study.allow_extrapolation |= arguments.allow_extrapolation;
   const ForEach for_each = [&](std::size_t count, const std::function<void(std::size_t)>& act) {
@@ -183,7 +181,7 @@ int run(const OptimiseArguments& arguments) {
     output->commit();
   }
   if (plot && best) {
-    plot_optimum(file, *best, *plot_format(arguments.plot), plot->temporary());
+    plot_optimum(file, *best, *format, plot->temporary());
     plot->commit();
   }
   if (single) print(arguments.json ? json_optimum(file, trials[0].result) : text_optimum(file, trials[0].result));
@@ -207,6 +205,7 @@ void add_optimise(CLI::App& program, Action& action) {
              "FOLDER");
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
                     "Search outside the model's domain too (docs/domain.md)");
+  add_plot_width(command, a->plot_width);
   add_force(*command, a->force);
   add_json(command, a->json);
   add_threads(command, a->threads);

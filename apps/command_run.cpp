@@ -11,6 +11,7 @@
 #include "command.hpp"
 #include "operating_point.hpp"
 #include "options.hpp"
+#include "plot_option.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/output_file.hpp"
 #include "wingbeat/files/units.hpp"
@@ -30,21 +31,12 @@ struct RunArguments {
   std::string method = "orbit";
   std::string tolerance = "1e-6";
   bool json = false, force = false, endurance = false;
-  std::string waveforms, plot, plot_power;
+  std::string waveforms, plot, plot_power, plot_width;
 };
 
 /// A file to be written, its place reserved before anything is computed.
 std::optional<OutputFile> reserved(const char* option, const std::string& path, const OutputRules& rules) {
   return path.empty() ? std::nullopt : std::optional<OutputFile>(std::in_place, option, path, rules);
-}
-
-std::optional<PlotFormat> checked_plot_format(const char* option, const std::string& path) {
-  if (path.empty()) return std::nullopt;
-  const auto format = plot_format(path);
-  if (!format) {
-    throw InputError(fmt::format("{} {}", option, path), 0, 0, "", "the name must end in .svg, .pdf or .png");
-  }
-  return format;
 }
 
 std::string case_title(const Design<double>& design, const RunResult& result, Condition condition) {
@@ -75,8 +67,8 @@ int run(const RunArguments& arguments) {
     }
     waveforms_csv_wanted = extension == ".csv";
   }
-  const auto cycle_format = checked_plot_format("--plot", arguments.plot);
-  const auto power_format = checked_plot_format("--plot-power", arguments.plot_power);
+  const auto cycle_format = asked_format("--plot", arguments.plot, arguments.plot_width);
+  const auto power_format = asked_format("--plot-power", arguments.plot_power, arguments.plot_width);
 
   const Design<double> design = read_operating_point(arguments.at, options);
   const OutputRules drawing{plot_extensions, arguments.force};
@@ -157,6 +149,7 @@ void add_run(CLI::App& program, Action& action) {
   add_file(command, "--plot", a->plot, plot_extensions, "Plot one cycle to FILE.svg, .pdf or .png");
   add_file(command, "--plot-power", a->plot_power, plot_extensions,
            "Plot the power breakdown to FILE.svg, .pdf or .png");
+  add_plot_width(command, a->plot_width);
   add_force(*command, a->force);
   command->footer(
       "Example:\n"

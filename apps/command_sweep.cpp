@@ -13,6 +13,7 @@
 
 #include "command.hpp"
 #include "options.hpp"
+#include "plot_option.hpp"
 #include "progress.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/output_file.hpp"
@@ -34,7 +35,7 @@ struct SweepArguments {
   bool force = false;
   bool allow_extrapolation = false;
   bool json = false;
-  std::string plot;
+  std::string plot, plot_width;
   std::vector<std::string> plot_metrics;
 };
 
@@ -260,10 +261,9 @@ int sweep_on_rank_0(const SweepArguments& arguments, Ranks* ranks) {
   }
   std::vector<Metric> drawn;
   std::optional<OutputFile> plot;
-  const auto format = plot_format(arguments.plot);
+  const auto format = asked_format("--plot", arguments.plot, arguments.plot_width);
   if (!arguments.plot.empty()) {
     const std::string option = "--plot " + arguments.plot;
-    if (!format) throw InputError(option, 0, 0, "", "the name must end in .svg, .pdf or .png");
     drawn = metrics_to_plot(study, arguments.plot_metrics, option);
     plot.emplace("--plot", arguments.plot, OutputRules{plot_extensions, arguments.force});
   }
@@ -336,6 +336,7 @@ void add_sweep(CLI::App& program, Action& action) {
             ->type_name("METRIC,..."),
         metric_choices());
   command->add_option("--plot-metrics", a->plot_metrics)->delimiter(',')->needs(plot)->group("");  // the old spelling
+  add_plot_width(command, a->plot_width);
   add_force(*command, a->force);
   command->footer(
       "Example:\n"

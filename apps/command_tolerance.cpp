@@ -9,6 +9,7 @@
 
 #include "command.hpp"
 #include "options.hpp"
+#include "plot_option.hpp"
 #include "progress.hpp"
 #include "wingbeat/files/output_file.hpp"
 #include "wingbeat/files/tolerance_data.hpp"
@@ -22,18 +23,14 @@ namespace {
 
 struct ToleranceArguments {
   std::vector<std::string> overrides;
-  std::string study, output, plot, plot_metric;
+  std::string study, output, plot, plot_metric, plot_width;
   int threads = 0;
   bool json = false, force = false;
   bool allow_extrapolation = false;
 };
 
 int run(const ToleranceArguments& arguments) {
-  std::optional<PlotFormat> format;
-  if (!arguments.plot.empty()) {
-    format = plot_format(arguments.plot);
-    if (!format) throw InputError("--plot " + arguments.plot, 0, 0, "", "the name must end in .svg, .pdf or .png");
-  }
+  const auto format = asked_format("--plot", arguments.plot, arguments.plot_width);
   if (!arguments.output.empty() && std::filesystem::path(arguments.output).extension() != ".nc") {
     throw InputError("-o " + arguments.output, 0, 0, "", "the name must end in .nc");
   }
@@ -94,6 +91,7 @@ void add_tolerance(CLI::App& program, Action& action) {
             ->needs(plot)
             ->type_name("METRIC"),
         metric_choices());
+  add_plot_width(command, a->plot_width);
   add_force(*command, a->force);
   command->footer(
       "Example:\n  wingbeat tolerance tolerance-hover --plot tolerance.svg\n\n"

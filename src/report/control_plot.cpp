@@ -82,7 +82,7 @@ void plot_step_responses(const ControlModels& models, PlotFormat format, const s
 
   const double head = 0.62, foot = 0.42, each = 0.8, gap = 0.42, left = 0.15, right = 0.97;
   const double inches = head + foot + each * double(map.inputs.size()) + gap * double(map.inputs.size() - 1);
-  Figure figure(format, style::single_column, inches);
+  Figure figure(format, inches);
   for (std::size_t input = 0; input < map.inputs.size(); ++input) {
     // Drawn as the means are: constant over their cycle, from the cycle before the step on.
     figure.add("$r{} << END\n{}", input, -period);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "report/figure.hpp"
+#include "report/layout.hpp"
 #include "report/report_tools.hpp"
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/report/report.hpp"
@@ -283,7 +284,7 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
   const bool lift_in_newton = lift_most >= 1.0, power_in_watt = power_most >= 1.0;
   const double lift_scale = lift_in_newton ? 1.0 : 1e3, power_scale = power_in_watt ? 1.0 : 1e3;
 
-  Figure figure(format, 3.5, 5.6);
+  Figure figure(format, 5.6);
   figure.add("$flight << END\n");
   for (const EnduranceRow& r : rows) {
     figure.add("{} {} {} {} {} {} {}\n", time_scale * r.time, lift_scale * r.metrics[Metric::lift_mean],
@@ -296,15 +297,17 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
   constexpr double left = 0.15, right = 0.96, top = 0.93, bottom = 0.075, gap = 0.05;
   constexpr double height = (top - bottom - 3.0 * gap) / 4.0;
   figure.add("set lmargin at screen {}\nset rmargin at screen {}\n", left, right);
-  figure.text(plot_title(result), 8.0, "screen 0.5,0.982 center");
+  page_title(figure, plot_title(result), 0.1);
   double key_height = 0.0;
   const auto panel = [&](int index, const std::string& name, double most) {
     if (index > 0) figure.next_panel();
     const double panel_top = top - index * (height + gap);
     key_height = panel_top + 0.014;
     figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", panel_top, panel_top - height);
-    figure.add("set format x {}\nset yrange [0:{}]\n", index == 3 ? "'%g'" : "''", 1.06 * most);
-    figure.text(name, 7.5, fmt::format("screen 0.026,{} center rotate by 90", panel_top - 0.5 * height));
+    figure.add("set format x {}\n{}", index == 3 ? "'%g'" : "''",
+               AxisMarks(0.0, 1.06 * most, height * figure.height(), true, false).commands("y"));
+    figure.text(name, 7.5,
+                fmt::format("screen {},{} center rotate by 90", left - 0.435 / format.width, panel_top - 0.5 * height));
     for (std::size_t n = 0; n + 1 < rows.size(); ++n) {
       if (rows[n].domain.none() && rows[n + 1].domain.none()) continue;
       figure.add(
@@ -343,10 +346,13 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
              style::second_curve);
 
   panel(3, "charge (%)", 100.0);
-  if (outside(result).first > 0) {
+  const bool hatched = outside(result).first > 0;
+  if (hatched) {
     figure.text("hatched: outside the model's domain", style::text_size, fmt::format("screen {},0.014 right", right));
   }
-  figure.text(in_minutes ? "time (min)" : "time (s)", 7.5, fmt::format("screen {},0.014 center", 0.5 * (left + right)));
+  figure.text(in_minutes ? "time (min)" : "time (s)", 7.5,
+              hatched ? fmt::format("screen {},0.014 left", left)
+                      : fmt::format("screen {},0.014 center", 0.5 * (left + right)));
   figure.key_entry(left, key_height, style::first_curve, "state of charge");
   figure.add("plot $flight using 1:7 with lines {}\n", style::first_curve);
   figure.add("unset multiplot\nunset output\n");

@@ -197,18 +197,6 @@ std::string drawing_of(const std::string& script) {
 
 void run_gnuplot(const std::string& script, const std::filesystem::path& output) { store(output, drawing_of(script)); }
 
-void Figure::remarks(const std::string& all, double height) {
-  constexpr std::size_t longest = 60;
-  std::size_t split = std::string::npos;
-  if (all.size() > longest) {
-    split = all.rfind("; ", longest);
-    if (split == std::string::npos) split = all.find("; ");
-  }
-  const bool two = split != std::string::npos;
-  text(all.substr(0, split), style::text_size, fmt::format("screen 0.97,{} right", (two ? 0.19 : 0.075) / height));
-  if (two) text(all.substr(split + 2), style::text_size, fmt::format("screen 0.97,{} right", 0.075 / height));
-}
-
 std::string quoted(const std::string& text) {
   std::string out = "'";
   for (const char c : detail::printable(text)) {

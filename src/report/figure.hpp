@@ -24,11 +24,13 @@ void run_gnuplot(const std::string& script, const std::filesystem::path& output)
 std::string quoted(const std::string& text);
 
 /// A gnuplot script under way. Sizes are those of the printed figure, text in points; everything is placed by its
-/// anchor on the page, because terminals disagree about the width of text.
+/// anchor on the page, because terminals disagree about the width of text. Its room is that of report/text_width.hpp.
 class Figure {
  public:
-  Figure(PlotFormat format, double width, double height) {
-    switch (format) {
+  /// As wide as the format says; `height` [in].
+  Figure(PlotFormat format, double height) : Figure(format, format.width, height) {}
+  Figure(PlotFormat format, double width, double height) : width_(width), height_(height) {
+    switch (format.kind) {
       case PlotFormat::svg:
         // A browser shows it twice as large as it prints, and may scale it freely.
         points_ = 192.0 / 72.0;
@@ -66,13 +68,27 @@ class Figure {
   void symbols(const std::string& content, double size, const std::string& placement) {
     add("set label {} {} at {} front enhanced font ',{}'\n", ++labels_, quoted(content), placement, size * points_);
   }
-  /// Remarks that "; " separates, at the foot of a page one column wide, in one or two lines; `height` of the page
-  /// [in].
-  void remarks(const std::string& all, double height);
+  double width() const { return width_; }
+  double height() const { return height_; }
+  /// A point of the page, `x` and `y` from its upper left corner [in], as gnuplot writes it.
+  std::string at(double x, double y) const {
+    return fmt::format("screen {:.6g},screen {:.6g}", x / width_, 1.0 - y / height_);
+  }
+
+  /// A line between two points of the page.
+  void sample(const std::string& from, const std::string& to, const std::string& line) {
+    add("set arrow {} from {} to {} nohead front {}\n", ++arrows_, from, to, line);
+    // gnuplot's SVG joins strokes of one width and colour and forgets that their dashes differ: this one parts them.
+    add("set arrow {} from {} to {} nohead front dt 1 lw 0.01 lc rgb '#fefefe'\n", ++arrows_, from, from);
+  }
   /// A sample of a line with its name, starting at (x, y) of the page, which is a single column wide.
   void key_entry(double x, double y, const std::string& line, const std::string& name) {
-    add("set arrow {} from screen {},{} to screen {},{} nohead front {}\n", ++arrows_, x, y, x + 0.057, y, line);
+    sample(fmt::format("screen {},{}", x, y), fmt::format("screen {},{}", x + 0.057, y), line);
     text(name, style::text_size, fmt::format("screen {},{} left", x + 0.065, y));
+  }
+  /// A mark without text; `point` as gnuplot writes it: "pt 7 ps 0.5".
+  void mark(const std::string& place, const std::string& point) {
+    add("set label {} '' at {} point {} front\n", ++labels_, place, point);
   }
   void box(const std::string& from_to, const char* fill) {
     add("set object {} rectangle {} front fillcolor rgb '{}' fillstyle solid border lc rgb '#202020' lw 0.4\n",
@@ -81,7 +97,7 @@ class Figure {
   /// A circle around a point of the plot, as large in every format; `fill` as gnuplot writes it.
   void circle(double x, double y, double radius, const char* fill, const char* colour) {
     add("set object {} circle at {},{} size screen {} front noclip {} border lc rgb '{}' lw 0.9\n", ++objects_, x, y,
-        radius, fill, colour);
+        radius * single_column_width / width_, fill, colour);
   }
   /// Forgets labels and arrows, which belong to one panel only.
   void next_panel() { add("unset label\nunset arrow\n"); }
@@ -91,6 +107,7 @@ class Figure {
  private:
   std::string script_;
   double points_ = 1.0;  ///< a point in the terminal's unit of font size
+  double width_, height_;
   int labels_ = 0, arrows_ = 0, objects_ = 0;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "report/figure.hpp"
+#include "report/layout.hpp"
 #include "report/sweep_scales.hpp"
 #include "wingbeat/report/optimise_report.hpp"
 #include "wingbeat/report/report.hpp"
@@ -26,7 +27,7 @@ void plot_optimum(const OptimiseFile& file, const MotorTrial& trial, PlotFormat 
   const double rows = 0.2 * double(study.parameters.size()), panel = 1.3;
   const double bounds_top = 0.72 + (searches ? panel + 0.75 : 0.0), walks_top = bounds_top + rows + 0.85;
   const double inches = walks ? walks_top + panel + 0.55 : bounds_top + rows + 0.55;
-  Figure figure(format, 3.5, inches);
+  Figure figure(format, inches);
   const auto y = [&](double from_top) { return 1.0 - from_top / inches; };
   double largest = 0.0;
   for (const SearchEnd& s : r.searches) {
@@ -34,10 +35,12 @@ void plot_optimum(const OptimiseFile& file, const MotorTrial& trial, PlotFormat 
   }
   const Display display = display_of(study.objective, largest);
   const std::string chosen = name_of(file, trial);
-  figure.add("set multiplot\nset rmargin at screen 0.96\nset datafile missing 'nan'\n");
+  figure.add("set multiplot\nset rmargin at screen 0.94\nset datafile missing 'nan'\n");
   const std::string title = file.title.empty() ? "Optimum" : file.title;
-  figure.text(title, 8.0 * std::min(1.0, 52.0 / double(title.size())), fmt::format("screen 0.5,{} center", y(0.12)));
-  if (!chosen.empty()) figure.text(chosen, 7.0, fmt::format("screen 0.5,{} center", y(0.28)));
+  page_title(figure, title, 0.12);
+  if (!chosen.empty()) {
+    fitted_text(figure, chosen, 7.0, format.width - 2.0 * page_margin, 0.5 * format.width, 0.28, "center");
+  }
   int marks = 900;
   const auto mark = [&](double x, double from_top, const char* style, const std::string& name) {
     figure.add("set label {} '' at screen {},{} point {}\n", ++marks, x, y(from_top), style);
@@ -64,8 +67,8 @@ void plot_optimum(const OptimiseFile& file, const MotorTrial& trial, PlotFormat 
     mark(0.22, 0.46, begun, "where a search began");
     mark(0.6, 0.46, ended, "where it ended");
     figure.text("local search", 7.0, fmt::format("screen 0.58,{} center", y(0.62 + panel + 0.33)));
-    figure.text(objective.long_name + display.in_brackets(), style::text_size,
-                fmt::format("screen 0.03,{} center rotate by 90", y(0.62 + 0.5 * panel)));
+    axis_title(figure, objective.long_name + display.in_brackets(), style::text_size, panel + 0.9,
+               0.2 - 0.6 / format.width, y(0.62 + 0.5 * panel));
     figure.add("plot $searches using 1:2 with points {}, $searches using 1:3 with points {}\n", begun, ended);
     figure.next_panel();
   }
@@ -91,8 +94,8 @@ void plot_optimum(const OptimiseFile& file, const MotorTrial& trial, PlotFormat 
     figure.add("END\n");
     for (std::size_t k = 0; k < study.parameters.size(); ++k) {
       const double row = bounds_top + rows * (double(k) + 0.5) / double(study.parameters.size());
-      figure.text(words(study.parameters[k].parameter.key), style::text_size,
-                  fmt::format("screen 0.44,{} right", y(row)));
+      fitted_text(figure, words(study.parameters[k].parameter.key), style::text_size, 0.42 * format.width,
+                  0.44 * format.width, row, "right");
     }
     figure.text(fmt::format("optimum between its bounds; bar: within {:g} % of it", 100.0 * flat_loss),
                 style::text_size, fmt::format("screen 0.5,{} center", y(bounds_top - 0.12)));
@@ -137,7 +140,7 @@ void plot_optimum(const OptimiseFile& file, const MotorTrial& trial, PlotFormat 
     figure.text("distance along a free direction (ranges of the bounds)", 7.0,
                 fmt::format("screen 0.58,{} center", y(walks_top + panel + 0.33)));
     figure.text("objective worse by (%)", style::text_size,
-                fmt::format("screen 0.03,{} center rotate by 90", y(walks_top + 0.5 * panel)));
+                fmt::format("screen {},{} center rotate by 90", 0.2 - 0.6 / format.width, y(walks_top + 0.5 * panel)));
     figure.add("plot {}\n", plot);
   }
   figure.add("unset multiplot\nunset output\n");

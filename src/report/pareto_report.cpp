@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "report/figure.hpp"
+#include "report/layout.hpp"
 #include "report/report_tools.hpp"
 #include "report/sweep_scales.hpp"
 #include "wingbeat/files/design_file.hpp"
@@ -352,7 +353,7 @@ void plot_front(const ParetoStudy& study, const ParetoResult& r, const std::stri
   std::vector<std::pair<std::size_t, std::size_t>> panels = {{0, 1}};
   if (m == 3) panels = {{0, 1}, {0, 2}, {1, 2}};
   const double panel = 2.45, inches = 0.45 + panel * double(panels.size());
-  Figure figure(format, 3.5, inches);
+  Figure figure(format, inches);
   const auto y = [&](double from_top) { return 1.0 - from_top / inches; };
   std::vector<Display> displays;
   for (const ParetoObjective& o : study.objectives) {
@@ -391,8 +392,7 @@ void plot_front(const ParetoStudy& study, const ParetoResult& r, const std::stri
 
   figure.add("set multiplot\nset lmargin at screen 0.16\nset rmargin at screen 0.96\n");
   const std::string heading = title.empty() ? "Pareto front" : title;
-  figure.text(heading, 8.0 * std::min(1.0, 52.0 / double(heading.size())),
-              fmt::format("screen 0.5,{} center", y(0.12)));
+  page_title(figure, heading, 0.12);
   int keys = 900;
   const auto key = [&](double x, const char* style, const char* name) {
     figure.add("set label {} '' at screen {},{} point {}\n", ++keys, x, y(0.32), style);
@@ -423,8 +423,8 @@ void plot_front(const ParetoStudy& study, const ParetoResult& r, const std::stri
     const double top = 0.5 + panel * double(p), bottom = top + panel - 0.55;
     if (p > 0) figure.next_panel();
     figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", y(top), y(bottom));
-    figure.text(label(a), 7.5, fmt::format("screen 0.56,{} center", y(bottom + 0.36)));
-    figure.text(label(b), 7.5, fmt::format("screen 0.035,{} center rotate by 90", y(0.5 * (top + bottom))));
+    fitted_text(figure, label(a), 7.5, 0.86 * format.width, 0.56 * format.width, bottom + 0.36, "center");
+    axis_title(figure, label(b), 7.5, panel - 0.1, 0.16 - 0.44 / format.width, y(0.5 * (top + bottom)));
     range("x", a);
     range("y", b);
     figure.add(

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "report/figure.hpp"
+#include "report/layout.hpp"
 #include "report/mechanism_drawing.hpp"
 
 namespace wingbeat {
@@ -42,31 +43,36 @@ void plot_cycle(std::span<const WaveformRow> rows, const Design<double>& design,
 
   // Without a rod its panel shows the current.
   const bool rod = std::isfinite(rows.front().rod_force);
+  const auto force_or_current = [&](const WaveformRow& r) { return rod ? r.rod_force : r.current; };
+  double force_most = 0.0;
+  for (const WaveformRow& r : rows) force_most = std::max(force_most, std::abs(force_or_current(r)));
+  const double force_scale = force_most >= 1.0 ? 1.0 : 1e3;
+  const char* const force_unit = force_most >= 1.0 ? (rod ? "N" : "A") : (rod ? "mN" : "mA");
   const Vehicle<double> vehicle = resolve(design);
   const std::string force = internal_force_name(vehicle.transmission.type);
 
   const bool pitching = std::isfinite(rows.front().pitch_angle);
 
   // The mechanism stands above the panels of waveforms; heights in inches.
-  constexpr double page_width = 3.5, mechanism_height = 1.9, panel_height = 0.987, gap = 0.283, above = 0.245,
-                   below = 0.409;
+  const double page_width = format.width;
+  constexpr double mechanism_height = 1.9, panel_height = 0.987, gap = 0.283, above = 0.245, below = 0.409;
   const int panels = pitching ? 5 : 4;
   const double waveforms = above + panels * panel_height + (panels - 1) * gap + below,
                page_height = waveforms + mechanism_height;
-  Figure figure(format, page_width, page_height);
+  Figure figure(format, page_height);
   figure.add("$cycle << END\n");
   const std::vector<style::Phase> order = style::phases(rows);
   for (const auto& [row, periods] : order) {
     const WaveformRow& r = rows[row];
     figure.add("{} {} {} {} {} {} {} {} {} {}\n", time_scale * periods * period, degrees_per_radian * r.stroke_angle,
-               r.flapping_velocity, lift_scale * r.lift, 1e3 * (rod ? r.rod_force : r.current),
+               r.flapping_velocity, lift_scale * r.lift, force_scale * force_or_current(r),
                power_scale * r.power_electrical, power_scale * r.power_motor, power_scale * r.power_aerodynamic,
                pitching ? degrees_per_radian * r.pitch_angle : 0.0, r.angle_of_attack_deg);
   }
   // Margins of the page, in its fractions.
   constexpr double left = 0.17, right = 0.83;
   figure.add("END\nset multiplot\n");
-  figure.text(title, 8.0, fmt::format("screen 0.5,{} center", 1.0 - 0.1 / page_height));
+  page_title(figure, title, 0.1);
   figure.text(mechanism_caption(vehicle), 7.0, fmt::format("screen 0.5,{} center", 1.0 - 0.28 / page_height));
   const bool law = vehicle.transmission.type == TransmissionType::tabulated;
   draw_mechanism_panel(figure, vehicle, stroke,
@@ -91,20 +97,38 @@ void plot_cycle(std::span<const WaveformRow> rows, const Design<double>& design,
     figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", panel_top / page_height,
                (panel_top - panel_height) / page_height);
     figure.add("set format x {}\n", drawn == panels ? "'%g'" : "''");
-    figure.text(name, 7.5, fmt::format("screen 0.026,{} center rotate by 90", middle));
+    axis_title(figure, name, 7.5, panel_height + gap, left - 0.505 / page_width, middle);
+  };
+  const auto marks = [&](const char* axis, double scale, std::initializer_list<double WaveformRow::*> columns) {
+    double low = infinity, high = -infinity;
+    for (const WaveformRow& r : rows) {
+      for (const auto column : columns) {
+        low = std::min(low, scale * (r.*column));
+        high = std::max(high, scale * (r.*column));
+      }
+    }
+    figure.add("{}", AxisMarks(low, high, panel_height, true, true).commands(axis));
   };
 
   panel("stroke angle (deg)");
-  figure.text("velocity (rad/s)", 7.5, fmt::format("screen 0.974,{} center rotate by 90", middle));
+  axis_title(figure, "velocity (rad/s)", 7.5, panel_height + gap, right + 0.505 / page_width, middle);
+  marks("y", degrees_per_radian, {&WaveformRow::stroke_angle});
+  marks("y2", 1.0, {&WaveformRow::flapping_velocity});
   figure.key_entry(left, key_height, style::first_curve, "stroke angle");
   figure.key_entry(left + 0.28, key_height, style::second_curve, "flapping velocity (right)");
-  figure.add("set y2tics nomirror out scale 0.5\nset border 11\n");
+  figure.add("set border 11\n");
   figure.add("plot $cycle using 1:2 with lines {}, '' using 1:3 axes x1y2 with lines {}\n", style::first_curve,
              style::second_curve);
   figure.add("unset y2tics\nset border 3\n");
 
   if (pitching) {
     panel("pitch (deg)");
+    double low = infinity, high = -infinity;
+    for (const WaveformRow& r : rows) {
+      low = std::min({low, degrees_per_radian * r.pitch_angle, r.angle_of_attack_deg});
+      high = std::max({high, degrees_per_radian * r.pitch_angle, r.angle_of_attack_deg});
+    }
+    figure.add("{}", AxisMarks(low, high, panel_height, true, true).commands("y"));
     figure.key_entry(left, key_height, style::first_curve, "pitch angle");
     figure.key_entry(left + 0.28, key_height, style::second_curve, "angle of attack");
     figure.add("plot $cycle using 1:9 with lines {}, '' using 1:10 with lines {}\n", style::first_curve,
@@ -113,17 +137,20 @@ void plot_cycle(std::span<const WaveformRow> rows, const Design<double>& design,
 
   const char* lift_unit = lift_in_newton ? "N" : "mN";
   panel(fmt::format("lift ({})", lift_unit));
+  marks("y", lift_scale, {&WaveformRow::lift});
   figure.key_entry(left, key_height, style::first_curve, "lift of all wings");
   figure.key_entry(left + 0.36, key_height, style::reference_line,
                    fmt::format("mean, {:.4g} {}", lift_scale * lift_mean, lift_unit));
   figure.add("plot $cycle using 1:4 with lines {}, {} with lines {}\n", style::first_curve, lift_scale * lift_mean,
              style::reference_line);
 
-  panel(rod ? force + " (mN)" : "current (mA)");
+  panel(fmt::format("{} ({})", rod ? force : "current", force_unit));
+  marks("y", force_scale, {rod ? &WaveformRow::rod_force : &WaveformRow::current});
   figure.key_entry(left, key_height, style::first_curve, rod ? force + ", above 0 raises the stroke angle" : "current");
   figure.add("plot $cycle using 1:5 with lines {}\n", style::first_curve);
 
   panel(power_in_watt ? "power (W)" : "power (mW)");
+  marks("y", power_scale, {&WaveformRow::power_electrical, &WaveformRow::power_motor, &WaveformRow::power_aerodynamic});
   figure.text(in_seconds ? "time since stroke reversal (s)" : "time since stroke reversal (ms)", 7.5,
               fmt::format("screen {},{} center", 0.5 * (left + right), 0.0763 / page_height));
   const std::string air = style::stroke(style::aerodynamic);
@@ -143,25 +170,22 @@ void plot_powers(std::span<const PowerBar> bars, const std::string& title, PlotF
     const char* name;
     double EnergyAudit::* power;
     const char* fill;
-    bool light;    ///< needs dark text
-    double key_x;  ///< where its key starts, fraction of the page
+    bool light;  ///< needs dark text
   };
-  std::vector<Part> parts = {{"copper", &EnergyAudit::copper, style::copper, true, 0.04},
-                             {"viscous", &EnergyAudit::viscous, style::viscous, true, 0.216},
-                             {"friction", &EnergyAudit::friction, style::friction, true, 0.398},
-                             {"aerodynamic", &EnergyAudit::aerodynamic, style::aerodynamic, true, 0.575},
-                             {"residual", &EnergyAudit::residual, style::residual, true, 0.829}};
+  std::vector<Part> parts = {{"copper", &EnergyAudit::copper, style::copper, true},
+                             {"viscous", &EnergyAudit::viscous, style::viscous, true},
+                             {"friction", &EnergyAudit::friction, style::friction, true},
+                             {"aerodynamic", &EnergyAudit::aerodynamic, style::aerodynamic, true},
+                             {"residual", &EnergyAudit::residual, style::residual, true}};
   const auto lost_in = [&](double EnergyAudit::* power) {
     return std::any_of(bars.begin(), bars.end(), [&](const PowerBar& bar) { return bar.audit.*power != 0.0; });
   };
   const bool gearbox = lost_in(&EnergyAudit::gear), hinges = lost_in(&EnergyAudit::hinge);
-  if (hinges) parts.insert(parts.begin() + 2, {"hinges", &EnergyAudit::hinge, style::hinges, false, 0.0});
-  if (gearbox) parts.insert(parts.begin() + 2, {"gearbox", &EnergyAudit::gear, style::gearbox, false, 0.0});
-  if (gearbox || hinges) {
-    constexpr double one_more[] = {0.03, 0.174, 0.326, 0.492, 0.64, 0.862},
-                     two_more[] = {0.01, 0.136, 0.27, 0.42, 0.553, 0.683, 0.878};
-    for (std::size_t n = 0; n < parts.size(); ++n) parts[n].key_x = gearbox && hinges ? two_more[n] : one_more[n];
-  }
+  if (hinges) parts.insert(parts.begin() + 2, {"hinges", &EnergyAudit::hinge, style::hinges, false});
+  if (gearbox) parts.insert(parts.begin() + 2, {"gearbox", &EnergyAudit::gear, style::gearbox, false});
+  std::vector<KeyEntry> named;
+  for (const Part& part : parts) named.push_back(fill_key(part.name, part.fill));
+  const Key key(std::move(named), 0.94 * format.width);
 
   double most = 0.0;
   for (const PowerBar& bar : bars) most = std::max(most, bar.audit.electrical);
@@ -174,8 +198,8 @@ void plot_powers(std::span<const PowerBar> bars, const std::string& title, PlotF
   const auto shown = [&](double power) { return fmt::format("{:.{}f}", power, decimals); };
 
   const double count = double(bars.size());
-  const double inches = 0.91 + 0.58 * count;
-  Figure figure(format, 3.5, inches);
+  const double above = 0.23 + key.height(), inches = above + 0.53 + 0.58 * count;
+  Figure figure(format, inches);
   figure.add("set border 1\nunset ytics\nset grid noy\n");
   const double longest = scale * most;
   const double span = 1.2 * longest;
@@ -202,7 +226,7 @@ void plot_powers(std::span<const PowerBar> bars, const std::string& title, PlotF
       const double share = 100.0 * audit.*part.power / audit.electrical;
       const std::string percent = fmt::format("{:.{}f} %", share, std::abs(share) < 9.95 ? 1 : 0);
       const double middle = 0.5 * (from + to);
-      if (to - from > 0.09 * span) {
+      if (to - from > 0.09 * span * single_column_width / format.width) {
         const char* colour = part.light ? "#000000" : "#ffffff";
         figure.text(shown(power), style::text_size,
                     fmt::format("{},{} center textcolor rgb '{}'", middle, y + 0.025, colour));
@@ -214,15 +238,15 @@ void plot_powers(std::span<const PowerBar> bars, const std::string& title, PlotF
     }
     // What has no room inside stands above, with the part's colour, pushed aside by its neighbours.
     std::sort(narrow.begin(), narrow.end(), [](const Narrow& p, const Narrow& q) { return p.at < q.at; });
-    const double room = 0.215 * span;
+    const double room = 0.215 * span * single_column_width / format.width;
     double limit = least + 0.5 * room;
     for (Narrow& n : narrow) limit = (n.at = std::max(n.at, limit)) + room;
     limit = span - 0.5 * room;
     for (auto n = narrow.rbegin(); n != narrow.rend(); ++n) limit = (n->at = std::min(n->at, limit)) - room;
     for (const Narrow& n : narrow) {
       const double start = n.at - 0.45 * room;
-      figure.box(fmt::format("from {},{} to {},{}", start, y + 0.2, start + 0.018 * span, y + 0.27), n.fill);
-      figure.text(n.text, style::text_size, fmt::format("{},{} left", start + 0.025 * span, y + 0.235));
+      figure.box(fmt::format("from {},{} to {},{}", start, y + 0.2, start + 0.085 * room, y + 0.27), n.fill);
+      figure.text(n.text, style::text_size, fmt::format("{},{} left", start + 0.115 * room, y + 0.235));
     }
     figure.text(bars[b].label, 7.0, fmt::format("0,{} left", y + 0.44));
     figure.text(fmt::format("{} {}", shown(scale * audit.electrical), unit), 7.0,
@@ -232,16 +256,10 @@ void plot_powers(std::span<const PowerBar> bars, const std::string& title, PlotF
   figure.add(
       "set lmargin at screen 0.04\nset rmargin at screen 0.97\nset tmargin at screen {}\n"
       "set bmargin at screen {}\n",
-      1.0 - 0.38 / inches, 0.42 / inches);
+      1.0 - above / inches, 0.42 / inches);
   figure.text(fmt::format("power ({})", unit), 7.5, fmt::format("screen 0.505,screen {} center", 0.08 / inches));
   figure.text(title, 8.0, fmt::format("screen 0.04,screen {} left", 1.0 - 0.1 / inches));
-  const double key_height = 1.0 - 0.27 / inches;
-  for (const Part& part : parts) {
-    figure.box(fmt::format("from screen {},screen {} to screen {},screen {}", part.key_x, key_height - 0.035 / inches,
-                           part.key_x + 0.03, key_height + 0.035 / inches),
-               part.fill);
-    figure.text(part.name, style::text_size, fmt::format("screen {},screen {} left", part.key_x + 0.037, key_height));
-  }
+  key.draw(figure, 0.04 * format.width, 0.195);
   figure.add("plot NaN\nunset output\n");
   run_gnuplot(figure.script(), file);
 }

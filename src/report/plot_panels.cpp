@@ -8,6 +8,8 @@
 #include <stdexcept>
 
 #include "report/figure.hpp"
+#include "report/layout.hpp"
+#include "report/text_width.hpp"
 
 namespace wingbeat {
 
@@ -26,11 +28,18 @@ void plot_panels(std::span<const PointPanel> panels, const PointAxes& axes, Plot
   constexpr std::pair<const char*, int> styles[] = {{style::ink, 7}, {style::ink, 6},  {style::grey, 5},
                                                     {style::ink, 4}, {style::grey, 9}, {style::ink, 8},
                                                     {style::ink, 2}, {style::ink, 12}};
-  constexpr std::size_t style_count = std::size(styles), per_row = 2;
-  const double rows = std::ceil(double(names.size()) / per_row);
-  const double head = 0.1 + 0.14 * rows, foot = 0.5, each = 1.05, gap = 0.42;
+  constexpr std::size_t style_count = std::size(styles);
+  constexpr double left = 0.14, right = 0.96;
+  const auto point = [&](std::size_t n) {
+    return fmt::format("pt {} ps 0.45 lw 1.6 lc rgb '{}'", styles[n % style_count].second,
+                       styles[n % style_count].first);
+  };
+  std::vector<KeyEntry> named;
+  for (std::size_t n = 0; n < names.size(); ++n) named.push_back(point_key(names[n], point(n)));
+  const Key key(std::move(named), (right - left) * format.width);
+  const double head = 0.1 + key.height(), foot = 0.5, each = 1.05, gap = 0.42;
   const double inches = head + foot + each * double(panels.size()) + gap * double(panels.size());
-  Figure figure(format, 3.5, inches);
+  Figure figure(format, inches);
   const auto data_name = [](std::size_t panel, std::size_t series) { return fmt::format("$p{}_{}", panel, series); };
   for (std::size_t p = 0; p < panels.size(); ++p) {
     for (std::size_t s = 0; s < panels[p].series.size(); ++s) {
@@ -39,7 +48,6 @@ void plot_panels(std::span<const PointPanel> panels, const PointAxes& axes, Plot
       figure.add("END\n");
     }
   }
-  constexpr double left = 0.14, right = 0.96;
   figure.add(
       "set multiplot\nset lmargin at screen {}\nset rmargin at screen {}\nset offsets graph 0.04, graph 0.04, 0, 0\n",
       left, right);
@@ -50,24 +58,19 @@ void plot_panels(std::span<const PointPanel> panels, const PointAxes& axes, Plot
     figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", top, top - each / inches);
     figure.text(panels[p].title, 7.5, fmt::format("screen {},{} left", left, top + 0.09 / inches));
     if (p == 0) {
-      figure.text(axes.title, 8.0, fmt::format("screen 0.5,{} center", 1.0 - 0.12 / inches));
-      figure.text(axes.y, 7.5,
-                  fmt::format("screen 0.026,{} center rotate by 90", 0.5 * (1.0 - (head + gap - foot) / inches)));
+      page_title(figure, axes.title, 0.12);
+      axis_title(figure, axes.y, 7.5, inches - 2.0 * page_margin, left - 0.4 / format.width,
+                 std::max(0.5 * (1.0 - (head + gap - foot) / inches),
+                          std::min(0.5, (0.5 * text_width(axes.y, 7.5) + page_margin) / inches)));
       figure.text(axes.x, 7.5, fmt::format("screen {},{} center", 0.5 * (left + right), 0.09 / inches));
-      for (std::size_t n = 0; n < names.size(); ++n) {
-        const double y = 1.0 - (0.32 + 0.14 * double(n / per_row)) / inches, x = left + 0.42 * double(n % per_row);
-        figure.add("set label {} '' at screen {},{} point pt {} ps 0.45 lw 1.6 lc rgb '{}' front\n", 500 + n, x, y,
-                   styles[n % style_count].second, styles[n % style_count].first);
-        figure.text(names[n], style::text_size, fmt::format("screen {},{} left", x + 0.025, y));
-      }
+      key.draw(figure, left * format.width, 0.25);
     }
     std::string plots = "0 with lines lt 1 dt 1 lw 0.5 lc rgb '#404040'";
     for (std::size_t s = 0; s < panels[p].series.size(); ++s) {
       const PointSeries& series = panels[p].series[s];
       if (series.points.empty()) continue;
       const std::size_t n = std::size_t(std::find(names.begin(), names.end(), series.name) - names.begin());
-      plots += fmt::format(", {} using 1:2 with points pt {} ps 0.45 lw 1.6 lc rgb '{}'", data_name(p, s),
-                           styles[n % style_count].second, styles[n % style_count].first);
+      plots += fmt::format(", {} using 1:2 with points {}", data_name(p, s), point(n));
     }
     figure.add("plot {}\n", plots);
   }

@@ -7,6 +7,7 @@
 
 #include "report/contour_lines.hpp"
 #include "report/figure.hpp"
+#include "report/layout.hpp"
 #include "report/sweep_scales.hpp"
 #include "report/sweep_status_plot.hpp"
 
@@ -89,9 +90,17 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
   }
   const bool all_flap = std::all_of(status.begin(), status.end(), [](double s) { return s == 0.0; });
 
-  const double head = 0.52, panel = 2.05, gap = 0.84, foot = 0.74;
+  std::string note = all_flap ? "" : "grey: does not flap";
+  if (carried) note += fmt::format("{}dashed: lift = weight, best sought above", note.empty() ? "" : "; ");
+  if (leaves) {
+    note += fmt::format("{}hatched: outside the model's domain{}", note.empty() ? "" : "; ",
+                        extrapolates ? "" : ", no best there");
+  }
+  if (weighed && !carried) note += fmt::format("{}lift < weight everywhere", note.empty() ? "" : "; ");
+  const std::vector<std::string> remarks = remark_lines(note, format.width);
+  const double head = 0.52, panel = 2.05, gap = 0.84, foot = 0.58 + remarks_height(remarks);
   const double inches = head + double(metrics.size()) * panel + double(metrics.size() - 1) * gap + foot;
-  Figure figure(format, 3.5, inches);
+  Figure figure(format, inches);
   constexpr double left = 0.135, right = 0.83;
   Grid idle = gridded([&](std::size_t n) { return flaps(n) ? 0.0 : 1.0; });
   smooth(idle);
@@ -127,11 +136,11 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
     const double bottom = top - panel / inches;
     figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", top, bottom);
     if (p == 0) {
-      figure.text(title_of(study), 8.0, fmt::format("screen 0.5,{} center", 1.0 - 0.11 / inches));
+      page_title(figure, title_of(study), 0.11);
     }
     figure.text(field.label(), 7.5, fmt::format("screen {},{} left", left, top + 0.22 / inches));
     figure.text(x.label(), 7.5, fmt::format("screen {},{} center", 0.5 * (left + right), bottom - 0.39 / inches));
-    figure.text(y.label(), 7.5, fmt::format("screen 0.022,{} center rotate by 90", 0.5 * (top + bottom)));
+    axis_title(figure, y.label(), 7.5, panel + 0.5 * gap, left - 0.39 / format.width, 0.5 * (top + bottom));
 
     std::string drawn;
     if (std::isfinite(least)) {
@@ -154,8 +163,9 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
       const std::size_t every = bands > 8 ? 2 : 1;
       for (std::size_t k = 0; k < levels.size(); k += every) {
         const double at = bottom + (top - bottom) * double(k) / double(bands);
-        figure.text(fmt::format("{:.6g}", std::abs(levels[k]) < 1e-9 * (most - least) ? 0.0 : levels[k]),
-                    style::text_size, fmt::format("screen {},{} left", right + 0.068, at));
+        const double start = (right + 0.068) * format.width;
+        fitted_text(figure, fmt::format("{:.6g}", std::abs(levels[k]) < 1e-9 * (most - least) ? 0.0 : levels[k]),
+                    style::text_size, format.width - start - 0.02, start, (1.0 - at) * inches, "left");
       }
     }
     drawn +=
@@ -183,20 +193,12 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
     if (best < status.size()) {
       figure.circle(x.at[best / ny], y.at[best % ny], 0.012, "fillcolor rgb '#ffffff' fillstyle solid", "#000000");
       figure.circle(x.at[best / ny], y.at[best % ny], 0.003, "fillcolor rgb '#000000' fillstyle solid", "#000000");
-      figure.text(fmt::format("circle: {} {} at {}, {}", field.superlative(), field.shown(field.values[best]),
-                              x.value(best / ny), y.value(best % ny)),
-                  style::text_size, fmt::format("screen {},{} right", right, top + 0.09 / inches));
+      const std::string found_at = fmt::format("circle: {} {} at {}, {}", field.superlative(),
+                                               field.shown(field.values[best]), x.value(best / ny), y.value(best % ny));
+      fitted_text(figure, found_at, style::text_size, (right - 0.02) * format.width, right * format.width,
+                  (1.0 - top) * inches - 0.09, "right");
     }
-    if (p + 1 == metrics.size()) {
-      std::string note = all_flap ? "" : "grey: does not flap";
-      if (carried) note += fmt::format("{}dashed: lift = weight, best sought above", note.empty() ? "" : "; ");
-      if (leaves) {
-        note += fmt::format("{}hatched: outside the model's domain{}", note.empty() ? "" : "; ",
-                            extrapolates ? "" : ", no best there");
-      }
-      if (weighed && !carried) note += fmt::format("{}lift < weight everywhere", note.empty() ? "" : "; ");
-      if (!note.empty()) figure.remarks(note, inches);
-    }
+    if (p + 1 == metrics.size()) draw_remarks(figure, remarks);
     figure.add("set grid noxtics noytics\nplot {}\n", drawn);
   }
   figure.add("unset multiplot\nunset output\n");

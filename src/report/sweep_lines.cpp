@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "report/figure.hpp"
+#include "report/layout.hpp"
 #include "report/sweep_scales.hpp"
 #include "report/sweep_status_plot.hpp"
 
@@ -84,6 +85,33 @@ struct Curves {
   }
 };
 
+constexpr const char* outside_band = "#d0d0d0";
+
+/// The parts of a curve that lie outside the domain, to halfway to the next design inside; `at` says of a design its
+/// value and whether it is outside.
+template <class At>
+void add_outside(Figure& figure, const std::string& name, const Scale& x, const std::vector<std::size_t>& order,
+                 const At& at) {
+  figure.add("{} << END\n{} NaN\n", name, x.at[order.front()]);
+  const auto halfway = [&](std::size_t k, std::size_t next) {
+    const double a = x.at[order[k]], b = x.at[order[next]];
+    const auto [value, out] = at(order[next]);
+    if (!std::isfinite(value) || out) return;
+    figure.add("{} {}\n", x.logarithmic ? std::sqrt(a * b) : 0.5 * (a + b), 0.5 * (at(order[k]).first + value));
+  };
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const auto [value, out] = at(order[k]);
+    if (!out || !std::isfinite(value)) {
+      figure.add("{} NaN\n", x.at[order[k]]);
+      continue;
+    }
+    if (k > 0) halfway(k, k - 1);
+    figure.add("{} {}\n", x.at[order[k]], value);
+    if (k + 1 < order.size()) halfway(k, k + 1);
+  }
+  figure.add("END\n");
+}
+
 }  // namespace
 
 void plot_idle_lines(const Study& study, const std::vector<double>& status, PlotFormat format,
@@ -114,50 +142,45 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
 
   std::vector<CurveLook> looks;
   for (const std::uint64_t curve : curves) looks.push_back(look_of(sweep, curve));
-  const bool named = curves.size() > 1;
-  // Two names beside each other where both fit.
-  constexpr std::size_t half_a_line = 22;
-  std::size_t beside = 2;
-  for (const std::uint64_t curve : curves) {
-    if (curve_name(sweep, curve).size() > half_a_line) beside = 1;
-  }
-  const double panel = 1.45, gap = 0.45, foot = 0.74;
-  const double head = 0.58 + (named ? 0.15 * double((curves.size() + beside - 1) / beside) : 0.0);
-  const double inches = head + double(metrics.size()) * panel + double(metrics.size() - 1) * gap + foot;
-  Figure figure(format, 3.5, inches);
   constexpr double left = 0.125, right = 0.965;
-  const std::vector<double> weight = lift_over_weight(sweep, file);
-  bool broken = false, carried = false;
-  const std::vector<double> status = file.read("status"), domain = file.read("domain");
-  const auto inside = [&](std::uint64_t n) { return status[n] == 0.0 && domain[n] == 0.0; };
-  // Places along the axis where some curve is outside the domain and none inside, as runs of `order`.
-  std::vector<std::pair<std::size_t, std::size_t>> hatched;
-  for (std::size_t k = 0; k < count; ++k) {
-    const auto at = [&](std::uint64_t c) { return c + order[k] * stride; };
-    const bool out = std::any_of(curves.begin(), curves.end(), [&](std::uint64_t c) { return domain[at(c)] != 0.0; }) &&
-                     std::none_of(curves.begin(), curves.end(), [&](std::uint64_t c) { return inside(at(c)); });
-    if (!out) continue;
-    if (!hatched.empty() && hatched.back().second + 1 == k) hatched.back().second = k;
-    else hatched.emplace_back(k, k);
+  std::vector<KeyEntry> named;
+  for (std::size_t c = 0; curves.size() > 1 && c < curves.size(); ++c) {
+    named.push_back(line_key(curve_name(sweep, curves[c]), looks[c].line()));
   }
+  const Key key(std::move(named), (right - left) * format.width);
+  const std::vector<double> weight = lift_over_weight(sweep, file);
+  const std::vector<double> status = file.read("status"), domain = file.read("domain");
   const bool leaves = std::any_of(domain.begin(), domain.end(), [](double d) { return d != 0.0; });
+  std::vector<Field> fields;
+  std::vector<SweepBest> found;
+  bool broken = false, carried = false;
+  for (const Metric metric : metrics) {
+    fields.emplace_back(file, metric);
+    found.push_back(best_of(fields.back(), weight, domain, sweep.allow_extrapolation));
+    carried = carried || (found.back().design() && found.back().carries_weight());
+    for (const double y : fields.back().values) broken = broken || !std::isfinite(y);
+  }
+  std::string note = broken ? "no line: does not flap" : "";
+  if (leaves) note += fmt::format("{}grey band: outside the model's domain", note.empty() ? "" : "; ");
+  if (carried) note += fmt::format("{}best sought where lift >= weight", note.empty() ? "" : "; ");
+  const std::vector<std::string> remarks = remark_lines(note, format.width);
+  const double panel = 1.45, gap = 0.45, foot = 0.54 + remarks_height(remarks), head = 0.58 + key.height();
+  const double inches = head + double(metrics.size()) * panel + double(metrics.size() - 1) * gap + foot;
+  Figure figure(format, inches);
   for (std::size_t p = 0; p < metrics.size(); ++p) {
-    const Field field(file, metrics[p]);
+    const Field& field = fields[p];
     for (std::size_t c = 0; c < curves.size(); ++c) {
       figure.add("$curve_{}_{} << END\n", p, c);
       for (const std::size_t n : order) {
         const double y = field.values[curves[c] + n * stride];
-        broken = broken || !std::isfinite(y);
         if (std::isfinite(y)) figure.add("{} {}\n", x.at[n], y);
         else figure.add("{} NaN\n", x.at[n]);
       }
       figure.add("END\n");
-      figure.add("$outside_{}_{} << END\n{} NaN\n", p, c, x.at[order.front()]);
-      for (const std::size_t n : order) {
+      add_outside(figure, fmt::format("$outside_{}_{}", p, c), x, order, [&](std::size_t n) {
         const std::size_t at = curves[c] + n * stride;
-        if (domain[at] != 0.0 && std::isfinite(field.values[at])) figure.add("{} {}\n", x.at[n], field.values[at]);
-      }
-      figure.add("END\n");
+        return std::pair{field.values[at], domain[at] != 0.0};
+      });
       // A design that flaps between two that do not would leave no line.
       figure.add("$lone_{}_{} << END\n{} NaN\n", p, c, x.at[order.front()]);
       for (std::size_t k = 0; k < count; ++k) {
@@ -173,58 +196,41 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
   }
   figure.add("set multiplot\n{}", x.range("x"));
   figure.add("set lmargin at screen {}\nset rmargin at screen {}\n", left, right);
-  const double title_y = 1.0 - 0.11 / inches;
-  figure.text(title_of(study), 8.0, fmt::format("screen 0.5,{} center", title_y));
-  if (named) {
-    for (std::size_t c = 0; c < curves.size(); ++c) {
-      figure.key_entry(c % beside == 0 ? left : 0.56, title_y - (0.2 + 0.15 * double(c / beside)) / inches,
-                       looks[c].line(), curve_name(sweep, curves[c]));
-    }
-  }
+  page_title(figure, title_of(study), 0.11);
+  key.draw(figure, left * format.width, 0.235);
   for (std::size_t p = 0; p < metrics.size(); ++p) {
     if (p > 0) figure.next_panel();
     figure.add("unset object\n");
-    for (std::size_t h = 0; h < hatched.size(); ++h) {
-      const auto between = [&](std::size_t a, std::size_t b) {
-        const double from = x.at[order[a]], to = x.at[order[b]];
-        return x.logarithmic ? std::sqrt(from * to) : 0.5 * (from + to);
-      };
-      const auto [first, last] = hatched[h];
-      figure.add(
-          "set object {} rectangle from {},graph 0 to {},graph 1 behind fillcolor rgb '#909090' fillstyle transparent "
-          "pattern 4 noborder\n",
-          5000 + h, first == 0 ? x.at[order[0]] : between(first - 1, first),
-          last + 1 == count ? x.at[order[last]] : between(last, last + 1));
-    }
-    const Field field(file, metrics[p]);
+    const Field& field = fields[p];
     const double top = 1.0 - (head + double(p) * (panel + gap)) / inches;
     figure.add("set tmargin at screen {}\nset bmargin at screen {}\nset format x {}\n", top, top - panel / inches,
                p + 1 == metrics.size() ? "'%g'" : "''");
     figure.text(field.label(), 7.5, fmt::format("screen {},{} left", left, top + 0.22 / inches));
-    const SweepBest found = best_of(field, weight, domain, sweep.allow_extrapolation);
-    if (found.design()) {
-      const std::uint64_t best = found.design()->index;
-      carried = carried || found.carries_weight();
+    if (found[p].design()) {
+      const std::uint64_t best = found[p].design()->index;
       const std::size_t at = std::size_t(places(sweep, best)[along]);
       const std::uint64_t first = best - at * stride;
       const std::size_t curve = std::size_t(std::find(curves.begin(), curves.end(), first) - curves.begin());
-      figure.text(fmt::format("circle: {} {} at {}", field.superlative(), field.shown(field.values[best]), x.value(at)),
-                  style::text_size, fmt::format("screen {},{} right", right, top + 0.09 / inches));
+      fitted_text(
+          figure, fmt::format("circle: {} {} at {}", field.superlative(), field.shown(field.values[best]), x.value(at)),
+          style::text_size, (right - left) * format.width, right * format.width, (1.0 - top) * inches - 0.09, "right");
       figure.circle(x.at[at], field.values[best], 0.01, "fillstyle empty", looks[curve].colour);
     }
     if (p + 1 == metrics.size()) {
-      figure.text(x.label(), 7.5, fmt::format("screen {},{} center", 0.5 * (left + right), 0.35 / inches));
-      std::string note = broken ? "no line: does not flap" : "";
-      if (leaves) note += fmt::format("{}crossed, hatched: outside the model's domain", note.empty() ? "" : "; ");
-      if (carried) note += fmt::format("{}best sought where lift >= weight", note.empty() ? "" : "; ");
-      if (!note.empty()) figure.remarks(note, inches);
+      const double below = remarks_height(remarks) + 0.14;
+      figure.text(x.label(), 7.5, fmt::format("screen {},{} center", 0.5 * (left + right), below / inches));
+      draw_remarks(figure, remarks);
     }
     std::string curves_drawn;
+    // Bands lie behind every curve.
+    for (std::size_t c = 0; leaves && c < curves.size(); ++c) {
+      curves_drawn += fmt::format("$outside_{0}_{1} using 1:2 with lines {2} title 'curve|outside {1}', ", p, c,
+                                  style::stroke(outside_band, style::solid, 8.0));
+    }
     for (std::size_t c = 0; c < curves.size(); ++c) {
       curves_drawn += fmt::format(
-          "{}$curve_{}_{} using 1:2 with lines {}, $lone_{}_{} using 1:2 with points pt 7 "
-          "ps 0.2 lc rgb '{}', $outside_{}_{} using 1:2 with points pt 2 ps 0.3 lc rgb '{}'",
-          c == 0 ? "" : ", ", p, c, looks[c].line(), p, c, looks[c].colour, p, c, looks[c].colour);
+          "{}$curve_{}_{} using 1:2 with lines {}, $lone_{}_{} using 1:2 with points pt 7 ps 0.2 lc rgb '{}'",
+          c == 0 ? "" : ", ", p, c, looks[c].line(), p, c, looks[c].colour);
     }
     double least = INFINITY, most = -INFINITY;
     for (const double y : field.values) {

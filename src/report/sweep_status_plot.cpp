@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "report/figure.hpp"
+#include "report/layout.hpp"
 
 namespace wingbeat {
 
@@ -31,11 +32,15 @@ void plot_statuses(const std::string& title, const std::string& x_label, const s
     row[std::size_t(s)] = int(present.size());
     present.push_back(s);
   }
-  const bool named = curves.size() > 1;
-  const double head = 0.5 + (named ? 0.15 * double((curves.size() + 1) / 2) : 0.0);
+  std::vector<KeyEntry> named;
+  for (std::size_t c = 0; curves.size() > 1 && c < curves.size(); ++c) {
+    named.push_back(point_key(curves[c].name, fmt::format("pt 7 ps 0.4 lc rgb '{}'", colours[c % 6])));
+  }
+  const Key key(std::move(named), 0.93 * format.width);
+  const double head = 0.5 + key.height();
   const double panel = 0.35 * double(present.size()) + 0.25, foot = 0.5, inches = head + panel + foot;
   const auto y = [&](double from_top) { return 1.0 - from_top / inches; };
-  Figure figure(format, 3.5, inches);
+  Figure figure(format, inches);
   for (std::size_t c = 0; c < curves.size(); ++c) {
     figure.add("$statuses_{} << END\n", c);
     // Curves beside each other, so that none hides another.
@@ -49,16 +54,10 @@ void plot_statuses(const std::string& title, const std::string& x_label, const s
       "{}set lmargin at screen 0.2\nset rmargin at screen 0.95\nset tmargin at screen {}\n"
       "set bmargin at screen {}\n",
       x_range, y(head), y(head + panel));
-  figure.text(title, 8.0, fmt::format("screen 0.5,{} center", y(0.11)));
-  figure.text(nothing_flaps(designs), 7.0, fmt::format("screen 0.5,{} center", y(0.29)));
-  if (named) {
-    for (std::size_t c = 0; c < curves.size(); ++c) {
-      const double key_x = c % 2 == 0 ? 0.2 : 0.58, key_y = y(0.47 + 0.15 * double(c / 2));
-      figure.add("set label {} '' at screen {},{} point pt 7 ps 0.4 lc rgb '{}'\n", 900 + c, key_x, key_y,
-                 colours[c % 6]);
-      figure.text(curves[c].name, 7.0, fmt::format("screen {},{} left", key_x + 0.02, key_y));
-    }
-  }
+  const double room = format.width - 2.0 * page_margin;
+  page_title(figure, title, 0.11);
+  fitted_text(figure, nothing_flaps(designs), 7.0, room, 0.5 * format.width, 0.29, "center");
+  key.draw(figure, 0.05 * format.width, 0.4);
   figure.text(x_label, 7.5, fmt::format("screen 0.58,{} center", 0.12 / inches));
   std::string tics, plots;
   for (std::size_t r = 0; r < present.size(); ++r) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "report/figure.hpp"
+#include "report/layout.hpp"
 #include "report/report_tools.hpp"
 #include "report/sweep_scales.hpp"
 #include "wingbeat/files/design_file.hpp"
@@ -270,7 +271,7 @@ void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns, co
 
   const double rows_height = sources ? 0.24 * double(inputs.size()) : 0.0;
   const double inches = 2.55 + (sources ? 0.95 + rows_height : 0.0);
-  Figure figure(format, 3.5, inches);
+  Figure figure(format, inches);
   const auto y = [&](double from_top) { return 1.0 - from_top / inches; };
   figure.add("$bins << END\n");
   double highest = 0.0;
@@ -282,7 +283,7 @@ void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns, co
   figure.add("END\nset multiplot\nset lmargin at screen 0.07\nset rmargin at screen 0.97\n");
   figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", y(0.62), y(2.1));
   const std::string title = study.title.empty() ? "Tolerance" : study.title;
-  figure.text(title, 8.0, fmt::format("screen 0.5,{} center", y(0.12)));
+  page_title(figure, title, 0.12);
   std::string drawn = fmt::format("{} vehicles that flap", values.size());
   if (outside > 0) drawn += fmt::format(" ({} outside the domain left out)", outside);
   figure.key_entry(0.07, y(0.32), "lw 5 lc rgb '#cfcfcf'", drawn);
@@ -333,8 +334,9 @@ void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns, co
     }
     figure.add("END\n");
     for (std::size_t r = 0; r < order.size(); ++r) {
-      const double row = y(top + rows_height * (double(r) + 0.5) / double(order.size()));
-      figure.text(words(inputs[order[r]].name), style::text_size, fmt::format("screen 0.44,{} right", row));
+      const double row = top + rows_height * (double(r) + 0.5) / double(order.size());
+      fitted_text(figure, words(inputs[order[r]].name), style::text_size, 0.42 * format.width, 0.44 * format.width, row,
+                  "right");
     }
     figure.add("set xrange [{}:{}]\nset yrange [{}:0.5]\nset border 3\nset datafile missing 'nan'\n", -0.03 * most,
                1.04 * most, 0.5 - double(order.size()));

@@ -1,4 +1,4 @@
-// Plots through gnuplot, sized for one column of a paper, as SVG, PDF or PNG.
+// Plots through gnuplot, sized for one column of a paper or for both, as SVG, PDF or PNG.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,19 @@
 
 namespace wingbeat {
 
-enum class PlotFormat { svg, pdf, png };
+/// Widths of a printed figure [in]: one column of a journal, and both.
+inline constexpr double single_column_width = 89.0 / 25.4, double_column_width = 183.0 / 25.4;
+
+/// What a figure is written as, and how wide it is printed.
+struct PlotFormat {
+  enum Kind { svg, pdf, png };
+  Kind kind = svg;
+  double width = single_column_width;  ///< [in]
+
+  constexpr PlotFormat(Kind written_as, double printed_width = single_column_width)
+      : kind(written_as), width(printed_width) {}
+  friend constexpr bool operator==(const PlotFormat& format, Kind kind) { return format.kind == kind; }
+};
 
 /// As OutputRules wants them.
 inline constexpr const char* plot_extensions = ".svg .pdf .png";
