@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "vehicle/further_boxes.hpp"
+#include "wide/words.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/files/design_file.hpp"
@@ -236,42 +237,27 @@ void print(const std::string& name, const Row& r) {
   std::printf("\n");
 }
 
-[[noreturn]] void refuse(const std::string& why) {
-  std::fprintf(stderr, "check_kinds: %s\n", why.c_str());
-  std::exit(2);
-}
-
 Arguments read_arguments(int argc, char** argv) {
   Arguments a;
-  for (int k = 1; k < argc; ++k) {
-    const std::string_view word = argv[k];
-    const auto text = [&]() -> std::string {
-      if (k + 1 >= argc) refuse(std::string(word) + " needs a value");
-      return argv[++k];
-    };
-    const auto number = [&](const std::string& of) -> std::size_t {
-      char* end = nullptr;
-      const long value = std::strtol(of.c_str(), &end, 10);
-      if (of.empty() || *end || value < 0) refuse("\"" + of + "\" is not a number");
-      return std::size_t(value);
-    };
-    if (word == "--box") {
-      const std::string name = text();
+  Words words("check_kinds", argc, argv);
+  while (words.next()) {
+    if (words.is("--box")) {
+      const std::string name = words.value();
       const auto at = std::find(further_box_names.begin(), further_box_names.end(), name);
-      if (at == further_box_names.end()) refuse("there is no box \"" + name + "\"");
+      if (at == further_box_names.end()) words.refuse("there is no box \"" + name + "\"");
       a.only_box = int(at - further_box_names.begin());
-    } else if (word == "--vehicle") {
-      a.one = true, a.first = number(text());
-    } else if (word == "--first") {
-      a.first = number(text());
-    } else if (word == "--seed") {
-      a.seed = std::uint32_t(number(text()));
-    } else if (word == "--threads") {
-      a.threads = unsigned(std::max<std::size_t>(1, number(text())));
-    } else if (word.substr(0, 1) == "-") {
-      refuse("unknown option " + std::string(word));
+    } else if (words.is("--vehicle")) {
+      a.one = true, a.first = words.number();
+    } else if (words.is("--first")) {
+      a.first = words.number();
+    } else if (words.is("--seed")) {
+      a.seed = std::uint32_t(words.number());
+    } else if (words.is("--threads")) {
+      a.threads = unsigned(std::max<std::size_t>(1, words.number()));
+    } else if (words.is_option()) {
+      words.refuse("unknown option " + words.word());
     } else {
-      a.count = number(std::string(word));
+      a.count = words.number_in(words.word());
     }
   }
   return a;

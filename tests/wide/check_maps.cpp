@@ -12,6 +12,7 @@
 
 #include "study/slope_differences.hpp"
 #include "vehicle/map_vehicles.hpp"
+#include "wide/words.hpp"
 #include "wingbeat/files/design_file.hpp"
 
 namespace {
@@ -102,46 +103,31 @@ Row check(MapKind kind, bool stops, const Arguments& arguments) {
   return row;
 }
 
-[[noreturn]] void refuse(const std::string& why) {
-  std::fprintf(stderr, "check_maps: %s\n", why.c_str());
-  std::exit(2);
-}
-
 Arguments read_arguments(int argc, char** argv) {
   Arguments a;
-  for (int k = 1; k < argc; ++k) {
-    const std::string_view word = argv[k];
-    const auto text = [&]() -> std::string {
-      if (k + 1 >= argc) refuse(std::string(word) + " needs a value");
-      return argv[++k];
-    };
-    const auto number = [&](const std::string& of) -> std::size_t {
-      char* end = nullptr;
-      const long value = std::strtol(of.c_str(), &end, 10);
-      if (of.empty() || *end || value < 0) refuse("\"" + of + "\" is not a number");
-      return std::size_t(value);
-    };
-    if (word == "--kind") {
-      const std::string name = text();
+  Words words("check_maps", argc, argv);
+  while (words.next()) {
+    if (words.is("--kind")) {
+      const std::string name = words.value();
       const auto at = std::find(map_kind_names.begin(), map_kind_names.end(), name);
-      if (at == map_kind_names.end()) refuse("there is no kind \"" + name + "\"");
+      if (at == map_kind_names.end()) words.refuse("there is no kind \"" + name + "\"");
       a.kind = int(at - map_kind_names.begin());
-    } else if (word == "--stops") {
-      const std::string name = text();
-      if (name != "yes" && name != "no") refuse("--stops yes or no");
+    } else if (words.is("--stops")) {
+      const std::string name = words.value();
+      if (name != "yes" && name != "no") words.refuse("--stops yes or no");
       a.stops = name == "yes";
-    } else if (word == "--no-points") {
+    } else if (words.is("--no-points")) {
       a.points = false;
-    } else if (word == "--vehicle") {
-      a.one = true, a.first = number(text());
-    } else if (word == "--seed") {
-      a.seed = std::uint32_t(number(text()));
-    } else if (word == "--threads") {
-      a.threads = unsigned(std::max<std::size_t>(1, number(text())));
-    } else if (word.substr(0, 1) == "-") {
-      refuse("unknown option " + std::string(word));
+    } else if (words.is("--vehicle")) {
+      a.one = true, a.first = words.number();
+    } else if (words.is("--seed")) {
+      a.seed = std::uint32_t(words.number());
+    } else if (words.is("--threads")) {
+      a.threads = unsigned(std::max<std::size_t>(1, words.number()));
+    } else if (words.is_option()) {
+      words.refuse("unknown option " + words.word());
     } else {
-      a.count = number(std::string(word));
+      a.count = words.number_in(words.word());
     }
   }
   return a;
