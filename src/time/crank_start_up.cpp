@@ -112,7 +112,10 @@ std::unique_ptr<Integrator> CrankStartUp::integrator(bool measuring) {
   p.root_functions = [this, measuring](double t, const double* y, double* values) {
     root_values(t, y, values, measuring);
   };
-  return make_integrator(options_.integrator, std::move(p));
+  // A switched supply ends a branch every few microseconds: steps that keep their length from one branch to the next
+  // beat those that find their order and length again on each.
+  const bool own = options_.integrator == TimeIntegrator::automatic && model_.supply.type == SupplyType::pwm;
+  return make_integrator(own ? TimeIntegrator::own_steps : options_.integrator, std::move(p));
 }
 
 TransientResult CrankStartUp::run() {
@@ -329,8 +332,11 @@ void CrankStartUp::track_inrush(Integrator& steps, double from) {
   recorder_.note_current(top, model_.current_of(top, steps.dense(top)));
 }
 
-/// Raises the extremes of the cycle to what they reach within the last step, on the integrator's own interpolant.
+/// Raises the extremes of the cycle to what they reach within the last step, on the integrator's own interpolant. A
+/// heavy rotor takes long steps, however the stroke bends within a few degrees of the crank.
 void CrankStartUp::track_extremes(Integrator& steps, double from) {
+  constexpr double fine = 0.02;  // [rad]
+  const double turned = std::abs(now_.theta - steps.dense(from)[0]);
   raise_extremes(
       [&](double t) {
         const double* y = steps.dense(t);
@@ -338,7 +344,7 @@ void CrankStartUp::track_extremes(Integrator& steps, double from) {
         const Motion<double> m = model_.motion(t, y, &branch);
         return extreme_candidates(m, y[1], branch);
       },
-      from, now_.t, extremes_);
+      from, now_.t, int(std::ceil(turned / fine)), extremes_);
 }
 
 }  // namespace wingbeat::detail

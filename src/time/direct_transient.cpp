@@ -210,7 +210,7 @@ void DirectStartUp<Model>::step_taken(Integrator& steps, double from) {
           const Motion<double> m = model_.motion(t, y);
           return extreme_candidates(m, m.stroke_velocity, model_.branch_at(y), y[0]);
         },
-        from, now_.t, extremes_);
+        from, now_.t, 4, extremes_);
     reading_.step_taken(model_, steps, from);
     const int last = options_.cycle_rows - 1;
     while (last > 0 && int(result_.cycle.size()) <= last) {

@@ -39,13 +39,16 @@ inline double metrics_apart(const Metrics<double>& m, const Metrics<double>& oth
   return largest;
 }
 
-/// Raises extremes to what they reach between the times `from` and `to`, candidates(t) being the values there.
+/// Raises extremes to what they reach between the times `from` and `to`, candidates(t) being the values there, read at
+/// the ends of at least so many intervals.
 template <class Candidates>
-void raise_extremes(const Candidates& candidates, double from, double to, CycleExtremes<double>& extremes) {
-  constexpr int intervals = 4;
+void raise_extremes(const Candidates& candidates, double from, double to, int intervals,
+                    CycleExtremes<double>& extremes) {
+  constexpr int fewest = 4, most = 128;
+  intervals = std::clamp(intervals, fewest, most);
   const double spacing = (to - from) / intervals;
   if (!(spacing > 0.0)) return;
-  CycleExtremes<double> at[intervals + 1];
+  CycleExtremes<double> at[most + 1];
   for (int k = 0; k <= intervals; ++k) at[k] = candidates(k == intervals ? to : from + k * spacing);
   for (std::size_t e = 0; e < extreme_count; ++e) {
     double& best = extremes[e];

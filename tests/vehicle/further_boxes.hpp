@@ -31,18 +31,28 @@ inline WideVehicle drawn_further_vehicle(FurtherBox box, std::uint32_t n, std::u
   };
   const auto add = [&](WideVehicle& v, Rung rung) { add_rung(v.design, rung, n, seed); };
 
+  // Wings on hinges that somebody could build: S_2 and S_3 drawn apart ask for root chords of up to metres. The
+  // semi-ellipse of the same S_2 that is 1.5 to 8 root chords long.
+  const auto put_on_hinges = [&](Design<double>& d) {
+    add_rung(d, Rung::pitch, n, seed);
+    Planform<double>& p = d.wing.planform;
+    const double chords = logarithmic(1.5, 8.0);
+    p.length = std::pow(16.0 * p.s2 * chords / (pi * d.wing.count), 0.25);
+    p.root_chord = p.length / chords;
+  };
+
   WideVehicle drawn;
   switch (box) {
     case FurtherBox::stops:
       drawn = base(4);
-      add(drawn, Rung::pitch);
+      put_on_hinges(drawn.design);
       drawn.design.pitch.stop = uniform(0.02, 1.2);
       if (chance(0.4)) add(drawn, Rung::gear);
       break;
     case FurtherBox::gear:
       drawn = base(3);
       add(drawn, Rung::gear);
-      if (chance(0.3)) add(drawn, Rung::pitch);
+      if (chance(0.3)) put_on_hinges(drawn.design);
       break;
     case FurtherBox::heat:
       drawn = chance(0.3) ? wide_vehicle(FarBox::supplies, n, seed + 1) : base(4);
@@ -62,7 +72,7 @@ inline WideVehicle drawn_further_vehicle(FurtherBox box, std::uint32_t n, std::u
     }
     case FurtherBox::tiny_inductance:
       drawn = base(4);
-      if (chance(0.25)) add(drawn, Rung::pitch);
+      if (chance(0.25)) put_on_hinges(drawn.design);
       drawn.design.motor.constants.armature_inductance =
           drawn.design.motor.constants.armature_resistance * logarithmic(1e-17, 1e-6);
       break;

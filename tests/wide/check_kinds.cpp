@@ -80,29 +80,39 @@ Answer run(const WideVehicle& vehicle, Method method) {
   return answer;
 }
 
+/// A thousandth of what the blocked motors take [W]: states that are accurate to the tolerance give powers that are
+/// accurate to it beside the blocked motor's, and of a vehicle that takes next to nothing those alone can be compared.
+double least_power(const WideVehicle& w) {
+  const Vehicle<double> v = resolve(w.design, w.condition);
+  return 1e-3 * v.motors * square(v.voltage) / circuit_resistance(v);
+}
+
 /// What is left of the input beside the sum of what enters and leaves.
-double open_share(const Metrics<double>& m) {
+double open_share(const Metrics<double>& m, double least) {
   const EnergyAudit a = energy_audit(m);
   const double size = std::abs(a.electrical) + std::abs(a.copper) + std::abs(a.viscous) + std::abs(a.motor_friction) +
                       std::abs(a.gear) + std::abs(a.friction) + std::abs(a.hinge) + std::abs(a.aerodynamic) +
-                      std::abs(a.residual);
-  const double share = size > 0.0 ? std::abs(a.imbalance) / size : 0.0;
+                      std::abs(a.residual) + least;
+  const double share = std::abs(a.imbalance) / size;
   // Motor output is what the input leaves after the motor's own losses and the gearbox; losses are not negative.
   const double motor = a.electrical - a.copper - a.viscous - a.motor_friction - a.gear;
-  const double output = size > 0.0 ? std::abs(m[Metric::power_motor] - motor) / size : 0.0;
-  const double negative =
-      size > 0.0 ? -std::min({0.0, a.copper, a.viscous, a.motor_friction, a.gear, a.friction, a.hinge}) / size : 0.0;
+  const double output = std::abs(m[Metric::power_motor] - motor) / size;
+  const double negative = -std::min({0.0, a.copper, a.viscous, a.motor_friction, a.gear, a.friction, a.hinge}) / size;
   return std::max({share, output, negative});
 }
 
 /// What a difference of a metric is measured by, where error_scale() may still vanish beside what makes it up.
-double scale_of(const Metrics<double>& m, Metric which) {
+double scale_of(const Metrics<double>& m, Metric which, double least) {
   const double size = error_scale(m, which);
-  const double input =
-      std::max({std::abs(m[Metric::power_electrical]), std::abs(m[Metric::power_motor]), m[Metric::power_copper]});
+  const double lift = std::max(m[Metric::lift_peak], std::abs(m[Metric::lift_mean]));
+  const double input = std::max(
+      {std::abs(m[Metric::power_electrical]), std::abs(m[Metric::power_motor]), m[Metric::power_copper], least});
+  const double current = std::max(m[Metric::current_peak], least / std::abs(m[Metric::voltage]));
   switch (which) {
     case Metric::power_electrical:
+    case Metric::power_copper:
     case Metric::power_motor:
+    case Metric::power_motor_reference:
     case Metric::power_gear:
     case Metric::power_loss:
     case Metric::power_hinge:
@@ -110,26 +120,36 @@ double scale_of(const Metrics<double>& m, Metric which) {
     case Metric::efficiency_motor:
     case Metric::efficiency_system: return std::max(size, input / std::abs(m[Metric::power_electrical]));
     case Metric::efficiency_mechanism: return std::max(size, input / std::abs(m[Metric::power_motor]));
-    case Metric::lift_mean: return std::max(size, m[Metric::lift_peak]);
-    case Metric::lift_added_mass_share: return std::max(size, m[Metric::lift_peak] / std::abs(m[Metric::lift_mean]));
-    case Metric::lift_to_weight: return std::abs(m[Metric::lift_peak] * m[which] / m[Metric::lift_mean]);
+    // A wing whose lift is downward throughout has a highest lift of nothing.
+    case Metric::lift_mean:
+    case Metric::lift_peak: return std::max(size, lift);
+    case Metric::lift_added_mass_share: return std::max(size, lift / std::abs(m[Metric::lift_mean]));
+    case Metric::lift_to_weight: return std::abs(lift * m[which] / m[Metric::lift_mean]);
     case Metric::crank_speed_min: return m[Metric::crank_speed_max];
-    case Metric::current_mean: return std::max(size, 0.01 * m[Metric::current_peak]);
+    case Metric::current_mean: return std::max(size, 0.01 * current);
+    case Metric::current_peak:
+    case Metric::current_rms: return current;
     default: return size;
   }
 }
 
-double apart(const Metrics<double>& a, const Metrics<double>& b, Metric which) {
+double apart(const Metrics<double>& a, const Metrics<double>& b, Metric which, double least) {
   if (which == Metric::floquet_multiplier_max || which == Metric::endurance || which == Metric::hover) return 0.0;
+  // Of no power within what the states are accurate to, there is no efficiency that could be compared.
+  const double beyond = 1e-3 * std::max({least, std::abs(b[Metric::power_electrical]), b[Metric::power_copper]});
+  const bool of_nothing = (which == Metric::efficiency_mechanism && std::abs(b[Metric::power_motor]) < beyond) ||
+                          (which == Metric::efficiency_system && std::abs(b[Metric::power_electrical]) < beyond) ||
+                          (which == Metric::efficiency_motor && std::abs(b[Metric::power_electrical]) < beyond);
+  if (of_nothing) return 0.0;
   if (std::isnan(a[which]) != std::isnan(b[which])) return INFINITY;
   const double difference = std::abs(a[which] - b[which]);
-  return difference > 0.0 ? difference / scale_of(b, which) : 0.0;
+  return difference > 0.0 ? difference / scale_of(b, which, least) : 0.0;
 }
 
-double apart(const Metrics<double>& a, const Metrics<double>& b, const char*& where) {
+double apart(const Metrics<double>& a, const Metrics<double>& b, double least, const char*& where) {
   double worst = 0.0;
   for (int k = 0; k < metric_count; ++k) {
-    const double off = apart(a, b, Metric(k));
+    const double off = apart(a, b, Metric(k), least);
     if (off > worst) worst = off, where = metric_info(Metric(k)).key;
   }
   return worst;
@@ -180,6 +200,7 @@ Row check(FurtherBox box, const Arguments& arguments) {
   for (std::size_t n = 0; n < count; ++n) {
     const auto& of = found[n];
     const Answer& reference = of[in_time];
+    const double least = least_power(vehicles[n]);
     ++row.by_status[std::size_t(reference.status)];
     const bool averages = vehicles[n].design.supply.type == SupplyType::pwm;  // cycles share no period with the supply
     std::string remarks;
@@ -198,13 +219,13 @@ Row check(FurtherBox box, const Arguments& arguments) {
         continue;
       }
       if (!a.flaps()) continue;
-      const double open = averages && s == in_time ? 0.0 : open_share(a.metrics);
+      const double open = averages && s == in_time ? 0.0 : open_share(a.metrics, least);
       row.imbalance[s] = std::max(row.imbalance[s], open);
       if (!(open <= balance_open)) ++row.open[s], remark(name + ": energy balance open by " + std::to_string(open));
       if (averages && s == by_orbit) continue;
       const Answer& beside = s == batched ? of[by_orbit] : reference;
       const char* where = "";
-      const double off = s == in_time || !beside.flaps() ? 0.0 : apart(a.metrics, beside.metrics, where);
+      const double off = s == in_time || !beside.flaps() ? 0.0 : apart(a.metrics, beside.metrics, least, where);
       if (std::isfinite(off)) row.apart[s] = std::max(row.apart[s], off);
       if (off > metrics_apart) {
         ++row.metrics[s];

@@ -29,7 +29,7 @@ struct TransientOptions {
   int max_cycles = 5000;    ///< give up after this many revolutions
   /// Give up after this many integration steps, a microsecond or two each: weakly damped drives with small inductances
   /// take more than a million.
-  long max_steps = 3000000;
+  long max_steps = 2000000;
 
   double crank_angle = 0.0;     ///< theta at the start [rad]
   double crank_speed = 0.0;     ///< omega at the start [rad/s]; negative turns backwards
