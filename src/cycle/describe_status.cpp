@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "wingbeat/core/text.hpp"
+#include "wingbeat/cycle/pitch_metrics.hpp"
 #include "wingbeat/cycle/status_evidence.hpp"
 
 namespace wingbeat {
@@ -22,8 +23,6 @@ std::string lock_list(const StatusEvidence& e) {
 }
 
 const char* phase_of(const StatusEvidence& e) { return e.direct ? "the phase of the supply" : "crank angle"; }
-
-constexpr double notable_over_rotation = 0.1;  // of the period; some of it lies about every reversal
 
 /// What is to be said of wings that pitch on a hinge.
 std::string describe_pitching(const StatusEvidence& e) {

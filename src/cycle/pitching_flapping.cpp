@@ -126,7 +126,7 @@ SteadyFlapping PitchingSearch<N>::run(const StartUp& start_up, SharedSearch& sha
   shared.orbit.clear();
 
   std::size_t chosen = 0;
-  if (stable.size() != 1 && start_up) {
+  if (start_up && (stable.size() != 1 || stable.front().over_rotates())) {
     const StartUpOutcome outcome = start_up(vehicle_);
     result.summary = last;
     if (outcome.status != FlappingStatus::flapping) {

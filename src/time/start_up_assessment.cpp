@@ -7,7 +7,7 @@ namespace {
 
 constexpr double tightest = 1e-11;  // what TransientOptions::tolerance admits
 /// Steps that an assessment may take, a few microseconds each, and what is left for its cycle in any case.
-constexpr long max_steps = 600000, least_steps = 150000;
+constexpr long max_steps = 1000000, least_steps = 150000;
 
 }  // namespace
 

@@ -133,6 +133,12 @@ class OrbitSearch {
     return 1.0 / period;
   }
 
+  /// True where wings over-rotate for a notable part of the period: there, a second orbit is stable now and then.
+  bool over_rotates() const {
+    return system_.vehicle.wings.air_density > 0.0 &&
+           pitch_metrics(system_, iterate_).over_rotation_of_moving() > notable_over_rotation;
+  }
+
   void fill(SteadyFlapping& result) {
     result.crank_speed = system_.shaft_speed(start());
     result.current = system_.current(0.0, start());

@@ -17,6 +17,8 @@ namespace wingbeat {
 /// solvers leave: there is no phase of that [rad].
 inline constexpr double still_pitch = 1e-4;
 
+inline constexpr double notable_over_rotation = 0.1;  ///< of the period; some of it lies about every reversal
+
 struct PitchMetrics {
   double amplitude;  ///< half of psi from peak to peak [rad]
   /// Of the first harmonics in time, by how much pitching is ahead of the pitch that opposes the stroke velocity [rad],

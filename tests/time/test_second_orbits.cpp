@@ -1,0 +1,42 @@
+// Vehicles with two stable orbits, of which the search alone found the one that a start from rest does not reach.
+#include <gtest/gtest.h>
+
+#include "vehicle/further_boxes.hpp"
+#include "wingbeat/time/transient.hpp"
+
+using namespace wingbeat;
+
+namespace {
+
+struct Known {
+  FurtherBox box;
+  std::uint32_t n;
+};
+
+class SecondOrbit : public testing::TestWithParam<Known> {};
+
+TEST_P(SecondOrbit, TheOneThatAStartFromRestReachesIsReported) {
+  const WideVehicle w = further_vehicle(GetParam().box, GetParam().n);
+  const Vehicle<double> vehicle = resolve(w.design, w.condition);
+  const SteadyFlapping found = find_steady_flapping(vehicle, {}, start_up_in_time());
+  const TransientResult simulated = simulate_start_up(vehicle);
+  ASSERT_EQ(found.status, FlappingStatus::flapping);
+  ASSERT_TRUE(simulated.settled && simulated.metrics);
+  const Metrics<double>& reached = *simulated.metrics;
+  for (const Metric m : {Metric::frequency, Metric::power_electrical, Metric::power_aerodynamic, Metric::lift_peak}) {
+    EXPECT_NEAR(found.metrics[m], reached[m], 1e-5 * std::abs(reached[m])) << metric_info(m).key;
+  }
+  const SteadyFlapping searched = find_steady_flapping(vehicle, {});
+  EXPECT_GT(std::abs(searched.metrics[Metric::power_aerodynamic] / reached[Metric::power_aerodynamic] - 1.0), 0.01)
+      << "the search alone finds the same orbit: no longer a vehicle that shows anything";
+}
+
+INSTANTIATE_TEST_SUITE_P(Boxes, SecondOrbit,
+                         testing::Values(Known{FurtherBox::gear, 273}, Known{FurtherBox::tiny_inductance, 773},
+                                         Known{FurtherBox::tiny_inductance, 967}),
+                         [](const auto& known) {
+                           return std::string(further_box_names[std::size_t(known.param.box)]) + "_" +
+                                  std::to_string(known.param.n);
+                         });
+
+}  // namespace
