@@ -593,7 +593,7 @@ class Sources(unittest.TestCase):
         sources = package.root / "sources"
         told = (sources / "README.txt").read_text().replace("\\\n", " ")
         command = next(line for line in told.splitlines() if line.strip().startswith("gcc ")).split()
-        # As it is told but for optimisation, and with the list of all files read.
+        # As README.txt says but for optimisation, and with the list of all files read.
         command[command.index("-O2")] = "-O0"
         subprocess.run([*command, "-MD", "-MF", "read.txt"], cwd=sources, check=True)
         read = (sources / "read.txt").read_text()

@@ -140,7 +140,7 @@ TEST(Claims, TheAnswerStatesWhichOfItsNumbersAreOutsideTheDomain) {
   EXPECT_TRUE(rod.outside);
   EXPECT_NEAR(rod.residual_without, 0.0622, 1e-4);
   EXPECT_LT(rod.residual_with, formulation_residual_max);
-  // The program itself refuses it unless it is told to extrapolate.
+  // The program itself refuses it without --allow-extrapolation.
   Design<double> design = paper().designs.at("spring_off");
   design.friction = {FrictionLaw::none, 0.0};
   const RunResult refused = run_design(design, {.frequency = 22.0});

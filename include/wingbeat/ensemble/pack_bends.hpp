@@ -1,4 +1,4 @@
-// Force coefficients that bend at an angle of attack, on SIMD lanes: at a stop of the passive pitching, and where a
+// Force coefficients with a kink at an angle of attack, on SIMD lanes: at a stop of the passive pitching, and where a
 // coefficient table begins. The part of PackOrbit in which segments end there as well.
 #pragma once
 
