@@ -97,8 +97,8 @@ class CoefficientTable {
 };
 
 /// What SIMD lanes, which read no tables by themselves, know of their designs' tables and of where the coefficients
-/// have a kink: at a stop of the pitching, or where a table begins, below which its end value holds. Either all lanes have a
-/// table or none, and either all have a kink or none.
+/// have a kink: at a stop of the pitching, or where a table begins, below which its end value holds. Either all lanes
+/// have a table or none, and either all have a kink or none.
 template <Scalar S>
 struct LaneTables {
   CoefficientLookup of[std::size_t(ScalarTraits<S>::lanes)];

@@ -1,5 +1,5 @@
-"""What a Vehicle offers as methods: the modules that compute enter their functions here, so that none has to be known to
-the vehicle, which all of them import."""
+"""What a Vehicle offers as methods: the modules that compute enter their functions here, so that the vehicle, which all
+of them import, imports none of them."""
 
 from __future__ import annotations
 
