@@ -118,7 +118,7 @@ std::string comment_on(const ParameterText& key, bool is_stated, std::span<const
   return text;
 }
 
-/// Symbol and definition of each metric in the words of docs/model.md, in the order of the metric table.
+/// Symbol and definition of each metric as docs/model.md defines it, in the order of the metric table.
 struct MetricDefinition {
   Metric metric;
   const char* symbol;

@@ -44,7 +44,7 @@ Design<double> bistable_direct_design(std::mt19937_64& random) {
   return d;
 }
 
-/// The same statuses, domains and, to that part of each, metrics.
+/// Equal statuses, equal domains and, to that part of each, metrics.
 void expect_agreement(const std::vector<EnsembleOutcome>& got, const std::vector<EnsembleOutcome>& expected,
                       double largest) {
   ASSERT_EQ(got.size(), expected.size());

@@ -5,7 +5,7 @@
 // number of segments does not. Coarse iterates find where; an iterate with one step per segment gives a first
 // trajectory and its derivatives; Newton's method makes it satisfy the equations at the Lobatto points of every
 // segment, and the iterate its own end. Everything is computed lane by lane without looking at the neighbours, so that
-// a vehicle gets the same bits in any company.
+// a vehicle gets the same bits in any batch.
 //
 // pack_start.hpp holds the way to the first trajectory, pack_mesh.hpp the segments, pack_newton.hpp Newton's method,
 // pack_segment.hpp its step on a stiff segment, pack_lag.hpp the current behind an inductance, pack_peaks.hpp the

@@ -294,10 +294,10 @@ StepResult<System> implicit_step(const System& system, double x, const typename 
   return result;
 }
 
-/// The same with derivatives: `jets` is `system` on dual numbers, whose derivatives come along as those of x, y and h
-/// do. The stages are found on plain numbers; their derivatives follow from the stage equations, which are linear in
-/// them (implicit function theorem). `near`: states at the stages of (nearly) this step, where they are known. Gives no
-/// error estimates.
+/// implicit_step() with derivatives: `jets` is `system` on dual numbers, whose derivatives come along as those of x, y
+/// and h do. The stages are found on plain numbers; their derivatives follow from the stage equations, which are linear
+/// in them (implicit function theorem). `near`: states at the stages of (nearly) this step, where they are known. Gives
+/// no error estimates.
 template <bool quadratures, class Jets, class System>
 StepResult<Jets> implicit_step(const Jets& jets, const System& system, const typename Jets::Real& x,
                                const typename Jets::State& y, const typename Jets::Real& h,

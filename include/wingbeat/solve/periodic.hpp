@@ -59,7 +59,7 @@ enum class PeriodicStatus {
   out_of_work      ///< the WorkBudget is used up
 };
 
-/// The same in words; empty where nothing was searched for.
+/// How the search ended, in words; empty where nothing was searched for.
 constexpr const char* describe(PeriodicStatus status) {
   switch (status) {
     case PeriodicStatus::not_tried: break;
@@ -451,7 +451,7 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   return summary;
 }
 
-/// The same without a limit but those of the options.
+/// The search with no limits but those of the options.
 template <class System>
 PeriodicSummary solve_periodic(const System& system, const typename System::State& guess,
                                const PeriodicOptions& options, Iterate<System>& iterate) {

@@ -140,7 +140,7 @@ def number(name: str, value: Any, unit: str) -> float:
 
 
 def optional_number(name: str, value: Any, unit: str) -> float | None:
-    """The same, or None."""
+    """A number in an SI unit, or None."""
     return None if value is None else number(name, value, unit)
 
 

@@ -112,7 +112,7 @@ class ControlModels(StudyResult):
 
     @property
     def continuous(self) -> LinearModel:
-        """The same in continuous time, without what settles within a cycle.
+        """The model in continuous time, without what settles within a cycle.
 
         Raises
         ------

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 def _toml_text(value: str, key: str) -> str:
-    """A TOML string: JSON's, with all that TOML wants escaped."""
+    """A TOML string: JSON's, with all that TOML requires escaped."""
     hidden = re.compile("[\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff\ufff9-\ufffb\ufffe\uffff]")
     return hidden.sub(lambda c: f"\\u{ord(c[0]):04x}", json.dumps(text(key, value), ensure_ascii=False))
 
