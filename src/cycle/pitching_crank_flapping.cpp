@@ -179,8 +179,8 @@ SteadyFlapping PitchingCrankSearch<N>::run(const StartUp& start_up, SharedSearch
   result.summary = last_;
 
   std::size_t chosen = 0;
-  const bool doubtful = statics_.can_jam() || statics_.can_lock() || ambiguous_ || stable_.size() != 1;
-  if (doubtful && start_up) {
+  const bool unresolved = statics_.can_jam() || statics_.can_lock() || ambiguous_ || stable_.size() != 1;
+  if (unresolved && start_up) {
     const StartUpOutcome outcome = start_up(vehicle_);
     if (outcome.status != FlappingStatus::flapping) {
       result.status = outcome.status;

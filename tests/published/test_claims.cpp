@@ -210,7 +210,7 @@ TEST(Claims, WhatCannotBeCheckedSaysWhy) {
 }
 
 TEST(Claims, IntervalsAreThoseOfTheProgramsOwnTolerance) {
-  // The same study as a user would run it.
+  // The study as a user would run it.
   const ToleranceStudy study = read_tolerance_study(WINGBEAT_DATA "/studies/tolerance-friction2022.toml");
   std::size_t listed = 0;
   for (const UncertainPublished& u : paper().uncertain) {

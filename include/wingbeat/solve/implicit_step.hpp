@@ -27,7 +27,7 @@ struct RadauTableau {
   double start_weight;       ///< of the derivative at the step's start in the embedded formula of order 5
   double error3[stages];     ///< embedded formula of order 3, of every other stage, minus Radau weights
   double error5[stages];     ///< embedded formula of order 5 minus Radau weights
-  // The same for what the stages' states are off the step's start by, in the place of h times their rates.
+  // Likewise for what the stages' states are off the step's start by, in the place of h times their rates.
   double state_error3[stages];
   double state_error5[stages];
 };
