@@ -15,7 +15,7 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
   ~ProgressLine() { clear(); }
 
-  /// False: nothing is ever shown, and nobody needs to ask what.
+  /// False: nothing is ever shown, and no text needs to be made.
   bool on_terminal() const { return terminal_; }
   /// Any thread may call it.
   void show(const std::string& text);

@@ -1,4 +1,4 @@
-// The same designs through the batched solver, the scalar solver and general-purpose solvers, in one run on one core:
+// Designs of one box through the batched solver, the scalar solver and general-purpose solvers, in one run on one core:
 // processor time per design, ratio to the batched solver and the accuracy that each reached. docs/benchmarks.md has a
 // run and its meaning.
 //

@@ -1,7 +1,7 @@
 ! Steady flapping as a periodic boundary-value problem for AUTO-07p, continued in voltage; docs/model.md section 2.
 !
 ! Unknowns over one iterate from the lower dead centre, each divided by its scale: crank speed, current, time, lift impulse,
-! charge; and the iterate's fraction, because FUNC is not told where it is. benchmark_peers writes design.txt (the vehicle's
+! charge; and the iterate's fraction, because FUNC is not given its position. benchmark_peers writes design.txt (the vehicle's
 ! numbers and the scales), start.txt (one iterate of the orbit at the first voltage) and AUTO's constants, and builds this.
 module vehicle
   implicit none

@@ -1,4 +1,10 @@
-// The compiled half of the Python package: the door of the library for Python. Nothing is computed here.
+// The compiled half of the Python package: the facade of the library for Python. Nothing is computed here.
+//
+// A vehicle is an immutable value, because computations run without the GIL. Every call that computes listens to
+// signals (listening); one that computes on several threads does so on a thread of its own, while the calling one
+// listens to signals and to the user's progress function (watched). What a signal handler raises stops the computation
+// by Cancellation. Functions of the user come back into Python from the search of optimise_own, which takes the GIL for
+// them. Arguments are checked in _arguments.py.
 #include <algorithm>
 #include <optional>
 #include <string>

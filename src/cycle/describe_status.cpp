@@ -190,7 +190,7 @@ std::string describe_doubt(const StatusEvidence& e) {
   switch (e.kind) {
     case StatusEvidence::Kind::unstable_orbit:
       return format(
-          "the only orbit found, at %.4g Hz, is unstable (Floquet multiplier %.4g), and nobody says what "
+          "the only orbit found, at %.4g Hz, is unstable (Floquet multiplier %.4g), and no simulation shows what "
           "start-up does",
           e.frequency, e.multiplier);
     case StatusEvidence::Kind::unstable_response:

@@ -179,9 +179,9 @@ SteadyFlapping PitchingCrankSearch<N>::run(const StartUp& start_up, SharedSearch
   result.summary = last_;
 
   std::size_t chosen = 0;
-  const bool doubtful =
+  const bool unresolved =
       statics_.can_jam() || statics_.can_lock() || ambiguous_ || stable_.size() != 1 || stable_.front().over_rotates();
-  if (doubtful && start_up) {
+  if (unresolved && start_up) {
     const StartUpOutcome outcome = start_up(vehicle_);
     if (outcome.status != FlappingStatus::flapping) {
       result.status = outcome.status;

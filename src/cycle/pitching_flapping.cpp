@@ -85,7 +85,7 @@ SteadyFlapping PitchingSearch<N>::run(const StartUp& start_up, SharedSearch& sha
   int iterates = 0;
   double unstable_multiplier = absent;
   solver::PeriodicSummary last;
-  bool cut_short = false;  // some start, for want of work
+  bool cut_short = false;  // some start, when the budget of work was spent
   State reached_from_rest{};
   // One start may not take what is left for the others.
   const auto attempt = [&](const State& guess, bool near, long most) {

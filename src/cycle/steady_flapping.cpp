@@ -31,7 +31,7 @@ class CrankSearch : public OrbitSearch<CrankSystem<double, N>> {
       return this->search({omega}, expected_multiplier);
     }
   }
-  /// The same from where a simulation in time has settled.
+  /// Searches from where a simulation in time has settled.
   bool near(double omega, double current) {
     if (!(omega > this->system().speed_floor)) return false;
     if constexpr (N == 2) {
@@ -79,7 +79,7 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
       };
       found = (found && is_reached(1e-3)) || (orbit.near(outcome->crank_speed, outcome->current) && is_reached(1e-2));
     } else if (ambiguous) {
-      found = false;  // it rotates, but nobody says on which orbit
+      found = false;  // it rotates, on an orbit that is not determined
     }
   } else if (found) {
     found = orbit.multiplier() < 1.0;

@@ -41,7 +41,8 @@ PackSolver solver_for(InstructionSet isa) {
 bool suits_packs(const Vehicle<double>& v) {
   if (has_gear_loss(v.motor) || pitches(v) || v.load_torque != 0.0) return false;
   if (v.transmission.type == TransmissionType::slider_crank) return lanes_know_coefficients(v);
-  // Where constant friction holds a shaft that swings, the equations jump; where coefficients bend, so do their slopes.
+  // Where constant friction holds a shaft that swings, the equations jump; where coefficients have kinks, their slopes
+  // jump.
   return v.transmission.type == TransmissionType::direct && breakaway_torque(v) == 0.0 && !v.wings.coefficients.table &&
          !has_pitch_stop(v.wings);
 }
@@ -92,8 +93,8 @@ bool pitches_far(const Vehicle<double>& v) {
 }
 
 /// The settings of an attempt for a kind. Stiff designs take at once what others take after a start from rest, and
-/// begin again with more points. Where coefficients bend, segments have more places to end at, and the rod force may
-/// peak there; at a table's knots means converge with the fourth power of the nodes.
+/// begin again with more points. Where coefficients have kinks, segments have more places to end at, and the rod force
+/// may peak there; at a table's knots means converge with the fourth power of the nodes.
 PackSettings settings_for(const PackKind& kind, PackSettings settings) {
   settings.current = kind.current;
   settings.in_one_piece = kind.stiff;

@@ -36,7 +36,7 @@ Dimension put_signals(NetcdfFile& data, const std::string& name, const std::vect
   return dimension;
 }
 
-/// The same names again, for the second dimension of a square matrix.
+/// A copy of the names, for the second dimension of a square matrix.
 Dimension put_copy(NetcdfFile& data, const std::string& name, const std::vector<CycleSignal>& signals) {
   std::vector<std::string> names;
   for (const CycleSignal& s : signals) names.push_back(s.name);

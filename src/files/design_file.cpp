@@ -203,7 +203,7 @@ class Reader {
     return !is_unread(requirement.path) && choice && requirement.allows(choice->text);
   }
 
-  /// The same; refuses a key that is given without a place.
+  /// Whether the key belongs to the choices made; refuses one that is given and does not.
   bool belongs(const ParameterText& key) const {
     if (has_place(key)) return true;
     const Requirement requirement = requirement_of(key.only_with);

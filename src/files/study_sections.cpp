@@ -240,16 +240,16 @@ void StudySections::read_metrics(EnsembleOptions& options) const {
 }
 
 void StudySections::complete_metrics(EnsembleOptions& options, std::span<const Design<double>* const> designs) const {
-  const auto nobody_has = [&](Metric metric) {
+  const auto no_design_has = [&](Metric metric) {
     return std::all_of(designs.begin(), designs.end(),
                        [&](const Design<double>* design) { return lacking_for(metric, *design) != nullptr; });
   };
-  if (options.metrics[std::size_t(Metric::endurance)] && !nobody_has(Metric::hover)) {
+  if (options.metrics[std::size_t(Metric::endurance)] && !no_design_has(Metric::hover)) {
     options.metrics.set(std::size_t(Metric::hover));
   }
   if (study_->find("metrics")) return;
   for (int m = 0; m < metric_count; ++m) {
-    if (nobody_has(Metric(m))) options.metrics.reset(std::size_t(m));
+    if (no_design_has(Metric(m))) options.metrics.reset(std::size_t(m));
   }
 }
 

@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "files/toml_prevalidation.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
@@ -19,146 +20,11 @@ namespace wingbeat {
 
 namespace {
 
-constexpr int deepest_nesting = 16;
-// toml++ looks through all sections, and all dotted keys, again for each; InputErrors has a sentence for each.
-constexpr int most_sections = 10000, most_keys = 20000;
 // Which key was meant takes a comparison with every one there is.
 constexpr int most_suggestions = 100;
 
 int line_of(const toml::source_position& p) { return int(p.line); }
 int column_of(const toml::source_position& p) { return int(p.column); }
-
-bool is_bare_key_character(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-}
-
-struct Complaint {
-  int line;
-  int column;
-  std::string message;
-};
-
-/// Keeps from toml++ 3.3 what it meets with undefined behaviour instead of an error:
-/// - deep nesting: it builds and destroys nested tables recursively and does not limit dotted keys;
-/// - a table header that does not begin with a key, "[=" (its issue 294);
-/// - more sections or keys than any file has, for which it takes minutes;
-/// - letters beyond ASCII where it looks for white space (is_non_ascii_horizontal_whitespace).
-class Gatekeeper {
- public:
-  explicit Gatekeeper(std::string_view text) : text_(text) {}
-
-  std::optional<Complaint> complaint() {
-    if (text_.starts_with("\xEF\xBB\xBF")) at_ = line_begin_ = 3;
-    for (; at_ < text_.size() && !complaint_; ++at_) {
-      const char c = text_[at_];
-      if (c == '\n') {
-        next_line();
-        dots_ = 0;
-        if (brackets_ == 0) in_value_ = false;
-      } else if (c == '#') {
-        at_ = std::min(text_.find('\n', at_), text_.size()) - 1;
-      } else if (c == '"' || c == '\'') {
-        check_string_begin();
-        skip_string(c);
-      } else if (c == '.') {
-        limit(++dots_);
-      } else if (c == '[' || c == '{') {
-        dots_ = 0;
-        if (c == '[' && brackets_ == 0 && !in_value_) {
-          check_header();
-          if (++sections_ > most_sections)
-            complain(fmt::format("more than {} sections, which no file has", most_sections));
-        }
-        limit(++brackets_);
-      } else if (c == ']' || c == '}') {
-        dots_ = 0;
-        brackets_ = std::max(brackets_ - 1, 0);
-      } else if (c == '=' || c == ',') {
-        dots_ = 0;
-        in_value_ = true;
-        if (c == '=' && ++keys_ > most_keys) complain(fmt::format("more than {} keys, which no file has", most_keys));
-      } else if (!is_ascii(c)) {
-        complain("not TOML: a letter outside ASCII belongs in quotes");
-      }
-    }
-    return complaint_;
-  }
-
- private:
-  static bool is_ascii(char c) { return static_cast<unsigned char>(c) < 0x80; }
-
-  void next_line() {
-    ++line_;
-    line_begin_ = at_ + 1;
-  }
-
-  void complain(std::string message) {
-    if (complaint_) return;
-    const std::string_view before = text_.substr(line_begin_, at_ - line_begin_);
-    const auto characters = std::count_if(before.begin(), before.end(),
-                                          [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; });
-    complaint_ = {line_, int(characters) + 1, std::move(message)};
-  }
-
-  void limit(int nesting) {
-    if (nesting > deepest_nesting) {
-      complain(fmt::format("nested more than {} levels deep, which no vehicle file is", deepest_nesting));
-    }
-  }
-
-  void check_header() {
-    std::size_t name = at_ + 1;
-    if (name < text_.size() && text_[name] == '[') ++name;
-    name = std::min(text_.find_first_not_of(" \t", name), text_.size());
-    const char first = name < text_.size() ? text_[name] : '\n';
-    if (!is_bare_key_character(first) && first != '"' && first != '\'') {
-      complain("not TOML: a table header needs a name, as in [motor]");
-    }
-  }
-
-  /// toml++ reads on through a quote inside a number or word.
-  void check_string_begin() {
-    const char before = at_ > line_begin_ ? text_[at_ - 1] : '\n';
-    const std::string_view allowed = in_value_ ? " \t\n=,[{" : " \t\n=,[{.";
-    if (allowed.find(before) == std::string_view::npos) complain("not TOML: a quote inside a word");
-  }
-
-  /// Moves to the last character of a string, or of the line where a string of one line does not end.
-  void skip_string(char quote) {
-    const std::string_view triple = quote == '"' ? "\"\"\"" : "'''";
-    const bool multiline = text_.substr(at_).starts_with(triple);
-    for (at_ += multiline ? 3 : 1; at_ < text_.size(); ++at_) {
-      const char c = text_[at_];
-      if (c == '\n') {
-        if (!multiline) break;
-        next_line();
-      } else if (c == '\\' && quote == '"') {
-        if (multiline) check_line_end();
-        if (at_ + 1 < text_.size() && text_[at_ + 1] != '\n') ++at_;
-      } else if (multiline ? text_.substr(at_).starts_with(triple) : c == quote) {
-        if (!multiline) return;
-        at_ += 2;
-        while (at_ + 1 < text_.size() && text_[at_ + 1] == quote) ++at_;  // quotes may end the text itself
-        return;
-      }
-    }
-    --at_;
-  }
-
-  /// The backslash at the end of a line makes toml++ skip white space.
-  void check_line_end() {
-    const std::size_t next = text_.find_first_not_of(" \t\r\n", at_ + 1);
-    if (next != std::string_view::npos && !is_ascii(text_[next])) {
-      complain("a backslash before a letter outside ASCII is not supported");
-    }
-  }
-
-  std::string_view text_;
-  std::size_t at_ = 0, line_begin_ = 0;
-  int line_ = 1, dots_ = 0, brackets_ = 0, sections_ = 0, keys_ = 0;
-  bool in_value_ = false;  ///< after the = of a key
-  std::optional<Complaint> complaint_;
-};
 
 std::string reason_in(const toml::parse_error& error) {
   std::string reason(error.description());
@@ -195,7 +61,7 @@ toml::table parse_toml(std::string_view text, const Origin& origin, std::size_t 
            fmt::format("larger than {} MB, which no {} file is", largest >> 20,
                        largest == largest_text ? "vehicle" : "study"));
   }
-  if (const auto complaint = Gatekeeper(text).complaint()) {
+  if (const auto complaint = prevalidation_complaint(text)) {
     refuse(complaint->line, complaint->column, complaint->message);
   }
   try {

@@ -62,7 +62,8 @@ std::string build_description_of(const FmuOptions& options) {
          "  <BuildConfiguration modelIdentifier=\"" +
          options.identifier +
          "\" description=\"One C++ file with all others\">\n"
-         "    <SourceFileSet language=\"C++20\" compiler=\"gcc\" compilerOptions=\"-std=c++20 -O2 -fPIC -fno-gnu-unique\">\n"
+         "    <SourceFileSet language=\"C++20\" compiler=\"gcc\" "
+         "compilerOptions=\"-std=c++20 -O2 -fPIC -fno-gnu-unique\">\n"
          "      <SourceFile name=\"fmu.cpp\"/>\n"
          "      <IncludeDirectory name=\".\"/>\n"
          "    </SourceFileSet>\n"

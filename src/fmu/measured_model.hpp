@@ -78,7 +78,7 @@ class MeasuredModel : public Base {
   double rest_speed = 1.0, rest_current = 1.0;  ///< typical sizes at the voltage that the vehicle states [rad/s], [A]
   mutable std::int64_t work_left = 0;           ///< evaluations of the rates
 
-  /// Typical sizes are now those by which rest is judged.
+  /// Typical sizes are now those by which rest is assessed.
   void judge_rest_by_typical() {
     rest_speed = this->typical()[1];
     if constexpr (crank) rest_current = this->current_scale;

@@ -25,7 +25,7 @@ std::vector<Loop> boundaries(const Grid& g, double level);
 
 /// Adds several loops as one outline for filling: joined by lines that are passed in both directions.
 void add_filled(Figure& figure, const std::string& name, const std::vector<Loop>& loops);
-/// The same as lines, without what runs along the edges of the grid.
+/// Adds the loops as lines, without what runs along the edges of the grid.
 void add_outline(Figure& figure, const std::string& name, const Grid& g, const std::vector<Loop>& loops);
 
 /// Gives what is no number the value of the nearest number.

@@ -24,7 +24,7 @@ extern char** environ;
 namespace wingbeat {
 namespace {
 
-/// What gnuplot is told of the environment: where programs, libraries and fonts are. Everything else - GNUTERM,
+/// What gnuplot sees of the environment: where programs, libraries and fonts are. Everything else - GNUTERM,
 /// GNUPLOT_*, GDFONTPATH, FIT_*, a locale, a display - could change what a drawing looks like or whether there is one.
 std::vector<char*> environment_of_gnuplot() {
   constexpr std::string_view kept[] = {"PATH=",

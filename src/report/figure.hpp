@@ -17,7 +17,7 @@ namespace wingbeat {
 /// no label ever passes a shell or gnuplot's own parser of file names, and no disk can cut it off. gnuplot sees nothing
 /// of the user's own settings. Throws std::runtime_error.
 std::string drawing_of(const std::string& script);
-/// The same into a file.
+/// Draws by a script of gnuplot into a file.
 void run_gnuplot(const std::string& script, const std::filesystem::path& output);
 
 /// A string for gnuplot: nothing in it is special but the quote.
@@ -64,7 +64,7 @@ class Figure {
   void text(const std::string& content, double size, const std::string& placement) {
     add("set label {} {} at {} front noenhanced font ',{}'\n", ++labels_, quoted(content), placement, size * points_);
   }
-  /// The same with gnuplot's marks for italics and subscripts: "{/:Italic r}_c". Not for a user's words.
+  /// A text with gnuplot's marks for italics and subscripts: "{/:Italic r}_c". Not for a user's words.
   void symbols(const std::string& content, double size, const std::string& placement) {
     add("set label {} {} at {} front enhanced font ',{}'\n", ++labels_, quoted(content), placement, size * points_);
   }

@@ -118,7 +118,7 @@ std::string comment_on(const ParameterText& key, bool is_stated, std::span<const
   return text;
 }
 
-/// Symbol and definition of each metric in the words of docs/model.md, in the order of the metric table.
+/// Symbol and definition of each metric as docs/model.md defines it, in the order of the metric table.
 struct MetricDefinition {
   Metric metric;
   const char* symbol;
@@ -180,7 +180,8 @@ constexpr MetricDefinition metric_definitions[] = {
      R"(mean of $c_\psi \dot\psi^2$ of all wings and what the stops take in impacts; wings on pitch hinges)"},
     {Metric::pitch_amplitude, R"($\tfrac12 (\psi_\mathrm{max} - \psi_\mathrm{min})$)", ""},
     {Metric::pitch_phase, R"($\varphi_\psi$)",
-     R"(by how much the first harmonic of $\psi$ is ahead of that of $-\dot\beta$: 0 for symmetric flips; wings that pitch by 1e-4 rad at least)"},
+     R"(by how much the first harmonic of $\psi$ is ahead of that of $-\dot\beta$: 0 for symmetric flips; )"
+     "wings that pitch by 1e-4 rad at least"},
     {Metric::angle_of_attack_max, R"($\alpha_\mathrm{max}$)",
      "of wings on pitch hinges, above 90 degrees at reversals"},
     {Metric::lift_added_mass_share,

@@ -20,7 +20,7 @@ inline const Json any_text = of_type("string"), any_number = of_type("number"),
 
 inline Json either(std::vector<Json> schemas) { return {{"anyOf", std::move(schemas)}}; }
 
-/// The same, or null.
+/// What the schema allows, or null.
 inline Json or_null(Json schema) {
   if (!schema.contains("type") || !schema["type"].is_string() || schema.contains("enum"))
     return either({schema, nothing});

@@ -44,7 +44,7 @@ inline constexpr const char* dashed = "(8,4)";
 inline constexpr const char* dotted = "(2,3)";
 inline constexpr const char* dash_dotted = "(10,3,2,3)";
 
-// Curves that have no meaning of their own, told apart by grey and dash.
+// Curves that have no meaning of their own, distinguished by grey and dash.
 inline constexpr const char* first_curve = "dt 1 lw 1.1 lc rgb '#000000'";
 inline constexpr const char* second_curve = "dt (8,4) lw 1.1 lc rgb '#707070'";
 inline constexpr const char* third_curve = "dt (2,3) lw 1.1 lc rgb '#000000'";

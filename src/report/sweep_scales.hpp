@@ -73,7 +73,7 @@ SweepBest best_of(const Field& field, const std::vector<double>& weight, const s
 /// The metrics against one axis of numbers, a curve for each choice.
 void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Metric> metrics, PlotFormat format,
                 const std::filesystem::path& output);
-/// The same axis where nothing flaps: the status of each design.
+/// One axis of numbers where nothing flaps: the status of each design.
 void plot_idle_lines(const Study& study, const std::vector<double>& status, PlotFormat format,
                      const std::filesystem::path& output);
 /// The metrics as contours over two axes of numbers.

@@ -161,11 +161,10 @@ std::vector<Sheet> paper_sheets(const Material& m) {
   frequency_sheet(
       9, "Input and motor output power with and without springs", false,
       two(Metric::power_electrical) +
-          fmt::format(
-              " (electrical, rod-force). Springs raise the input below a frequency and lower it above: {}. Change by springs at "
-              "{:g} Hz: {}.",
-              beside(m.assessment, "springs raise the electrical input"), f0,
-              beside(m.assessment, "mean electrical input power, change")),
+          fmt::format(" (electrical, rod-force). Springs raise the input below a frequency and lower it above: {}. "
+                      "Change by springs at {:g} Hz: {}.",
+                      beside(m.assessment, "springs raise the electrical input"), f0,
+                      beside(m.assessment, "mean electrical input power, change")),
       {{Metric::power_electrical, "power (mW)", "electrical input"},
        {Metric::power_motor, "power (mW)", "motor output"}},
       [&](std::vector<ChartPanel>& panels) {

@@ -1,4 +1,4 @@
-// What physics beyond the paper's model does to its conclusions: computed, drawn and told.
+// What physics beyond the paper's model does to its conclusions: computed, drawn and described.
 #include "reproduction/further_physics.hpp"
 
 #include <fmt/format.h>

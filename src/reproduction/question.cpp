@@ -11,7 +11,8 @@
 namespace wingbeat::reproduction {
 namespace {
 
-// Rivals in grey, told apart by dash, more drag in the colour of air; load-proportional friction in that of friction.
+// Rivals in grey, distinguished by dash, more drag in the colour of air; load-proportional friction in that of
+// friction.
 constexpr CurveStyle law_styles[] = {{style::outside_domain, style::solid}, {style::aerodynamic, style::dashed},
                                      {style::grey, style::dashed},          {style::grey, style::dotted},
                                      {style::grey, style::dash_dotted},     {style::friction, style::solid}};

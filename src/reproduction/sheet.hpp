@@ -21,7 +21,7 @@ struct CurveStyle {
   const char* dash = style::solid;  ///< as gnuplot writes it
   double weight = style::curve_width;
 };
-/// The same curve of the formulation virtual-work.
+/// The style of a curve for the formulation virtual-work.
 CurveStyle of_virtual_work(CurveStyle style);
 
 struct ChartCurve {

@@ -105,7 +105,7 @@ class Asked {
         metrics(design(name, t_.over.empty() ? std::nullopt : std::optional(t_.at)), t_.frequency, condition));
   }
 
-  /// The same metrics, noted as what the answer rests on.
+  /// The metrics given, noted as what the answer rests on.
   Metrics<double> counted(const Metrics<double>& m) const {
     const double share = std::abs(residual_share(m));
     if (std::isfinite(share)) residual_ = std::isfinite(residual_) ? std::max(residual_, share) : share;

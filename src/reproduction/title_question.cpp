@@ -233,7 +233,7 @@ std::string question_html(const Material& m) {
   std::string html = fmt::format(
       "<p>A model without friction underestimates the electrical input at {:g} Hz without springs: {}; {}. A term that "
       "is merely taken away proves little: such a model also flaps at {:.1f} Hz instead of the published {} at {}, and "
-      "a model is judged after its free numbers have been fitted. Below, a frictionless model with more drag and one "
+      "a model is assessed after its free numbers have been fitted. Below, a frictionless model with more drag and one "
       "with more damping of the crank (viscous) are fitted, too.</p>\n",
       m.computed.options.frequency, cost_of_leaving_out(a, 1), cost_of_leaving_out(a, 0), none->law.frequency,
       target.published_text, point);

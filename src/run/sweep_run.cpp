@@ -146,7 +146,7 @@ class Run {
       SweepColumns columns;
       std::vector<std::byte> bytes;
     };
-    // One chunk more than threads, so that nobody waits for the last of a chunk.
+    // One chunk more than threads, so that no thread waits for the end of a chunk.
     const std::size_t most = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism) + 1;
     std::mutex pool_mutex;
     std::deque<Work> works;  // those under way, too: where a stage throws, none is lost
@@ -191,7 +191,7 @@ class Run {
       ranks.send(rank, tag_chunk, std::as_bytes(std::span(&*chunk, 1)));
       ++abroad;
     };
-    // Two chunks each, so that nobody waits for a message.
+    // Two chunks each, so that no rank waits for a message.
     for (int round = 0; round < 2; ++round) {
       for (int r = 1; r < ranks.count(); ++r) hand_out(r);
     }

@@ -169,7 +169,7 @@ void set_slope_of_points(AllocationMap& map, std::size_t middle) {
     const double step = map.points[middle + 1].input - map.points[middle].input;
     const double near = (value(1) - value(-1)) / (2.0 * step), far = (value(2) - value(-2)) / (4.0 * step);
     map.slope_of_points.*member = (4.0 * near - far) / 3.0;
-    // Where the map bends within the nearer step, the curvatures that both pairs show differ.
+    // Where the map has a kink within the nearer step, the curvatures that both pairs show differ.
     const double near_curvature = (value(1) - 2.0 * value(0) + value(-1)) / (step * step);
     const double far_curvature = (value(2) - 2.0 * value(0) + value(-2)) / (4.0 * step * step);
     map.slope_of_points_error.*member = std::abs(near - far) + step * std::abs(near_curvature - far_curvature);

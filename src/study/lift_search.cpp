@@ -20,14 +20,14 @@ SearchFinding::Place lift_at(const VoltageTrial& t) { return {t.voltage, t.lift}
 /// The lift coefficient is a wave in the angle of attack: between two trials the smallest angle changes by no more than
 /// this share of a radian of the wave, so that no more than an eighth of it passes unseen.
 constexpr double max_phase = pi / 4.0;
-/// The same for a table of coefficients, whose features are not known [deg].
+/// The largest change of angle between two trials for a table of coefficients, whose features are not known [deg].
 constexpr double max_table_step_deg = 10.0;
 /// A cubic between two trials is trusted where it misses the trial half-way by no more than this share of the lift.
 constexpr double max_misfit = 0.02;
 /// Intervals narrower than this, in ln v, are edges or jumps.
 constexpr double narrowest = 1e-5;
-/// The same of edges below which wings that pitch do not settle: they have no sharp place. What the lift does within
-/// this of one passes unseen.
+/// The narrowest interval [ln v] at edges below which wings that pitch do not settle: they have no sharp place. What
+/// the lift does within this of one passes unseen.
 constexpr double blurred_edge = 0.02;
 /// To which a cubic's zero is found, as a share of its interval.
 constexpr double cubic_width = 0x1p-50;

@@ -162,7 +162,7 @@ void SweepSolver::solve(SweepColumns& columns, std::size_t begin, std::size_t en
   }
 }
 
-/// The metrics of a whole flight, where the sweep wants them.
+/// The metrics of a whole flight, where the sweep selects them.
 void SweepSolver::fly(SweepColumns& columns, std::size_t row) const {
   const FlightMetrics wanted = flight_metrics(sweep_.options.metrics, sweep_.allow_extrapolation);
   if (!wanted.any()) return;

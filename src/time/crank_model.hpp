@@ -86,7 +86,7 @@ class CrankModel {
   Motion<double> motion(double t, const double* y, Branch<double>* used = nullptr) const;
   /// What acts now, also where friction holds the crank.
   Motion<double> motion_now() const;
-  /// The same with what the wings do that pitch.
+  /// What acts at the unknowns y, of wings that pitch.
   PitchMotion<double> pitch_motion(double t, const double* y, Branch<double>* used = nullptr) const;
   /// dy/dt and, where asked for, the integrands of `quadratures` behind them. False: not finite.
   bool rates(double t, const double* y, double* dy, bool quadrature) const;
@@ -98,7 +98,7 @@ class CrankModel {
   double wing_energy() const;
   /// Kinetic energy of the rotor, energy of the inductance [J].
   double motor_energy() const;
-  /// The same with all that wings, the air that moves with them, springs and hinges store [J].
+  /// The energy of rotor and inductance and all that wings, the air that moves with them, springs and hinges store [J].
   double stored_energy() const;
   double current_slope(double t, const double* y, const double* rates) const;
   /// uniqueness() as the wings stand at the unknowns y.

@@ -360,7 +360,7 @@ void DirectStartUp<Model>::period_done() {
   const double noise = 100.0 * relative_tolerance_;
   const double off = rate < 1.0 ? change / (1.0 - rate) : infinity;
   const bool close = off < 0.1 * options_.tolerance;
-  last_off_ = change / (1.0 - std::min(rate, 0.999));  // no rate can be told once rounding is what is left
+  last_off_ = change / (1.0 - std::min(rate, 0.999));  // no rate can be measured once only rounding is left
   if (measuring_) {
     // The metrics of a period of looser steps tell how far its own steps leave them off.
     const std::optional<Metrics<double>> before = std::exchange(last_metrics_, std::nullopt);

@@ -30,7 +30,8 @@ IntegratorProblem problem_of(const Model& model, const double& relative) {
   return p;
 }
 
-/// The same with `quadratures` and what else the model integrates behind the unknowns, which are of the sizes `scale`.
+/// The problem of a model with `quadratures` and what else the model integrates behind the unknowns, which are of the
+/// sizes `scale`.
 template <class Model, std::size_t count>
 IntegratorProblem problem_with_quadratures(const Model& model, const double& relative, const double (&scale)[count]) {
   IntegratorProblem p = problem_of(model, relative);

@@ -73,7 +73,7 @@ struct Pitching {
   static constexpr std::string_view text = "pitch.stiffness";
   static constexpr bool holds(const auto& d) { return d.pitch.stiffness.has_value(); }
 };
-/// The same of what stands before the stiffness in the table.
+/// Pitching, for rows that stand before the stiffness in the table.
 struct PitchingWing : Pitching {
   static constexpr bool holds(const auto&) { return true; }
 };

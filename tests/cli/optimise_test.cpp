@@ -102,7 +102,7 @@ TEST_F(Optimise, ACatalogueOfMotorsExplainsEveryRow) {
   EXPECT_EQ(json["best"], "no-load");
   EXPECT_EQ(json["motors"][1]["result"]["outcome"], "infeasible");
   EXPECT_EQ(json["motors"][3]["refused"], "incomplete, no rotor inertia, inductance");
-  // The same motor at the output shaft and the same mass as the vehicle's own: the same optimum.
+  // Stated at the output shaft, with its mass, as the vehicle's own, the motor gives the same optimum.
   const Json own = run({"optimise", study(objective + voltage + hover), "--json"}).json();
   EXPECT_NEAR(json["motors"][0]["result"]["value"].get<double>(), own["value"].get<double>(), 1e-6);
 }

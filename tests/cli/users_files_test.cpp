@@ -1,5 +1,5 @@
 // Nothing of the user's is lost: what is read is never written, outputs never meet, and what the program did not write
-// is replaced only when it is told to.
+// is replaced only on request.
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/resource.h>

@@ -114,7 +114,7 @@ TEST_F(StudyFile, AxesOfVeryManyValues) {
   const Study study = read(text + "]\n");
   EXPECT_EQ(study.sweep.size(), 300000U);
   EXPECT_NEAR(study.sweep.axes[0].quantities[0].values.back(), 4.99999, 1e-9);
-  // A file that is no study is not read to its end.
+  // A file that is not a study is not read to its end.
   write("large.toml", std::string(largest_study + 1, '\n'));
   try {
     read_study(folder_ / "large.toml");

@@ -129,7 +129,7 @@ class Terminal:
 
 
 class Completions:
-    """The same for each shell, which gives complete(line): the words offered at the line's end."""
+    """Completion in each shell, which gives complete(line): the words offered at the line's end."""
 
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp())

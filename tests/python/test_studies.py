@@ -109,7 +109,7 @@ class Studies(unittest.TestCase):
         begin = time.process_time()
         with self.assertRaises(KeyboardInterrupt):
             wb.fit(DATA / "bench" / "flapper.toml", compare_friction=True)
-        # It takes some 8 s where nobody interrupts.
+        # It takes some 8 s without an interrupt.
         self.assertLess(time.process_time() - begin, 2.0)
 
     def test_ctrl_c_ends_a_search(self):

@@ -43,8 +43,8 @@ inline bool same_bits(const EnsembleOutcome& a, const EnsembleOutcome& b) {
          std::memcmp(&a.metrics, &b.metrics, sizeof a.metrics) == 0;
 }
 
-/// Solves members again, shuffled and in runs of odd lengths: no outcome depends on place or company.
-inline void expect_no_company(const std::vector<EnsembleMember>& members, const EnsembleOptions& options) {
+/// Solves members again, shuffled and in runs of odd lengths: no outcome depends on its position or its batch.
+inline void expect_equal_in_any_batch(const std::vector<EnsembleMember>& members, const EnsembleOptions& options) {
   const auto together = solve(members, options);
   std::vector<std::size_t> order(members.size());
   for (std::size_t n = 0; n < order.size(); ++n) order[n] = n;

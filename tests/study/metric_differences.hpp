@@ -16,11 +16,11 @@ inline SteadyFlapping accurate_orbit(const Design<double>& design) {
                               {.tolerance = 1e-12, .stability = false, .reporting = reporting_of(design)});
 }
 
-/// Calls `judge(key, metric, metrics, exact, difference)` of every parameter and metric that the orbit has: what a
+/// Calls `assess(key, metric, metrics, exact, difference)` of every parameter and metric that the orbit has: what a
 /// change by all of the parameter would do to the metric, by its derivative and by differences.
-template <class Judge>
+template <class Assess>
 void compare_with_differences(const Design<double>& design, const std::vector<DesignParameter>& parameters,
-                              const Judge& judge) {
+                              const Assess& assess) {
   const SteadyFlapping orbit = accurate_orbit(design);
   ASSERT_EQ(orbit.status, FlappingStatus::flapping) << describe(orbit.evidence);
   const MetricGradients gradients = metric_gradients(design, Condition::air, orbit, parameters);
@@ -38,7 +38,7 @@ void compare_with_differences(const Design<double>& design, const std::vector<De
       const Metric which = Metric(m);
       if (which == Metric::floquet_multiplier_max || std::isnan(orbit.metrics[which])) continue;
       const double difference = (8.0 * (c[which] - b[which]) - (d[which] - a[which])) / (12.0 * h);
-      judge(parameters[p].key, which, orbit.metrics, gradients.by_parameter[p][std::size_t(m)] * value, difference);
+      assess(parameters[p].key, which, orbit.metrics, gradients.by_parameter[p][std::size_t(m)] * value, difference);
     }
   }
 }

@@ -39,7 +39,7 @@ inline BenchLog bench_log(Design<double> design, Condition condition, bool sprin
   return log;
 }
 
-/// The same with normal noise, relative to each value.
+/// A log with normal noise, relative to each value.
 inline BenchLog with_noise(BenchLog log, double relative, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   for (BenchRow& row : log.rows) {

@@ -20,7 +20,7 @@ Design<double> swinging_on_a_sine() {
   return read_design(std::filesystem::path(WINGBEAT_DATA) / "designs" / "direct-drive.toml");
 }
 
-/// The same amplitude and frequency from a battery.
+/// The amplitude and frequency of the sine supply from a battery.
 Design<double> swinging_on_a_battery(double cell_voltage, double resistance) {
   Design<double> d = swinging_on_a_sine();
   d.supply.type = SupplyType::battery_sine;

@@ -44,7 +44,7 @@ Design<double> bistable_direct_design(std::mt19937_64& random) {
   return d;
 }
 
-/// The same statuses, domains and, to that part of each, metrics.
+/// Equal statuses, equal domains and, to that part of each, metrics.
 void expect_agreement(const std::vector<EnsembleOutcome>& got, const std::vector<EnsembleOutcome>& expected,
                       double largest) {
   ASSERT_EQ(got.size(), expected.size());
@@ -106,7 +106,7 @@ TEST(DirectEnsemble, OutcomeDependsNeitherOnPlaceNorOnCompany) {
     several += direct_balance(member.vehicle).responses.size() > 1;
     if (several <= 1) members.push_back(member);
   }
-  for (const InstructionSet isa : available()) expect_no_company(members, {.isa = isa});
+  for (const InstructionSet isa : available()) expect_equal_in_any_batch(members, {.isa = isa});
 }
 
 TEST(DirectEnsemble, InstructionSetsAgree) {

@@ -119,7 +119,7 @@ TEST(Endurance, ManyRowsOfADischargeCurveCostNoOrbits) {
   EXPECT_LT(few.evaluations, 400);
   EXPECT_LT(many.evaluations, 400);
 
-  // Rows that bend: the curve of the vehicle above, sampled, against the cubics themselves.
+  // Rows with curvature: the curve of the vehicle above, sampled, against the cubics themselves.
   const Design<double> smooth = hovering_design();
   for (int n = 0; n <= 2000; ++n) {
     b.discharge_curve[std::size_t(n)].second = 0.5 * open_circuit_voltage(smooth.supply.battery, n / 2000.0);

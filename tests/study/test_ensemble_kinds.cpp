@@ -188,7 +188,7 @@ TEST(EnsembleKinds, OutcomeDependsNeitherOnPlaceNorOnCompany) {
   for (const InstructionSet isa : available()) {
     EnsembleOptions options;
     options.isa = isa;
-    expect_no_company(members, options);
+    expect_equal_in_any_batch(members, options);
   }
 }
 

@@ -288,7 +288,7 @@ TEST(MotorIdentification, GearReferredToTheOutput) {
   EXPECT_NEAR(m.viscous_damping, 400.0 * 3e-9, 1e-9);
   EXPECT_NEAR(m.inertia, 400.0 * 5e-9, 1e-18);
   EXPECT_NEAR(m.armature_resistance, 5.4, 1e-5);
-  // The same motor stated at the output of a gearbox that eats a third of the torque.
+  // That motor stated at the output of a gearbox that eats a third of the torque.
   MotorDatasheet out = s;
   out.shaft = Shaft::output;
   out.gear_efficiency = 2.0 / 3.0;

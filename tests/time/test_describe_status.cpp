@@ -126,9 +126,10 @@ TEST(DescribeStatus, LockedAndJammed) {
 }
 
 TEST(DescribeStatus, Undecided) {
-  EXPECT_EQ(describe({.kind = Evidence::unstable_orbit, .frequency = 17.0, .multiplier = 1.25}),
-            "the only orbit found, at 17 Hz, is unstable (Floquet multiplier 1.25), and nobody says what start-up "
-            "does");
+  EXPECT_EQ(
+      describe({.kind = Evidence::unstable_orbit, .frequency = 17.0, .multiplier = 1.25}),
+      "the only orbit found, at 17 Hz, is unstable (Floquet multiplier 1.25), and no simulation shows what start-up "
+      "does");
   EXPECT_EQ(describe({.kind = Evidence::unstable_response, .multiplier = 1.25}),
             "the periodic response to the supply is unstable (Floquet multiplier 1.25)");
   EXPECT_EQ(describe({.kind = Evidence::no_response, .search = PeriodicStatus::not_converged}),

@@ -87,7 +87,7 @@ TEST(PitchDirectModel, FreeSwingKeepsItsEnergy) {
   }
 }
 
-// The same from a saved state, to the bit.
+// Bit-identical from a saved state.
 TEST(PitchDirectModel, RepeatsFromASavedState) {
   Vehicle<double> of = pitching_vehicle(2e-4);
   of.pitch.hinge.stop = 0.5;

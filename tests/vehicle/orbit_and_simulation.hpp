@@ -31,7 +31,7 @@ struct Compared {
   bool meets_stop = false;  ///< wings on hinges, in the last period of the simulation
 };
 
-/// The same status; where the vehicle flaps, all metrics to 1e-6 and an energy balance to 1e-7.
+/// Equal statuses; where the vehicle flaps, all metrics to 1e-6 and an energy balance to 1e-7.
 inline Compared expect_orbit_as_simulated(const Design<double>& design, int n) {
   validate(design);
   const auto [orbit, transient] = orbit_and_simulation(resolve(design));

@@ -30,7 +30,7 @@ inline Vehicle<double> reference_vehicle(bool springs = false) {
   return resolve(design);
 }
 
-/// The same without wings and springs: the rod force is zero.
+/// The reference vehicle without wings and springs: the rod force is zero.
 inline Vehicle<double> wingless_vehicle() {
   Vehicle<double> v = reference_vehicle();
   v.wing_inertia = 0.0;

@@ -77,7 +77,7 @@ TEST(FourBarVehicle, LongRockerFlapsAsASliderCrankByVirtualWork) {
   }
 }
 
-// The same stroke law by its formula and as a table of 1,440 rows.
+// One stroke law by its formula and as a table of 1,440 rows.
 TEST(TabulatedVehicle, FlapsAsTheLawThatItSamples) {
   const StrokeLaw<double> law = {0.6, 0.08, 0.4, 0.1, 12e-3};
   const StrokeLawVehicle<double> exact = stroke_law_vehicle(law);

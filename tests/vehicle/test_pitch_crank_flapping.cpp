@@ -37,7 +37,7 @@ Design<double> hinged_crank(double stiffness) {
   return d;
 }
 
-/// The same with wings that stay normal to the stroke plane.
+/// The crank with wings that stay normal to the stroke plane.
 Design<double> upright_crank() {
   Design<double> d = hinged_crank(1.0);
   d.pitch = {};

@@ -130,7 +130,7 @@ TEST(ThermalEquilibrium, LossesLeadToTheTemperaturesTheyWereComputedAt) {
     const MotorTemperatures<double> T = settled_temperatures(hot.thermal, P_cu, m[Metric::power_viscous] + P_friction);
     EXPECT_NEAR(T.winding, found.temperatures.winding, 300.0 * tolerance);
     EXPECT_NEAR(T.casing, found.temperatures.casing, 300.0 * tolerance);
-    // The same vehicle with the hot motor's constants stated outright.
+    // That vehicle with the hot motor's constants stated outright.
     Design<double> stated = reference_design();
     stated.supply.voltage = 4.0;
     stated.motor.constants = hot.motor;

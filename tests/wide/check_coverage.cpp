@@ -2,7 +2,7 @@
 // under normal noise and, of robust losses, with outliers; intervals from the standard error and from the profile.
 //   check_coverage [COUNT]        fits of each combination, 400 unless given
 //     --loss NAME                 that loss alone
-//     --loss-scale X              where it bends
+//     --loss-scale X              where it turns from square to robust
 //     --threads T                 at once, 1 unless given
 // Exit status 1 if a share lies outside 93 to 97 % by more than two of its standard errors, or a fit fails.
 #include <chrono>

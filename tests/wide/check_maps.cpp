@@ -160,6 +160,6 @@ int main(int argc, char** argv) {
   std::printf(
       "first block: slopes against cycles beside the operating point; apart: largest distance over load by input; worst:\n"
       "over what is allowed, the error that the differences show and 1e-5; gain: lift slope off the steady gain;\n"
-      "second block: slopes against the points of the maps, beyond their stated error: maps that bend between points\n");
+      "second block: slopes against the points of the maps, beyond their stated error: maps with kinks between points\n");
   return wrong > 0 ? 1 : 0;
 }

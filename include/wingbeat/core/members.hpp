@@ -114,7 +114,7 @@ constexpr auto converted(const M& member) {
 
 }  // namespace detail
 
-/// The same part with every number as a T, choices and texts carried along; tables where a T can read them. A Part<T>:
+/// A part with every number as a T, choices and texts carried along; tables where a T can read them. A Part<T>:
 /// as a return type that is written down, clang 14 crashes on it.
 template <Scalar T, template <Scalar> class Part, Scalar S>
 constexpr auto cast(const Part<S>& part) {

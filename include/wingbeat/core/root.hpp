@@ -29,7 +29,7 @@ Bracket<T> bisect(const Holds& holds, T before, T after, const Narrow& narrow) {
   return b;
 }
 
-/// The same to the last bit.
+/// Bisection on a condition to the last bit.
 template <std::floating_point T, std::predicate<T> Holds>
 Bracket<T> bisect(const Holds& holds, T before, T after) {
   return bisect(holds, before, after, [](const Bracket<T>&) { return false; });

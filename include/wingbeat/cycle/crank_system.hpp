@@ -26,7 +26,7 @@ struct CrankSystem : CrankTurn<S> {
   /// Signs, those of switches first: rod force, pitching, gear torque, stored moment; stroke velocity.
   enum Sign { force, pitching, gear, stored, stroke };
   using Switches = std::array<S, 4>;
-  static constexpr int state_switches = 3;  ///< the stored moment does not bend the solution
+  static constexpr int state_switches = 3;  ///< the stored moment causes no kink in the solution
   /// Integrals whose error limits the steps. Not those that may vanish up to rounding.
   static constexpr std::array<std::size_t, 5> controlled_integrals = {
       std::size_t(Integral::time), std::size_t(Integral::friction_work), std::size_t(Integral::aero_work),

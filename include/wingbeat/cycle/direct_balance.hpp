@@ -33,7 +33,7 @@ DirectBalance direct_balance(const Vehicle<double>& vehicle);
 /// Of wings that pitch, about how far [rad] at a stroke velocity [rad/s]: what inertia and drag of an upright wing ask
 /// of the hinge, at most a radian.
 double typical_pitch(const Vehicle<double>& vehicle, double stroke_velocity);
-/// The same of wings that swing at an angular frequency [rad/s] which the supply does not set.
+/// typical_pitch() of wings that swing at an angular frequency [rad/s] which the supply does not set.
 double typical_pitch(const Vehicle<double>& vehicle, double stroke_velocity, double angular_frequency);
 
 }  // namespace wingbeat

@@ -26,7 +26,7 @@ struct DirectSystem {
   /// Signs, those of switches first: velocity, end of sticking, pitching, stored moment; slipping or stuck.
   enum Sign { velocity, release, pitching, stored, slip };
   using Switches = std::array<S, 4>;
-  static constexpr int state_switches = 3;  ///< the stored moment does not bend the solution
+  static constexpr int state_switches = 3;  ///< the stored moment causes no kink in the solution
   using Signs = std::array<S, 5>;
   static constexpr bool contracts_slowly = true;
   static constexpr bool has_rod = false;

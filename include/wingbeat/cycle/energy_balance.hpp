@@ -21,8 +21,8 @@ double energy_gap(const V& v, const CycleIntegrals<double>& work) {
          total(Integral::gear_work) - load_work(v);
 }
 
-/// The same beside the smaller of the electrical work and all losses, of which metrics are means: about what errors
-/// that add up over the cycle, and to 1 / (1 - multiplier) times that over all cycles, leave in them.
+/// The open energy beside the smaller of the electrical work and all losses, of which metrics are means: about what
+/// errors that add up over the cycle, and to 1 / (1 - multiplier) times that over all cycles, leave in them.
 template <class V>
 double relative_energy_gap(const V& v, const CycleIntegrals<double>& work) {
   const double input = std::abs(work[std::size_t(Integral::electrical_work)]);

@@ -38,16 +38,16 @@ SteadyFlapping find_flapping_among(const Vehicle<double>& vehicle, const SteadyO
 SteadyFlapping find_direct_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                     const StartUp& start_up, SharedSearch& shared);
 
-/// The same of wings that pitch.
+/// The steady flapping of a direct drive whose wings pitch on hinges.
 SteadyFlapping find_pitching_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                       const StartUp& start_up, SharedSearch& shared);
-/// The same of a crank whose wings pitch.
+/// The steady flapping of a crank whose wings pitch on hinges.
 SteadyFlapping find_pitching_crank_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                             const StartUp& start_up, SharedSearch& shared);
 
 /// The start of every search under a crank: its statics. True, with the decision, of a motor that never starts.
 bool stalls(const StaticBalance& statics, SteadyFlapping& result);
-/// The same of a direct drive.
+/// The start of every search of a direct drive: its harmonic balance. True, with the decision, where it stalls.
 bool stalls(const Vehicle<double>& vehicle, const DirectBalance& balance, SteadyFlapping& result);
 
 /// What shows that a crank may jam.
@@ -93,7 +93,7 @@ class OrbitSearch {
     return summary_.status == solver::PeriodicStatus::converged;
   }
 
-  /// The same from a state close to the orbit. Explicit steps that are unstable may end at the edge as well as take too
+  /// Searches from a state close to the orbit. Explicit steps that are unstable may end at the edge as well as take too
   /// many: implicit ones tell.
   bool search_near(const State& guess) {
     solver::PeriodicOptions periodic{

@@ -26,7 +26,7 @@ struct PitchCrankSystem : CrankTurn<S> {
   /// those of pitch_stops.
   enum Sign { force, gear, turn, stop, stored, stroke, held, impacts };
   using Switches = std::array<S, 5>;
-  static constexpr int state_switches = 4;  ///< the stored moment does not bend the solution
+  static constexpr int state_switches = 4;  ///< the stored moment causes no kink in the solution
   using Signs = std::array<S, 8>;
   static constexpr bool contracts_slowly = true;
   static constexpr bool state_jumps = true;

@@ -25,7 +25,7 @@ struct PitchDirectSystem {
   /// Signs, those of switches first: stroke velocity, pitch velocity, stop, stored moment; those of pitch_stops.
   enum Sign { velocity, turn, stop, stored, held, impacts };
   using Switches = std::array<S, 4>;
-  static constexpr int state_switches = 3;  ///< the stored moment does not bend the solution
+  static constexpr int state_switches = 3;  ///< the stored moment causes no kink in the solution
   using Signs = std::array<S, 6>;
   static constexpr bool contracts_slowly = true;
   static constexpr bool state_jumps = true;

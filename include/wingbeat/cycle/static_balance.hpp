@@ -182,7 +182,7 @@ struct BalancedSpeed {
   S slope;    ///< of the surplus of torque by the speed there, about [N m s]
 };
 
-/// What passive pitching can bend the drag's torque by: C_alpha |B1| omega at the largest stroke slope [rad].
+/// What passive pitching can turn the drag's torque by: C_alpha |B1| omega at the largest stroke slope [rad].
 template <template <Scalar> class V, Scalar S>
 S largest_pitch(const V<S>& v, std::span<const LoadPlace<S>> places, const S& omega) {
   using std::max;
@@ -236,12 +236,12 @@ BalancedSpeed<S> balanced_speed(const V<S>& v, std::span<const LoadPlace<std::ty
   // humps, and beyond a longer one no grid is fine enough.
   const S pitch = largest_pitch(v, places, no_load_speed(v));
   BalancedSpeed<S> balanced = balanced_on_grid<8>(v, places);
-  const auto bends = pitch > S(far_pitch);
-  if (any<S>(bends)) {
+  const auto steep = pitch > S(far_pitch);
+  if (any<S>(steep)) {
     const BalancedSpeed<S> finely = balanced_on_grid<40>(v, places);
-    balanced.slowest = select<S>(bends, finely.slowest, balanced.slowest);
-    balanced.slope = select<S>(bends, finely.slope, balanced.slope);
-    balanced.count = select<S>(bends, finely.count, balanced.count);
+    balanced.slowest = select<S>(steep, finely.slowest, balanced.slowest);
+    balanced.slope = select<S>(steep, finely.slope, balanced.slope);
+    balanced.count = select<S>(steep, finely.count, balanced.count);
     balanced.count = select<S>(pitch > S(20.0), balanced.count + S(1.0), balanced.count);
   }
   return balanced;

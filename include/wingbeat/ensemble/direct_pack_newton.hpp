@@ -21,7 +21,7 @@ void DirectPackOrbit<L, N>::set_mesh(int segments) {
   length_in_time_ = L(length_) * per_drive_;
 }
 
-/// The same trajectory on twice as many segments.
+/// Puts the trajectory onto twice as many segments.
 template <class L, int N>
 void DirectPackOrbit<L, N>::halve() {
   const std::size_t before = segments_;

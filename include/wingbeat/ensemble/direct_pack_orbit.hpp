@@ -7,7 +7,7 @@
 //
 // Harmonic balance gives the first trajectory. Newton's method makes it satisfy the equations at the Radau points of
 // equal segments, first of few, then of twice as many: what changes by that is the error estimate. Everything is
-// computed lane by lane without looking at the neighbours, so that a vehicle gets the same bits in any company. For the
+// computed lane by lane without looking at the neighbours, so that a vehicle gets the same bits in any batch. For the
 // same reason no product is added to another product below: a compiler may fuse either one with the addition, and
 // another one in each half of a block.
 //

@@ -1,4 +1,4 @@
-// Force coefficients that bend at an angle of attack, on SIMD lanes: at a stop of the passive pitching, and where a
+// Force coefficients with a kink at an angle of attack, on SIMD lanes: at a stop of the passive pitching, and where a
 // coefficient table begins. The part of PackOrbit in which segments end there as well.
 #pragma once
 
@@ -6,7 +6,7 @@
 
 namespace wingbeat {
 
-/// The same where segments end at the sign changes of the pitch margin, too.
+/// build_mesh() where segments end at the sign changes of the pitch margin, too.
 template <class L, int N>
 void PackOrbit<L, N>::build_mesh_with_bends(int half) {
   constexpr std::size_t most = 2 * max_force_switches;

@@ -66,8 +66,9 @@ void PackOrbit<L, N>::lag_current() {
   }
 }
 
-/// Where the trajectory bends, at a sign change of the rod force, the current goes on from what it was before and has
-/// relaxed within a time constant: what that adds to state and integrals, up to the square of the angle it takes.
+/// Where the trajectory has a kink, at a sign change of the rod force, the current continues from what it was before
+/// and has relaxed within a time constant: what that adds to state and integrals, up to the square of the angle it
+/// takes.
 template <class L, int N>
 auto PackOrbit<L, N>::relaxation(System system, std::size_t base, const L& force) const -> solver::Rates<System> {
   solver::Rates<System> after, before;

@@ -93,7 +93,8 @@ void PackOrbit<L, N>::propose_with(std::size_t base, const L& h, State& end) {
   }
 }
 
-/// The same by the segment's equations as a whole. In the last iteration the derivatives are those of the one before.
+/// The step of Newton's method by the segment's equations as a whole. In the last iteration the derivatives are those
+/// of the one before.
 template <class L, int N>
 template <int known_intervals, bool renews>
 void PackOrbit<L, N>::propose_in_one_piece(std::size_t base, const L& h, State& end, Matrix& whole) {

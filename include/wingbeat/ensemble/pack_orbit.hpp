@@ -5,11 +5,11 @@
 // number of segments does not. Coarse iterates find where; an iterate with one step per segment gives a first
 // trajectory and its derivatives; Newton's method makes it satisfy the equations at the Lobatto points of every
 // segment, and the iterate its own end. Everything is computed lane by lane without looking at the neighbours, so that
-// a vehicle gets the same bits in any company.
+// a vehicle gets the same bits in any batch.
 //
 // pack_start.hpp holds the way to the first trajectory, pack_mesh.hpp the segments, pack_newton.hpp Newton's method,
 // pack_segment.hpp its step on a stiff segment, pack_lag.hpp the current behind an inductance, pack_peaks.hpp the
-// search for extremes, pack_bends.hpp coefficients that bend, pack_multiplier.hpp the return map's derivative.
+// search for extremes, pack_bends.hpp coefficients with kinks, pack_multiplier.hpp the return map's derivative.
 #pragma once
 
 #include <array>
@@ -318,7 +318,7 @@ class PackOrbit {
   std::array<L, pack_integrals.size()> integrals_;
   std::array<L, 5> high_, low_;  ///< sums of the last and last but two coefficients of what limits the error
   std::array<bool, quantity_count> wanted_;
-  // Where the coefficients bend within a half: the switches of the pitch margin, as those of the rod force.
+  // Where the coefficients have kinks within a half: the switches of the pitch margin, as those of the rod force.
   bool bends_;
   std::array<ForceSwitches<L>, 2> bend_switches_{};
   std::array<L, max_nodes> margin_;  ///< of the pitching at the nodes [rad]

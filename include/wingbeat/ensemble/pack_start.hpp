@@ -26,7 +26,7 @@ void PackOrbit<L, N>::assess_statics() {
   const L stall = stall_torque(v);
   unresolved_ = !(stall > breakaway_torque(v));
   locked_ = !unresolved_ && unresolved_;
-  // From rest, locking shows by itself, and only jams on the way are left to be told from near ones.
+  // From rest, locking shows by itself, and only jams on the way are left to be distinguished from near ones.
   const bool from_rest = settings_.approach == PackApproach::from_rest;
   const L inertia_margin(from_rest ? 0.05 : 0.15), lever_margin(from_rest ? 0.02 : 0.05);
   const bool springs = !from_rest && any<L>(v.spring.stiffness > L(0.0));

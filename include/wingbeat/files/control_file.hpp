@@ -12,8 +12,8 @@ namespace wingbeat {
 /// NetcdfError.
 void write_control_netcdf(const ControlModels& models, const std::string& version, const std::filesystem::path& file);
 
-/// The same as variables A, B, C, D, dt, Ac, Bc, Cc, Dc, steady_gain, names as cell arrays, step responses (cycle x
-/// output x input), maps as structures. Throws std::runtime_error.
+/// Control models as a MAT-file with the variables A, B, C, D, dt, Ac, Bc, Cc, Dc, steady_gain, names as cell arrays,
+/// step responses (cycle x output x input), maps as structures. Throws std::runtime_error.
 void write_control_mat(const ControlModels& models, const std::string& version, const std::filesystem::path& file);
 
 }  // namespace wingbeat

@@ -17,7 +17,8 @@ namespace wingbeat {
 std::string edited_design(const std::filesystem::path& original, const std::filesystem::path& output,
                           const Design<double>& design);
 
-/// The same of a text; without `tables` nothing is read and names of table files stay.
+/// A vehicle file given as text with the values of `design`; without `tables` nothing is read and names of table files
+/// stay.
 std::string edited_design(std::string_view original, const Design<double>& design, const TableLoader& tables = {});
 
 }  // namespace wingbeat

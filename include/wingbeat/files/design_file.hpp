@@ -64,7 +64,8 @@ std::string read_text_file(const std::filesystem::path& file, std::size_t larges
 /// overrides.
 Design<double> read_design(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 
-/// The same from text; `file_name` stands in messages. Without a loader, table files are refused; no file is touched.
+/// The design in the text of a vehicle file; `file_name` stands in messages. Without a loader, table files are refused;
+/// no file is touched.
 Design<double> parse_design(std::string_view text, std::string_view file_name,
                             std::span<const std::string> overrides = {}, const TableLoader& load_table = {});
 

@@ -1,4 +1,8 @@
 // Which files a command has read and which it writes, so that the two never meet.
+//
+// The one rule for every output: readers record what they read, checked_output() refuses that as an output, and without
+// --force also what the program did not write itself. A new reader calls FileRecord::add_read() unless it uses
+// read_text_file(); a new output is an OutputFile, made before anything is computed.
 #pragma once
 
 #include <sys/types.h>

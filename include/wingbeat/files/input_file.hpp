@@ -28,7 +28,7 @@ std::vector<std::string> shipped_names(InputKind kind);
 /// The name of an input file in messages: "standard input" for "-".
 std::string input_name(const std::filesystem::path& file);
 
-/// The same in what is written, without the folder: where a file is on this machine is nobody else's.
+/// The name of an input file in what is written, without the folder, which belongs to this machine only.
 std::string written_name(const std::filesystem::path& file);
 
 /// What standard input holds, up to the largest file that anything reads. It is read once; whoever asks again gets the

@@ -118,7 +118,7 @@ struct PublishedFile {
 
 /// Reads the file and the vehicle files it names, which are sought beside it. Throws InputError.
 PublishedFile read_published(const std::filesystem::path& file, std::span<const std::string> overrides = {});
-/// The same from text; `design_named` gives the design of a vehicle file that it names.
+/// The published file in a text; `design_named` gives the design of a vehicle file that it names.
 PublishedFile parse_published(std::string_view text, std::string_view name,
                               const std::function<Design<double>(const std::string& file)>& design_named);
 

@@ -18,7 +18,7 @@ void settle(const std::filesystem::path& file, const std::string& shown = {});
 /// What is missing at the end of a file by its extension, "its end, </svg>": of formats that mark their end (SVG, PDF,
 /// PNG, HTML, NetCDF-4, MAT, FMU). Nothing for a complete file and for other formats.
 std::optional<std::string> missing_end(const std::filesystem::path& file);
-/// The same of content in memory; NetCDF-4 can be asked for by its file alone.
+/// What is missing at the end of content in memory; NetCDF-4 can be asked for by its file alone.
 std::optional<std::string> missing_end(std::string_view content, std::string_view extension);
 
 }  // namespace wingbeat

@@ -29,7 +29,7 @@ struct Study {
 /// the vehicle after [set], as read_design does. Throws InputError.
 Study read_study(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 
-/// The same from texts; no file is touched. Throws InputError.
+/// The study in the texts of its files; no file is touched. Throws InputError.
 Study parse_study(const StudyInput& input);
 
 }  // namespace wingbeat

@@ -49,7 +49,7 @@ std::string quantity_example(std::string_view unit);
 /// Text fit for a message: one line, hidden characters escaped (core/text.hpp), cut after `longest` bytes.
 std::string one_line(std::string_view text, std::size_t longest = 60);
 
-/// The same in double quotes.
+/// A text fit for a message, in double quotes.
 std::string in_quotes(std::string_view text);
 
 }  // namespace wingbeat

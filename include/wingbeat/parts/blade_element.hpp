@@ -97,8 +97,8 @@ class CoefficientTable {
 };
 
 /// What SIMD lanes, which read no tables by themselves, know of their designs' tables and of where the coefficients
-/// bend: at a stop of the pitching, or where a table begins, below which its end value holds. Either all lanes have a
-/// table or none, and either all bend or none.
+/// have a kink: at a stop of the pitching, or where a table begins, below which its end value holds. Either all lanes
+/// have a table or none, and either all have a kink or none.
 template <Scalar S>
 struct LaneTables {
   CoefficientLookup of[std::size_t(ScalarTraits<S>::lanes)];
@@ -272,7 +272,7 @@ struct AeroLoads {
   S added_inertia;
 };
 
-/// Whether lanes have to know on which side of a bend their coefficients are.
+/// Whether lanes have to know on which side of a kink their coefficients are.
 template <Scalar S>
 bool bends_on_lanes(const BladeElement<S>& w) {
   if constexpr (ScalarTraits<S>::reads_tables) return false;

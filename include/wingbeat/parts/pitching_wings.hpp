@@ -48,7 +48,8 @@ inline NormalForceCoefficient<double> normal_force_robofly() { return {3.6, 0.15
 /// How vehicle files name it.
 inline constexpr const char* normal_force_set = "normal-force-robofly";
 
-/// The same as C_L and C_D along the normal, of which every coefficient is a number of its own.
+/// The coefficients of normal_force_robofly() as C_L and C_D along the normal, of which every coefficient is a number
+/// of its own.
 inline ForceCoefficients<double> force_coefficients_robofly() {
   return {{0.0, 1.8, 2.0, 0.0}, {1.95, -1.5, 2.0, 0.0}, {}};
 }

@@ -215,8 +215,8 @@ struct PitchChordMoments {
   }
 };
 
-/// The same of all `count` wings, of a planform that has a shape. Semi-ellipse: root moments 2/3 and 1/4 of c^2, 3
-/// pi/16 and 1/5 of c^3, 8/15 of c^4, in powers of c_0 and R.
+/// Chord moments of all `count` wings for pitch, of a planform that has a shape. Semi-ellipse: root moments 2/3 and 1/4
+/// of c^2, 3 pi/16 and 1/5 of c^3, 8/15 of c^4, in powers of c_0 and R.
 template <Scalar S>
 PitchChordMoments<S> pitch_chord_moments(const Planform<S>& p, const S& count) {
   const S R = p.length, d = p.hub_offset;

@@ -26,7 +26,7 @@ struct PlotFormat {
   friend constexpr bool operator==(const PlotFormat& format, Kind kind) { return format.kind == kind; }
 };
 
-/// As OutputRules wants them.
+/// As OutputRules expects them.
 inline constexpr const char* plot_extensions = ".svg .pdf .png";
 /// By the extension; empty for any other.
 std::optional<PlotFormat> plot_format(const std::filesystem::path& file);

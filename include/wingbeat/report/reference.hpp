@@ -12,7 +12,7 @@ namespace wingbeat {
 std::string text_keys(const std::string& filter);
 std::string json_keys(const std::string& filter);
 
-/// The same for metrics: name, unit, meaning.
+/// The metrics whose name, unit or meaning contains `filter`: name, unit, meaning.
 std::string text_metrics(const std::string& filter);
 std::string json_metrics(const std::string& filter);
 

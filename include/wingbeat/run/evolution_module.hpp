@@ -10,7 +10,7 @@ namespace wingbeat {
 
 /// Loads it. Throws std::runtime_error, with the reason, where it cannot be loaded.
 Evolve load_evolution();
-/// The same from the first of these folders that has it, else from where the program has it: for processes that are not
+/// Loads it from the first of these folders that has it, else from where the program has it: for processes that are not
 /// the program.
 Evolve load_evolution(std::span<const std::filesystem::path> folders);
 

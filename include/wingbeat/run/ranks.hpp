@@ -1,5 +1,5 @@
 // Processes of one run that exchange messages: the ranks of MPI. The library that talks to MPI is loaded only in a
-// process that mpirun (or srun) has started, so that nobody else waits for it.
+// process that mpirun (or srun) has started, so that other processes do not wait for it.
 #pragma once
 
 #include <cstddef>

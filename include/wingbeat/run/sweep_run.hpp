@@ -33,7 +33,7 @@ struct SweepResult {
   enum class Outcome {
     finished,
     was_finished,  ///< the data set was there already
-    stopped        ///< what is done is kept, and the same call goes on from there
+    stopped        ///< what is done is kept, and the same call continues from there
   };
   Outcome outcome = Outcome::finished;
   SweepProgress progress;

@@ -183,7 +183,7 @@ auto monodromy_product(const System& system, const JetSystem& jets, const Iterat
   return product;
 }
 
-/// The same as a row-major matrix.
+/// The monodromy matrix, row-major.
 template <class JetSystem, class System>
 auto monodromy(const System& system, const JetSystem& jets, const Iterate<System>& iterate) {
   return monodromy_product(system, jets, iterate).matrix();

@@ -27,7 +27,7 @@ struct RadauTableau {
   double start_weight;       ///< of the derivative at the step's start in the embedded formula of order 5
   double error3[stages];     ///< embedded formula of order 3, of every other stage, minus Radau weights
   double error5[stages];     ///< embedded formula of order 5 minus Radau weights
-  // The same for what the stages' states are off the step's start by, in the place of h times their rates.
+  // Likewise for what the stages' states are off the step's start by, in the place of h times their rates.
   double state_error3[stages];
   double state_error5[stages];
 };
@@ -294,10 +294,10 @@ StepResult<System> implicit_step(const System& system, double x, const typename 
   return result;
 }
 
-/// The same with derivatives: `jets` is `system` on dual numbers, whose derivatives come along as those of x, y and h
-/// do. The stages are found on plain numbers; their derivatives follow from the stage equations, which are linear in
-/// them (implicit function theorem). `near`: states at the stages of (nearly) this step, where they are known. Gives no
-/// error estimates.
+/// implicit_step() with derivatives: `jets` is `system` on dual numbers, whose derivatives come along as those of x, y
+/// and h do. The stages are found on plain numbers; their derivatives follow from the stage equations, which are linear
+/// in them (implicit function theorem). `near`: states at the stages of (nearly) this step, where they are known. Gives
+/// no error estimates.
 template <bool quadratures, class Jets, class System>
 StepResult<Jets> implicit_step(const Jets& jets, const System& system, const typename Jets::Real& x,
                                const typename Jets::State& y, const typename Jets::Real& h,

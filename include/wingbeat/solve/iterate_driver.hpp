@@ -52,7 +52,7 @@ class IterateDriver {
       double node = period;
       if (fixed_ < system_.fixed_nodes().size()) node = std::min(node, system_.fixed_nodes()[fixed_].x);
       while (expected_ < plan_.size() && plan_[expected_].x <= x_ + position_tolerance_) ++expected_;
-      // An expected switch right before a node is left to be found there: steps of no length help nobody.
+      // An expected switch right before a node is left to be found there: steps of no length are useless.
       const bool to_switch = expected_ < plan_.size() && plan_[expected_].x < node - position_tolerance_;
       const double target = to_switch ? plan_[expected_].x : node;
 

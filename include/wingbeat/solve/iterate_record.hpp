@@ -81,7 +81,7 @@ StepResult<System> take_step(Method method, const System& system, const typename
                                          : implicit_step<quadratures>(system, x, y, h, branch, first);
 }
 
-/// The same with derivatives: `jets` is `system` on dual numbers. `near` as in implicit_step.
+/// take_step() with derivatives: `jets` is `system` on dual numbers. `near` as in implicit_step.
 template <bool quadratures, class Jets, class System>
 StepResult<Jets> take_step(Method method, const Jets& jets, const System& system, const typename Jets::Real& x,
                            const typename Jets::State& y, const typename Jets::Real& h,

@@ -7,7 +7,7 @@ namespace wingbeat::solver {
 /// False if A is singular to working precision.
 bool solve_linear(int n, double* matrix, double* right_hand_side);
 
-/// The same for `count` right-hand sides, the columns of a row-major n x count matrix.
+/// Solves A X = B for `count` right-hand sides, the columns of a row-major n x count matrix.
 bool solve_linear(int n, double* matrix, int count, double* right_hand_sides);
 
 /// Replaces a row-major n x n matrix by its inverse; false if it is singular to working precision.

@@ -59,7 +59,7 @@ enum class PeriodicStatus {
   out_of_work      ///< the WorkBudget is used up
 };
 
-/// The same in words; empty where nothing was searched for.
+/// How the search ended, in words; empty where nothing was searched for.
 constexpr const char* describe(PeriodicStatus status) {
   switch (status) {
     case PeriodicStatus::not_tried: break;
@@ -281,7 +281,7 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   constexpr double distance_of_guess = 0.05;
   const bool one_is_enough = is_near_after(distance_of_guess);
   for (std::size_t level = options.near || one_is_enough ? 1 : 0; summary.iterates < options.max_iterates;) {
-    // Coarse iterates need only the switches that bend the solution itself.
+    // Coarse iterates need only the switches at which the solution has kinks.
     const bool is_fine = level + 1 == tolerances.size(), first = level == 0 || summary.iterates == 0;
     if (work.spent()) {
       summary.status = PeriodicStatus::out_of_work;
@@ -451,7 +451,7 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   return summary;
 }
 
-/// The same without a limit but those of the options.
+/// The search with no limits but those of the options.
 template <class System>
 PeriodicSummary solve_periodic(const System& system, const typename System::State& guess,
                                const PeriodicOptions& options, Iterate<System>& iterate) {

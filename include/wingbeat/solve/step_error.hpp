@@ -1,4 +1,4 @@
-// What a step of an iterate is judged by, and the state inside it.
+// What a step of an iterate is assessed by, and the state inside it.
 #pragma once
 
 #include <algorithm>

@@ -59,9 +59,9 @@ struct AllocationMap {
   AllocationInput input;
   std::vector<AllocationPoint> points;
   AllocationPoint slope;  ///< by the input at the operating point, exact derivatives [.../V or .../1]
-  /// The same from the two points next to the operating point on either side, by Richardson's extrapolation, and what
+  /// The slope from the two points next to the operating point on either side, by Richardson's extrapolation, and what
   /// that may be off by: how far the slopes of both pairs are apart and, times the step, their curvatures. Where the
-  /// slope is further off than that, the map bends or jumps between its points.
+  /// slope is further off than that, the map has a kink or jumps between its points.
   AllocationPoint slope_of_points, slope_of_points_error;
 };
 

@@ -73,8 +73,8 @@ template <>
 inline constexpr std::pair<const char*, Loss> names_of<Loss>[] = {
     {"none", Loss::none}, {"huber", Loss::huber}, {"soft-l1", Loss::soft_l1}, {"cauchy", Loss::cauchy}};
 
-/// Where a robust loss may bend [standard deviations]: further in too few values carry the fit, further out outliers
-/// do.
+/// Where a robust loss may turn from square to robust [standard deviations]: further in too few values carry the fit,
+/// further out outliers do.
 inline constexpr double least_loss_scale = 1.0, most_loss_scale = 4.0;
 
 struct BenchFit {
@@ -83,7 +83,7 @@ struct BenchFit {
   std::map<MeasuredQuantity, Deviation> deviations;
   std::vector<FreeParameter> parameters;
   Loss loss = Loss::none;
-  double loss_scale = 1.5;  ///< where the loss bends, in standard deviations
+  double loss_scale = 1.5;  ///< where the loss turns from square to robust, in standard deviations
   int starts = 1;           ///< the given start, and starts - 1 points of a Latin hypercube within the bounds
   std::uint64_t seed = 1;
   bool profiles = true;

@@ -10,7 +10,7 @@ namespace wingbeat {
 /// Calls `act` for 0 to count - 1, in any order, perhaps side by side.
 using ForEach = std::function<void(std::size_t count, const std::function<void(std::size_t)>& act)>;
 
-/// The same one after another where there is no `for_each`.
+/// Calls `act` by `for_each`; one after another where there is none.
 void for_all(const ForEach& for_each, std::size_t count, const std::function<void(std::size_t)>& act);
 
 /// Runs all tasks; `done`, if given, is called with the share of them that has finished, 0 to 1, by one thread at a

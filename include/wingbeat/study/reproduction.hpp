@@ -14,7 +14,7 @@
 
 namespace wingbeat {
 
-/// The same vehicle without and with hinge springs.
+/// A vehicle without and with hinge springs.
 using SpringPair = std::array<Design<double>, 2>;
 
 /// Which of the cases of a figure.

@@ -31,7 +31,7 @@ struct PseudoRandom {
 /// Any 2^k samples from a multiple of 2^k on hold one in each of 2^k equal intervals along each dimension.
 class ScrambledSobol {
  public:
-  /// As many samples as can be told apart.
+  /// The largest number of samples: beyond it they would repeat.
   static constexpr std::uint64_t most = std::uint64_t(1) << 32;
   static constexpr std::size_t max_dimensions = 100;
 

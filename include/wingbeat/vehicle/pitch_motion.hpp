@@ -93,7 +93,7 @@ StopImpact<S> stop_impact(const V<S>& v, const PitchingWings<S>& p, const CrankK
   return of;
 }
 
-/// The same where friction holds crank or shaft, and the stroke with it, against the blow.
+/// The impact where friction holds crank or shaft, and the stroke with it, against the blow.
 template <template <Scalar> class V, Scalar S>
 StopImpact<S> stop_impact_standing(const V<S>& v, const PitchingWings<S>& p, const CrankKinematics<S>& k, const S& psi,
                                    const S& velocity) {

@@ -332,8 +332,8 @@ template <template <Scalar> class V, Scalar S>
   return at;
 }
 
-/// The same of wings under the pitch law: `stroke` and `direction` are the signs of beta' and omega (model.md section
-/// 2), `pitching` and `gear` as in Branch, `every_law` as in aero_loads().
+/// instant_under() of wings under the pitch law: `stroke` and `direction` are the signs of beta' and omega (model.md
+/// section 2), `pitching` and `gear` as in Branch, `every_law` as in aero_loads().
 template <bool every_law = true, template <Scalar> class V, Scalar S>
 [[gnu::always_inline]] inline Instant<S> instant_at(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta,
                                                     const S& omega, const S& i, const S& v_t, const S& stroke,
@@ -400,7 +400,7 @@ template <template <Scalar> class V, Scalar S>
   return motion_on(v, at, i, v_t, branch);
 }
 
-/// The same at the crank angle theta, given by sine and cosine.
+/// motion_at() at the crank angle theta, given by sine and cosine.
 template <template <Scalar> class V, Scalar S>
 [[gnu::always_inline]] inline Motion<S> motion_at(const V<S>& v, const S& sin_theta, const S& cos_theta, const S& omega,
                                                   const S& i, const S& v_t, const Branch<S>& branch) {

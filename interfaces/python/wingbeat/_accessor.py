@@ -59,7 +59,7 @@ class SweepData(xarray.Dataset):  # type: ignore[no-untyped-call]
 
     @classmethod
     def of(cls, dataset: xarray.Dataset) -> SweepData:
-        """The same variables, coordinates and attributes."""
+        """A copy with its variables, coordinates and attributes."""
         data = cls(dataset.data_vars, dataset.coords, dataset.attrs)
         data.encoding = dataset.encoding
         return data

@@ -18,8 +18,6 @@ from ._errors import InputError
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from ._vehicle import Vehicle
-
 #: More threads than any machine has.
 _MAX_THREADS = 4096
 
@@ -34,15 +32,6 @@ def refused(name: str, message: str) -> InputError:
     error = InputError(f"{name}: {message}")
     error.key = name
     return error
-
-
-def vehicle_of(value: Any, name: str = "vehicle") -> Vehicle:
-    """A Vehicle."""
-    from ._vehicle import Vehicle
-
-    if not isinstance(value, Vehicle):
-        raise wrong_type(name, "a wingbeat.Vehicle", value)
-    return value
 
 
 def flag(name: str, value: Any) -> bool:
@@ -151,7 +140,7 @@ def number(name: str, value: Any, unit: str) -> float:
 
 
 def optional_number(name: str, value: Any, unit: str) -> float | None:
-    """The same, or None."""
+    """A number in an SI unit, or None."""
     return None if value is None else number(name, value, unit)
 
 

@@ -9,13 +9,14 @@ import numpy as np
 
 from . import _core
 from ._arguments import (
-    array, callback, mapping, number, optional_number, refused, text, threads_of, vehicle_of, wrong_type,
+    array, callback, mapping, number, optional_number, refused, text, threads_of, wrong_type,
 )
+from ._operations import operation
 from ._progress import shown
 from ._study import study_of_columns, without_place
 from ._tables import metric_called, metric_rows, parameters, statuses
 from ._tables import metrics as metric_table
-from ._vehicle import Vehicle
+from ._vehicle import Vehicle, vehicle_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -123,6 +124,7 @@ def _is_column(values: Any) -> bool:
     return np.ndim(values) == 1
 
 
+@operation
 def solve_columns(
     columns: Mapping[str, Any],
     *,

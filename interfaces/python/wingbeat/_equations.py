@@ -5,14 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from . import _core
-from ._arguments import array, number, optional_number, text, vehicle_of
-from ._vehicle import Vehicle
+from ._arguments import array, number, optional_number, text
+from ._operations import operation
+from ._vehicle import Vehicle, vehicle_of
 
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
 
+@operation
 class EquationsOfMotion:
     """The equations of motion of a vehicle in time: `scipy.integrate.solve_ivp(equations.rates, ...)`.
 

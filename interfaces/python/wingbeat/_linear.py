@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._arguments import flag, number, optional_number, text, vehicle_of, whole
+from ._arguments import flag, number, optional_number, text, whole
+from ._operations import operation
 from ._result import one_of
 from ._studies import StudyResult
-from ._vehicle import Vehicle
+from ._vehicle import Vehicle, vehicle_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -111,7 +112,7 @@ class ControlModels(StudyResult):
 
     @property
     def continuous(self) -> LinearModel:
-        """The same in continuous time, without what settles within a cycle.
+        """The model in continuous time, without what settles within a cycle.
 
         Raises
         ------
@@ -121,6 +122,7 @@ class ControlModels(StudyResult):
         return LinearModel(model["continuous"], _names(model["inputs"]), _names(model["outputs"]), None)
 
 
+@operation
 def linearise(
     vehicle: Vehicle,
     *,

@@ -9,6 +9,7 @@ import numpy as np
 
 from . import _core
 from ._arguments import array, mapping, optional_number, refused, wrong_type
+from ._operations import operation
 from ._tables import parameters
 from ._vehicle import Vehicle
 
@@ -41,6 +42,7 @@ def _column(dimension: str | tuple[()], values: Any, unit: str, long_name: str) 
     return (dimension, values, {"units": unit, "long_name": long_name})
 
 
+@operation
 def motor_curves(
     motor: Vehicle | Mapping[str, Any], *, voltage: float | str | None = None, speed: Any = None
 ) -> xarray.Dataset:
@@ -104,6 +106,7 @@ def motor_curves(
     )
 
 
+@operation
 def coefficient_curves(
     aerodynamics: Vehicle | Mapping[str, Any] | str, *, angle_of_attack: Any = None
 ) -> xarray.Dataset:
@@ -156,6 +159,7 @@ def coefficient_curves(
     return xarray.Dataset(made, {"angle_of_attack": _column("angle_of_attack", alpha.ravel(), "rad", "angle of attack")})
 
 
+@operation
 def kinematics(transmission: Vehicle | Mapping[str, Any], *, crank_angle: Any = None) -> xarray.Dataset:
     """The stroke of a transmission over the crank angle [rad].
 

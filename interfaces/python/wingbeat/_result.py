@@ -9,18 +9,18 @@ import numpy as np
 
 from . import _core
 from ._arguments import (
-    flag, names, number, numbers_of, optional_number, refused, text, vehicle_of, wrong_type,
+    flag, names, number, numbers_of, optional_number, refused, text, wrong_type,
 )
+from ._ensemble import Ensemble, is_columns, solve_columns
 from ._metrics import WithMetrics
+from ._operations import operation
 from ._quantity import Quantity
 from ._tables import metric_called, metric_rows, waveforms
+from ._vehicle import Vehicle, vehicle_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt
     import xarray
-
-    from ._ensemble import Ensemble
-    from ._vehicle import Vehicle
 
 #: Instants of `RunResult.cycle`, both ends included, as `wingbeat run --waveforms` writes them.
 CYCLE_POINTS = 361
@@ -225,6 +225,7 @@ def solve(
 ) -> RunResult: ...
 @overload
 def solve(columns: Mapping[str, Any], /, **options: Any) -> Ensemble: ...
+@operation
 def solve(vehicle: Vehicle | Mapping[str, Any], /, **options: Any) -> RunResult | Ensemble:
     """What a vehicle does from rest: its steady flapping with all metrics, or the status with the evidence.
 
@@ -258,12 +259,8 @@ def solve(vehicle: Vehicle | Mapping[str, Any], /, **options: Any) -> RunResult 
     >>> vehicle.solve(voltage=0).status
     'stalled'
     """
-    from ._vehicle import Vehicle
-
     if isinstance(vehicle, Vehicle):
         return _solve(vehicle, **options)
-    from ._ensemble import is_columns, solve_columns
-
     if not is_columns(vehicle):
         raise wrong_type("vehicle", "a wingbeat.Vehicle, or a dict or DataFrame of columns", vehicle)
     return solve_columns(vehicle, **options)
@@ -356,6 +353,7 @@ class StartUp(WithMetrics):
         return f"{self.status} after {self.time_to_steady!r}: {self.evidence}"
 
 
+@operation
 def simulate(
     vehicle: Vehicle,
     *,

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from . import _core
-from ._arguments import array, number, numbers_of, refused, text, vehicle_of, wrong_type
+from ._arguments import array, number, numbers_of, refused, text, wrong_type
+from ._operations import operation
 from ._quantity import Quantity
 from ._result import Event, _waveform
 from ._tables import waveforms
-from ._vehicle import Vehicle
+from ._vehicle import Vehicle, vehicle_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -42,6 +43,7 @@ class SimulationState(NamedTuple):
         return self.numbers[6]
 
 
+@operation
 class Simulation:
     """A vehicle in time, stepped from event to event: `vehicle.simulation()`.
 

@@ -14,12 +14,13 @@ import numpy as np
 
 from . import _core
 from ._arguments import (
-    callback, flag, mapping, optional_number, path, refused, text, threads_of, vehicle_of, wrong_type,
+    callback, flag, mapping, optional_number, path, refused, text, threads_of, wrong_type,
 )
+from ._operations import operation
 from ._progress import shown
 from ._study import without_place
 from ._tables import metric_rows
-from ._vehicle import Vehicle, _assignments, _toml, _toml_key
+from ._vehicle import Vehicle, _assignments, _toml, _toml_key, vehicle_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -160,6 +161,7 @@ def _file_of(study: Study, vehicle: Vehicle | None) -> Iterator[bytes]:
             yield os.fsencode(name)
 
 
+@operation
 def endurance(vehicle: Vehicle, *, allow_extrapolation: bool = False) -> Flight:
     """How long a vehicle hovers and flaps on its battery: `wingbeat endurance`.
 

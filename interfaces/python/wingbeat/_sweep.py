@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 from . import _core
 from ._arguments import (
-    axis_values, callback, flag, mapping, number, optional_number, path, refused, text, threads_of, vehicle_of,
+    axis_values, callback, flag, mapping, number, optional_number, path, refused, text, threads_of,
 )
+from ._operations import operation
 from ._progress import shown
 from ._study import study_of, without_place
 from ._tables import parameters
-from ._vehicle import Vehicle
+from ._vehicle import Vehicle, vehicle_of
 
 if TYPE_CHECKING:
     from ._accessor import SweepData
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 _writing = threading.Lock()
 
 
+@operation
 def sweep(
     vehicle: Vehicle,
     axes: Mapping[str, Any],

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from . import _core
+from ._errors import InputError
 
 
 class Parameter(NamedTuple):
@@ -75,8 +76,6 @@ def metric_called(name: str) -> int:
     if name in metric_index:
         return metric_index[name]
     import difflib
-
-    from ._errors import InputError
 
     near = difflib.get_close_matches(name, metrics, 1)
     error = InputError(f"metric: there is no {name!r}" + (f"; did you mean {near[0]}?" if near else ""))

@@ -13,6 +13,7 @@ import numpy as np
 
 from . import _core
 from ._arguments import array, mapping, number, path, real, refused, text, wrong_type
+from ._operations import operations
 from ._quantity import Quantity
 from ._sections import Sections, sections
 from ._tables import parameters
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
 
 def _toml_text(value: str, key: str) -> str:
-    """A TOML string: JSON's, with all that TOML wants escaped."""
+    """A TOML string: JSON's, with all that TOML requires escaped."""
     hidden = re.compile("[\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff\ufff9-\ufffb\ufffe\uffff]")
     return hidden.sub(lambda c: f"\\u{ord(c[0]):04x}", json.dumps(text(key, value), ensure_ascii=False))
 
@@ -282,69 +283,54 @@ class Vehicle(Sections):
 
     def solve(self, **options: Any) -> RunResult:
         """Its steady flapping: see wingbeat.solve."""
-        from ._result import solve
-
-        return solve(self, **options)
+        return operations["solve"](self, **options)  # type: ignore[no-any-return]
 
     def simulate(self, **options: Any) -> StartUp:
         """Its start-up in time: see wingbeat.simulate."""
-        from ._result import simulate
-
-        return simulate(self, **options)
+        return operations["simulate"](self, **options)  # type: ignore[no-any-return]
 
     def simulation(self, **options: Any) -> Simulation:
         """A simulation in time, stepped under commanded voltages: see wingbeat.Simulation."""
-        from ._simulation import Simulation
-
-        return Simulation(self, **options)
+        return operations["Simulation"](self, **options)  # type: ignore[no-any-return]
 
     def solve_columns(self, columns: Mapping[str, Any], **options: Any) -> Ensemble:
         """Very many vehicles like it: see wingbeat.solve_columns."""
-        from ._ensemble import solve_columns
-
-        return solve_columns(columns, vehicle=self, **options)
+        return operations["solve_columns"](columns, vehicle=self, **options)  # type: ignore[no-any-return]
 
     def sweep(self, axes: Mapping[str, Any], **options: Any) -> SweepData:
         """All combinations of the values of these keys: see wingbeat.sweep."""
-        from ._sweep import sweep
-
-        return sweep(self, axes, **options)
+        return operations["sweep"](self, axes, **options)  # type: ignore[no-any-return]
 
     def endurance(self, **options: Any) -> Flight:
         """How long it hovers and flaps on its battery: see wingbeat.endurance."""
-        from ._studies import endurance
-
-        return endurance(self, **options)
+        return operations["endurance"](self, **options)  # type: ignore[no-any-return]
 
     def linearise(self, **options: Any) -> ControlModels:
         """Linear models for control design: see wingbeat.linearise."""
-        from ._linear import linearise
-
-        return linearise(self, **options)
+        return operations["linearise"](self, **options)  # type: ignore[no-any-return]
 
     def motor_curves(self, **options: Any) -> Dataset:
         """Torque, current, powers and efficiency of its motors over speed: see wingbeat.motor_curves."""
-        from ._parts import motor_curves
-
-        return motor_curves(self, **options)
+        return operations["motor_curves"](self, **options)  # type: ignore[no-any-return]
 
     def coefficient_curves(self, **options: Any) -> Dataset:
         """Force coefficients of its wings over the angle of attack: see wingbeat.coefficient_curves."""
-        from ._parts import coefficient_curves
-
-        return coefficient_curves(self, **options)
+        return operations["coefficient_curves"](self, **options)  # type: ignore[no-any-return]
 
     def kinematics(self, **options: Any) -> Dataset:
         """Stroke angle and its derivatives over the crank angle: see wingbeat.kinematics."""
-        from ._parts import kinematics
-
-        return kinematics(self, **options)
+        return operations["kinematics"](self, **options)  # type: ignore[no-any-return]
 
     def equations_of_motion(self, **options: Any) -> EquationsOfMotion:
         """For integrators of one's own: see wingbeat.EquationsOfMotion."""
-        from ._equations import EquationsOfMotion
+        return operations["EquationsOfMotion"](self, **options)  # type: ignore[no-any-return]
 
-        return EquationsOfMotion(self, **options)
+
+def vehicle_of(value: Any, name: str = "vehicle") -> Vehicle:
+    """A Vehicle."""
+    if not isinstance(value, Vehicle):
+        raise wrong_type(name, "a wingbeat.Vehicle", value)
+    return value
 
 
 def _restored(toml: str) -> Vehicle:

@@ -1,4 +1,5 @@
-// What a page asks of the library, in JSON and columns.
+// What a page asks of the library, in JSON and columns: vehicle files and values of keys go in as text. The page itself
+// (interfaces/web/src) computes nothing but positions on the screen.
 #pragma once
 
 #include <map>

@@ -148,7 +148,7 @@ export class Controls {
             html(
               'summary',
               {},
-              others.length === 1 ? '1 more key, not stated' : `${others.length} more keys, not stated`,
+              others.length === 1 ? '1 optional key' : `${others.length} optional keys`,
             ),
             ...others.map((key) => this.build_row(key, values, base)),
           ),

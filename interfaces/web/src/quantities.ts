@@ -40,7 +40,7 @@ export function tickText(x: number): string {
   return withMinus(size > 0 && (size >= 1e5 || size < 1e-3) ? short.toExponential() : String(short));
 }
 
-/** With a minus sign in place of a leading hyphen, for numbers that nobody types. */
+/** With a minus sign in place of a leading hyphen, for numbers that are not typed. */
 export const withMinus = (text: string) => text.replace(/^-/, '\u2212');
 
 export function readable(x: number | null | undefined, unit: string, figures = 4): string {

@@ -70,7 +70,7 @@ function compare({report: ours, resistance}, {report: theirs}, what) {
   const idle = Math.abs(theirs.power_electrical_w) < 1e-12 * scaleOf('power_', theirs, resistance);
   let largest = 0;
   for (const [key, value] of Object.entries(theirs)) {
-    // Sentences hold rounded numbers. Where the input power is rounding, so is the efficiency that the domain judges.
+    // Sentences hold rounded numbers. Where the input power is rounding, so is the efficiency that the domain assesses.
     if (['status_detail', 'domain_detail', 'warnings'].includes(key) || (key === 'domain' && idle)) continue;
     if (typeof value !== 'number' || typeof ours[key] !== 'number') {
       assert.deepEqual(ours[key], value, `${what}: ${key}`);

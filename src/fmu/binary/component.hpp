@@ -82,7 +82,7 @@ class Component {
   /// Error, logged.
   int unsupported(const char* what) const { return refuse(std::string(what) + " is not supported by this FMU"); }
   int refuse(const std::string& message, StatusCode status = error) const;
-  /// The same of a function that threw; throws nothing itself.
+  /// Error of a function that threw, logged; throws nothing itself.
   int failed(const char* function, const char* problem) const noexcept;
 
  private:
@@ -113,7 +113,7 @@ int guarded(Component* instance, const char* function, const Work& work) noexcep
     return instance->failed(function, "failed");
   }
 }
-/// The same of `count` values at pointers that must not be null then.
+/// Calls a function of the standard with `count` values at pointers that must not be null then.
 template <class Work, class... Pointers>
 int guarded_values(Component* instance, const char* function, std::size_t count, const Work& work,
                    const Pointers*... pointers) noexcept {

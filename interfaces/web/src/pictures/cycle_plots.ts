@@ -62,7 +62,7 @@ export class CyclePlots {
   private abscissa: Abscissa = 'time';
   private place = 0;
 
-  /** `scrub` is told the share of the cycle that the user points at. */
+  /** `scrub` receives the share of the cycle that the user points at. */
   constructor(parent: HTMLElement, scrub: (share: number) => void) {
     this.drawn = panels.map((panel) => {
       const axes = svg('g'),

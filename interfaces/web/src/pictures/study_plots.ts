@@ -33,7 +33,7 @@ const noneFlaps = 'no design here flaps';
 const trend: Frame = {width: 560, height: 260, left: 60, right: 14, top: 26, bottom: 40};
 const map: Frame = {width: 560, height: 440, left: 64, right: 92, top: 30, bottom: 44};
 
-/** `pick` is told the index of the design clicked. */
+/** `pick` receives the index of the design clicked. */
 export function drawTrend(
   picture: SVGSVGElement,
   axis: Axis,
