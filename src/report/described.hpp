@@ -218,7 +218,7 @@ class Description {
                    std::function<std::optional<Json>(const R&)> value) {
     if (form.is_null()) throw std::logic_error("a member without a schema: " + key);
     std::string text(meaning);
-    if (!unit.empty() && unit != "1") text += " [" + std::string(unit) + "]";
+    if (!unit.empty() && unit != "1") text += (text.empty() ? "[" : " [") + std::string(unit) + "]";
     members_.push_back({std::move(key), text.empty() ? std::move(form) : schema::with_text(std::move(form), text),
                         always, std::move(value)});
     return *this;

@@ -13,6 +13,7 @@
 #include "report/figure.hpp"
 #include "report/layout.hpp"
 #include "report/result_schemas.hpp"
+#include "report/result_trees.hpp"
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/report/report.hpp"
 
@@ -210,9 +211,12 @@ Json endurance_schema() { return endurance_description().schema(); }
 
 }  // namespace described
 
+detail::Json detail::endurance_tree(const EnduranceResult& result) {
+  return described::endurance_description().json(result);
+}
+
 std::string json_endurance(const EnduranceResult& result) {
-  return described::endurance_description().json(result).dump(2, ' ', false, detail::Json::error_handler_t::replace) +
-         "\n";
+  return detail::endurance_tree(result).dump(2, ' ', false, detail::Json::error_handler_t::replace) + "\n";
 }
 
 std::string text_endurance(const Design<double>& design, const EnduranceResult& result) {

@@ -2,6 +2,7 @@
 #include "report/described.hpp"
 #include "report/fit_rows.hpp"
 #include "report/result_schemas.hpp"
+#include "report/result_trees.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/report/fit_report.hpp"
@@ -193,8 +194,13 @@ Json fit_schema() { return fit_description().schema(); }
 
 }  // namespace described
 
+detail::Json detail::fit_tree(const BenchFit& fit, const FitResult& result,
+                              std::span<const FrictionCandidate> candidates) {
+  return described::fit_description().json({fit, result, candidates});
+}
+
 std::string json_fit(const BenchFit& fit, const FitResult& result, std::span<const FrictionCandidate> candidates) {
-  return detail::dumped(described::fit_description().json({fit, result, candidates}));
+  return detail::dumped(detail::fit_tree(fit, result, candidates));
 }
 
 }  // namespace wingbeat

@@ -8,6 +8,7 @@
 
 #include "report/described.hpp"
 #include "report/result_schemas.hpp"
+#include "report/result_trees.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/units.hpp"
@@ -195,8 +196,12 @@ Json identification_schema() { return identification_description().schema(); }
 
 }  // namespace described
 
+detail::Json detail::identification_tree(const MotorIdentification& motor, const MotorDatasheet& sheet) {
+  return described::identification_description().json({motor, sheet});
+}
+
 std::string json_identification(const MotorIdentification& motor, const MotorDatasheet& sheet) {
-  return detail::dumped(described::identification_description().json({motor, sheet}));
+  return detail::dumped(detail::identification_tree(motor, sheet));
 }
 
 }  // namespace wingbeat

@@ -4,6 +4,7 @@
 
 #include "report/described.hpp"
 #include "report/result_schemas.hpp"
+#include "report/result_trees.hpp"
 #include "report/vehicle_counts.hpp"
 #include "wingbeat/report/optimise_report.hpp"
 #include "wingbeat/report/pareto_report.hpp"
@@ -357,16 +358,28 @@ Json front_schema() { return front_description().schema(); }
 
 }  // namespace described
 
+detail::Json detail::optimum_tree(const OptimiseFile& file, const OptimiseResult& result) {
+  return described::optimum_description().json({file.study, result});
+}
+
 std::string json_optimum(const OptimiseFile& file, const OptimiseResult& result) {
-  return detail::dumped(described::optimum_description().json({file.study, result}));
+  return detail::dumped(detail::optimum_tree(file, result));
+}
+
+detail::Json detail::motors_tree(const OptimiseFile& file, std::span<const MotorTrial> trials) {
+  return described::trials_description().json({file, trials});
 }
 
 std::string json_motors(const OptimiseFile& file, std::span<const MotorTrial> trials) {
-  return detail::dumped(described::trials_description().json({file, trials}));
+  return detail::dumped(detail::motors_tree(file, trials));
+}
+
+detail::Json detail::front_tree(const OptimiseFile& file, const ParetoStudy& study, const ParetoResult& result) {
+  return described::front_description().json({file, study, result});
 }
 
 std::string json_front(const OptimiseFile& file, const ParetoStudy& study, const ParetoResult& result) {
-  return detail::dumped(described::front_description().json({file, study, result}));
+  return detail::dumped(detail::front_tree(file, study, result));
 }
 
 }  // namespace wingbeat

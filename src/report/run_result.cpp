@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "report/described.hpp"
 #include "report/result_schemas.hpp"
+#include "report/run_result.hpp"
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/report/report.hpp"
 
@@ -67,6 +67,18 @@ const Description<TransientResult>& start_up_description() {
   return description;
 }
 
+}  // namespace
+
+const Description<Metrics<double>>& metrics_description() {
+  static const Description<Metrics<double>> description = first_metrics(metric_count);
+  return description;
+}
+
+const Description<Metrics<double>>& cycle_metrics_description() {
+  static const Description<Metrics<double>> description = first_metrics(int(Metric::hover));
+  return description;
+}
+
 const Description<RunResult>& run_description() {
   using R = RunResult;
   static const Description<R> description =
@@ -97,18 +109,6 @@ const Description<RunResult>& run_description() {
               },
               schema::any_number)
           .sometimes_part("start_up", "of a run simulated from rest", start_up_description(), &R::start_up);
-  return description;
-}
-
-}  // namespace
-
-const Description<Metrics<double>>& metrics_description() {
-  static const Description<Metrics<double>> description = first_metrics(metric_count);
-  return description;
-}
-
-const Description<Metrics<double>>& cycle_metrics_description() {
-  static const Description<Metrics<double>> description = first_metrics(int(Metric::hover));
   return description;
 }
 

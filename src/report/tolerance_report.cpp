@@ -9,6 +9,7 @@
 #include "report/figure.hpp"
 #include "report/layout.hpp"
 #include "report/result_schemas.hpp"
+#include "report/result_trees.hpp"
 #include "report/sweep_scales.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/units.hpp"
@@ -341,8 +342,12 @@ Json tolerance_schema() { return tolerance_description().schema(); }
 
 }  // namespace described
 
+detail::Json detail::tolerance_tree(const ToleranceStudy& study, const ToleranceResult& result) {
+  return described::tolerance_description().json({study, result});
+}
+
 std::string json_tolerance(const ToleranceStudy& study, const ToleranceResult& result) {
-  return detail::dumped(described::tolerance_description().json({study, result}));
+  return detail::dumped(detail::tolerance_tree(study, result));
 }
 
 void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns, const ToleranceOutput& output,
