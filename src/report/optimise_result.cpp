@@ -210,8 +210,10 @@ const Description<TrialsFound>& trials_description() {
       return r.file.motors.empty() != motors ? std::optional(trials(r)) : std::nullopt;
     };
   };
-  const Json list =
-      schema::listed(schema::either({refused_trial_description().schema(), trial_description().schema()}));
+  // Motors alone are refused.
+  const Json choices = schema::listed(trial_description().schema()),
+             motors =
+                 schema::listed(schema::either({refused_trial_description().schema(), trial_description().schema()}));
   static const Description<R> description =
       Description<R>()
           .always("best", "", "the best motor or choice; null where none does it",
@@ -219,8 +221,8 @@ const Description<TrialsFound>& trials_description() {
                     const MotorTrial* best = best_trial(r.file, r.trials);
                     return best ? std::optional<std::string>(name_of(r.file, *best)) : std::nullopt;
                   })
-          .sometimes("choices", "", "each combination of the discrete parameters", where(false), list)
-          .sometimes("motors", "", "each motor of the catalogue", where(true), list);
+          .sometimes("choices", "", "each combination of the discrete parameters", where(false), choices)
+          .sometimes("motors", "", "each motor of the catalogue", where(true), motors);
   return description;
 }
 

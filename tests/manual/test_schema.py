@@ -87,6 +87,30 @@ count = 3
 """
 
 
+BENCH = """[bench]
+vehicle = "friction2022-springs"
+[[parameter]]
+key = "friction.radius"
+lower = 0
+upper = 8e-3
+start = 1e-3
+[deviation]
+default = { relative = 0.01 }
+[[log]]
+file = "log.csv"
+condition = "air"
+springs = true
+"""
+CHOICE = """[[parameter]]
+key = "friction.radius"
+values = ["2 mm", "2.5 mm"]
+"""
+BEYOND = """[[constraint]]
+metric = "lift_mean_n"
+at_least = "1 N"
+"""
+
+
 def described(schema):
     """Every key of a schema, `a.b` within objects, `a[].b` within lists."""
     return {path for path, _, _ in describe_results.members("", schema)}
@@ -116,6 +140,8 @@ def schema_of(command):
 
 @unittest.skipUnless(jsonschema, "python3-jsonschema is not installed")
 class Schema(unittest.TestCase):
+    maxDiff = None
+
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="wingbeat-schema-"))
         self.seen = {}
@@ -178,6 +204,8 @@ class Schema(unittest.TestCase):
         locked = self.check("run", "friction2022-springs", "--voltage", "0.8 V", statuses=(3,))
         self.assertIsNone(locked["frequency_hz"])
         self.assertIn("start_up", self.check("run", "friction2022", "--method", "transient"))
+        self.check("run", "friction2022", "--set",
+                   'supply={type="pwm", voltage="6 V", duty=0.5, frequency="20 kHz"}')
         for vehicle in ("friction2022-battery", "direct-drive", "pitch-hinge", "x-wing-crank"):
             self.check("run", vehicle)
         self.everything_is_written("run")
@@ -214,6 +242,11 @@ class Schema(unittest.TestCase):
         self.check("fit", DATA / "bench/flapper.toml")
         compared = self.check("fit", DATA / "bench/flapper.toml", "--compare-friction", "--no-profiles")
         self.assertTrue(compared["friction"])
+        rows = [f"{2 + n / 2},{self.printed('run', 'friction2022-springs', '--voltage', f'{2 + n / 2} V')['frequency_hz']!r}"
+                for n in range(3)]
+        self.file("log.csv", "\n".join(["voltage_V,frequency_Hz", "0.3,2", *rows]) + "\n")
+        beyond = self.check("fit", self.file("bench.toml", BENCH), "--no-profiles", statuses=(3,))
+        self.assertEqual([row["row"] for row in beyond["unreached"]], ["log.csv:2"])
         self.everything_is_written("fit")
 
     def test_tolerance(self):
@@ -225,16 +258,27 @@ class Schema(unittest.TestCase):
         one = {"more": "", "upper": "4 V", "constraint": ""}
         found = self.check("optimise", self.file("one.toml", OPTIMUM.format(**one)))
         self.assertEqual(found["outcome"], "found")
-        none = one | {"constraint": '[[constraint]]\nmetric = "lift_mean_n"\nat_least = "1 N"\n'}
+        none = one | {"constraint": BEYOND}
         found = self.check("optimise", self.file("none.toml", OPTIMUM.format(**none)), statuses=(0, 1, 3))
         self.assertEqual((found["outcome"], found["value"]), ("infeasible", None))
-        motors = one | {"more": MOTORS.format(catalogue=DATA / "motors/motors.csv")}
-        self.assertIn("motors", self.check("optimise", self.file("motors.toml", OPTIMUM.format(**motors))))
+        # An optimum between the bounds, which has a direction to move along.
+        inside = OPTIMUM.replace("lift_mean_n", "efficiency_system")
+        self.check("optimise", self.file("inside.toml", inside.format(**one)))
+        catalogue = MOTORS.format(catalogue=DATA / "motors/motors.csv")
+        motors = inside.format(**one | {"more": catalogue, "upper": "12 V"}) + CHOICE.replace(', "2.5 mm"', "")
+        self.assertIn("motors", self.check("optimise", self.file("motors.toml", motors)))
+        chosen = self.check("optimise", self.file("choice.toml", inside.format(**one) + CHOICE))
+        self.assertEqual([entry["choices"] for entry in chosen["choices"]],
+                         [{"friction.radius": 0.002}, {"friction.radius": 0.0025}])
         self.assertTrue(self.check("optimise", self.file("front.toml", FRONT))["front"])
+        self.check("optimise", self.file("motors-front.toml", FRONT + catalogue))
+        none = self.check("optimise", self.file("no-front.toml", FRONT + BEYOND), statuses=(0, 1, 3))
+        self.assertNotIn("front", none)
         self.everything_is_written("optimise")
 
     def test_endurance(self):
-        self.check("endurance", "friction2022-battery")
+        lost = self.check("endurance", "friction2022-battery", "--set", "supply.cells=2", "--set", 'vehicle.mass="5 g"')
+        self.assertEqual(lost["hover"], "lost")
         self.everything_is_written("endurance")
 
     def test_linearise(self):

@@ -217,7 +217,7 @@ export type Solved = {
   /** mean powers of a cycle */
   balance: Balance;
   evidence: Evidence;
-  /**  [V] */
+  /** [V] */
   supply_voltage: number | null;
 };
 
@@ -238,7 +238,7 @@ export type Mechanism = {
   /** wings pitch on hinges */
   pitch_hinge: boolean;
   wing_count: number;
-  /**  [m] */
+  /** [m] */
   crank_radius?: number;
   /** of a slider-crank [m] */
   rod_length?: number;
