@@ -246,7 +246,7 @@ class Schema(unittest.TestCase):
                 for n in range(3)]
         self.file("log.csv", "\n".join(["voltage_V,frequency_Hz", "0.3,2", *rows]) + "\n")
         beyond = self.check("fit", self.file("bench.toml", BENCH), "--no-profiles", statuses=(3,))
-        self.assertEqual([row["row"] for row in beyond["unreached"]], ["log.csv:2"])
+        self.assertEqual([row["row"] for row in beyond["unreached"]], [f"{self.folder / 'log.csv'}:2"])
         self.everything_is_written("fit")
 
     def test_tolerance(self):
@@ -265,8 +265,9 @@ class Schema(unittest.TestCase):
         inside = OPTIMUM.replace("lift_mean_n", "efficiency_system")
         self.check("optimise", self.file("inside.toml", inside.format(**one)))
         catalogue = MOTORS.format(catalogue=DATA / "motors/motors.csv")
-        motors = inside.format(**one | {"more": catalogue, "upper": "12 V"}) + CHOICE.replace(', "2.5 mm"', "")
+        motors = inside.format(**one | {"more": catalogue, "upper": "12 V"}) + CHOICE
         self.assertIn("motors", self.check("optimise", self.file("motors.toml", motors)))
+        self.check("optimise", self.file("bound.toml", OPTIMUM.format(**one) + CHOICE))
         chosen = self.check("optimise", self.file("choice.toml", inside.format(**one) + CHOICE))
         self.assertEqual([entry["choices"] for entry in chosen["choices"]],
                          [{"friction.radius": 0.002}, {"friction.radius": 0.0025}])
