@@ -13,7 +13,7 @@
 #include "wingbeat/files/output_file.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/report/reference.hpp"
-#include "wingbeat/report/schema.hpp"
+#include "wingbeat/reproduction/schema.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat::app {

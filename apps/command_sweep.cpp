@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
@@ -23,6 +22,7 @@
 #include "wingbeat/report/report.hpp"
 #include "wingbeat/report/sweep_plot.hpp"
 #include "wingbeat/run/sweep_run.hpp"
+#include "wingbeat/run/sweep_summary.hpp"
 
 namespace wingbeat::app {
 namespace {
@@ -164,46 +164,6 @@ std::string summary(const Study& study, const SweepResult& result) {
   return text;
 }
 
-/// The summary as one JSON object: numbers of designs by status, and the best ones with their swept values [SI].
-std::string json_summary(const Study& study, const SweepResult& result, const SweepArguments& arguments) {
-  using Json = nlohmann::ordered_json;
-  const Sweep& sweep = study.sweep;
-  Json json;
-  json["title"] = study.title.empty() ? Json(nullptr) : Json(study.title);
-  json["data_set"] = arguments.output;
-  json["plot"] = arguments.plot.empty() ? Json(nullptr) : Json(arguments.plot);
-  json["designs"] = sweep.size();
-  json["axes"] = Json::array();
-  for (const SweepAxis& axis : sweep.axes) json["axes"].push_back({{"name", axis.name}, {"count", axis.count}});
-  json["computed"] = result.progress.computed;
-  json["resumed"] = result.resumed;
-  json["computing_time_s"] = result.progress.seconds;
-  json["recomputed"] = result.digest.recomputed;
-  for (int s = 0; s < sweep_status_count; ++s) {
-    json["status"][name_of(SweepStatus(s))] = result.digest.designs[std::size_t(s)];
-  }
-  const auto best = [&](const SweepBest& b, Metric metric) {
-    const auto& found = b.design();
-    if (!found) return Json(nullptr);
-    Json entry;
-    entry["index"] = found->index;
-    entry[metric_info(metric).key] = found->value;
-    const auto place = places(sweep, found->index);
-    for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
-      const SweepAxis& axis = sweep.axes[a];
-      for (std::size_t q = 0; q < axis.quantities.size(); ++q) {
-        const SweptQuantity& quantity = axis.quantities[q];
-        const bool choice = quantity.kind == SweptQuantity::Kind::choice;
-        entry["parameters"][quantity.key] = choice ? Json(quantity.labels[place[a]]) : Json(axis.value(q, place[a]));
-      }
-    }
-    return entry;
-  };
-  json["max_lift_mean"] = best(result.digest.lift, Metric::lift_mean);
-  json["max_efficiency_system"] = best(result.digest.efficiency, Metric::efficiency_system);
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
 /// "sse2, avx2 or avx512"
 std::string known_instruction_sets() {
   std::string names;
@@ -283,7 +243,7 @@ int sweep_on_rank_0(const SweepArguments& arguments, Ranks* ranks) {
     plot_sweep(study, options.output, drawn, *format, plot->temporary());
     plot->commit();
   }
-  print(arguments.json ? json_summary(study, result, arguments) : text);
+  print(arguments.json ? json_sweep(study, result, arguments.output, arguments.plot) : text);
   return done;
 }
 

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "report/report_tools.hpp"
 #include "wingbeat/core/cancellation.hpp"
 #include "wingbeat/core/names.hpp"
 #include "wingbeat/files/file_record.hpp"
@@ -211,10 +212,13 @@ inline ForEach side_by_side(int threads) {
   };
 }
 
-/// What a study found, as `--json` and as the program's readable report.
-inline py::dict told(const std::string& json, const std::string& text) {
+/// A tree of a result as dicts, lists, texts and numbers.
+py::object object_of(const detail::Json& tree);
+
+/// What a study found: the values of `--json`, and the program's readable report.
+inline py::dict reported(const detail::Json& values, const std::string& text) {
   py::dict result;
-  result["json"] = json;
+  result["values"] = object_of(values);
   result["text"] = text;
   return result;
 }

@@ -227,6 +227,35 @@ py::dict start_up(const Design<double>& design, const std::string& condition, do
 
 }  // namespace
 
+py::object object_of(const detail::Json& tree) {
+  using Kind = detail::Json::value_t;
+  switch (tree.type()) {
+    case Kind::object: {
+      py::dict object;
+      for (const auto& [key, value] : tree.items()) object[py::str(key)] = object_of(value);
+      return object;
+    }
+    case Kind::array: {
+      py::list list;
+      for (const detail::Json& value : tree) list.append(object_of(value));
+      return list;
+    }
+    case Kind::string: {
+      // Bytes of a user's file that are not UTF-8 are replaced, as in text.
+      const auto& text = tree.get_ref<const std::string&>();
+      return py::reinterpret_steal<py::object>(PyUnicode_DecodeUTF8(text.data(), Py_ssize_t(text.size()), "replace"));
+    }
+    case Kind::boolean: return py::bool_(tree.get<bool>());
+    case Kind::number_integer: return py::int_(tree.get<std::int64_t>());
+    case Kind::number_unsigned: return py::int_(tree.get<std::uint64_t>());
+    case Kind::number_float: {
+      const double x = tree.get<double>();
+      return std::isfinite(x) ? py::object(py::float_(x)) : py::object(py::none());
+    }
+    default: return py::none();
+  }
+}
+
 py::dict outcome_of(const RunResult& found) {
   py::dict result;
   result["status"] = unreached(found) ? name_of(SweepStatus::unreached) : name_of(found.status);

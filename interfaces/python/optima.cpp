@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "binding.hpp"
+#include "report/result_trees.hpp"
 #include "wingbeat/files/optimise_file.hpp"
 #include "wingbeat/report/optimise_report.hpp"
 #include "wingbeat/report/pareto_report.hpp"
@@ -26,8 +27,9 @@ py::dict find_best(OptimiseFile study, int threads) {
   });
   const MotorTrial* best = best_trial(study, trials);
   const bool single = trials.size() == 1 && !trials[0].motor;
-  py::dict result = single ? told(json_optimum(study, trials[0].result), text_optimum(study, trials[0].result))
-                           : told(json_motors(study, trials), text_motors(study, trials));
+  py::dict result = single
+                        ? reported(detail::optimum_tree(study, trials[0].result), text_optimum(study, trials[0].result))
+                        : reported(detail::motors_tree(study, trials), text_motors(study, trials));
   result["design"] = best ? py::cast(best->result.design) : py::none();
   return result;
 }
@@ -42,7 +44,7 @@ py::dict find_front(const OptimiseFile& file, int threads, const std::vector<std
     const auto tell = [&](std::uint64_t done, std::uint64_t designs) { watch.report({designs, done, done, 0.0}); };
     return pareto_front(study, evolve, start_up_in_time(), side_by_side(threads), tell);
   });
-  py::dict result = told(json_front(file, study, found), text_front(file, study, found));
+  py::dict result = reported(detail::front_tree(file, study, found), text_front(file, study, found));
   py::list vehicles, picks, metrics, parameters, keys;
   for (const ParetoDesign& design : found.front) vehicles.append(vehicle_of(study, design));
   if (!found.front.empty()) {

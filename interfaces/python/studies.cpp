@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "binding.hpp"
+#include "report/result_trees.hpp"
 #include "wingbeat/files/bench_file.hpp"
 #include "wingbeat/files/datasheet_file.hpp"
 #include "wingbeat/files/design_parameter.hpp"
@@ -91,7 +92,7 @@ py::dict endurance(const Design<double>& design, bool allow_extrapolation) {
   EnduranceOptions options;
   options.allow_extrapolation = allow_extrapolation;
   const EnduranceResult found = listening([&] { return simulate_discharge(design, options); });
-  py::dict result = told(json_endurance(found), text_endurance(design, found));
+  py::dict result = reported(detail::endurance_tree(found), text_endurance(design, found));
   const auto column = [&](const auto& value) {
     std::vector<double> numbers;
     numbers.reserve(found.rows.size());
@@ -116,7 +117,7 @@ py::dict identify(const std::string& file, std::optional<double> frequency, bool
   sheet.assume_steel_cylinder |= assume_steel_cylinder;
   sheet.assume_typical_damping |= assume_typical_damping;
   const MotorIdentification found = listening([&] { return identify_motor(sheet, frequency); });
-  py::dict result = told(json_identification(found, sheet), text_identification(found, sheet));
+  py::dict result = reported(detail::identification_tree(found, sheet), text_identification(found, sheet));
   result["motor"] =
       found.complete()
           ? py::object(py::str(motor_section(found, sheet, "Identified by wingbeat " WINGBEAT_VERSION, stated)))
@@ -137,8 +138,8 @@ py::dict fit(const std::string& file, const std::vector<std::string>& overrides,
     if (compare_friction_laws) candidates = compare_friction(bench, design_parameter, {}, for_each);
     return true;
   });
-  py::dict result = told(json_fit(bench, found, candidates),
-                         text_fit(bench, found) + (candidates.empty() ? "" : text_friction(candidates)));
+  py::dict result = reported(detail::fit_tree(bench, found, candidates),
+                             text_fit(bench, found) + (candidates.empty() ? "" : text_friction(candidates)));
   result["design"] = found.misfit ? py::none() : py::cast(found.design);
   return result;
 }
@@ -153,7 +154,7 @@ py::dict tolerance(const std::string& file, const std::vector<std::string>& over
         solve_sweep(tolerance_sweep(study), threads, [&watch](const SweepProgress& now) { watch.report(now); });
     return assess_tolerance(study, columns, start_up_in_time());
   });
-  return told(json_tolerance(study, found), text_tolerance(study, found));
+  return reported(detail::tolerance_tree(study, found), text_tolerance(study, found));
 }
 
 py::dict linearise(const Design<double>& design, const std::string& condition, std::optional<double> frequency,
@@ -167,7 +168,7 @@ py::dict linearise(const Design<double>& design, const std::string& condition, s
   options.hinge_offset = hinge_offset;
   options.allocation_maps = maps;
   const ControlModels found = listening([&] { return control_models(design, options); });
-  return told(json_control(found, WINGBEAT_VERSION), text_control(found));
+  return reported(detail::control_tree(found, WINGBEAT_VERSION), text_control(found));
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "report/report_tools.hpp"
+#include "report/control_tree.hpp"
 #include "wingbeat/files/toml_text.hpp"
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/report/report.hpp"
@@ -13,121 +13,7 @@
 namespace wingbeat {
 namespace {
 
-using detail::Json, detail::number_or_null;
-
-// ---- JSON
-
-Json signals(const std::vector<CycleSignal>& of) {
-  Json list = Json::array();
-  for (const CycleSignal& s : of)
-    list.push_back({{"name", s.name}, {"unit", s.unit}, {"value", number_or_null(s.value)}});
-  return list;
-}
-
-Json rows_of(const Eigen::MatrixXd& m) {
-  Json rows = Json::array();
-  for (Eigen::Index r = 0; r < m.rows(); ++r) {
-    Json row = Json::array();
-    for (Eigen::Index c = 0; c < m.cols(); ++c) row.push_back(number_or_null(m(r, c)));
-    rows.push_back(std::move(row));
-  }
-  return rows;
-}
-
-Json json_of(const AllocationMap& map) {
-  Json of = {{"input", name_of(map.input)}, {"unit", unit_of(map.input)}};
-  Json inputs = Json::array();
-  for (const AllocationPoint& p : map.points) inputs.push_back(number_or_null(p.input));
-  of["values"] = std::move(inputs);
-  for (const AllocationColumn& c : allocation_columns) {
-    Json column = Json::array();
-    for (const AllocationPoint& p : map.points) column.push_back(number_or_null(p.*c.member));
-    of[c.name] = std::move(column);
-  }
-  for (const AllocationSlope& s : allocation_slopes) {
-    const AllocationPoint& slope = map.*s.member;
-    Json by_name = {{"at", number_or_null(slope.input)}};
-    for (const AllocationColumn& c : allocation_columns) by_name[c.name] = number_or_null(slope.*c.member);
-    of[s.name] = std::move(by_name);
-  }
-  return of;
-}
-
-Json json_of(const BodyDerivatives& body) {
-  Json of;
-  for (int row = 0; row < 6; ++row) {
-    for (int column = 0; column < 6; ++column) {
-      of[fmt::format("{}_{}", body_loads[std::size_t(row)], body_motions[std::size_t(column)])] =
-          number_or_null(body(row, column));
-    }
-  }
-  return of;
-}
-
-Json json_of(const LinearModel& model) {
-  const CycleMap& map = model.map;
-  Json modes = Json::array(), responses;
-  for (const CycleMode& m : model.modes) {
-    modes.push_back({{"multiplier_real", m.multiplier.real()},
-                     {"multiplier_imaginary", m.multiplier.imag()},
-                     {"time_constant_s", number_or_null(m.time_constant)},
-                     {"natural_frequency_rad_per_s", number_or_null(m.natural_frequency)},
-                     {"damping_ratio", number_or_null(m.damping_ratio)},
-                     {"settled", m.settled}});
-  }
-  for (std::size_t input = 0; input < map.inputs.size(); ++input) {
-    Json outputs;
-    const Eigen::MatrixXd& response = model.step_responses[input];
-    for (std::size_t k = 0; k < map.outputs.size(); ++k) {
-      Json column = Json::array();
-      for (const double y : response.col(Eigen::Index(k))) column.push_back(number_or_null(y));
-      outputs[map.outputs[k].name] = std::move(column);
-    }
-    responses[map.inputs[input].name] = std::move(outputs);
-  }
-  const ContinuousModel& c = model.continuous;
-  return {{"period_s", map.period},
-          {"states", signals(map.states)},
-          {"inputs", signals(map.inputs)},
-          {"outputs", signals(map.outputs)},
-          {"A", rows_of(map.a)},
-          {"B", rows_of(map.b)},
-          {"C", rows_of(map.c)},
-          {"D", rows_of(map.d)},
-          {"steady_gain", rows_of(model.steady_gain)},
-          {"modes", std::move(modes)},
-          {"continuous",
-           {{"states", signals(c.states)},
-            {"A", rows_of(c.a)},
-            {"B", rows_of(c.b)},
-            {"C", rows_of(c.c)},
-            {"D", rows_of(c.d)}}},
-          {"step_responses", std::move(responses)}};
-}
-
-Json tree_of(const ControlModels& models, const std::string& version) {
-  const RunResult& at = models.linear.operating_point;
-  Json tree = {{"written_by", fmt::format("Written by wingbeat {} linearise", version)},
-               {"vehicle", at.design.name},
-               {"condition", name_of(models.options.at.condition)},
-               {"status", name_of(at.status)},
-               {"status_detail", describe(at)},
-               {"domain", name_of(at.domain)},
-               {"voltage_v", number_or_null(at.metrics[Metric::voltage])},
-               {"frequency_hz", number_or_null(at.metrics[Metric::frequency])},
-               {"lift_mean_n", number_or_null(at.metrics[Metric::lift_mean])}};
-  if (!models.linear.model) {
-    tree["model"] = nullptr;
-    return tree;
-  }
-  tree["model"] = json_of(*models.linear.model);
-  Json maps = Json::array();
-  for (const AllocationMap& map : models.maps) maps.push_back(json_of(map));
-  tree["static_maps"] = std::move(maps);
-  tree["hinge_offset_m"] = models.options.hinge_offset;
-  if (models.body) tree["body_derivatives"] = json_of(*models.body);
-  return tree;
-}
+using detail::Json;
 
 // ---- TOML
 
@@ -236,12 +122,8 @@ void put_map(std::string& text, const AllocationMap& map) {
 
 }  // namespace
 
-std::string json_control(const ControlModels& models, const std::string& version) {
-  return detail::dumped(tree_of(models, version));
-}
-
 std::string toml_control(const ControlModels& models, const std::string& version) {
-  Json tree = tree_of(models, version);
+  Json tree = detail::control_tree(models, version);
   std::string text = fmt::format("# {}\n", tree["written_by"].get<std::string>());
   tree.erase("written_by");
   put_toml(tree, "", text);

@@ -9,16 +9,16 @@
 #include <stdexcept>
 #include <vector>
 
+#include "report/described.hpp"
 #include "report/figure.hpp"
 #include "report/layout.hpp"
-#include "report/report_tools.hpp"
+#include "report/result_schemas.hpp"
+#include "report/result_trees.hpp"
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/report/report.hpp"
 
 namespace wingbeat {
 namespace {
-
-using detail::Json, detail::number_or_null;
 
 double ratio(double a, double b) { return b > 0.0 ? a / b : absent; }
 
@@ -68,15 +68,6 @@ std::pair<std::size_t, DomainStatus> outside(const EnduranceResult& result) {
 
 bool of_a_flight(Metric metric) { return metric == Metric::hover || metric == Metric::endurance; }
 
-Json metrics_json(const Metrics<double>& metrics) {
-  Json json = Json::object();
-  for (int m = 0; m < metric_count; ++m) {
-    if (of_a_flight(Metric(m))) continue;
-    json[metric_info(Metric(m)).key] = number_or_null(metrics.values[std::size_t(m)]);
-  }
-  return json;
-}
-
 bool heated(const Flight& f) { return std::isfinite(f.last.metrics[Metric::winding_temperature]); }
 
 std::string duration(double seconds) {
@@ -123,59 +114,109 @@ const char* name_of(Hover hover) {
   return "unknown";
 }
 
+namespace described {
+namespace {
+
+Json history_of(const Flight& flight) {
+  Json history = Json::object();
+  for (const Column& c : columns) {
+    for (const EnduranceRow& row : flight.rows) history[c.key].push_back(detail::number_or_null(row.*c.value));
+  }
+  for (const Metric m : {Metric::voltage, Metric::current_mean, Metric::frequency, Metric::power_electrical,
+                         Metric::power_aerodynamic, Metric::lift_mean, Metric::lift_to_weight,
+                         Metric::efficiency_system, Metric::winding_temperature, Metric::case_temperature}) {
+    if (lacking_of_heat(m, {}) && !heated(flight)) continue;
+    const char* key = metric_info(m).key;
+    for (const EnduranceRow& row : flight.rows) history[key].push_back(detail::number_or_null(row.metrics[m]));
+  }
+  for (const EnduranceRow& row : flight.rows) history["domain"].push_back(name_of(row.domain));
+  return history;
+}
+
+const Description<EnduranceRow>& moment_description() {
+  using R = EnduranceRow;
+  static const Description<R> description =
+      Description<R>()
+          .always("time_s", "s", "since the start", &R::time, schema::any_number)
+          .always("charge", "1", "state of charge", &R::charge, schema::any_number)
+          .always("open_circuit_voltage_v", "V", "of the battery", &R::open_circuit_voltage, schema::any_number)
+          .all_of(cycle_metrics_description(), &R::metrics);
+  return description;
+}
+
+/// A number of the flight, where it flaps at all.
+template <class Value>
+auto of_the_flight(Value value) {
+  return [value](const EnduranceResult& r) {
+    return r.rows.empty() ? std::nullopt : std::optional<double>(std::invoke(value, Flight(r)));
+  };
+}
+
+const Description<EnduranceResult>& endurance_description() {
+  using R = EnduranceResult;
+  const auto row = [](bool last) {
+    return [last](const R& r) {
+      return r.rows.empty() ? nullptr : last ? &r.rows.back().metrics : &r.rows.front().metrics;
+    };
+  };
+  static const Description<R> description =
+      Description<R>()
+          .always(
+              "status", "", "at the start", [](const R& r) { return Json(name_of(r.status)); },
+              schema::or_null(schema::statuses()))
+          .always("status_detail", "", "a sentence with the evidence", [](const R& r) { return describe(r); })
+          .always("hover", "",
+                  "whether and how long the lift carries the weight: unknown, never, outside domain, lost, kept",
+                  [](const R& r) { return name_of(r.hover); })
+          .always("hover_s", "s", "flight time until lift falls below the weight", &R::hover_time)
+          .always("end", "", "what ends the flight", [](const R& r) { return name_of(r.end); })
+          .always("endurance_s", "s", "flight time until the battery's end", &R::endurance, schema::any_number)
+          .always("domain", "", "inside, or the limits that are left during the flight",
+                  [](const R& r) {
+                    return r.rows.empty() ? std::nullopt : std::optional<std::string>(name_of(outside(r).second));
+                  })
+          .part("hover_lost", "when lift falls below the weight", moment_description(), &R::hover_lost)
+          .always("charge_initial", "1", "state of charge at the start",
+                  of_the_flight([](const Flight& f) { return f.rows.front().charge; }))
+          .always("charge_final", "1", "state of charge at the end",
+                  of_the_flight([](const Flight& f) { return f.last.charge; }))
+          .always("charge_drawn_c", "C", "charge drawn from the battery", of_the_flight(&Flight::drawn))
+          .always("energy_chemical_j", "J", "energy that the battery gave, its own losses included",
+                  of_the_flight(&Flight::chemical))
+          .always("energy_electrical_j", "J", "energy delivered at the terminals",
+                  of_the_flight([](const Flight& f) { return f.last.energy_electrical; }))
+          .always("energy_internal_j", "J", "energy lost inside the battery",
+                  of_the_flight([](const Flight& f) { return f.last.energy_internal; }))
+          .always("energy_aerodynamic_j", "J", "energy given to the air",
+                  of_the_flight([](const Flight& f) { return f.last.energy_aerodynamic; }))
+          .always("current_mean_a", "A", "mean current from the battery", of_the_flight(&Flight::current))
+          .always("power_electrical_w", "W", "mean power at the terminals", of_the_flight(&Flight::power))
+          .always("power_aerodynamic_w", "W", "mean power to the air", of_the_flight(&Flight::aerodynamic))
+          .always("lift_mean_n", "N", "mean lift of the flight", of_the_flight(&Flight::lift))
+          .always("efficiency_system", "1", "energy to the air over energy at the terminals",
+                  of_the_flight(&Flight::efficiency))
+          .part("initial", "metrics at the start", cycle_metrics_description(), row(false))
+          .part("final", "metrics at the end", cycle_metrics_description(), row(true))
+          .always(
+              "history", "", "lists of one value for each row of the flight",
+              [](const R& r) { return r.rows.empty() ? Json(nullptr) : history_of(Flight(r)); },
+              schema::or_null(
+                  schema::by_name(schema::listed(schema::either({schema::number_if_any, schema::any_text})))));
+  return description;
+}
+
+}  // namespace
+
+Json endurance_schema() { return endurance_description().schema(); }
+
+}  // namespace described
+
+detail::Json detail::endurance_tree(const EnduranceResult& result) {
+  return described::endurance_description().json(result);
+}
+
 std::string json_endurance(const EnduranceResult& result) {
-  Json json;
-  json["status"] = name_of(result.status);
-  json["status_detail"] = describe(result);
-  json["hover"] = name_of(result.hover);
-  json["hover_s"] = number_or_null(result.hover_time());
-  json["end"] = name_of(result.end);
-  json["endurance_s"] = result.endurance();
-  json["domain"] = result.rows.empty() ? Json(nullptr) : Json(name_of(outside(result).second));
-  Json moment = nullptr;
-  if (const auto& at = result.hover_lost) {
-    moment = {{"time_s", at->time}, {"charge", at->charge}, {"open_circuit_voltage_v", at->open_circuit_voltage}};
-    moment.update(metrics_json(at->metrics));
-  }
-  json["hover_lost"] = moment;
-  if (!result.rows.empty()) {
-    const Flight f(result);
-    json["charge_initial"] = f.rows.front().charge;
-    json["charge_final"] = f.last.charge;
-    json["charge_drawn_c"] = f.drawn;
-    json["energy_chemical_j"] = f.chemical;
-    json["energy_electrical_j"] = f.last.energy_electrical;
-    json["energy_internal_j"] = f.last.energy_internal;
-    json["energy_aerodynamic_j"] = f.last.energy_aerodynamic;
-    json["current_mean_a"] = number_or_null(f.current);
-    json["power_electrical_w"] = number_or_null(f.power);
-    json["power_aerodynamic_w"] = number_or_null(f.aerodynamic);
-    json["lift_mean_n"] = number_or_null(f.lift);
-    json["efficiency_system"] = number_or_null(f.efficiency);
-    json["initial"] = metrics_json(f.rows.front().metrics);
-    json["final"] = metrics_json(f.last.metrics);
-    Json history = Json::object();
-    for (const Column& c : columns) {
-      for (const EnduranceRow& row : f.rows) history[c.key].push_back(number_or_null(row.*c.value));
-    }
-    for (const Metric m : {Metric::voltage, Metric::current_mean, Metric::frequency, Metric::power_electrical,
-                           Metric::power_aerodynamic, Metric::lift_mean, Metric::lift_to_weight,
-                           Metric::efficiency_system, Metric::winding_temperature, Metric::case_temperature}) {
-      if (lacking_of_heat(m, {}) && !heated(f)) continue;
-      const char* key = metric_info(m).key;
-      for (const EnduranceRow& row : f.rows) history[key].push_back(number_or_null(row.metrics[m]));
-    }
-    for (const EnduranceRow& row : f.rows) history["domain"].push_back(name_of(row.domain));
-    json["history"] = history;
-  } else {
-    for (const char* key :
-         {"charge_initial", "charge_final", "charge_drawn_c", "energy_chemical_j", "energy_electrical_j",
-          "energy_internal_j", "energy_aerodynamic_j", "current_mean_a", "power_electrical_w", "power_aerodynamic_w",
-          "lift_mean_n", "efficiency_system", "initial", "final", "history"}) {
-      json[key] = nullptr;
-    }
-  }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return detail::endurance_tree(result).dump(2, ' ', false, detail::Json::error_handler_t::replace) + "\n";
 }
 
 std::string text_endurance(const Design<double>& design, const EnduranceResult& result) {

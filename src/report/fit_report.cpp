@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "files/design_write.hpp"
-#include "report/report_tools.hpp"
+#include "report/fit_rows.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/report/describe.hpp"
@@ -14,13 +14,14 @@
 #include "wingbeat/report/report.hpp"
 
 namespace wingbeat {
-namespace {
 
-using detail::Json, detail::number_or_null;
-
-std::string row_name(const BenchFit& fit, std::size_t log, std::size_t row) {
+std::string detail::row_name(const BenchFit& fit, std::size_t log, std::size_t row) {
   return fmt::format("{}:{}", fit.logs[log].file, fit.logs[log].rows[row].line);
 }
+
+namespace {
+
+using detail::row_name;
 
 std::string given_text(const BenchFit& fit, std::size_t log, std::size_t row) {
   const BenchLog& l = fit.logs[log];
@@ -283,93 +284,6 @@ std::string text_friction(std::span<const FrictionCandidate> candidates) {
     break;
   }
   return text;
-}
-
-std::string json_fit(const BenchFit& fit, const FitResult& r, std::span<const FrictionCandidate> candidates) {
-  Json json;
-  json["converged"] = r.converged;
-  json["message"] = r.message;
-  json["misfit"] = r.misfit ? Json(describe(*r.misfit)) : Json(nullptr);
-  json["chi_square"] = r.chi_square;
-  json["degrees_of_freedom"] = r.degrees_of_freedom;
-  json["p_value"] = number_or_null(r.p_value);
-  json["aicc"] = number_or_null(r.aicc);
-  json["starts"] = {{"same_least", r.starts_converged}, {"higher", r.starts_elsewhere}};
-  json["parameters"] = Json::array();
-  for (const FittedParameter& p : r.parameters) {
-    Json profile = Json::array();
-    for (const auto& point : p.profile) profile.push_back({point.value, number_or_null(point.excess)});
-    json["parameters"].push_back({{"key", p.key},
-                                  {"unit", p.unit},
-                                  {"value", p.value ? Json(*p.value) : Json(nullptr)},
-                                  {"standard_error", p.value ? number_or_null(p.standard_error) : Json(nullptr)},
-                                  {"lower_95", number_or_null(p.lower_95)},
-                                  {"upper_95", number_or_null(p.upper_95)},
-                                  {"profile_lower_95", number_or_null(p.profile_lower_95)},
-                                  {"profile_upper_95", number_or_null(p.profile_upper_95)},
-                                  {"quantile_95", number_or_null(p.quantile_95)},
-                                  {"profile_rise_95", number_or_null(p.profile_rise_95)},
-                                  {"at_bound", p.at_bound},
-                                  {"reason", describe(p.undetermined)},
-                                  {"profile", profile}});
-  }
-  const auto matrix = [](const std::vector<std::vector<double>>& m) {
-    Json rows = Json::array();
-    for (const auto& row : m) {
-      Json line = Json::array();
-      for (const double x : row) line.push_back(number_or_null(x));
-      rows.push_back(line);
-    }
-    return rows;
-  };
-  json["covariance"] = matrix(r.covariance);
-  json["correlation"] = matrix(r.correlation);
-  json["directions"] = Json::array();
-  for (const FitDirection& d : r.directions) {
-    json["directions"].push_back({{"components", d.components}, {"relative_error", number_or_null(d.relative_error)}});
-  }
-  json["verdict"] = r.misfit ? std::vector<std::string>{"nothing can be said of it while the model misses the data"}
-                             : describe(r.findings);
-  json["conditions"] = Json::array();
-  for (const ConditionShare& c : r.conditions) {
-    Json without = Json::array();
-    for (const double e : c.error_without) without.push_back(number_or_null(e));
-    json["conditions"].push_back({{"name", c.name},
-                                  {"values", c.points},
-                                  {"rms_residual", number_or_null(c.rms)},
-                                  {"share", c.share},
-                                  {"standard_error_without", without}});
-  }
-  json["unreached"] = Json::array();
-  for (const UnreachedRow& u : r.unreached) {
-    json["unreached"].push_back(
-        {{"row", row_name(fit, u.log, u.row)}, {"status", name_of(u.status)}, {"detail", describe(u)}});
-  }
-  json["points"] = Json::array();
-  for (const FitPoint& p : r.points) {
-    json["points"].push_back({{"row", row_name(fit, p.log, p.row)},
-                              {"quantity", name_of(fit.logs[p.log].columns[p.column])},
-                              {"measured", p.measured},
-                              {"fitted", number_or_null(p.fitted)},
-                              {"deviation", p.deviation}});
-  }
-  json["friction"] = candidates.empty() ? Json(nullptr) : Json::array();
-  for (const FrictionCandidate& c : candidates) {
-    Json left = Json::object();
-    for (const auto& [name, rms] : c.left_out) left[name] = number_or_null(rms);
-    Json parameters = Json::object();
-    for (const FittedParameter& p : c.result.parameters) parameters[p.key] = p.value ? Json(*p.value) : Json(nullptr);
-    json["friction"].push_back({{"law", name_of(c.law)},
-                                {"aicc", number_or_null(c.result.aicc)},
-                                {"aicc_excess", number_or_null(c.aicc_excess)},
-                                {"parameters", parameters},
-                                {"left_out", left},
-                                {"prediction_error", number_or_null(c.prediction_error)},
-                                {"spring_frequency_hz", number_or_null(c.spring_frequency)},
-                                {"power_springs_off_w", number_or_null(c.power_springs_off)},
-                                {"power_springs_on_w", number_or_null(c.power_springs_on)}});
-  }
-  return detail::dumped(json);
 }
 
 std::string fitted_vehicle_head(const BenchFit& fit, const FitResult& r, const std::string& made_by) {

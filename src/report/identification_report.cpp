@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <utility>
 
-#include "report/report_tools.hpp"
+#include "report/described.hpp"
+#include "report/result_schemas.hpp"
+#include "report/result_trees.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/units.hpp"
@@ -108,39 +109,99 @@ std::string text_identification(const MotorIdentification& motor, const MotorDat
   return text;
 }
 
+namespace described {
+namespace {
+
+struct IdentificationFound {
+  const MotorIdentification& motor;
+  const MotorDatasheet& sheet;
+};
+struct ConstantFound {
+  const Constant& constant;
+  const IdentifiedConstant& found;
+};
+
+const Description<ConstantFound>& constant_description() {
+  using R = ConstantFound;
+  static const Description<R> description =
+      Description<R>()
+          .always("value", "", "null where the sheet does not determine it", [](const R& r) { return r.found.value; })
+          .always(
+              "standard_error", "", "in the same unit",
+              [](const R& r) { return r.found.value ? Json(r.found.standard_error) : Json(nullptr); },
+              schema::number_if_any)
+          .always("unit", "", "", [](const R& r) { return r.constant.unit; })
+          .always("source", "", "what it rests on, or what is missing", [](const R& r) { return r.found.source; });
+  return description;
+}
+
+const Description<DatasheetCheck>& check_description() {
+  using R = DatasheetCheck;
+  static const Description<R> description =
+      Description<R>()
+          .always("name", "", "", &R::name)
+          .always("published", "", "", &R::published, schema::any_number)
+          .always("identified", "", "what the identified motor gives", &R::identified, schema::any_number)
+          .always("deviation", "1", "identified / published - 1", &R::deviation, schema::any_number);
+  return description;
+}
+
+const Description<Contradiction>& contradiction_description() {
+  using R = Contradiction;
+  static const Description<R> description =
+      Description<R>()
+          .always("constant", "", "", &R::constant)
+          .always("first", "", "what the first value rests on", &R::first)
+          .always("second", "", "what the second value rests on", &R::second)
+          .always("first_value", "", "", &R::first_value, schema::any_number)
+          .always("second_value", "", "", &R::second_value, schema::any_number)
+          .always("size", "1", "relative difference", &R::size, schema::any_number)
+          .always("sentence", "", "", &sentence);
+  return description;
+}
+
+const Description<IdentificationFound>& identification_description() {
+  using R = IdentificationFound;
+  static const Description<R> description =
+      Description<R>()
+          .always("name", "", "of the data sheet", [](const R& r) { return r.sheet.name; })
+          .always("complete", "", "all constants are determined", [](const R& r) { return r.motor.complete(); })
+          .always(
+              "birge_ratio", "1", "factor on the standard errors for the scatter of the sheet's values, at least 1",
+              [](const R& r) { return r.motor.birge_ratio; }, schema::any_number)
+          .always("gear_efficiency", "1", "of the sheet", [](const R& r) { return r.sheet.gear_efficiency; })
+          .always(
+              "motor", "", "constants at the output shaft",
+              [](const R& r) {
+                Json motor = Json::object();
+                for (const Constant& c : constants) {
+                  motor[std::string(c.key)] = constant_description().json({c, r.motor.*c.value});
+                }
+                return motor;
+              },
+              schema::by_name(constant_description().schema()))
+          .parts("checks", "values of the sheet beside those of the identified motor", check_description(),
+                 [](const R& r) { return r.motor.checks; })
+          .parts("contradictions", "ways to one constant that do not agree, largest first", contradiction_description(),
+                 [](const R& r) { return r.motor.contradictions; })
+          .always("remarks", "", "assumptions made", [](const R& r) { return r.motor.remarks; })
+          .always("missing", "", "constants that are not determined, and what would determine them",
+                  [](const R& r) { return r.motor.missing; });
+  return description;
+}
+
+}  // namespace
+
+Json identification_schema() { return identification_description().schema(); }
+
+}  // namespace described
+
+detail::Json detail::identification_tree(const MotorIdentification& motor, const MotorDatasheet& sheet) {
+  return described::identification_description().json({motor, sheet});
+}
+
 std::string json_identification(const MotorIdentification& motor, const MotorDatasheet& sheet) {
-  using Json = nlohmann::ordered_json;
-  const auto number = [](const std::optional<double>& x) { return x && std::isfinite(*x) ? Json(*x) : Json(nullptr); };
-  Json json;
-  json["name"] = sheet.name;
-  json["complete"] = motor.complete();
-  json["birge_ratio"] = motor.birge_ratio;
-  json["gear_efficiency"] = number(sheet.gear_efficiency);
-  for (const Constant& c : constants) {
-    const IdentifiedConstant& x = motor.*c.value;
-    json["motor"][std::string(c.key)] = {{"value", number(x.value)},
-                                         {"standard_error", x.value ? Json(x.standard_error) : Json(nullptr)},
-                                         {"unit", c.unit},
-                                         {"source", x.source}};
-  }
-  json["checks"] = Json::array();
-  for (const DatasheetCheck& c : motor.checks) {
-    json["checks"].push_back(
-        {{"name", c.name}, {"published", c.published}, {"identified", c.identified}, {"deviation", c.deviation}});
-  }
-  json["contradictions"] = Json::array();
-  for (const Contradiction& c : motor.contradictions) {
-    json["contradictions"].push_back({{"constant", c.constant},
-                                      {"first", c.first},
-                                      {"second", c.second},
-                                      {"first_value", c.first_value},
-                                      {"second_value", c.second_value},
-                                      {"size", c.size},
-                                      {"sentence", sentence(c)}});
-  }
-  json["remarks"] = motor.remarks;
-  json["missing"] = motor.missing;
-  return detail::dumped(json);
+  return detail::dumped(detail::identification_tree(motor, sheet));
 }
 
 }  // namespace wingbeat

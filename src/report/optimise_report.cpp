@@ -12,7 +12,7 @@
 namespace wingbeat {
 namespace {
 
-using detail::Json, detail::optimum_width, detail::number_or_null, detail::with_unit;
+using detail::optimum_width, detail::with_unit;
 
 /// What holds an optimum and how flat it is.
 template <class Out>
@@ -44,55 +44,6 @@ void text_neighbourhood(Out& out, const OptimiseStudy& study, const OptimiseResu
                      p.parameter.unit == "1" ? "" : " " + p.parameter.unit);
     }
   }
-}
-
-Json result_json(const OptimiseFile& file, const OptimiseResult& r) {
-  const OptimiseStudy& study = file.study;
-  Json json;
-  const char* outcomes[] = {"found", "infeasible", "nothing_flaps"};
-  json["outcome"] = outcomes[int(r.outcome)];
-  json["objective"] = metric_info(study.objective).key;
-  json["maximise"] = study.maximise;
-  for (int s = 0; s < sweep_status_count; ++s) {
-    json["screened"][name_of(SweepStatus(s))] = r.screen.status[std::size_t(s)];
-  }
-  json["screened"]["feasible"] = r.screen.feasible;
-  json["screened"]["outside_domain"] = r.screen.outside;
-  json["allow_extrapolation"] = study.allow_extrapolation;
-  if (r.outcome != OptimiseResult::Outcome::found) {
-    json["reason"] = describe(nothing_found(study, r));
-    for (const char* key : {"domain", "limited_by_domain", "value", "parameters", "metrics", "active", "directions",
-                            "starts", "evaluations"}) {
-      json[key] = nullptr;
-    }
-    return json;
-  }
-  json["reason"] = nullptr;
-  json["domain"] = name_of(r.point.domain);
-  json["limited_by_domain"] =
-      std::any_of(r.active.begin(), r.active.end(), [](const ActiveLimit& a) { return a.domain; });
-  json["value"] = r.point.metrics[study.objective];
-  for (std::size_t k = 0; k < study.parameters.size(); ++k) {
-    json["parameters"][study.parameters[k].parameter.key] = r.parameters[k];
-  }
-  for (int m = 0; m < metric_count; ++m) {
-    json["metrics"][metric_info(Metric(m)).key] = number_or_null(r.point.metrics.values[std::size_t(m)]);
-  }
-  json["active"] = Json::array();
-  for (const ActiveLimit& a : r.active) {
-    json["active"].push_back({{"limit", a.name}, {"sensitivity", number_or_null(a.sensitivity)}});
-  }
-  json["directions"] = Json::array();
-  for (const FlatDirection& d : r.directions) {
-    json["directions"].push_back({{"flat", d.flat},
-                                  {"width", d.width},
-                                  {"curvature", number_or_null(d.curvature)},
-                                  {"from", d.from},
-                                  {"to", d.to}});
-  }
-  json["starts"] = {{"all", r.starts}, {"same", r.same}, {"elsewhere", r.elsewhere}, {"failed", r.failed}};
-  json["evaluations"] = r.evaluations;
-  return json;
 }
 
 }  // namespace
@@ -236,29 +187,6 @@ std::string text_motors(const OptimiseFile& file, std::span<const MotorTrial> tr
     return text + (file.motors.empty() ? "\nNone of the choices does it.\n" : "\nNo motor of the catalogue does it.\n");
   }
   return text + "\nBest: " + name_of(file, *best) + "\n\n" + text_optimum(file, best->result);
-}
-
-std::string json_optimum(const OptimiseFile& file, const OptimiseResult& result) {
-  return detail::dumped(result_json(file, result));
-}
-
-std::string json_motors(const OptimiseFile& file, std::span<const MotorTrial> trials) {
-  const MotorTrial* best = best_trial(file, trials);
-  Json json;
-  json["best"] = best ? Json(name_of(file, *best)) : Json(nullptr);
-  for (const MotorTrial& t : trials) {
-    Json entry = {{"model", t.motor ? Json(t.motor->model) : Json(nullptr)}};
-    if (t.refused()) {
-      entry["refused"] = t.motor->refused;
-    } else {
-      for (std::size_t k = 0; k < file.choices.size(); ++k) {
-        entry["choices"][file.choices[k].parameter.key] = t.choices[k];
-      }
-      entry["result"] = result_json(file, t.result);
-    }
-    json[file.motors.empty() ? "choices" : "motors"].push_back(entry);
-  }
-  return detail::dumped(json);
 }
 
 }  // namespace wingbeat

@@ -9,6 +9,7 @@
 #include "report/layout.hpp"
 #include "report/report_tools.hpp"
 #include "report/sweep_scales.hpp"
+#include "report/vehicle_counts.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/netcdf.hpp"
 #include "wingbeat/report/optimise_report.hpp"
@@ -18,7 +19,7 @@
 namespace wingbeat {
 namespace {
 
-using detail::Json, detail::optimum_width, detail::number_or_null, detail::with_unit;
+using detail::optimum_width, detail::with_unit;
 const char* algorithm_of(EvolutionMethod method) { return method == EvolutionMethod::nsga2 ? "NSGA-II" : "MOEA/D"; }
 
 /// Parameters, then choices: all that a design of the study sets.
@@ -59,22 +60,6 @@ std::vector<Metric> limited_metrics(const ParetoStudy& study) {
   return metrics;
 }
 
-struct VehicleCount {
-  std::size_t solved = 0, flap = 0, feasible = 0, front = 0;
-};
-
-std::vector<VehicleCount> count_vehicles(const ParetoStudy& study, const ParetoResult& r) {
-  std::vector<VehicleCount> counts(study.vehicles.size());
-  for (std::size_t n = 0; n < r.evaluated.size(); ++n) {
-    VehicleCount& c = counts[r.evaluated[n].vehicle];
-    ++c.solved;
-    c.flap += r.status[n] == SweepStatus::flapping;
-    c.feasible += r.feasible[n];
-  }
-  for (const ParetoDesign& d : r.front) ++counts[d.vehicle].front;
-  return counts;
-}
-
 /// The picked designs in the order of the front, each with its shortest name.
 std::vector<std::pair<std::string, std::size_t>> columns_of(const ParetoStudy& study, const ParetoResult& r) {
   std::vector<std::pair<std::string, std::size_t>> columns;
@@ -90,6 +75,18 @@ std::vector<std::pair<std::string, std::size_t>> columns_of(const ParetoStudy& s
 }
 
 }  // namespace
+
+std::vector<VehicleCount> count_vehicles(const ParetoStudy& study, const ParetoResult& r) {
+  std::vector<VehicleCount> counts(study.vehicles.size());
+  for (std::size_t n = 0; n < r.evaluated.size(); ++n) {
+    VehicleCount& c = counts[r.evaluated[n].vehicle];
+    ++c.solved;
+    c.flap += r.status[n] == SweepStatus::flapping;
+    c.feasible += r.feasible[n];
+  }
+  for (const ParetoDesign& d : r.front) ++counts[d.vehicle].front;
+  return counts;
+}
 
 std::vector<std::string> pick_names(std::span<const ParetoObjective> objectives, std::size_t even) {
   std::vector<std::string> names;
@@ -193,60 +190,6 @@ std::string text_front(const OptimiseFile& file, const ParetoStudy& study, const
   }
   motors();
   return text;
-}
-
-std::string json_front(const OptimiseFile& file, const ParetoStudy& study, const ParetoResult& r) {
-  Json json;
-  const char* outcomes[] = {"found", "infeasible", "nothing_flaps"};
-  json["outcome"] = outcomes[int(r.outcome)];
-  for (const ParetoObjective& o : study.objectives) {
-    json["objectives"].push_back({{"metric", metric_info(o.metric).key}, {"maximise", o.maximise}});
-  }
-  json["method"] = name_of(study.evolution.method);
-  json["population"] = study.evolution.population;
-  json["generations"] = study.evolution.generations;
-  for (int s = 0; s < sweep_status_count; ++s) {
-    json["screened"][name_of(SweepStatus(s))] = r.screen.status[std::size_t(s)];
-  }
-  json["screened"]["feasible"] = r.screen.feasible;
-  json["screened"]["outside_domain"] = r.screen.outside;
-  json["allow_extrapolation"] = study.allow_extrapolation;
-  if (!file.motors.empty()) {
-    const std::vector<VehicleCount> counts = count_vehicles(study, r);
-    for (std::size_t v = 0; v < counts.size(); ++v) {
-      json["motors"].push_back({{"model", study.vehicles[v].name},
-                                {"solved", counts[v].solved},
-                                {"flap", counts[v].flap},
-                                {"feasible", counts[v].feasible},
-                                {"front", counts[v].front}});
-    }
-    for (const MotorCandidate& motor : file.motors) {
-      if (!motor.refused.empty()) json["motors"].push_back({{"model", motor.model}, {"refused", motor.refused}});
-    }
-  }
-  if (r.outcome != ParetoResult::Outcome::found) {
-    json["reason"] = describe(nothing_found(study, r));
-    return detail::dumped(json);
-  }
-  json["evaluations"] = r.evaluated.size();
-  for (std::size_t m = 0; m < study.objectives.size(); ++m) {
-    json["reference"][metric_info(study.objectives[m].metric).key] = r.reference[m];
-  }
-  json["hypervolume"] = r.hypervolume;
-  json["hypervolume_history"] = r.history;
-  for (const auto& [name, place] : named_picks(study, r)) json["picks"][name] = place;
-  const auto parameters = parameters_of(study);
-  for (const ParetoDesign& d : r.front) {
-    Json entry;
-    if (!study.vehicles[d.vehicle].name.empty()) entry["motor"] = study.vehicles[d.vehicle].name;
-    for (std::size_t k = 0; k < parameters.size(); ++k) entry["parameters"][parameters[k]->key] = d.parameters[k];
-    for (int m = 0; m < metric_count; ++m) {
-      entry["metrics"][metric_info(Metric(m)).key] = number_or_null(d.metrics.values[std::size_t(m)]);
-    }
-    entry["domain"] = name_of(d.domain);
-    json["front"].push_back(std::move(entry));
-  }
-  return detail::dumped(json);
 }
 
 void write_front(const ParetoStudy& study, const ParetoResult& r, const std::string& title, const std::string& input,

@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <cctype>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "files/toml_document.hpp"
+#include "report/described.hpp"
+#include "report/result_schemas.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/files/toml_text.hpp"
 #include "wingbeat/files/units.hpp"
@@ -19,8 +20,6 @@
 
 namespace wingbeat {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 bool holds(std::string_view text, std::string_view part) {
   const auto same = [](char a, char b) {
@@ -210,21 +209,59 @@ std::string text_keys(const std::string& filter) {
   return text;
 }
 
+namespace described {
+namespace {
+
+std::optional<std::string> text_if_any(std::string text) {
+  return text.empty() ? std::nullopt : std::optional(std::move(text));
+}
+
+const Description<ParameterText>& key_description() {
+  using R = ParameterText;
+  std::vector<std::string> names;
+  for (const auto& key : parameter_table<double>()) names.emplace_back(key.path);
+  static const Description<R> description =
+      Description<R>()
+          .always("key", "", "", &R::path, schema::one_of(std::move(names)))
+          .always("unit", "", "null of texts", [](const R& r) { return text_if_any(std::string(r.unit)); })
+          .always("range", "", "", [](const R& r) { return std::string(r.range.text); })
+          .always("default", "", "", [](const R& r) { return default_text(r); })
+          .always("meaning", "", "", &R::meaning)
+          .always("only_with", "", "what the vehicle file must state beside it",
+                  [](const R& r) { return text_if_any(choices_of(r.only_with)); });
+  return description;
+}
+
+const Description<MetricInfo>& metric_description() {
+  using R = MetricInfo;
+  static const Description<R> description = Description<R>()
+                                                .always("key", "", "", &R::key, schema::metric_key())
+                                                .always("unit", "", "", &R::unit)
+                                                .always("long_name", "", "", &R::long_name);
+  return description;
+}
+
+/// Listed by pointers: tables of the library, filtered.
+template <class R>
+Json listed(const char* name, const Description<R>& description, const std::vector<const R*>& found) {
+  Json list = Json::array();
+  for (const R* r : found) list.push_back(description.json(*r));
+  return {{name, std::move(list)}};
+}
+template <class R>
+Json listed_schema(const char* name, const Description<R>& description) {
+  return schema::object({{name, schema::listed(description.schema())}});
+}
+
+}  // namespace
+
+Json keys_schema() { return listed_schema("keys", key_description()); }
+Json metrics_schema() { return listed_schema("metrics", metric_description()); }
+
+}  // namespace described
+
 std::string json_keys(const std::string& filter) {
-  Json json;
-  json["keys"] = Json::array();
-  for (const ParameterText* key : keys_with(filter)) {
-    const auto text_or_null = [](std::string_view text) {
-      return text.empty() ? Json(nullptr) : Json(std::string(text));
-    };
-    json["keys"].push_back({{"key", std::string(key->path)},
-                            {"unit", text_or_null(key->unit)},
-                            {"range", std::string(key->range.text)},
-                            {"default", default_text(*key)},
-                            {"meaning", std::string(key->meaning)},
-                            {"only_with", text_or_null(choices_of(key->only_with))}});
-  }
-  return json.dump(2) + "\n";
+  return described::listed("keys", described::key_description(), keys_with(filter)).dump(2) + "\n";
 }
 
 std::string text_metrics(const std::string& filter) {
@@ -236,12 +273,7 @@ std::string text_metrics(const std::string& filter) {
 }
 
 std::string json_metrics(const std::string& filter) {
-  Json json;
-  json["metrics"] = Json::array();
-  for (const MetricInfo* metric : metrics_with(filter)) {
-    json["metrics"].push_back({{"key", metric->key}, {"unit", metric->unit}, {"long_name", metric->long_name}});
-  }
-  return json.dump(2) + "\n";
+  return described::listed("metrics", described::metric_description(), metrics_with(filter)).dump(2) + "\n";
 }
 
 std::string vehicle_file_reference() {

@@ -17,34 +17,10 @@ namespace {
 
 constexpr int table_width = 88;
 
-using detail::Json, detail::number_or_null;
-
 std::map<TransientEvent::Kind, int> event_counts(const TransientResult& start_up) {
   std::map<TransientEvent::Kind, int> counts;
   for (const TransientEvent& event : start_up.events) ++counts[event.kind];
   return counts;
-}
-
-Json start_up_json(const TransientResult& s) {
-  Json events = Json::object();
-  using Kind = TransientEvent::Kind;
-  const auto counts = event_counts(s);
-  for (const Kind kind : {Kind::revolution, Kind::force_sign_change, Kind::standstill, Kind::breakaway, Kind::jam}) {
-    const auto found = counts.find(kind);
-    std::string name = name_of(kind);
-    for (char& c : name) c = c == ' ' || c == '-' ? '_' : c;
-    events[name] = found == counts.end() ? 0 : found->second;
-  }
-  return {{"settled", s.settled},
-          {"time_to_steady_s", number_or_null(s.time_to_steady)},
-          {"inrush_current_a", number_or_null(s.inrush_current)},
-          {"inrush_current_time_s", number_or_null(s.inrush_current_time)},
-          {"simulated_time_s", number_or_null(s.end_time)},
-          {"cycles", s.cycles},
-          {"averaged_cycles", s.averaged_cycles},
-          {"cycle_scatter", number_or_null(s.cycle_scatter)},
-          {"current_ripple_a", s.current_ripple ? Json(*s.current_ripple) : Json(nullptr)},
-          {"events", events}};
 }
 
 /// Builds the lines of the table: groups of quantities, names left, values right.
@@ -221,21 +197,6 @@ std::vector<std::string> warnings_of(const RunResult& result) {
     sentences.push_back(winding_warning(*result.hot_winding, allowed));
   }
   return sentences;
-}
-
-std::string json_report(const RunResult& result) {
-  Json json;
-  json["status"] = result.status == FlappingStatus::undecided ? Json(nullptr) : Json(name_of(result.status));
-  json["status_detail"] = describe(result);
-  const bool assessed = result.status == FlappingStatus::flapping && std::isfinite(result.metrics[Metric::frequency]);
-  json["domain"] = assessed ? Json(name_of(result.domain)) : Json(nullptr);
-  json["domain_detail"] = result.domain_evidence.empty() ? Json(nullptr) : Json(describe(result.domain_evidence));
-  json["warnings"] = warnings_of(result);
-  const auto& table = metric_table();
-  for (std::size_t m = 0; m < table.size(); ++m) json[table[m].key] = number_or_null(result.metrics.values[m]);
-  if (result.design.supply.type == SupplyType::pwm) json["supply_duty"] = result.design.supply.duty;
-  if (result.start_up) json["start_up"] = start_up_json(*result.start_up);
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string text_report(const RunResult& result, const RunOptions& options) {

@@ -77,8 +77,4 @@ inline Json with_text(Json schema, const std::string& text) {
   return schema;
 }
 
-inline const Json domain = with_text(any_text, "inside, or the limits that are left");
-
-Json linearise_schema();
-
 }  // namespace wingbeat::schema

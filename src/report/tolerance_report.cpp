@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/described.hpp"
 #include "report/figure.hpp"
 #include "report/layout.hpp"
-#include "report/report_tools.hpp"
+#include "report/result_schemas.hpp"
+#include "report/result_trees.hpp"
 #include "report/sweep_scales.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/units.hpp"
@@ -17,8 +19,6 @@
 
 namespace wingbeat {
 namespace {
-
-using detail::Json, detail::number_or_null;
 
 std::string percent(double x) {
   // Never rounded to certainty.
@@ -54,10 +54,6 @@ std::string limits_beyond(const ToleranceResult& result) {
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", result.beyond[k], domain_limit_table()[k].key);
   }
   return text;
-}
-
-Json probability(const Probability& p) {
-  return {{"count", p.count}, {"share", p.share}, {"lower_95", p.lower}, {"upper_95", p.upper}};
 }
 
 }  // namespace
@@ -179,57 +175,179 @@ std::string text_tolerance(const ToleranceStudy& study, const ToleranceResult& r
   return text;
 }
 
-std::string json_tolerance(const ToleranceStudy& study, const ToleranceResult& result) {
-  Json json;
-  json["title"] = study.title;
-  json["method"] = name_of(study.method);
-  json["samples"] = base_count(study);
-  json["vehicles"] = result.vehicles;
-  for (std::size_t k = 0; k < study.parameters.size(); ++k) {
-    const UncertainParameter& p = study.parameters[k];
-    json["parameters"].push_back({{"key", p.parameter.key},
-                                  {"unit", p.parameter.unit},
-                                  {"mean", p.distribution.mean()},
-                                  {"deviation", std::sqrt(p.distribution.variance())},
-                                  {"correlated", is_correlated(study, k)}});
+namespace described {
+namespace {
+
+/// What a tolerance study's --json is made from.
+struct ToleranceFound {
+  const ToleranceStudy& study;
+  const ToleranceResult& result;
+};
+struct UncertainKey {
+  const ToleranceStudy& study;
+  std::size_t place;
+  const UncertainParameter& parameter() const { return study.parameters[place]; }
+};
+struct OutputFound {
+  const ToleranceOutput& output;
+  const std::vector<ToleranceFactor>& factors;
+};
+/// What a factor contributes to an output's variance; each where it was computed.
+struct Contribution {
+  std::string name;
+  const double* linear_share;
+  const SobolIndex* index;
+};
+
+std::vector<Contribution> contributions(const OutputFound& found) {
+  const ToleranceOutput& o = found.output;
+  std::vector<Contribution> all;
+  if (o.linear_share.empty() && !o.indices) return all;
+  for (std::size_t i = 0; i < found.factors.size(); ++i) {
+    all.push_back({found.factors[i].name, o.linear_share.empty() ? nullptr : &o.linear_share[i],
+                   o.indices ? &o.indices->inputs[i] : nullptr});
   }
+  return all;
+}
+
+Description<Contribution> contribution_description() {
+  using R = Contribution;
+  const auto indexed = [](auto value) {
+    using V = decltype(value(SobolIndex{}));
+    return [value](const R& r) { return r.index ? std::optional<V>(value(*r.index)) : std::nullopt; };
+  };
+  using Interval = std::array<double, 2>;
+  return Description<R>()
+      .always("name", "", "the parameter, or the correlated ones together", &R::name)
+      .sometimes("linear_share", "1", "share of the variance, from the gradient", &R::linear_share)
+      .sometimes("first", "1", "Sobol index of first order", indexed([](const SobolIndex& s) { return s.first; }))
+      .sometimes("first_95", "1", "95 % interval",
+                 indexed([](const SobolIndex& s) { return Interval{s.first_lower, s.first_upper}; }))
+      .sometimes("total", "1", "total Sobol index", indexed([](const SobolIndex& s) { return s.total; }))
+      .sometimes("total_95", "1", "95 % interval",
+                 indexed([](const SobolIndex& s) { return Interval{s.total_lower, s.total_upper}; }));
+}
+
+const Description<OutputFound>& output_description() {
+  using R = OutputFound;
+  const auto number = [](double ToleranceOutput::* member) {
+    return [member](const R& r) { return r.output.*member; };
+  };
+  using O = ToleranceOutput;
+  static const Description<R> description =
+      Description<R>()
+          .always("mean", "", "of the samples that count; the metric's unit", number(&O::mean))
+          .always("deviation", "", "standard deviation", number(&O::deviation))
+          .always("least", "", "", number(&O::least))
+          .always("percentile_2_5", "", "", number(&O::p025))
+          .always("median", "", "", number(&O::median))
+          .always("percentile_97_5", "", "", number(&O::p975))
+          .always("most", "", "", number(&O::most))
+          .always("linear_mean", "", "predicted from the gradient at the parameters' means", number(&O::linear_mean))
+          .always("linear_deviation", "", "the same of the standard deviation", number(&O::linear_deviation))
+          .sometimes(
+              "factors", "", "where the variance comes from",
+              [](const R& r) {
+                const auto all = contributions(r);
+                return all.empty() ? std::nullopt : std::optional(contribution_description().list(all));
+              },
+              schema::listed(contribution_description().schema()))
+          .sometimes("rows", "", "rows of the sample behind the Sobol indices", [](const R& r) {
+            return r.output.indices ? std::optional(r.output.indices->rows) : std::nullopt;
+          });
+  return description;
+}
+
+const Description<Probability>& probability_description() {
+  using R = Probability;
+  static const Description<R> description =
+      Description<R>()
+          .always("count", "", "samples", &R::count)
+          .always("share", "1", "of all samples", &R::share, schema::any_number)
+          .always("lower_95", "1", "lower end of its 95 % interval", &R::lower, schema::any_number)
+          .always("upper_95", "1", "upper end", &R::upper, schema::any_number);
+  return description;
+}
+
+Description<ToleranceResult> probabilities_description() {
+  using R = ToleranceResult;
+  Description<R> d;
   for (int s = 0; s < sweep_status_count; ++s) {
-    json["probability"][name_of(SweepStatus(s))] = probability(result.status[std::size_t(s)]);
+    d.part(name_of(SweepStatus(s)), "", probability_description(),
+           [s](const R& r) -> const Probability& { return r.status[std::size_t(s)]; });
   }
-  json["probability"]["outside_domain"] = probability(result.outside);
-  for (std::size_t k = 0; k < result.beyond.size(); ++k) {
-    json["outside_domain"][domain_limit_table()[k].key] = result.beyond[k];
+  return d.part("outside_domain", "flapping, but outside the model's domain", probability_description(), &R::outside)
+      .part("hover", "lift carries the weight; null without a mass", probability_description(), &R::hover)
+      .always("hover_linear", "1", "the share predicted from the gradient", &R::linear_hover);
+}
+
+Description<ToleranceResult> limits_description() {
+  Description<ToleranceResult> d;
+  for (std::size_t k = 0; k < domain_limit_table().size(); ++k) {
+    d.always(domain_limit_table()[k].key, "", domain_limit_table()[k].meaning,
+             [k](const ToleranceResult& r) { return r.beyond[k]; });
   }
-  json["allow_extrapolation"] = study.allow_extrapolation;
-  json["probability"]["hover"] = result.hover ? probability(*result.hover) : Json(nullptr);
-  json["probability"]["hover_linear"] = number_or_null(result.linear_hover);
-  const auto inputs = factors(study);
-  for (const ToleranceOutput& o : result.outputs) {
-    Json& entry = json["outputs"][o.name];
-    entry = {{"mean", number_or_null(o.mean)},
-             {"deviation", number_or_null(o.deviation)},
-             {"least", number_or_null(o.least)},
-             {"percentile_2_5", number_or_null(o.p025)},
-             {"median", number_or_null(o.median)},
-             {"percentile_97_5", number_or_null(o.p975)},
-             {"most", number_or_null(o.most)},
-             {"linear_mean", number_or_null(o.linear_mean)},
-             {"linear_deviation", number_or_null(o.linear_deviation)}};
-    for (std::size_t i = 0; i < inputs.size(); ++i) {
-      Json factor = {{"name", inputs[i].name}};
-      if (!o.linear_share.empty()) factor["linear_share"] = number_or_null(o.linear_share[i]);
-      if (o.indices) {
-        const SobolIndex& s = o.indices->inputs[i];
-        factor["first"] = number_or_null(s.first);
-        factor["first_95"] = {number_or_null(s.first_lower), number_or_null(s.first_upper)};
-        factor["total"] = number_or_null(s.total);
-        factor["total_95"] = {number_or_null(s.total_lower), number_or_null(s.total_upper)};
-      }
-      if (factor.size() > 1) entry["factors"].push_back(factor);
-    }
-    if (o.indices) entry["rows"] = o.indices->rows;
-  }
-  return detail::dumped(json);
+  return d;
+}
+
+const Description<ToleranceFound>& tolerance_description() {
+  using R = ToleranceFound;
+  const auto result = [](const R& r) -> const ToleranceResult& { return r.result; };
+  const auto parameters = [](const R& r) {
+    std::vector<UncertainKey> all;
+    for (std::size_t k = 0; k < r.study.parameters.size(); ++k) all.push_back({r.study, k});
+    return all;
+  };
+  using P = UncertainKey;
+  static const Description<P> parameter =
+      Description<P>()
+          .always("key", "", "of the vehicle file", [](const P& p) { return p.parameter().parameter.key; })
+          .always("unit", "", "", [](const P& p) { return p.parameter().parameter.unit; })
+          .always(
+              "mean", "", "", [](const P& p) { return p.parameter().distribution.mean(); }, schema::any_number)
+          .always(
+              "deviation", "", "standard deviation",
+              [](const P& p) { return std::sqrt(p.parameter().distribution.variance()); }, schema::any_number)
+          .always("correlated", "", "varies together with others",
+                  [](const P& p) { return is_correlated(p.study, p.place); });
+  static const Description<R> description =
+      Description<R>()
+          .always("title", "", "", [](const R& r) { return r.study.title; })
+          .always("method", "", "", [](const R& r) { return r.study.method; })
+          .always("samples", "", "vehicles of the plain sample", [](const R& r) { return base_count(r.study); })
+          .always("vehicles", "", "solved, those for Sobol indices included",
+                  [](const R& r) { return r.result.vehicles; })
+          .parts("parameters", "the uncertain ones", parameter, parameters)
+          .part("probability", "", probabilities_description(), result)
+          .part("outside_domain", "samples outside each limit of the model's domain", limits_description(), result)
+          .always("allow_extrapolation", "", "samples outside the domain count",
+                  [](const R& r) { return r.study.allow_extrapolation; })
+          .always(
+              "outputs", "", "by metric; flaps and hovers are 0 or 1",
+              [](const R& r) {
+                const auto inputs = factors(r.study);
+                Json outputs = Json::object();
+                for (const ToleranceOutput& o : r.result.outputs) {
+                  outputs[o.name] = output_description().json({o, inputs});
+                }
+                return outputs;
+              },
+              schema::by_name(output_description().schema()));
+  return description;
+}
+
+}  // namespace
+
+Json tolerance_schema() { return tolerance_description().schema(); }
+
+}  // namespace described
+
+detail::Json detail::tolerance_tree(const ToleranceStudy& study, const ToleranceResult& result) {
+  return described::tolerance_description().json({study, result});
+}
+
+std::string json_tolerance(const ToleranceStudy& study, const ToleranceResult& result) {
+  return detail::dumped(detail::tolerance_tree(study, result));
 }
 
 void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns, const ToleranceOutput& output,

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "wingbeat/core/text.hpp"
@@ -19,30 +18,6 @@ bool has_outcome(const Claim& c) {
   return c.outcome != StatementOutcome::not_checkable && c.outcome != StatementOutcome::no_published_value;
 }
 bool predicted(const Claim& c) { return c.basis == Basis::predicted && has_outcome(c) && !c.restates; }
-
-constexpr const char* keys[variant_count] = {"rod-force", "virtual-work", "virtual-work-own-calibration"};
-
-using Json = nlohmann::ordered_json;
-Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
-
-Json counts(const Score& s, std::size_t variants) {
-  Json json;
-  json["reproduced"] = s.reproduced;
-  json["depends_on_the_formulation"] = s.depends;
-  json["not_reproduced"] = s.not_reproduced;
-  for (std::size_t f = 0; f < variants; ++f) json["met"][keys[f]] = s.met[f];
-  return json;
-}
-
-Json json_score(const Assessment& a, const std::string& reading) {
-  Json json{{"statements", a.score(reading).statements}};
-  json.update(counts(a.score(reading), a.variants));
-  json["with_changes_as_ratios"] = counts(a.score(reading, Scoring::ratios), a.variants);
-  json["within_printed_digits"] = counts(a.score(reading, Scoring::digits), a.variants);
-  return json;
-}
-
-Json json_interval(const Interval& i) { return std::isfinite(i.low) ? Json{i.low, i.high} : Json(nullptr); }
 
 /// "29.1 to 37.0 %" in the number's own unit and digits.
 std::string interval_words(const Interval& i, const Claim& c) {
@@ -163,91 +138,6 @@ std::string text_claims(const PublishedFile& file, const Assessment& a) {
                 96, 0));
   }
   return text;
-}
-
-std::string json_claims(const PublishedFile& file, const Assessment& a) {
-  Json json;
-  json["title"] = file.title;
-  json["source"] = file.source;
-  json["predictions"] = json_score(a, "");
-  for (const char* reading : readings) {
-    const Score s = a.score(reading);
-    if (s.statements == 0) continue;
-    Json& entry = json["section_5"][detail::underscored(reading)] = json_score(a, reading);
-    entry["crank_radius_rms_deviation"] = number(s.rms_crank_radius);
-  }
-  json["calibration"] = Json::array();
-  for (const MomentCalibration& c : a.calibrations) {
-    json["calibration"].push_back({{"formulation", name_of(c.formulation)},
-                                   {"s2_m4", number(c.s2)},
-                                   {"s3_m5", number(c.s3)},
-                                   {"lift_peak_n", {number(c.lift_peak[0]), number(c.lift_peak[1])}},
-                                   {"published_n", {c.wanted[0], c.wanted[1]}},
-                                   {"met", c.met}});
-  }
-  json["answer"] = Json::array();
-  for (std::size_t f = 0; f < a.variants; ++f) {
-    const TitleAnswer& t = a.answers[f];
-    json["answer"].push_back({{"formulation", variant_name(f)},
-                              {"frequency_hz", number(t.frequency)},
-                              {"power_electrical_w", number(t.with)},
-                              {"power_electrical_w_95", json_interval(t.with_interval)},
-                              {"without_friction_w", number(t.without)},
-                              {"without_friction_w_95", json_interval(t.without_interval)},
-                              {"change", number(t.change)},
-                              {"change_95", json_interval(t.change_interval)},
-                              {"residual", number(t.residual_with)},
-                              {"residual_without_friction", number(t.residual_without)},
-                              {"inside_the_domain", !t.outside}});
-  }
-  json["samples"] = a.samples;
-  json["claims"] = Json::array();
-  for (const Claim& c : a.claims) {
-    Json entry;
-    entry["statement"] = c.statement;
-    entry["where"] = c.where;
-    entry["basis"] = name_of(c.basis);
-    entry["counted"] = c.counted();
-    entry["reading"] = c.reading.empty() ? Json(nullptr) : Json(c.reading);
-    entry["unit"] = c.unit;
-    entry["published"] = c.published ? Json(*c.published) : Json(nullptr);
-    entry["published_text"] = c.published_text;
-    entry["tolerance"] = number(c.tolerance);
-    entry["printed_digits"] = number(c.digits);
-    entry["searched_in"] = c.window.empty() ? Json(nullptr) : Json(c.window);
-    for (std::size_t f = 0; f < a.variants; ++f) {
-      Json& side = entry[keys[f]];
-      side["value"] = number(c.ours[f]);
-      side["text"] = c.ours_text[f];
-      side["deviation"] = number(c.deviation[f]);
-      side["ratio_deviation"] = number(c.ratio_deviation[f]);
-      side["interval_95"] = json_interval(c.interval[f]);
-      side["residual"] = number(c.residual[f]);
-      side["domain"] = domain_text(c, f);
-      side["within"] = has_outcome(c) ? Json(c.within[f]) : Json(nullptr);
-    }
-    entry["outcome"] = name_of(c.outcome);
-    for (const auto& [key, said] :
-         {std::pair("reason", &c.reason), std::pair("note", &c.note), std::pair("erratum", &c.erratum)}) {
-      if (!said->empty()) entry[key] = *said;
-    }
-    json["claims"].push_back(entry);
-  }
-  json["friction_laws"] = Json::array();
-  for (const LawPrediction& p : a.laws) {
-    Json entry;
-    entry["law"] = name_of(p.law.law);
-    entry["drag_factor"] = p.drag_factor;
-    entry["formulation"] = variant_name(p.variant);
-    entry["coefficient"] = p.law.coefficient;
-    entry["calibrated"] = p.law.calibrated;
-    entry["frequency_hz"] = number(p.law.frequency);
-    entry["values"] = p.tests.size();
-    entry["rms_deviation"] = number(p.rms);
-    entry["rms_deviation_as_ratios"] = number(p.rms_of_ratios);
-    json["friction_laws"].push_back(entry);
-  }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string csv_claims(const Assessment& a) {

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "report/described.hpp"
+#include "reproduction/claim_schemas.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/report/report.hpp"
 
@@ -91,31 +92,65 @@ std::string text_comparison(const PublishedFile& file, const Comparison& compari
   return text;
 }
 
+namespace described {
+namespace {
+
+struct ComparisonFound {
+  const PublishedFile& file;
+  const Comparison& comparison;
+};
+
+const Description<ComparedValue>& compared_value_description() {
+  using R = ComparedValue;
+  const auto published = [](auto member) { return [member](const R& r) { return r.published.*member; }; };
+  using P = PublishedValue;
+  static const Description<R> description =
+      Description<R>()
+          .always("voltage_v", "V", "stated for the value", published(&P::voltage))
+          .always("frequency_hz", "Hz", "stated for the value", published(&P::frequency))
+          .always("metric", "", "", published(&P::metric))
+          .always("design", "", "null of a ratio or a change",
+                  [](const R& r) {
+                    return r.published.relative_to ? std::nullopt : std::optional<std::string>(r.published.design);
+                  })
+          .always("ratio", "", "the two designs of a ratio or a change",
+                  [](const R& r) {
+                    using Designs = std::array<std::string, 2>;
+                    const auto& second = r.published.relative_to;
+                    return second ? std::optional(Designs{r.published.design, *second}) : std::nullopt;
+                  })
+          .always("change", "", "a ratio less 1", published(&P::change))
+          .always("published", "", "the metric's unit; of a ratio or a change a number", published(&P::published),
+                  schema::any_number)
+          .always("computed", "", "the same of the model", &R::computed)
+          .always("deviation", "1", "of the computed value from the published one", &R::deviation)
+          .always("tolerance", "1", "of the deviation", published(&P::tolerance), schema::any_number)
+          .always("within", "", "the deviation is within the tolerance", &R::within);
+  return description;
+}
+
+const Description<ComparisonFound>& comparison_description() {
+  using R = ComparisonFound;
+  static const Description<R> description =
+      Description<R>()
+          .always("title", "", "", [](const R& r) { return r.file.title; })
+          .always("source", "", "", [](const R& r) { return r.file.source; })
+          .always("outside", "", "values outside their tolerances", [](const R& r) { return r.comparison.outside(); })
+          .parts("values", "", compared_value_description(), [](const R& r) { return r.comparison.values; });
+  return description;
+}
+
+}  // namespace
+
+Json comparison_schema() { return comparison_description().schema(); }
+
+}  // namespace described
+
 std::string json_comparison(const PublishedFile& file, const Comparison& comparison) {
-  using Json = nlohmann::ordered_json;
-  const auto number = [](double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); };
-  Json json;
-  json["title"] = file.title;
-  json["source"] = file.source;
-  json["outside"] = comparison.outside();
-  json["values"] = Json::array();
-  for (const ComparedValue& v : comparison.values) {
-    const PublishedValue& p = v.published;
-    Json entry;
-    entry["voltage_v"] = p.voltage ? Json(*p.voltage) : Json(nullptr);
-    entry["frequency_hz"] = p.frequency ? Json(*p.frequency) : Json(nullptr);
-    entry["metric"] = metric_info(p.metric).key;
-    entry["design"] = p.relative_to ? Json(nullptr) : Json(p.design);
-    entry["ratio"] = p.relative_to ? Json{p.design, *p.relative_to} : Json(nullptr);
-    entry["change"] = p.change;
-    entry["published"] = p.published;
-    entry["computed"] = number(v.computed);
-    entry["deviation"] = number(v.deviation);
-    entry["tolerance"] = p.tolerance;
-    entry["within"] = v.within;
-    json["values"].push_back(entry);
-  }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return described::comparison_description()
+             .json({file, comparison})
+             .dump(2, ' ', false, detail::Json::error_handler_t::replace) +
+         "\n";
 }
 
 }  // namespace wingbeat

@@ -1,6 +1,9 @@
-"""What commands print with --json is what `wingbeat schema` says of it, key by key, and nothing else is."""
+"""What commands print with --json is what `wingbeat schema` says of it, key by key, and nothing else is; and every key
+that is described is written by some command."""
 
 import copy
+import importlib.machinery
+import importlib.util
 import json
 import os
 import pathlib
@@ -13,6 +16,11 @@ try:
     import jsonschema
 except ImportError:
     jsonschema = None
+
+SCRIPT = str(pathlib.Path(__file__).resolve().parents[2] / "scripts/describe-results")
+LOADER = importlib.machinery.SourceFileLoader("describe_results", SCRIPT)
+describe_results = importlib.util.module_from_spec(importlib.util.spec_from_loader("describe_results", LOADER))
+LOADER.exec_module(describe_results)
 
 PROGRAM = pathlib.Path(os.environ["WINGBEAT_PROGRAM"])
 DATA = pathlib.Path(__file__).resolve().parents[2] / "data"
@@ -79,14 +87,64 @@ count = 3
 """
 
 
+BENCH = """[bench]
+vehicle = "friction2022-springs"
+[[parameter]]
+key = "friction.radius"
+lower = 0
+upper = 8e-3
+start = 1e-3
+[deviation]
+default = { relative = 0.01 }
+[[log]]
+file = "log.csv"
+condition = "air"
+springs = true
+"""
+CHOICE = """[[parameter]]
+key = "friction.radius"
+values = ["2 mm", "2.5 mm"]
+"""
+BEYOND = """[[constraint]]
+metric = "lift_mean_n"
+at_least = "1 N"
+"""
+
+
+def described(schema):
+    """Every key of a schema, `a.b` within objects, `a[].b` within lists."""
+    return {path for path, _, _ in describe_results.members("", schema)}
+
+
+def written(schema, value, path=""):
+    """The keys of a schema that a value has."""
+    for one in describe_results.alternatives(schema):
+        if "anyOf" in schema and not jsonschema.Draft202012Validator(one).is_valid(value):
+            continue
+        if isinstance(value, list) and "items" in one:
+            for item in value:
+                yield from written(one["items"], item, path + "[]")
+        if isinstance(value, dict):
+            for key, within in value.items():
+                if key in one.get("properties", {}):
+                    here = f"{path}.{key}".lstrip(".")
+                    yield here
+                    yield from written(one["properties"][key], within, here)
+                elif isinstance(one.get("additionalProperties"), dict):
+                    yield from written(one["additionalProperties"], within, path + ".*")
+
+
 def schema_of(command):
     return json.loads(subprocess.run([PROGRAM, "schema", command], capture_output=True, text=True, check=True).stdout)
 
 
 @unittest.skipUnless(jsonschema, "python3-jsonschema is not installed")
 class Schema(unittest.TestCase):
+    maxDiff = None
+
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="wingbeat-schema-"))
+        self.seen = {}
         self.addCleanup(lambda: subprocess.run(["rm", "-r", self.folder]))
 
     def file(self, name, text):
@@ -102,6 +160,7 @@ class Schema(unittest.TestCase):
     def check(self, command, *arguments, statuses=(0,)):
         """Prints by the command and validates; what is then changed must be refused."""
         shown = self.printed(command, *arguments, statuses=statuses)
+        self.seen.setdefault(command, set()).update(written(schema_of(command), shown))
         validator = jsonschema.Draft202012Validator(schema_of(command))
         errors = [f"{'/'.join(map(str, e.absolute_path))}: {e.message[:300]}" for e in validator.iter_errors(shown)]
         self.assertEqual(errors, [], (command, *arguments))
@@ -112,6 +171,12 @@ class Schema(unittest.TestCase):
                 self.assertFalse(validator.is_valid(without), f"{command} without {key}")
         self.assertFalse(validator.is_valid({**shown, "more": 1}), f"{command} with a key more")
         return shown
+
+    def everything_is_written(self, command):
+        """By what this test has checked."""
+        keys = described(schema_of(command))
+        self.assertGreater(len(keys), 3)
+        self.assertEqual(sorted(keys - self.seen[command]), [], f"{command}: keys that no run has written")
 
     def test_schemas_are_schemas_of_every_command_with_json(self):
         listed = subprocess.run([PROGRAM, "--help"], capture_output=True, text=True, check=True).stdout
@@ -139,8 +204,11 @@ class Schema(unittest.TestCase):
         locked = self.check("run", "friction2022-springs", "--voltage", "0.8 V", statuses=(3,))
         self.assertIsNone(locked["frequency_hz"])
         self.assertIn("start_up", self.check("run", "friction2022", "--method", "transient"))
+        self.check("run", "friction2022", "--set",
+                   'supply={type="pwm", voltage="6 V", duty=0.5, frequency="20 kHz"}')
         for vehicle in ("friction2022-battery", "direct-drive", "pitch-hinge", "x-wing-crank"):
             self.check("run", vehicle)
+        self.everything_is_written("run")
 
     def test_a_wrong_value_is_refused(self):
         validator = jsonschema.Draft202012Validator(schema_of("run"))
@@ -153,49 +221,77 @@ class Schema(unittest.TestCase):
     def test_lists(self):
         self.check("keys")
         self.check("metrics", "power")
+        self.everything_is_written("keys")
+        self.everything_is_written("metrics")
 
     def test_compare(self):
         self.check("compare", DATA / "published/friction2022.toml")
+        self.everything_is_written("compare")
 
     def test_sweep(self):
         self.check("sweep", self.file("study.toml", SWEEP.format(low="2 V")), "-o", "sweep.nc")
         self.check("sweep", self.file("none.toml", SWEEP.format(low="0.1 V")), "-o", "none.nc")
+        self.everything_is_written("sweep")
 
     def test_motors(self):
         for sheet in ("0816K003SR", "pololu-1098"):
             self.check("identify-motor", DATA / f"motors/{sheet}.toml")
+        self.everything_is_written("identify-motor")
 
     def test_fit(self):
         self.check("fit", DATA / "bench/flapper.toml")
         compared = self.check("fit", DATA / "bench/flapper.toml", "--compare-friction", "--no-profiles")
         self.assertTrue(compared["friction"])
+        rows = [f"{2 + n / 2},{self.printed('run', 'friction2022-springs', '--voltage', f'{2 + n / 2} V')['frequency_hz']!r}"
+                for n in range(3)]
+        self.file("log.csv", "\n".join(["voltage_V,frequency_Hz", "0.3,2", *rows]) + "\n")
+        beyond = self.check("fit", self.file("bench.toml", BENCH), "--no-profiles", statuses=(3,))
+        self.assertEqual([row["row"] for row in beyond["unreached"]], [f"{self.folder / 'log.csv'}:2"])
+        self.everything_is_written("fit")
 
     def test_tolerance(self):
         for method in ("sobol", "monte-carlo"):
             self.check("tolerance", self.file("study.toml", TOLERANCE.format(method=method)))
+        self.everything_is_written("tolerance")
 
     def test_optimise(self):
         one = {"more": "", "upper": "4 V", "constraint": ""}
         found = self.check("optimise", self.file("one.toml", OPTIMUM.format(**one)))
         self.assertEqual(found["outcome"], "found")
-        none = one | {"constraint": '[[constraint]]\nmetric = "lift_mean_n"\nat_least = "1 N"\n'}
+        none = one | {"constraint": BEYOND}
         found = self.check("optimise", self.file("none.toml", OPTIMUM.format(**none)), statuses=(0, 1, 3))
         self.assertEqual((found["outcome"], found["value"]), ("infeasible", None))
-        motors = one | {"more": MOTORS.format(catalogue=DATA / "motors/motors.csv")}
-        self.assertIn("motors", self.check("optimise", self.file("motors.toml", OPTIMUM.format(**motors))))
+        # An optimum between the bounds, which has a direction to move along.
+        inside = OPTIMUM.replace("lift_mean_n", "efficiency_system")
+        self.check("optimise", self.file("inside.toml", inside.format(**one)))
+        catalogue = MOTORS.format(catalogue=DATA / "motors/motors.csv")
+        motors = inside.format(**one | {"more": catalogue, "upper": "12 V"}) + CHOICE
+        self.assertIn("motors", self.check("optimise", self.file("motors.toml", motors)))
+        self.check("optimise", self.file("bound.toml", OPTIMUM.format(**one) + CHOICE))
+        chosen = self.check("optimise", self.file("choice.toml", inside.format(**one) + CHOICE))
+        self.assertEqual([entry["choices"] for entry in chosen["choices"]],
+                         [{"friction.radius": 0.002}, {"friction.radius": 0.0025}])
         self.assertTrue(self.check("optimise", self.file("front.toml", FRONT))["front"])
+        self.check("optimise", self.file("motors-front.toml", FRONT + catalogue))
+        none = self.check("optimise", self.file("no-front.toml", FRONT + BEYOND), statuses=(0, 1, 3))
+        self.assertNotIn("front", none)
+        self.everything_is_written("optimise")
 
     def test_endurance(self):
-        self.check("endurance", "friction2022-battery")
+        lost = self.check("endurance", "friction2022-battery", "--set", "supply.cells=2", "--set", 'vehicle.mass="5 g"')
+        self.assertEqual(lost["hover"], "lost")
+        self.everything_is_written("endurance")
 
     def test_linearise(self):
         self.check("linearise", "friction2022", "--frequency", "22 Hz")
         self.check("linearise", "two-wing-direct-hinge")
         locked = self.check("linearise", "friction2022-springs", "--voltage", "0.5 V", statuses=(3,))
         self.assertIsNone(locked["model"])
+        self.everything_is_written("linearise")
 
     def test_reproduce(self):
         self.check("reproduce", "friction2022", "--coarse", "-o", self.folder / "reproduce")
+        self.everything_is_written("reproduce")
 
 
 if __name__ == "__main__":

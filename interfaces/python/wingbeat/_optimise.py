@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import os
 import pathlib
@@ -292,7 +291,7 @@ def _own_optimum(found: dict[str, Any], sign: float, options: dict[str, Any]) ->
         for key, value in told["parameters"].items():
             unit = parameters[key].unit
             lines.append(f"  {key:<34}{value:>14.6g} {'' if unit == '1' else unit}".rstrip())
-    made = OwnOptimum({"json": json.dumps(told), "text": "\n".join(lines) + "\n", "design": found["design"]})
+    made = OwnOptimum({"values": told, "text": "\n".join(lines) + "\n", "design": found["design"]})
     made.result = None
     if made.vehicle is not None:
         made.result = RunResult(_core.run(made.vehicle._design, **options), made.vehicle, options)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import pathlib
 import tempfile
@@ -40,7 +39,7 @@ class StudyResult(Mapping[str, Any]):
     """
 
     def __init__(self, found: dict[str, Any]) -> None:
-        self._values: dict[str, Any] = json.loads(found["json"])
+        self._values: dict[str, Any] = found["values"]
         self._text: str = found["text"]
 
     def __getitem__(self, key: str) -> Any:

@@ -5,39 +5,14 @@
 #include <iterator>
 #include <optional>
 
-#include "wingbeat/cycle/energy_audit.hpp"
-#include "wingbeat/files/units.hpp"
+#include "answers.hpp"
+#include "report/report_tools.hpp"
 #include "wingbeat/files/waveform_file.hpp"
-#include "wingbeat/report/report.hpp"
 #include "wingbeat/vehicle/drive.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat::web {
 namespace {
-
-Json number_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
-
-Json text_or_null(std::string_view text) { return text.empty() ? Json(nullptr) : Json(std::string(text)); }
-
-Json described(std::string_view key, std::string_view unit, std::string_view meaning) {
-  return {{"key", std::string(key)}, {"unit", std::string(unit)}, {"meaning", std::string(meaning)}};
-}
-
-Json balance_of(const EnergyAudit& a) {
-  return {{"electrical", a.electrical}, {"copper", a.copper}, {"viscous", a.viscous},         {"gear", a.gear},
-          {"friction", a.friction},     {"hinge", a.hinge},   {"aerodynamic", a.aerodynamic}, {"residual", a.residual},
-          {"imbalance", a.imbalance}};
-}
-
-Json evidence_of(const StatusEvidence& e) {
-  Json json = {{"angle_rad", number_or_null(e.angle)},
-               {"torque_nm", number_or_null(e.torque)},
-               {"friction_torque_nm", number_or_null(e.friction_torque)},
-               {"torque_margin_nm", number_or_null(e.torque_margin)},
-               {"locks_rad", Json::array()}};
-  for (const LockInterval& lock : e.locks) json["locks_rad"].push_back({lock.from, lock.to});
-  return json;
-}
 
 void keep_columns(std::span<const WaveformRow> rows, Columns& columns) {
   if (rows.empty()) return;
@@ -50,34 +25,6 @@ void keep_columns(std::span<const WaveformRow> rows, Columns& columns) {
 }
 
 }  // namespace
-
-Json tables_of_the_library() {
-  Json tables = {{"keys", Json::array()}, {"metrics", Json::array()}, {"waveforms", Json::array()}};
-  for (const Parameter<double>& key : parameter_table<double>()) {
-    tables["keys"].push_back({{"key", std::string(key.path)},
-                              {"unit", text_or_null(key.unit)},
-                              {"range", std::string(key.range.text)},
-                              {"lower", number_or_null(key.range.lower)},
-                              {"upper", number_or_null(key.range.upper)},
-                              {"above_lower", key.range.above_lower},
-                              {"below_upper", key.range.below_upper},
-                              {"whole", key.range.whole},
-                              {"default", default_text(key)},
-                              {"meaning", std::string(key.meaning)},
-                              {"only_with", text_or_null(key.only_with)},
-                              {"alternatives", alternatives_of(key)},
-                              {"example", text_or_null(key.example)},
-                              {"quantity", key.set ? Json(quantity_example(key.unit)) : Json(nullptr)},
-                              {"number", key.set != nullptr}});
-  }
-  for (const MetricInfo& metric : metric_table()) {
-    tables["metrics"].push_back(described(metric.key, metric.unit, metric.long_name));
-  }
-  for (const WaveformColumn& column : waveform_columns()) {
-    tables["waveforms"].push_back(described(column.name, column.unit, column.long_name));
-  }
-  return tables;
-}
 
 Json read_vehicle(const std::string& text, const std::string& name, const nlohmann::json& tables) {
   bool loaded = false;
@@ -116,7 +63,7 @@ Json values_of(const Design<double>& design) {
   for (const Parameter<double>& key : parameter_table<double>()) {
     const std::string path(key.path);
     if (key.get) {
-      if (const std::optional<double> number = key.get(design)) values[path] = number_or_null(*number);
+      if (const std::optional<double> number = key.get(design)) values[path] = detail::number_or_null(*number);
       continue;
     }
     const std::string text = key.text ? key.text(design) : std::string();
@@ -145,10 +92,7 @@ RunOptions options_of(const nlohmann::json& options) {
 Json solved(const Design<double>& design, const RunOptions& options, Columns& columns) {
   const RunResult result = solve(design, options);
   keep_columns(result.cycle, columns);
-  return {{"report", Json::parse(json_report(result))},
-          {"balance", balance_of(energy_audit(result.metrics))},
-          {"evidence", evidence_of(result.evidence)},
-          {"supply_voltage", number_or_null(result.design.supply.voltage)}};
+  return solved_answer(result);
 }
 
 Json started(const Design<double>& design, const RunOptions& options, Columns& columns) {
@@ -167,10 +111,7 @@ Json started(const Design<double>& design, const RunOptions& options, Columns& c
   keep("crank_angle_rad", &TransientSample::crank_angle);
   keep("crank_speed_rad_per_s", &TransientSample::crank_speed);
   keep("current_a", &TransientSample::current);
-  return {{"status", name_of(result.status)},
-          {"detail", describe(result.evidence)},
-          {"end_time", result.end_time},
-          {"evidence", evidence_of(result.evidence)}};
+  return start_up_answer(result);
 }
 
 Json differentiated(const Design<double>& design, const std::vector<std::string>& keys, const RunOptions& options) {
@@ -183,7 +124,8 @@ Json differentiated(const Design<double>& design, const std::vector<std::string>
   for (std::size_t k = 0; k < keys.size(); ++k) {
     Json slopes = Json::array();
     for (int m = 0; m < metric_count; ++m) {
-      slopes.push_back(found.gradients.empty() ? Json(nullptr) : number_or_null(found.gradients[k][std::size_t(m)]));
+      slopes.push_back(found.gradients.empty() ? Json(nullptr)
+                                               : detail::number_or_null(found.gradients[k][std::size_t(m)]));
     }
     json["gradients"][keys[k]] = std::move(slopes);
   }
@@ -193,26 +135,7 @@ Json differentiated(const Design<double>& design, const std::vector<std::string>
 Json mechanism_of(const Design<double>& design, const std::vector<double>& angles, Columns& columns) {
   const Vehicle<double> vehicle = resolve(design, Condition::air);
   const AnyTransmission<double>& transmission = vehicle.transmission;
-  Json json = {{"type", name_of(transmission.type)},
-               {"rotates", drive_of(vehicle).rotates},
-               {"springs", vehicle.spring.stiffness > 0.0},
-               {"pitch_hinge", pitches(vehicle)},
-               {"wing_count", vehicle.wing_count}};
-  if (transmission.type == TransmissionType::slider_crank) {
-    const SliderCrank<double>& c = transmission.slider_crank;
-    json["crank_radius"] = c.crank_radius;
-    json["rod_length"] = c.rod_length;
-    json["hinge_offset"] = c.hinge_offset;
-    json["mid_stroke_height"] = c.mid_stroke_height;
-  } else if (transmission.type == TransmissionType::four_bar) {
-    const FourBar<double>& f = transmission.four_bar;
-    json["crank_radius"] = f.crank_radius;
-    json["coupler_length"] = f.coupler_length;
-    json["rocker_length"] = f.rocker_length;
-    json["ground_length"] = f.ground_length;
-    json["ground_angle"] = f.ground_angle;
-    json["stroke_ratio"] = f.stroke_ratio;
-  }
+  Json json = mechanism_answer(vehicle);
   if (!drive_of(vehicle).rotates) return json;
   std::vector<double> stroke, height;
   for (const double theta : angles) {

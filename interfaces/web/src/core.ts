@@ -1,32 +1,11 @@
 // The library, compiled to WebAssembly, with types. All numbers are SI.
 import createCore from '#core/wingbeat-core.mjs';
 import wasmUrl from '#core/wingbeat-core.wasm?url';
+import type * as answers from './answers';
+import type {Tables} from './answers';
 
-export interface Key {
-  key: string;
-  unit: string | null;
-  range: string;
-  lower: number | null;
-  upper: number | null;
-  whole: boolean;
-  default: string;
-  meaning: string;
-  only_with: string | null;
-  alternatives: string[];
-  example: string | null;
-  quantity: string | null;
-  number: boolean;
-}
-export interface Quantity {
-  key: string;
-  unit: string;
-  meaning: string;
-}
-export interface Tables {
-  keys: Key[];
-  metrics: Quantity[];
-  waveforms: Quantity[];
-}
+export type {Balance, Evidence, Key, Quantity, Report, Tables} from './answers';
+
 export interface Problem {
   message: string;
   key?: string;
@@ -35,53 +14,10 @@ export interface Problem {
 }
 export type Columns = Record<string, Float64Array>;
 export type Values = Record<string, number | string | boolean | null>;
-export type Report = Record<string, number | string | string[] | null> & {status: string | null; status_detail: string};
-export interface Balance {
-  electrical: number;
-  copper: number;
-  viscous: number;
-  gear: number;
-  friction: number;
-  hinge: number;
-  aerodynamic: number;
-  residual: number;
-  imbalance: number;
-}
-export interface Evidence {
-  angle_rad: number | null;
-  torque_margin_nm: number | null;
-  locks_rad: [number, number][];
-}
-export interface Solved {
-  report: Report;
-  balance: Balance;
-  evidence: Evidence;
-  supply_voltage: number | null;
-  columns: Columns;
-}
-export interface StartUp {
-  status: string;
-  detail: string;
-  end_time: number;
-  evidence: Evidence;
-  columns: Columns;
-}
-export interface Mechanism {
-  type: 'slider-crank' | 'four-bar' | 'tabulated' | 'direct';
-  rotates: boolean;
-  springs: boolean;
-  pitch_hinge: boolean;
-  crank_radius: number;
-  rod_length: number;
-  hinge_offset: number;
-  mid_stroke_height: number;
-  coupler_length: number;
-  rocker_length: number;
-  ground_length: number;
-  ground_angle: number;
-  stroke_ratio: number;
-  columns: Columns;
-}
+export type Solved = answers.Solved & {columns: Columns};
+export type StartUp = answers.StartUp & {columns: Columns};
+/** Lengths are there that the kind of mechanism has. */
+export type Mechanism = Required<answers.Mechanism> & {columns: Columns};
 export interface RunOptions {
   condition?: string;
   tolerance?: number;

@@ -27,7 +27,7 @@ import {
 } from './pictures/mechanism';
 import {drawSankey} from './pictures/sankey';
 import {Playback} from './playback';
-import {showBalance, showHeadline, showMetrics} from './results';
+import {numberOf, showBalance, showHeadline, showMetrics} from './results';
 import {type Design, linkOf, runOptions, type State} from './state';
 import {shipped} from './vehicles';
 
@@ -318,8 +318,8 @@ export class Explorer {
     for (const key of keys) {
       const relative = (m: number, of: string) => {
         const slope = found[key]?.[m],
-          value = solved.report[of];
-        return typeof slope === 'number' && typeof value === 'number' && value !== 0
+          value = numberOf(solved.report, of);
+        return typeof slope === 'number' && value !== null && value !== 0
           ? (slope * (values[key] as number)) / value
           : null;
       };

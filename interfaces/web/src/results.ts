@@ -13,8 +13,10 @@ const headline: [string, string][] = [
   ['efficiency_system', 'system efficiency'],
 ];
 
-const numberOf = (report: Report | null | undefined, key: string) => {
-  const value = report?.[key];
+/** The number under a key of a run's report; null where there is none. */
+export const numberOf = (report: Report | null | undefined, key: string) => {
+  const values: Record<string, unknown> | null | undefined = report;
+  const value = values?.[key];
   return typeof value === 'number' ? value : null;
 };
 
@@ -35,7 +37,7 @@ export function showHeadline(parent: HTMLElement, solved: Solved, metrics: Quant
         ` ${report.domain_detail}`,
       ),
     );
-  for (const warning of report.warnings as string[]) parts.push(html('p', {class: 'status warning'}, warning));
+  for (const warning of report.warnings) parts.push(html('p', {class: 'status warning'}, warning));
   const list = html('dl', {});
   for (const [key, name] of headline) {
     const value = numberOf(report, key);

@@ -2,6 +2,7 @@
 import {byId, html} from './dom';
 import type {Explorer} from './explorer';
 import {readable} from './quantities';
+import {numberOf} from './results';
 import {type Design, initialState, shippedDesign} from './state';
 
 interface Step {
@@ -16,8 +17,8 @@ const paper = () => shippedDesign('friction2022');
 const springs = () => shippedDesign('friction2022-springs');
 const changed = (design: Design, changes: Record<string, string>): Design => ({...design, changes});
 
-const number = (e: Explorer, key: string) => e.current.solved.report[key] as number;
-const pinned = (e: Explorer, key: string) => e.pinnedReport()?.[key] as number;
+const number = (e: Explorer, key: string) => numberOf(e.current.solved.report, key) as number;
+const pinned = (e: Explorer, key: string) => numberOf(e.pinnedReport(), key) as number;
 const shown = (e: Explorer, key: string, unit: string, of = number) => readable(of(e, key), unit);
 const percent = (x: number) => `${(100 * x).toPrecision(3)} %`;
 const change = (e: Explorer, key: string) => {

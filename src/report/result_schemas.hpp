@@ -1,0 +1,20 @@
+// The schemas of what commands print with --json, each made where the result is described.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+namespace wingbeat::described {
+
+nlohmann::ordered_json run_schema();
+nlohmann::ordered_json endurance_schema();
+nlohmann::ordered_json tolerance_schema();
+nlohmann::ordered_json optimum_schema();
+nlohmann::ordered_json motors_schema();  ///< an optimum for each motor of a catalogue, or for each choice
+nlohmann::ordered_json front_schema();
+nlohmann::ordered_json fit_schema();
+nlohmann::ordered_json identification_schema();
+nlohmann::ordered_json control_schema();
+nlohmann::ordered_json keys_schema();
+nlohmann::ordered_json metrics_schema();
+
+}  // namespace wingbeat::described
