@@ -135,6 +135,11 @@ const Description<Side>& side_description() {
           .always("deviation", "1", "computed / published - 1", of_claim(&Claim::deviation))
           .always("ratio_deviation", "1", "of a change: of the ratio behind it", of_claim(&Claim::ratio_deviation))
           .always("interval_95", "", "of the computed value", of_claim(&Claim::interval))
+          .always("interval_from", "", "samples, or searches at the ends of each deviation",
+                  [](const R& r) {
+                    const bool has = std::isfinite(r.claim.interval[r.variant].low);
+                    return has ? std::optional<std::string>(r.claim.searched ? "searches" : "samples") : std::nullopt;
+                  })
           .always("residual", "1", "largest formulation residual over input", of_claim(&Claim::residual))
           .always("domain", "", "inside the model's domain, or not",
                   [](const R& r) { return domain_text(r.claim, r.variant); })
@@ -187,6 +192,8 @@ const Description<LawPrediction>& law_description() {
       Description<R>()
           .always("law", "", "", of_law(&L::law))
           .always("drag_factor", "1", "on the third chord moment", &R::drag_factor, schema::any_number)
+          .always("drag_factor_95", "1", "95 % interval", &R::drag_interval)
+          .always("input_change_by_springs_95", "1", "95 % interval", &R::input_change_interval)
           .always("formulation", "", "", [](const R& r) { return variant_name(r.variant); })
           .always("coefficient", "", "of the law, SI", of_law(&L::coefficient), schema::any_number)
           .always("calibrated", "", "the vehicle without springs flaps at the published frequency",

@@ -33,8 +33,7 @@ std::vector<FurtherVariant> variants_of(const SpringPair& pair) {
   const std::vector<std::string> pitch = {
       "wing={ count = 2, areal_density = \"17 g/m2\", spar_density = \"0.614 g/m\", planform = { shape = "
       "\"semi-ellipse\", length = \"63 mm\", root_chord = \"25 mm\" } }",
-      "pitch={ stiffness = \"6e-4 N m/rad\", damping = \"2e-8 N m s/rad\", rotational_lift = true, "
-      "damping_coefficient = 5 }",
+      "pitch={ stiffness = \"6e-4 N m/rad\", damping = \"2e-8 N m s/rad\" }",
       "aerodynamics={ air_density = \"1.225 kg/m3\", added_mass = true, coefficients = \"normal-force-robofly\" }"};
   std::vector<std::string> all = added;
   all.insert(all.end(), gear.begin(), gear.end());

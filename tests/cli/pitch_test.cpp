@@ -84,13 +84,8 @@ TEST_F(Pitch, ARunWarnsOfTheLiftOfTheAddedMass) {
 
 // The terms that oppose rotation follow the set of coefficients, unless the file states them.
 TEST_F(Pitch, EachSetOfCoefficientsHasItsRotationTerms) {
-  std::string text = read(hinged);
-  for (const std::string line : {"rotational_lift = true\n", "damping_coefficient = 5\n"}) {
-    text.erase(text.find(line), line.size());
-  }
-  std::ofstream(path("unstated.toml")) << text;
-  const auto lift = [&](std::vector<std::string> set) {
-    std::vector<std::string> arguments{"run", path("unstated.toml"), "--json"};
+  const auto lift = [&](std::vector<std::string> set, const std::string& vehicle = hinged) {
+    std::vector<std::string> arguments{"run", vehicle, "--json"};
     for (const std::string& s : set) arguments.insert(arguments.end(), {"--set", s});
     return run(arguments).json()["lift_mean_n"].get<double>();
   };
@@ -101,6 +96,8 @@ TEST_F(Pitch, EachSetOfCoefficientsHasItsRotationTerms) {
   EXPECT_EQ(lift({robofly}), lift({robofly, off, five}));
   EXPECT_EQ(lift({translational}), lift({translational, on, none}));
   EXPECT_GT(std::abs(lift({robofly, on}) / lift({robofly}) - 1.0), 0.01);
+  // The shipped vehicles leave both to their set: docs/pitch-hinges.md.
+  for (const std::string& vehicle : {hinged, hinged_crank}) EXPECT_EQ(lift({}, vehicle), lift({off, five}, vehicle));
 }
 
 TEST_F(Pitch, WaveformsHaveThePitchAngle) {
@@ -170,7 +167,7 @@ TEST_F(Pitch, AnOptimumOfTheHingeIsFound) {
   const Outcome o = run({"optimise", path("o.toml")});
   EXPECT_EQ(o.status, 0) << o.err;
   // Where a sweep of the stiffness finds the largest lift: docs/pitch-hinges.md.
-  EXPECT_THAT(o.out, HasSubstr("most mean lift: 0.0152"));
+  EXPECT_THAT(o.out, HasSubstr("most mean lift: 0.0231"));
 }
 
 TEST_F(Pitch, CranksRunByBothMethods) {
