@@ -1,0 +1,154 @@
+"""Figures of models for control, for wingbeat.plot."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._arguments import refused, wrong_type
+from ._figures import CURVES, REFERENCE, SINGLE_COLUMN, display, key, label_y, named, panels_of, styled
+from ._linear import ControlModels
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_SHOWN = ("lift_mean", "crank_speed_mean", "power_electrical")
+
+
+def _outputs_of(models: ControlModels, outputs: Iterable[str] | None) -> list[int]:
+    """Where the outputs stand in the model."""
+    if not isinstance(models, ControlModels):
+        raise wrong_type("models", "a wingbeat.ControlModels", models)
+    known = models.discrete.outputs
+    if outputs is None:
+        return [known.index(name) for name in _SHOWN if name in known]
+    wanted = [outputs] if isinstance(outputs, str) else list(outputs)
+    for name in wanted:
+        if name not in known:
+            raise refused("outputs", f"the model has no output {name!r}; it has {', '.join(known)}")
+    return [known.index(name) for name in wanted]
+
+
+def step(
+    models: ControlModels, outputs: Iterable[str] | None = None, *, figure: Figure | None = None,
+    width: float | str = SINGLE_COLUMN,
+) -> Figure:
+    """How the means of a cycle follow a step of each input, over the steady change or, without one, the largest.
+
+    Parameters
+    ----------
+    models : what `wingbeat.linearise` returns
+    outputs : names of outputs; default: lift, crank speed and electrical power
+    figure : the Figure or SubFigure to draw into; default: a new one
+    width : of a new figure [mm], or a text with a unit
+
+    Returns
+    -------
+    The figure, a panel for each input.
+
+    Raises
+    ------
+    InputError : for an output that the model does not have
+    ValueError : where the vehicle does not flap
+
+    Example
+    -------
+    >>> import wingbeat.plot
+    >>> figure = wingbeat.plot.step(wb.read("data/designs/friction2022.toml").linearise(maps=False))
+    >>> figure.axes[1].get_xlabel(), [line.get_label() for line in figure.axes[0].get_lines()[:2]]
+    ('time since the step (ms)', ['lift mean', 'crank speed mean'])
+    """
+    places = _outputs_of(models, outputs)
+    model, discrete = models["model"], models.discrete
+    period = float(model["period_s"])
+    responses = model["step_responses"]
+    cycles = max(len(response) for one in responses.values() for response in one.values())
+    scale, unit = (1.0, "s") if period * cycles > 2.0 else (1e3, "ms")
+    with styled():
+        figure, axes = panels_of(figure, width, len(discrete.inputs), 1.4)
+        for n, (ax, name) in enumerate(zip(axes, discrete.inputs)):
+            steady = all(model["steady_gain"][k][n] for k in places)
+            for place, look in zip(places, (CURVES[k % len(CURVES)] for k in range(len(places)))):
+                response = np.array(responses[name][discrete.outputs[place]], dtype=float)
+                most = model["steady_gain"][place][n] if steady else np.abs(response).max()
+                # As the means are: constant over their cycle, from the cycle before the step on.
+                time = scale * period * np.arange(-1, len(response) + 1)
+                ax.step(time, np.r_[0.0, response, response[-1]] / (most or 1.0), where="post",
+                        label=discrete.outputs[place].replace("_", " "), **look)
+            ax.axhline(1.0 if steady else 0.0, zorder=0, **REFERENCE)
+            label_y(ax, "per steady change" if steady else "per largest change", 1.3)
+            if n == 0:
+                key(ax, ax.get_lines()[:-1])
+            ax.annotate(f"step of {name.replace('_', ' ')}", (1.0, 0.06 if steady else 0.94), ha="right",
+                        xycoords="axes fraction", va="bottom" if steady else "top")
+        axes[-1].set_xlabel(named("time since the step", unit))
+        figure.align_ylabels(axes)
+    return figure
+
+
+def bode(
+    models: ControlModels, input: str = "voltage", outputs: Iterable[str] | None = None, *,
+    figure: Figure | None = None, width: float | str = SINGLE_COLUMN,
+) -> Figure:
+    """The frequency response of the model from one cycle to the next, to half a flapping frequency.
+
+    Parameters
+    ----------
+    models : what `wingbeat.linearise` returns
+    input : the name of an input
+    outputs : names of outputs; default: lift, crank speed and electrical power
+    figure : the Figure or SubFigure to draw into; default: a new one
+    width : of a new figure [mm], or a text with a unit
+
+    Returns
+    -------
+    The figure: gain over the steady gain [dB] and phase [deg] over frequency.
+
+    Raises
+    ------
+    InputError : for an input or output that the model does not have, and for outputs that a steady input leaves as they are
+    ValueError : where the vehicle does not flap
+
+    Example
+    -------
+    >>> import wingbeat.plot
+    >>> figure = wingbeat.plot.bode(wb.read("data/designs/friction2022.toml").linearise(maps=False))
+    >>> figure.axes[1].get_ylabel()
+    'phase (deg)'
+    """
+    places = _outputs_of(models, outputs)
+    model = models.discrete
+    if input not in model.inputs:
+        raise refused("input", f"the model has no input {input!r}; it has {', '.join(model.inputs)}")
+    column, period = model.inputs.index(input), float(model.dt or 0.0)
+    steady = [float(models["model"]["steady_gain"][place][column]) for place in places]
+    moving = [k for k, gain in enumerate(steady) if gain]
+    if not moving:
+        raise refused("outputs", f"none of them follows a steady {input.replace('_', ' ')}")
+    frequency = np.geomspace(1e-3, 0.5, 200) / period
+    response = _frequency_response(model, column, frequency)
+    with styled():
+        figure, (gain, phase) = panels_of(figure, width, 2, 1.4)
+        for n, k in enumerate(moving):
+            relative = response[:, places[k]] / steady[k]
+            look = CURVES[n % len(CURVES)]
+            gain.plot(frequency, 20.0 * np.log10(np.abs(relative)), label=model.outputs[places[k]].replace("_", " "), **look)
+            phase.plot(frequency, np.degrees(np.unwrap(np.angle(relative))), **look)
+        gain.set_xscale("log")
+        phase.set_xscale("log")
+        phase.set_xlim(frequency[0], frequency[-1])
+        label_y(gain, "gain over steady gain (dB)", 1.3)
+        label_y(phase, "phase (deg)", 1.3)
+        phase.set_xlabel(f"frequency of the {input.replace('_', ' ')} (Hz)")
+        key(gain)
+        figure.align_ylabels([gain, phase])
+    return figure
+
+
+def _frequency_response(model: Any, column: int, frequency: Any) -> Any:
+    """C (z I - A)^-1 B + D of one input on the unit circle, a row for each frequency."""
+    z = np.exp(2j * np.pi * frequency * model.dt)
+    inverse = np.linalg.inv(z[:, None, None] * np.eye(len(model.states)) - model.A)
+    return np.einsum("os,fst,t->fo", model.C, inverse, model.B[:, column]) + model.D[:, column]
