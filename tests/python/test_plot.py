@@ -39,7 +39,7 @@ def voltage_sweep():
 
 @functools.cache
 def plane():
-    axes = {"supply.voltage": np.linspace(0.2, 9, 17), "transmission.crank_radius": np.linspace(4e-3, 10e-3, 13)}
+    axes = {"supply.voltage": np.linspace(0.2, 13, 25), "transmission.crank_radius": np.linspace(4e-3, 10e-3, 13)}
     # Friction of the motor, which low voltages do not overcome.
     return reference().replace({"motor.friction_torque": "1 mN m"}).sweep(axes)
 

@@ -63,20 +63,18 @@ def step(
     places = _outputs_of(models, outputs)
     model, discrete = models["model"], models.discrete
     period = float(model["period_s"])
-    responses = model["step_responses"]
-    cycles = max(len(response) for one in responses.values() for response in one.values())
+    drawn = {name: _relative(models, n, places) for n, name in enumerate(discrete.inputs)}
+    cycles = max(_settled(relative) for relative, _ in drawn.values())
     scale, unit = (1.0, "s") if period * cycles > 2.0 else (1e3, "ms")
+    # As the means are: constant over their cycle, from the cycle before the step on.
+    time = scale * period * np.arange(-1, cycles + 1)
     with styled():
         figure, axes = panels_of(figure, width, len(discrete.inputs), 1.4)
         for n, (ax, name) in enumerate(zip(axes, discrete.inputs)):
-            steady = all(model["steady_gain"][k][n] for k in places)
-            for place, look in zip(places, (CURVES[k % len(CURVES)] for k in range(len(places)))):
-                response = np.array(responses[name][discrete.outputs[place]], dtype=float)
-                most = model["steady_gain"][place][n] if steady else np.abs(response).max()
-                # As the means are: constant over their cycle, from the cycle before the step on.
-                time = scale * period * np.arange(-1, len(response) + 1)
-                ax.step(time, np.r_[0.0, response, response[-1]] / (most or 1.0), where="post",
-                        label=discrete.outputs[place].replace("_", " "), **look)
+            relative, steady = drawn[name]
+            for k, place in enumerate(places):
+                curve = np.r_[0.0, relative[k, :cycles], relative[k, cycles - 1]]
+                ax.step(time, curve, where="post", label=discrete.outputs[place].replace("_", " "), **CURVES[k % len(CURVES)])
             ax.axhline(1.0 if steady else 0.0, zorder=0, **REFERENCE)
             label_y(ax, "per steady change" if steady else "per largest change", 1.3)
             if n == 0:
@@ -86,6 +84,24 @@ def step(
         axes[-1].set_xlabel(named("time since the step", unit))
         figure.align_ylabels(axes)
     return figure
+
+
+def _relative(models: ControlModels, column: int, places: list[int]) -> tuple[Any, bool]:
+    """Responses of outputs to a step of an input, a row each, and whether they are over the steady changes."""
+    model, discrete = models["model"], models.discrete
+    responses = model["step_responses"][discrete.inputs[column]]
+    gains = [float(model["steady_gain"][place][column]) for place in places]
+    rows = np.array([responses[discrete.outputs[place]] for place in places], dtype=float)
+    steady = all(gains)
+    scales = np.array(gains) if steady else np.abs(rows).max(axis=1)
+    return rows / np.where(scales == 0.0, 1.0, scales)[:, None], steady
+
+
+def _settled(relative: Any) -> int:
+    """Cycles that show responses until they have settled to 2 %, and two more."""
+    moving = np.flatnonzero(np.abs(relative - relative[:, -1:]).max(axis=0) > 0.02)
+    last = int(moving[-1]) if moving.size else 0
+    return min(max(last + 3, 3), int(relative.shape[1]))
 
 
 def bode(

@@ -62,15 +62,18 @@ def cycle(result: RunResult, *, figure: Figure | None = None, width: float | str
         figure, axes = panels_of(figure, width, 5 if pitching else 4, 1.15)
         panels = iter(axes)
 
-        def panel(name: str, unit: str, *curves: tuple[str, str, Mapping[str, Any]]) -> Any:
+        def panel(name: str, *curves: tuple[str, str, Mapping[str, Any]]) -> Any:
             ax = next(panels)
-            factor, shown = display(unit, max(largest(wave(column)) for column, _, _ in curves))
+            factors: dict[str, float] = {}
+            for unit in {waves[column].attrs["units"] for column, _, _ in curves}:
+                own = [largest(wave(column)) for column, _, _ in curves if waves[column].attrs["units"] == unit]
+                factors[unit], shown = display(unit, max(own))
             for column, label, look in curves:
-                ax.plot(scale * time, factor * wave(column), label=label, **look)
+                ax.plot(scale * time, factors[waves[column].attrs["units"]] * wave(column), label=label, **look)
             label_y(ax, named(name, shown), 1.0)
             return ax
 
-        ax = panel("stroke angle", "rad", ("stroke_angle", "stroke angle", FIRST))
+        ax = panel("stroke angle", ("stroke_angle", "stroke angle", FIRST))
         right = ax.twinx()
         right.plot(scale * time, wave("flapping_velocity"), label="flapping velocity (right)", **SECOND)
         right.spines["right"].set_visible(True)
@@ -78,14 +81,14 @@ def cycle(result: RunResult, *, figure: Figure | None = None, width: float | str
         key(ax, [*ax.get_lines(), *right.get_lines()])
         if pitching:
             curves = [("pitch_angle", "pitch angle", FIRST), ("angle_of_attack", "angle of attack", SECOND)]
-            key(panel("pitch", "rad", *curves))
-        ax = panel("lift", "N", ("lift", "lift of all wings", FIRST))
+            key(panel("pitch", *curves))
+        ax = panel("lift", ("lift", "lift of all wings", FIRST))
         factor, shown = display("N", largest(waves.lift.values))
         mean = factor * float(np.trapz(waves.lift.values, waves.time.values)) / float(waves.time[-1] - waves.time[0])
         ax.axhline(mean, label=f"mean, {mean:.4g} {shown}", **REFERENCE)
         key(ax)
-        panel(force[1], "N" if rod else "A", (*force, FIRST))
-        key(panel("power", "W", ("power_electrical", "electrical", FIRST), ("power_motor", "motor output", SECOND),
+        panel(force[1], (*force, FIRST))
+        key(panel("power", ("power_electrical", "electrical", FIRST), ("power_motor", "motor output", SECOND),
                   ("power_aerodynamic", "aerodynamic", {"color": COLOURS["aerodynamic"], "linestyle": SOLID})))
         axes[-1].set_xlabel(named("time since stroke reversal", unit))
         axes[-1].set_xlim(scale * time[0], scale * time[-1])

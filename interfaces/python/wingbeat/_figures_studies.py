@@ -169,6 +169,8 @@ def tolerance(
     for metric in wanted if wanted is not None else _ASKED:
         row = metric_row(metric)
         spread = outputs.get(row.key)
+        if wanted is None and spread is not None and spread["least"] == spread["most"]:
+            continue
         if spread is not None and spread["median"]:
             names.append(row.long_name)
             bars.append(100.0 * (np.array([spread[name] for name in (

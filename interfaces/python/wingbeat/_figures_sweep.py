@@ -189,7 +189,7 @@ def draw_contours(ax: Any, data: xarray.Dataset, metric: str) -> None:
     entries: list[Any] = []
     ax.set_facecolor(IDLE)
     if np.isfinite(grid).any():
-        filled = ax.contourf(x, y, np.ma.MaskedArray(grid, ~np.isfinite(grid)), levels=_levels(grid))
+        filled = ax.contourf(x, y, grid, levels=_levels(grid))
         bar = ax.figure.colorbar(filled, ax=ax, aspect=25, pad=0.02)
         bar.outline.set_visible(False)
         bar.ax.tick_params(length=0)
