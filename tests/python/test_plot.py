@@ -112,12 +112,13 @@ def texts(figure):
     figure.canvas.draw()
     # A legend shows its texts, an axis those ticks that are within its limits.
     shown = []
-    for ax in figure.axes:
+    for ax in [*figure.axes, *(inner for ax in figure.axes for inner in ax.child_axes)]:
         ticks = [label for axis in (ax.xaxis, ax.yaxis) for tick in axis.get_major_ticks() + axis.get_minor_ticks()
                  for label in (tick.label1, tick.label2)]
         kept = [tick for axis in (ax.xaxis, ax.yaxis) for tick in axis._update_ticks()]
         drawn = [label for tick in kept for label in (tick.label1, tick.label2)]
-        shown += [text for text in ax.findobj(matplotlib.text.Text) if text not in ticks or text in drawn]
+        shown += [text for text in ax.findobj(matplotlib.text.Text)
+                  if (text not in ticks or text in drawn) and (text.axes is ax or text.axes is None)]
         hidden = [text for axis in (ax.xaxis, ax.yaxis) if not axis.get_visible()
                   for text in axis.findobj(matplotlib.text.Text)]
         shown = [text for text in shown if text not in hidden]
@@ -180,15 +181,24 @@ class Figures(unittest.TestCase):
         self.assertIs(plot.start_up(reference().simulate(), figure=whole), whole)
         halves = plt.figure().subfigures(1, 2)
         self.assertIs(plot.bode(models(), figure=halves[1]), halves[1])
-        before = plt.rcParams["font.size"]
+        before = dict(plt.rcParams)
         ax = plot.power_flow(reference().solve())
-        self.assertEqual(plt.rcParams["font.size"], before)
+        self.assertEqual(dict(plt.rcParams), before)
         ax.set_title("edited")
         self.assertEqual(ax.get_title(), "edited")
         with self.assertRaisesRegex(TypeError, "^ax: expected matplotlib Axes, got int"):
             plot.lines(voltage_sweep(), "lift_mean", ax=3)
         with self.assertRaisesRegex(TypeError, "^figure: expected a matplotlib Figure, got int"):
             plot.cycle(reference().solve(), figure=3)
+
+    def test_settings_of_the_user_do_not_matter(self):
+        plain = texts(plot.contours(plane(), "lift_mean").figure)
+        with plt.rc_context({"figure.autolayout": True, "axes.grid": True, "font.size": 14}):
+            figure = plot.contours(plane(), "lift_mean").figure
+            found = texts(figure)
+            with tempfile.TemporaryDirectory() as folder:
+                figure.savefig(pathlib.Path(folder) / "tight.png", bbox_inches="tight")  # as notebooks do
+        self.assertEqual([(text, *box.extents) for text, box in found], [(text, *box.extents) for text, box in plain])
 
     def test_a_width(self):
         self.assertAlmostEqual(width_mm(plot.power_flow(reference().solve(), width="183 mm").figure), 183, 9)
@@ -340,6 +350,7 @@ class Reference(unittest.TestCase):
                 self.assertEqual(named, list(inspect.signature(function).parameters))
                 self.assertRegex(text, r"(?m)^Returns\n-+\n")
                 self.assertRegex(text, r"(?m)^Raises\n-+\n")
+                self.assertRegex(text, r"(?m)^Example\n-+\n")
 
     def test_examples(self):
         finder, runner = doctest.DocTestFinder(recurse=False), doctest.DocTestRunner()

@@ -67,7 +67,7 @@ Drawn = TypeVar("Drawn", bound=Callable[..., Any])
 
 def styled() -> AbstractContextManager[None]:
     """The style, for what is drawn within."""
-    context: AbstractContextManager[None] = plt.style.context(STYLE)
+    context: AbstractContextManager[None] = plt.style.context(STYLE, after_reset=True)
     return context
 
 
@@ -132,10 +132,19 @@ def inches(width: float | str) -> float:
     return millimetres / 25.4
 
 
+def pinned(ax: Any) -> Any:
+    """Axes of which ticks that come later, when they are drawn, have this style as well."""
+    for axis in ("x", "y"):
+        given = {name: plt.rcParams[f"{axis}tick.{name}"] for name in ("labelsize", "direction")}
+        given |= {"width": plt.rcParams[f"{axis}tick.major.width"], "length": plt.rcParams[f"{axis}tick.major.size"]}
+        ax.tick_params(axis=axis, **given)
+    return ax
+
+
 def axes_of(ax: Any, width: float | str, height: float) -> Any:
     """The axes given, or those of a new figure, of which the height is in inches."""
     if ax is None:
-        return plt.figure(figsize=(inches(width), height)).subplots()
+        return pinned(plt.figure(figsize=(inches(width), height)).subplots())
     if not hasattr(ax, "plot") or not hasattr(ax, "figure"):
         raise TypeError(f"ax: expected matplotlib Axes, got {type(ax).__name__}")
     return ax
@@ -148,7 +157,7 @@ def panels_of(figure: Any, width: float | str, count: int, height: float, shared
     elif not hasattr(figure, "subplots"):
         raise TypeError(f"figure: expected a matplotlib Figure, got {type(figure).__name__}")
     axes = figure.subplots(count, 1, sharex=shared, squeeze=False)[:, 0]
-    return figure, list(axes)
+    return figure, [pinned(ax) for ax in axes]
 
 
 def label_y(ax: Any, text: str, height: float = 1.0) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._arguments import refused, wrong_type
-from ._figures import CURVES, REFERENCE, SINGLE_COLUMN, display, key, label_y, named, panels_of, styled
+from ._figures import CURVES, REFERENCE, display, key, label_y, named, panels_of, styled
 from ._linear import ControlModels
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def _outputs_of(models: ControlModels, outputs: Iterable[str] | None) -> list[in
 
 def step(
     models: ControlModels, outputs: Iterable[str] | None = None, *, figure: Figure | None = None,
-    width: float | str = SINGLE_COLUMN,
+    width: float | str = 89,
 ) -> Figure:
     """How the means of a cycle follow a step of each input, over the steady change or, without one, the largest.
 
@@ -74,7 +74,8 @@ def step(
             relative, steady = drawn[name]
             for k, place in enumerate(places):
                 curve = np.r_[0.0, relative[k, :cycles], relative[k, cycles - 1]]
-                ax.step(time, curve, where="post", label=discrete.outputs[place].replace("_", " "), **CURVES[k % len(CURVES)])
+                name_of_output = discrete.outputs[place].replace("_", " ")
+                ax.step(time, curve, where="post", label=name_of_output, **CURVES[k % len(CURVES)])
             ax.axhline(1.0 if steady else 0.0, zorder=0, **REFERENCE)
             label_y(ax, "per steady change" if steady else "per largest change", 1.3)
             if n == 0:
@@ -106,7 +107,7 @@ def _settled(relative: Any) -> int:
 
 def bode(
     models: ControlModels, input: str = "voltage", outputs: Iterable[str] | None = None, *,
-    figure: Figure | None = None, width: float | str = SINGLE_COLUMN,
+    figure: Figure | None = None, width: float | str = 89,
 ) -> Figure:
     """The frequency response of the model from one cycle to the next, to half a flapping frequency.
 
@@ -124,7 +125,7 @@ def bode(
 
     Raises
     ------
-    InputError : for an input or output that the model does not have, and for outputs that a steady input leaves as they are
+    InputError : for an input or output that the model does not have, and for outputs without a steady gain
     ValueError : where the vehicle does not flap
 
     Example
@@ -150,7 +151,8 @@ def bode(
         for n, k in enumerate(moving):
             relative = response[:, places[k]] / steady[k]
             look = CURVES[n % len(CURVES)]
-            gain.plot(frequency, 20.0 * np.log10(np.abs(relative)), label=model.outputs[places[k]].replace("_", " "), **look)
+            name_of_output = model.outputs[places[k]].replace("_", " ")
+            gain.plot(frequency, 20.0 * np.log10(np.abs(relative)), label=name_of_output, **look)
             phase.plot(frequency, np.degrees(np.unwrap(np.angle(relative))), **look)
         gain.set_xscale("log")
         phase.set_xscale("log")

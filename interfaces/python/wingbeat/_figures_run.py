@@ -10,7 +10,7 @@ import numpy as np
 
 from ._arguments import refused, wrong_type
 from ._figures import (
-    COLOURS, FIRST, REFERENCE, SECOND, SINGLE_COLUMN, SOLID, axes_of, display, key, label_y, largest, named, panels_of,
+    COLOURS, FIRST, REFERENCE, SECOND, SOLID, axes_of, display, key, label_y, largest, named, panels_of, pinned,
     styled,
 )
 from ._result import EnergyBalance, RunResult, StartUp
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def cycle(result: RunResult, *, figure: Figure | None = None, width: float | str = SINGLE_COLUMN) -> Figure:
+def cycle(result: RunResult, *, figure: Figure | None = None, width: float | str = 89) -> Figure:
     """The waveforms of one flapping cycle: motion, lift, rod force or current, powers; pitch of wings on hinges.
 
     Parameters
@@ -74,7 +74,7 @@ def cycle(result: RunResult, *, figure: Figure | None = None, width: float | str
             return ax
 
         ax = panel("stroke angle", ("stroke_angle", "stroke angle", FIRST))
-        right = ax.twinx()
+        right = pinned(ax.twinx())
         right.plot(scale * time, wave("flapping_velocity"), label="flapping velocity (right)", **SECOND)
         right.spines["right"].set_visible(True)
         label_y(right, "velocity (rad/s)", 1.0)
@@ -115,7 +115,7 @@ _PARTS = (
 
 
 def power_flow(
-    results: RunResult | Mapping[str, RunResult], *, ax: Axes | None = None, width: float | str = SINGLE_COLUMN
+    results: RunResult | Mapping[str, RunResult], *, ax: Axes | None = None, width: float | str = 89
 ) -> Axes:
     """Where the electrical power goes, a bar for each result.
 
@@ -179,7 +179,7 @@ def power_flow(
     return ax
 
 
-def start_up(start: StartUp, *, figure: Figure | None = None, width: float | str = SINGLE_COLUMN) -> Figure:
+def start_up(start: StartUp, *, figure: Figure | None = None, width: float | str = 89) -> Figure:
     """Crank speed and current over a start-up, with the inrush and the time until flapping is steady.
 
     Parameters
@@ -231,7 +231,7 @@ def start_up(start: StartUp, *, figure: Figure | None = None, width: float | str
     return figure
 
 
-def flight(found: Flight, *, figure: Figure | None = None, width: float | str = SINGLE_COLUMN) -> Figure:
+def flight(found: Flight, *, figure: Figure | None = None, width: float | str = 89) -> Figure:
     """Lift, powers, voltage and charge over a flight to the end of the battery, hatched outside the model's domain.
 
     Parameters

@@ -11,7 +11,7 @@ import numpy as np
 
 from ._arguments import refused, wrong_type
 from ._figures import (
-    COLOURS, CURVES, ORDERED, REFERENCE, SINGLE_COLUMN, axes_of, key, label_y, largest, metric_display, metric_row,
+    COLOURS, CURVES, ORDERED, REFERENCE, axes_of, key, label_y, largest, metric_display, metric_row,
     named, panels_of, styled, words,
 )
 from ._optimise import Front
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 def front(
     found: Front, across: str | None = None, up: str | None = None, *, ax: Axes | None = None,
-    width: float | str = SINGLE_COLUMN,
+    width: float | str = 89,
 ) -> Axes:
     """The designs of a front, in two of their metrics, with its ends and its knee.
 
@@ -43,6 +43,21 @@ def front(
     ------
     InputError : for an unknown metric
     ValueError : where no design was found
+
+    Example
+    -------
+    >>> import wingbeat.plot
+    >>> fronts = {
+    ...     "search": {"population": 40, "generations": 5},
+    ...     "objective": [
+    ...         {"maximise": "lift_mean_n", "reference": 0},
+    ...         {"minimise": "power_electrical_w", "reference": "4 W"},
+    ...     ],
+    ...     "parameter": [{"key": "supply.voltage", "lower": 2, "upper": 8}],
+    ... }
+    >>> found = wb.optimise(fronts, vehicle=wb.read("data/designs/friction2022.toml"))
+    >>> wingbeat.plot.front(found).get_xlabel()
+    'mean lift (mN)'
     """
     if not isinstance(found, Front):
         raise wrong_type("found", "a wingbeat.Front", found)
@@ -74,7 +89,7 @@ def front(
     return ax
 
 
-def residuals(found: Found, *, figure: Figure | None = None, width: float | str = SINGLE_COLUMN) -> Figure:
+def residuals(found: Found, *, figure: Figure | None = None, width: float | str = 89) -> Figure:
     """A fit against its measurements, and what is left, in standard deviations, in the order of the logs.
 
     Parameters
@@ -90,6 +105,13 @@ def residuals(found: Found, *, figure: Figure | None = None, width: float | str 
     Raises
     ------
     ValueError : where nothing was fitted
+
+    Example
+    -------
+    >>> import wingbeat.plot
+    >>> figure = wingbeat.plot.residuals(wb.fit("data/bench/flapper.toml", profiles=False))
+    >>> [label.get_text() for label in figure.axes[1].get_xticklabels()]
+    ['air', 'vacuum', 'wingless']
     """
     if not isinstance(found, Found) or "points" not in found:
         raise wrong_type("found", "the result of wingbeat.fit", found)
@@ -135,7 +157,7 @@ _ASKED = ("frequency", "power_electrical", "lift_mean", "lift_to_weight", "strok
 
 def tolerance(
     found: StudyResult, metrics: Iterable[str] | None = None, *, ax: Axes | None = None,
-    width: float | str = SINGLE_COLUMN,
+    width: float | str = 89,
 ) -> Axes:
     """How far metrics scatter about their medians: 95 % of the vehicles (bar) and all of them (line).
 
@@ -176,7 +198,8 @@ def tolerance(
             bars.append(100.0 * (np.array([spread[name] for name in (
                 "least", "percentile_2_5", "percentile_97_5", "most")]) / spread["median"] - 1.0))
         elif wanted is not None:
-            raise refused("metrics", f"the study has no {row.name}" if spread is None else f"the median of {row.name} is 0")
+            missing = f"the study has no {row.name}" if spread is None else f"the median of {row.name} is 0"
+            raise refused("metrics", missing)
     if not bars:
         raise refused("metrics", "expected at least one that the study has")
     table, rows = np.array(bars), np.arange(len(bars))
@@ -192,7 +215,7 @@ def tolerance(
 
 
 def sensitivity(
-    found: StudyResult, metric: str, *, ax: Axes | None = None, width: float | str = SINGLE_COLUMN
+    found: StudyResult, metric: str, *, ax: Axes | None = None, width: float | str = 89
 ) -> Axes:
     """Which uncertain parameters a metric's variance comes from, with 95 % intervals, the greatest share first.
 

@@ -13,8 +13,8 @@ from matplotlib.ticker import MaxNLocator
 from ._accessor import DataSet
 from ._arguments import refused, wrong_type
 from ._figures import (
-    COLOURS, DASH_DOTTED, DASHED, DOTTED, ORDERED, SINGLE_COLUMN, SOLID, axes_of, display, key, label_y, largest,
-    metric_display, metric_row, named, panels_of, scale_of, styled, words,
+    COLOURS, DASH_DOTTED, DASHED, DOTTED, ORDERED, SOLID, axes_of, display, key, label_y, largest,
+    metric_display, metric_row, named, panels_of, pinned, scale_of, styled, words,
 )
 
 if TYPE_CHECKING:
@@ -190,9 +190,10 @@ def draw_contours(ax: Any, data: xarray.Dataset, metric: str) -> None:
     ax.set_facecolor(IDLE)
     if np.isfinite(grid).any():
         filled = ax.contourf(x, y, grid, levels=_levels(grid))
-        bar = ax.figure.colorbar(filled, ax=ax, aspect=25, pad=0.02)
+        # Within the axes, so that they keep their place and any layout of the figure will do.
+        bar = ax.figure.colorbar(filled, cax=ax.inset_axes([1.02, 0.0, 0.03, 1.0]))
         bar.outline.set_visible(False)
-        bar.ax.tick_params(length=0)
+        pinned(bar.ax).tick_params(length=0)
     if np.isnan(grid).any():
         entries.append(Patch(facecolor=IDLE, label="does not flap"))
     beyond = gridded(data["domain"] != 0)
@@ -221,12 +222,12 @@ def draw_contours(ax: Any, data: xarray.Dataset, metric: str) -> None:
 
 
 def lines(
-    data: xarray.Dataset, metric: str, *, ax: Axes | None = None, width: float | str = SINGLE_COLUMN
+    data: xarray.Dataset, metric: str, *, ax: Axes | None = None, width: float | str = 89
 ) -> Axes:
     """A metric of a sweep over its axis of numbers, a curve for each combination of its other axes.
 
-    Springs, surroundings and an ordered number decide the colour of a curve, the formulation its dash. A grey band marks
-    what lies outside the model's domain; where the vehicle does not flap there is no line.
+    Springs, surroundings and an ordered number decide the colour of a curve, the formulation its dash. A grey
+    band marks what lies outside the model's domain; where the vehicle does not flap there is no line.
 
     Parameters
     ----------
@@ -258,7 +259,7 @@ def lines(
 
 
 def trends(
-    data: xarray.Dataset, metrics: Iterable[str], *, figure: Figure | None = None, width: float | str = SINGLE_COLUMN
+    data: xarray.Dataset, metrics: Iterable[str], *, figure: Figure | None = None, width: float | str = 89
 ) -> Figure:
     """Several metrics of a sweep over the same axis of numbers, a panel each: see `wingbeat.plot.lines`.
 
@@ -298,12 +299,12 @@ def trends(
 
 
 def contours(
-    data: xarray.Dataset, metric: str, *, ax: Axes | None = None, width: float | str = SINGLE_COLUMN
+    data: xarray.Dataset, metric: str, *, ax: Axes | None = None, width: float | str = 89
 ) -> Axes:
     """A metric of a sweep over its two axes of numbers, with a colour bar.
 
-    Grey is where the vehicle does not flap, hatched what lies outside the model's domain, dashed where the lift equals the
-    weight.
+    Grey is where the vehicle does not flap, hatched what lies outside the model's domain, dashed where the lift equals
+    the weight.
 
     Parameters
     ----------

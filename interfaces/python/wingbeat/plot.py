@@ -5,11 +5,11 @@
     ax = wingbeat.plot.power_flow(result, width=183)     # Axes of a new figure 183 mm wide
     wingbeat.plot.lines(data, "lift_mean", ax=ax)       # or into Axes that are there
 
-Functions of one panel take Axes as `ax` and return them; functions of several panels take a Figure or SubFigure as `figure`
-and return it. Without one they make a figure of `width` mm with matplotlib.pyplot; none calls `plt.show()`. The style,
-also for figures of your own, is the file `style`: `plt.style.use(wingbeat.plot.style)`. `colours` are the colours of the
-program's figures by their meaning (`colours["copper"]`), `ordered` those of an ordered quantity, `single_column` and
-`double_column` the widths of 89 and 183 mm.
+Functions of one panel take Axes as `ax` and return them; functions of several panels take a Figure or SubFigure as
+`figure` and return it. Without one they make a figure of `width` mm with matplotlib.pyplot; none calls `plt.show()`.
+The style, also for figures of your own, is the file `style`: `plt.style.use(wingbeat.plot.style)`. `colours` are the
+colours of the program's figures by their meaning (`colours["copper"]`), `ordered` those of an ordered quantity,
+`single_column` and `double_column` the widths of 89 and 183 mm.
 
 matplotlib is needed by this module alone, and `import wingbeat` does not import it.
 """
