@@ -159,8 +159,9 @@ class PythonReference(Folder):
         package = python_reference.Package(ROOT / "interfaces/python/wingbeat")
         self.assertGreater(len(package.public), 30)
         for name in set(package.public) - python_reference.special - set(package.modules):
+            heading = rf"^## {re.escape(name.replace('_', chr(92) + '_'))}$"
             shown = [page for page, text in pages.items()
-                     if pathlib.PurePath(page).stem not in package.modules and re.search(rf"^## {re.escape(name.replace('_', chr(92) + '_'))}$", text, re.M)]
+                     if pathlib.PurePath(page).stem not in package.modules and re.search(heading, text, re.M)]
             self.assertEqual(len(shown), 1, name)
 
     def test_functions_of_a_module_that_are_defined_elsewhere(self):
