@@ -184,6 +184,57 @@ class Pages(unittest.TestCase):
         self.assertIn("--plot x.html: pages show fronts; the optimum of one objective is drawn to .svg, .pdf or .png",
                       text)
 
+    @unittest.skipUnless(shutil.which("gnuplot"), "no gnuplot")
+    def test_the_report(self):
+        self.run_program("reproduce", "friction2022", "--coarse", "-o", self.folder / "made")
+        answer = self.asked(self.folder / "made/report.html", """
+          const table = document.querySelector('.scorecard'), filter = table.querySelector('.filter');
+          const count = () => [...table.querySelectorAll('tbody td:first-child')].filter(td => !td.parentNode.hidden);
+          const choose = (name, value) => {
+            filter.querySelector(name).value = value;
+            filter.dispatchEvent(new Event('input'));
+            const rows = count();
+            tips.push([rows.length, filter.querySelector('span').textContent,
+                       rows.every(td => td.parentNode.querySelectorAll('td.yes').length === 2),
+                       rows.every(td => td.parentNode.textContent.toLowerCase().includes(
+                                    filter.querySelector('input').value))]);
+          };
+          tips.push([filter.hidden, count().length]);
+          choose('select', '2');
+          choose('select', '');
+          choose('input', 'crank');
+          choose('input', '');
+          const strip = table.querySelectorAll('thead th')[4];
+          strip.dispatchEvent(new KeyboardEvent('keydown', {key: 'Enter', cancelable: true}));
+          strip.dispatchEvent(new KeyboardEvent('keydown', {key: ' ', cancelable: true}));
+          const groups = [[]];
+          for (const row of table.querySelector('tbody').rows) {
+            if (row.cells[0].classList.contains('group')) groups.push([]);
+            else groups[groups.length - 1].push(+row.cells[4].dataset.value);
+          }
+          tips.push([strip.getAttribute('aria-sort'),
+                     groups.every(g => g.every((value, n) => n === 0 || value <= g[n - 1]))]);
+          for (const id of ['figure-20', 'figure-21', 'figure-22']) {
+            const svg = document.querySelector(`#${id} svg`);
+            press(svg, 'ArrowRight');
+            tips[tips.length - 1].push(svg.tabIndex);
+            press(svg, 'Escape');
+            tips[tips.length - 1] = [document.querySelector('.tip').style.display];
+          }
+        """)["tips"]
+        (hidden, every), both, all_again, crank, _, order = answer[:6]
+        self.assertFalse(hidden)
+        self.assertGreater(every, 40)
+        self.assertTrue(0 < both[0] < every and both[2])
+        self.assertEqual(all_again[:2], [every, f"{every} statements"])
+        self.assertTrue(0 < crank[0] < every and crank[3])
+        self.assertEqual(order, ["descending", True])
+        for (*shown, tab), ended, axis in zip(answer[6::2], answer[7::2], ("crank radius: ", "rod length: ",
+                                                                         "supply voltage: ")):
+            self.assertTrue(shown[0].startswith(axis), shown)
+            self.assertGreaterEqual(len(shown), 4)
+            self.assertEqual((tab, ended), (0, ["none"]))
+
 
 if __name__ == "__main__":
     unittest.main()
