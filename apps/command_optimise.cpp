@@ -94,11 +94,11 @@ int run_front(const OptimiseArguments& arguments, const OptimiseFile& file, cons
     throw InputError("-o " + arguments.output, 0, 0, "",
                      "several objectives have many best designs: the name must end in .nc; --designs writes vehicles");
   }
-  const auto format = asked_format("--plot", arguments.plot, arguments.plot_width);
+  const auto format = asked_format("--plot", arguments.plot, arguments.plot_width, true);
   std::optional<OutputFile> output, plot;
   if (!arguments.output.empty()) output.emplace("-o", arguments.output, OutputRules{".nc", arguments.force});
   if (!arguments.plot.empty()) {
-    plot.emplace("--plot", arguments.plot, OutputRules{plot_extensions, arguments.force});
+    plot.emplace("--plot", arguments.plot, OutputRules{page_extensions, arguments.force});
   }
   ProgressLine line("optimise: ");
   std::function<void(std::uint64_t, std::uint64_t)> progress;
@@ -128,13 +128,17 @@ int run_front(const OptimiseArguments& arguments, const OptimiseFile& file, cons
 }
 
 int run(const OptimiseArguments& arguments) {
-  const auto format = asked_format("--plot", arguments.plot, arguments.plot_width);
+  const auto format = asked_format("--plot", arguments.plot, arguments.plot_width, true);
   OptimiseFile file = read_optimise_study(arguments.study, arguments.overrides);
   file.study.allow_extrapolation |= arguments.allow_extrapolation;
   const ForEach for_each = [&](std::size_t count, const std::function<void(std::size_t)>& act) {
     for_each_in_parallel(count, act, arguments.threads);
   };
   if (!file.objectives.empty()) return run_front(arguments, file, for_each);
+  if (format && *format == PlotFormat::html) {
+    throw InputError("--plot " + arguments.plot, 0, 0, "",
+                     "pages show fronts; the optimum of one objective is drawn to .svg, .pdf or .png");
+  }
   if (!arguments.designs.empty()) {
     throw InputError("--designs " + arguments.designs, 0, 0, "", "one objective has one best design; -o writes it");
   }
@@ -199,8 +203,10 @@ void add_optimise(CLI::App& program, Action& action) {
   add_set(command, a->overrides);
   add_file(command, "-o,--output", a->output, ".toml .nc",
            "Write the optimum as a vehicle file, or what was found on the way, and any front, as FILE.nc (NetCDF-4)");
-  add_file(command, "--plot", a->plot, plot_extensions,
-           "Draw the optimum and its neighbourhood, or the front, to FILE.svg, .pdf or .png");
+  add_file(
+      command, "--plot", a->plot, page_extensions,
+      "Draw the optimum and its neighbourhood, or the front, to FILE.svg, .pdf or .png, the front also to FILE.html, "
+      "which shows the numbers of each design");
   add_folder(command, "--designs", a->designs, "Write designs of the front as vehicle files: ends, knee, even steps",
              "FOLDER");
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,

@@ -221,11 +221,11 @@ int sweep_on_rank_0(const SweepArguments& arguments, Ranks* ranks) {
   }
   std::vector<Metric> drawn;
   std::optional<OutputFile> plot;
-  const auto format = asked_format("--plot", arguments.plot, arguments.plot_width);
+  const auto format = asked_format("--plot", arguments.plot, arguments.plot_width, true);
   if (!arguments.plot.empty()) {
     const std::string option = "--plot " + arguments.plot;
     drawn = metrics_to_plot(study, arguments.plot_metrics, option);
-    plot.emplace("--plot", arguments.plot, OutputRules{plot_extensions, arguments.force});
+    plot.emplace("--plot", arguments.plot, OutputRules{page_extensions, arguments.force});
   }
   const SweepResult result = run_sweep(study, options);
   line.clear();
@@ -286,8 +286,10 @@ void add_sweep(CLI::App& program, Action& action) {
   takes(command->add_option("--isa", a->isa, "Instructions: sse2, avx2 or avx512 (default: the widest there is)")
             ->type_name("NAME"),
         std::move(sets));
-  CLI::Option* plot = add_file(command, "--plot", a->plot, plot_extensions,
-                               "Draw lines over one axis, contours over two, to FILE.svg, .pdf or .png");
+  CLI::Option* plot =
+      add_file(command, "--plot", a->plot, page_extensions,
+               "Draw lines over one axis, contours over two, to FILE.svg, .pdf or .png, or to FILE.html, "
+               "which shows the numbers of each design");
   takes(command
             ->add_option("--plot-metric", a->plot_metrics,
                          "What to draw, as lift_mean_n,frequency_hz (default: mean lift and system efficiency)")

@@ -33,12 +33,15 @@ void add_plot_width(CLI::App* command, std::string& width) {
       ->type_name("WIDTH");
 }
 
-std::optional<PlotFormat> asked_format(const std::string& option, const std::string& file, const std::string& width) {
+std::optional<PlotFormat> asked_format(const std::string& option, const std::string& file, const std::string& width,
+                                       bool pages) {
   const double inches = width.empty() ? single_column_width : printed_width(width);
   if (file.empty()) return std::nullopt;
   auto format = plot_format(file);
-  if (!format) {
-    throw InputError(fmt::format("{} {}", option, file), 0, 0, "", "the name must end in .svg, .pdf or .png");
+  if (!format || (*format == PlotFormat::html && !pages)) {
+    throw InputError(
+        fmt::format("{} {}", option, file), 0, 0, "",
+        pages ? "the name must end in .svg, .pdf, .png or .html" : "the name must end in .svg, .pdf or .png");
   }
   format->width = inches;
   return format;

@@ -56,6 +56,27 @@ class Package:
             raise LookupError(f"wingbeat.{name} is not defined in {module}.py")
         return module, found
 
+    def members(self, module):
+        """Public functions and classes of a public module: by name their module and definitions. They may be defined
+        in a module with an underscore and imported from there."""
+        found = {}
+        for node in self.trees[module].body:
+            if isinstance(node, (ast.FunctionDef, ast.ClassDef)) and not node.name.startswith("_"):
+                found.setdefault(node.name, (module, []))[1].append(node)
+            elif isinstance(node, ast.ImportFrom) and node.level and (node.module or "").startswith("_"):
+                for one in node.names:
+                    name, nodes = one.asname or one.name, self.definitions(node.module, one.name)
+                    kinds = all(isinstance(each, (ast.FunctionDef, ast.ClassDef)) for each in nodes)
+                    if nodes and kinds and name in self.listed(module):
+                        found[name] = (node.module, nodes)
+        return found
+
+    def listed(self, module):
+        """`__all__` of a module, empty without one."""
+        return next(([ast.literal_eval(element) for element in statement.value.elts]
+                     for statement in self.trees[module].body if isinstance(statement, ast.Assign)
+                     and getattr(statement.targets[0], "id", "") == "__all__"), [])
+
     def comment(self, module, node):
         """The comment `#:` of an attribute: above it, or on its line."""
         lines = self.sources[module]
@@ -282,14 +303,10 @@ class Reference:
     def module_page(self, name):
         """A public module: its docstring and its public functions and classes."""
         lines = [f"# wingbeat.{name}\n", prose(ast.get_docstring(self.package.trees[name]) or "", self.links) + "\n"]
-        found = {}
-        for node in self.package.trees[name].body:
-            if isinstance(node, (ast.FunctionDef, ast.ClassDef)) and not node.name.startswith("_"):
-                found.setdefault(node.name, []).append(node)
         package = f"wingbeat.{name}"
-        for own, nodes in found.items():
-            lines.append(self.class_(name, own, nodes[0], package) if isinstance(nodes[0], ast.ClassDef)
-                         else self.function(name, own, nodes, package=package))
+        for own, (home, nodes) in self.package.members(name).items():
+            lines.append(self.class_(home, own, nodes[0], package) if isinstance(nodes[0], ast.ClassDef)
+                         else self.function(home, own, nodes, package=package))
         return "\n".join(lines)
 
     def write(self, folder, introduction):

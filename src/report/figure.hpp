@@ -32,6 +32,7 @@ class Figure {
   Figure(PlotFormat format, double width, double height) : width_(width), height_(height) {
     switch (format.kind) {
       case PlotFormat::svg:
+      case PlotFormat::html:
         // A browser shows it twice as large as it prints, and may scale it freely.
         points_ = 192.0 / 72.0;
         add("set terminal svg enhanced size {:.0f},{:.0f} dynamic butt font 'sans-serif,{}' lw 2.4 dl 0.6 "

@@ -7,6 +7,7 @@
 
 #include "report/figure.hpp"
 #include "report/layout.hpp"
+#include "report/read_out.hpp"
 #include "report/report_tools.hpp"
 #include "report/sweep_scales.hpp"
 #include "report/vehicle_counts.hpp"
@@ -72,6 +73,35 @@ std::vector<std::pair<std::string, std::size_t>> columns_of(const ParetoStudy& s
   for (std::size_t n = 0; n < r.picks.even.size(); ++n) add(fmt::format("even {}", n + 1), r.picks.even[n]);
   std::stable_sort(columns.begin(), columns.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   return columns;
+}
+
+/// What a read-out shows of each design of the front: objectives in the units shown, parameters, motor; its places
+/// follow.
+ReadOutPanel front_points(const ParetoStudy& study, const ParetoResult& r, const std::vector<Display>& displays) {
+  ReadOutPanel panel{};
+  for (std::size_t k = 0; k < study.objectives.size(); ++k) {
+    panel.columns.push_back({metric_info(study.objectives[k].metric).long_name, displays[k].unit, {}});
+    for (const ParetoDesign& d : r.front) {
+      panel.columns.back().values.push_back(displays[k].factor * d.metrics[study.objectives[k].metric]);
+    }
+  }
+  const std::vector<const DesignParameter*> parameters = parameters_of(study);
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    double largest = 0.0;
+    for (const ParetoDesign& d : r.front) largest = std::max(largest, std::abs(d.parameters[k]));
+    const Display display = display_for(parameters[k]->unit, largest);
+    panel.columns.push_back({words(parameters[k]->key), display.unit, {}});
+    for (const ParetoDesign& d : r.front) panel.columns.back().values.push_back(display.factor * d.parameters[k]);
+  }
+  for (const ParetoDesign& d : r.front) {
+    panel.notes.push_back(study.vehicles.size() > 1 ? study.vehicles[d.vehicle].name : "");
+    const std::string domain = design_note(0, unsigned(d.domain.to_ulong()));
+    if (!domain.empty()) panel.notes.back() += (panel.notes.back().empty() ? "" : "; ") + domain;
+  }
+  for (const auto& [name, place] : columns_of(study, r)) {
+    panel.notes[place] += (panel.notes[place].empty() ? "" : "; ") + name;
+  }
+  return panel;
 }
 
 }  // namespace
@@ -360,7 +390,9 @@ void plot_front(const ParetoStudy& study, const ParetoResult& r, const std::stri
     for (const ParetoDesign& d : r.front) take(d);
     const double margin = high > low ? 0.04 * (high - low) : std::max(0.04 * std::abs(low), 1e-12);
     figure.add("set {}range [{}:{}]\n", axis, low - margin, high + margin);
+    return std::pair(low - margin, high + margin);
   };
+  std::vector<ReadOutPanel> pages;
   for (std::size_t p = 0; p < panels.size(); ++p) {
     const auto [a, b] = panels[p];
     const double top = 0.5 + panel * double(p), bottom = top + panel - 0.55;
@@ -368,15 +400,24 @@ void plot_front(const ParetoStudy& study, const ParetoResult& r, const std::stri
     figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", y(top), y(bottom));
     fitted_text(figure, label(a), 7.5, 0.86 * format.width, 0.56 * format.width, bottom + 0.36, "center");
     axis_title(figure, label(b), 7.5, panel - 0.1, 0.16 - 0.44 / format.width, y(0.5 * (top + bottom)));
-    range("x", a);
-    range("y", b);
+    const auto [x_low, x_high] = range("x", a);
+    const auto [y_low, y_high] = range("y", b);
+    if (format == PlotFormat::html) {
+      ReadOutPanel& page = pages.emplace_back(front_points(study, r, displays));
+      page.name = label(b) + " over " + label(a);
+      page.left = 0.16, page.right = 0.96, page.top = top / inches, page.bottom = bottom / inches;
+      for (const ParetoDesign& d : r.front) {
+        page.x.push_back(share_of_axis(value(d, a), x_low, x_high, false));
+        page.y.push_back(share_of_axis(value(d, b), y_low, y_high, false));
+      }
+    }
     figure.add(
         "plot $cloud using {0}:{1} with points {2}, $front using {0}:{1} with points {3}, "
         "$ends using {0}:{1} with points {4}, $knee using {0}:{1} with points {5}\n",
         a + 1, b + 1, grey, blue, end, knee);
   }
   figure.add("unset multiplot\nunset output\n");
-  run_gnuplot(figure.script(), file);
+  write_figure(figure, format, heading, pages, file);
 }
 
 }  // namespace wingbeat

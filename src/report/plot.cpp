@@ -19,6 +19,7 @@ std::optional<PlotFormat> plot_format(const std::filesystem::path& file) {
   if (extension == ".svg") return PlotFormat::svg;
   if (extension == ".pdf") return PlotFormat::pdf;
   if (extension == ".png") return PlotFormat::png;
+  if (extension == ".html") return PlotFormat::html;
   return std::nullopt;
 }
 

@@ -8,6 +8,7 @@
 #include "report/contour_lines.hpp"
 #include "report/figure.hpp"
 #include "report/layout.hpp"
+#include "report/read_out.hpp"
 #include "report/sweep_scales.hpp"
 #include "report/sweep_status_plot.hpp"
 
@@ -45,6 +46,33 @@ struct Arrangement {
   std::vector<std::size_t> x, y;  ///< places along the axes in growing order
   std::size_t index(std::size_t i, std::size_t j, std::size_t count_y) const { return x[i] * count_y + y[j]; }
 };
+
+/// The designs of a panel for its read-out, of very many every few.
+ReadOutPanel contour_points(const Scale& x, const Scale& y, const Field& field, const std::vector<double>& status,
+                            const std::vector<double>& domain) {
+  constexpr std::size_t most = 150;  // along an axis
+  const std::size_t nx = x.at.size(), ny = y.at.size();
+  const std::size_t every_x = (nx + most - 1) / most, every_y = (ny + most - 1) / most;
+  const auto [x_low, x_high] = std::minmax_element(x.at.begin(), x.at.end());
+  const auto [y_low, y_high] = std::minmax_element(y.at.begin(), y.at.end());
+  ReadOutPanel panel{};
+  panel.name = field.label();
+  panel.columns = {{x.name, x.display.unit, {}},
+                   {y.name, y.display.unit, {}},
+                   {metric_info(field.metric).long_name, field.display.unit, {}}};
+  for (std::size_t i = 0; i < nx; i += every_x) {
+    for (std::size_t j = 0; j < ny; j += every_y) {
+      const std::size_t n = i * ny + j;
+      panel.x.push_back(share_of_axis(x.at[i], *x_low, *x_high, x.logarithmic));
+      panel.y.push_back(share_of_axis(y.at[j], *y_low, *y_high, y.logarithmic));
+      panel.columns[0].values.push_back(x.at[i]);
+      panel.columns[1].values.push_back(y.at[j]);
+      panel.columns[2].values.push_back(field.values[n]);
+      panel.notes.push_back(design_note(int(status[n]), unsigned(domain[n])));
+    }
+  }
+  return panel;
+}
 
 std::vector<std::size_t> growing(const std::vector<double>& values) {
   std::vector<std::size_t> order(values.size());
@@ -120,6 +148,7 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
   figure.add("set multiplot\n{}{}", x.range("x"), y.range("y"));
   figure.add("set lmargin at screen {}\nset rmargin at screen {}\nset border 15\nset grid noxtics noytics front\n",
              left, right);
+  std::vector<ReadOutPanel> pages;
   for (std::size_t p = 0; p < metrics.size(); ++p) {
     if (p > 0) figure.next_panel();
     figure.add("unset object\n");
@@ -198,11 +227,16 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
       fitted_text(figure, found_at, style::text_size, (right - 0.02) * format.width, right * format.width,
                   (1.0 - top) * inches - 0.09, "right");
     }
+    if (format == PlotFormat::html) {
+      pages.push_back(contour_points(x, y, field, status, domain));
+      ReadOutPanel& page = pages.back();
+      page.left = left, page.right = right, page.top = 1.0 - top, page.bottom = 1.0 - bottom;
+    }
     if (p + 1 == metrics.size()) draw_remarks(figure, remarks);
     figure.add("set grid noxtics noytics\nplot {}\n", drawn);
   }
   figure.add("unset multiplot\nunset output\n");
-  run_gnuplot(figure.script(), output);
+  write_figure(figure, format, title_of(study), pages, output);
 }
 
 }  // namespace wingbeat

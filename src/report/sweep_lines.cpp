@@ -7,6 +7,7 @@
 
 #include "report/figure.hpp"
 #include "report/layout.hpp"
+#include "report/read_out.hpp"
 #include "report/sweep_scales.hpp"
 #include "report/sweep_status_plot.hpp"
 
@@ -84,6 +85,32 @@ struct Curves {
     }
   }
 };
+
+/// The designs of a panel for its read-out: all curves at each place along the axis.
+template <class NameOf>
+ReadOutPanel line_points(const Scale& x, const std::vector<std::size_t>& order, const Field& field,
+                         const std::vector<double>& domain, const Curves& curves, const NameOf& name_of_curve) {
+  ReadOutPanel panel{};
+  panel.name = field.label();
+  panel.columns = {{x.name, x.display.unit, {}}};
+  for (std::size_t c = 0; c < curves.first.size(); ++c) {
+    panel.columns.push_back({name_of_curve(c), field.display.unit, {}});
+  }
+  for (const std::size_t n : order) {
+    panel.x.push_back(share_of_axis(x.at[n], x.at[order.front()], x.at[order.back()], x.logarithmic));
+    panel.columns[0].values.push_back(x.at[n]);
+    std::string beyond;
+    for (std::size_t c = 0; c < curves.first.size(); ++c) {
+      const std::size_t at = curves.first[c] + n * curves.stride;
+      panel.columns[c + 1].values.push_back(field.values[at]);
+      if (domain[at] == 0.0) continue;
+      const std::string name = curves.first.size() > 1 ? name_of_curve(c) + " " : "";
+      beyond += fmt::format("{}{}{}", beyond.empty() ? "" : "; ", name, design_note(0, unsigned(domain[at])));
+    }
+    panel.notes.push_back(beyond);
+  }
+  return panel;
+}
 
 constexpr const char* outside_band = "#d0d0d0";
 
@@ -198,6 +225,7 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
   figure.add("set lmargin at screen {}\nset rmargin at screen {}\n", left, right);
   page_title(figure, title_of(study), 0.11);
   key.draw(figure, left * format.width, 0.235);
+  std::vector<ReadOutPanel> pages;
   for (std::size_t p = 0; p < metrics.size(); ++p) {
     if (p > 0) figure.next_panel();
     figure.add("unset object\n");
@@ -206,6 +234,13 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
     figure.add("set tmargin at screen {}\nset bmargin at screen {}\nset format x {}\n", top, top - panel / inches,
                p + 1 == metrics.size() ? "'%g'" : "''");
     figure.text(field.label(), 7.5, fmt::format("screen {},{} left", left, top + 0.22 / inches));
+    if (format == PlotFormat::html) {
+      pages.push_back(line_points(x, order, field, domain, of, [&](std::size_t c) {
+        return curves.size() > 1 ? curve_name(sweep, curves[c]) : metric_info(field.metric).long_name;
+      }));
+      ReadOutPanel& page = pages.back();
+      page.left = left, page.right = right, page.top = 1.0 - top, page.bottom = 1.0 - top + panel / inches;
+    }
     if (found[p].design()) {
       const std::uint64_t best = found[p].design()->index;
       const std::size_t at = std::size_t(places(sweep, best)[along]);
@@ -242,7 +277,7 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
     figure.add("set yrange [{}:*]\nset offsets 0,0,graph 0.06,0\nplot {}\n", from_zero ? "0" : "*", curves_drawn);
   }
   figure.add("unset multiplot\nunset output\n");
-  run_gnuplot(figure.script(), output);
+  write_figure(figure, format, title_of(study), pages, output);
 }
 
 }  // namespace wingbeat

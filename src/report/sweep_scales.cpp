@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "wingbeat/core/text.hpp"
+#include "wingbeat/cycle/domain.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
@@ -112,6 +113,17 @@ std::string Field::shown(double value) const {
 const char* Field::superlative() const {
   const std::string_view key = metric_info(metric).key;
   return is_efficiency(metric) || key.starts_with("lift") ? "best" : "highest";
+}
+
+std::string design_note(int status, unsigned domain) {
+  if (SweepStatus(status) != SweepStatus::flapping) return name_of(SweepStatus(status));
+  std::string note;
+  for (std::size_t k = 0; k < domain_limit_table().size(); ++k) {
+    if ((domain >> k & 1U) == 0) continue;
+    note += fmt::format("{}{}", note.empty() ? "outside the model's domain: " : ", ",
+                        detail::spaced(domain_limit_table()[k].key));
+  }
+  return note;
 }
 
 std::vector<double> lift_over_weight(const Sweep& sweep, const NetcdfReader& file) {

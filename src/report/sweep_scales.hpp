@@ -64,6 +64,9 @@ struct Field {
   const char* superlative() const;
 };
 
+/// What a read-out says of a design beside its numbers: that it does not flap, or the limits of the domain it exceeds.
+std::string design_note(int status, unsigned domain);
+
 /// Of every design; empty where the study does not keep it.
 std::vector<double> lift_over_weight(const Sweep& sweep, const NetcdfReader& file);
 

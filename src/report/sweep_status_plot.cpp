@@ -6,6 +6,7 @@
 
 #include "report/figure.hpp"
 #include "report/layout.hpp"
+#include "report/read_out.hpp"
 
 namespace wingbeat {
 
@@ -69,7 +70,7 @@ void plot_statuses(const std::string& title, const std::string& x_label, const s
   }
   figure.add("set ytics ({})\nset yrange [-0.6:{}]\nplot {}\nunset output\n", tics, double(present.size()) - 0.4,
              plots);
-  run_gnuplot(figure.script(), file);
+  write_figure(figure, format, title, {}, file);
 }
 
 }  // namespace wingbeat

@@ -10,10 +10,9 @@ namespace wingbeat::reproduction {
 
 using detail::markup_escaped;
 
-/// Of the page: its style sheet, its script, and a drawing in colours that follow the page's theme.
+/// Of the page: its style sheet and its script.
 std::string page_style();
 std::string page_script();
-void use_page_colours(std::string& svg);
 
 /// Text with minus signs in place of the hyphens before digits that begin a number.
 std::string with_minus_signs(std::string html);

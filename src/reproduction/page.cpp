@@ -4,6 +4,7 @@
 #include <string_view>
 #include <utility>
 
+#include "report/page_colours.hpp"
 #include "reproduction/html.hpp"
 
 namespace wingbeat::reproduction {
@@ -54,6 +55,10 @@ td.n { text-align: right; white-space: nowrap; }
 .part::before { content: "\25D0  "; color: var(--mixed); }
 .erratum { color: var(--bad); }
 table.claims { font-size: .76rem; }
+.filter { font: .85rem Arial, Helvetica, sans-serif; display: flex; flex-wrap: wrap; gap: .4rem 1.2rem; }
+.filter[hidden], .scorecard tr[hidden] { display: none !important; }
+.filter select, .filter input { font: inherit; color: inherit; background: var(--page); border: 1px solid var(--grey); }
+svg[data-panels]:focus-visible { outline: 2px solid var(--accent); outline-offset: -2px; }
 .scorecard table { width: 100%; font-size: .78rem; }
 .scorecard td:nth-child(5) { min-width: 11rem; }
 .strip { position: relative; display: block; height: .9rem; min-width: 10rem; border-left: 1px solid var(--line);
@@ -98,7 +103,7 @@ body[data-shown=virtual-work] [data-formulation=rod-force] { display: none; }
   .drawing svg { max-height: 112mm; } figure.page .drawing svg { max-height: 96mm; }
   p, ul, ol, .answer { max-width: none; } h2 { margin-top: 1.2rem; }
   details:not([open]), .moving { display: none; } .scorecard td:nth-child(5), .strip { min-width: 30mm; }
-  nav, .tools, .tip { display: none !important; }
+  nav, .tools, .tip, .filter { display: none !important; } g[data-curve] { opacity: 1 !important; }
   .wide, .drawing { overflow: visible; } table, table.laws, .scorecard table { width: 100%; font-size: 6.6pt; }
   th, td { padding: .2rem .3rem; } td:first-child { min-width: 9rem; }
   .scorecard td:nth-child(3), .scorecard td:nth-child(4) { width: 24%; }
@@ -122,6 +127,7 @@ for (const button of tools.querySelectorAll('button')) {
 }
 const tip = document.body.appendChild(document.createElement('div'));
 tip.className = 'tip';
+tip.setAttribute('role', 'status');
 const digits = value => Number(value.toPrecision(4)).toString();
 const unit = label => (label.match(/\(([^)]*)\)$/) || ['', ''])[1];
 function points(group) {
@@ -135,14 +141,12 @@ function points(group) {
 }
 for (const svg of document.querySelectorAll('svg[data-panels]')) {
   const panels = JSON.parse(svg.dataset.panels), groups = [...svg.querySelectorAll('g[data-curve]')];
-  const hide = () => { tip.style.display = 'none'; };
-  svg.addEventListener('pointerleave', hide);
-  svg.addEventListener('pointermove', event => {
+  const stress = one => { for (const g of groups) g.style.opacity = one && g !== one ? 0.25 : ''; };
+  const hide = () => { tip.style.display = 'none'; stress(null); };
+  // Of the curves the one within reach of (x, y) stands out; all are read at x.
+  const read = (index, x, y) => {
     const size = svg.getBoundingClientRect(), view = svg.viewBox.baseVal;
-    const x = (event.clientX - size.left) * view.width / size.width;
-    const y = (event.clientY - size.top) * view.height / size.height;
-    const index = panels.findIndex(({box: b}) => x >= b[0] - 8 && x <= b[1] + 8 && y >= b[2] - 8 && y <= b[3] + 8);
-    if (index < 0) return hide();
+    let near = null, reach = 20;
     const {box, range, x: along, y: quantity, marks} = panels[index];
     const value = range[0] + (x - box[0]) / (box[1] - box[0]) * (range[1] - range[0]);
     const lines = [`${along.replace(/ \([^)]*\)$/, '')}: ${digits(value)} ${unit(along)}`];
@@ -152,6 +156,7 @@ for (const svg of document.querySelectorAll('svg[data-panels]')) {
       let best = null;
       for (const at of points(group)) if (!best || Math.abs(at[0] - x) < Math.abs(best[0] - x)) best = at;
       if (!best || Math.abs(best[0] - x) > 14) continue;
+      if (Math.abs(best[1] - y) < reach) { near = group; reach = Math.abs(best[1] - y); }
       const height = range[3] - (best[1] - box[2]) / (box[3] - box[2]) * (range[3] - range[2]);
       lines.push(`${name}: ${digits(height)} ${unit(quantity)}`);
     }
@@ -164,10 +169,55 @@ for (const svg of document.querySelectorAll('svg[data-panels]')) {
       return line;
     }));
     tip.style.display = 'block';
-    tip.style.left = Math.max(4, Math.min(event.clientX + 14, innerWidth - tip.offsetWidth - 6)) + 'px';
-    tip.style.top = Math.max(4, Math.min(event.clientY + 14, innerHeight - tip.offsetHeight - 6)) + 'px';
+    const left = size.left + x * size.width / view.width, top = size.top + y * size.height / view.height;
+    tip.style.left = Math.max(4, Math.min(left + 14, innerWidth - tip.offsetWidth - 6)) + 'px';
+    tip.style.top = Math.max(4, Math.min(top + 14, innerHeight - tip.offsetHeight - 6)) + 'px';
+    stress(near);
+  };
+  svg.addEventListener('pointerleave', hide);
+  svg.addEventListener('pointermove', event => {
+    const size = svg.getBoundingClientRect(), view = svg.viewBox.baseVal;
+    const x = (event.clientX - size.left) * view.width / size.width;
+    const y = (event.clientY - size.top) * view.height / size.height;
+    const index = panels.findIndex(({box: b}) => x >= b[0] - 8 && x <= b[1] + 8 && y >= b[2] - 8 && y <= b[3] + 8);
+    if (index < 0) hide(); else read(index, x, y);
+  });
+  // Left and right along the axis, up and down from panel to panel.
+  svg.tabIndex = 0;
+  let panel = 0, share = 0.5;
+  svg.addEventListener('blur', hide);
+  svg.addEventListener('keydown', event => {
+    const along = {ArrowLeft: -0.02, ArrowRight: 0.02, Home: -1, End: 1}[event.key];
+    const down = {ArrowUp: -1, ArrowDown: 1}[event.key];
+    if (event.key === 'Escape') hide();
+    if (along === undefined && (down === undefined || !panels[panel + down])) return;
+    event.preventDefault();
+    share = Math.max(0, Math.min(1, share + (along || 0)));
+    panel += down || 0;
+    const b = panels[panel].box;
+    read(panel, b[0] + share * (b[1] - b[0]), b[2]);
   });
 }
+const score = document.querySelector('.scorecard'), wanted = score.querySelector('.filter');
+wanted.hidden = false;
+const pick = () => {
+  const outcome = wanted.querySelector('select').value, text = wanted.querySelector('input').value.toLowerCase();
+  let count = 0, group = null;
+  for (const row of score.querySelector('tbody').rows) {
+    if (row.cells[0].classList.contains('group')) {
+      group = row;
+      group.hidden = true;
+      continue;
+    }
+    const met = [2, 3].filter(k => row.cells[k].classList.contains('yes')).length;
+    row.hidden = outcome !== '' && met !== +outcome || !row.textContent.toLowerCase().includes(text);
+    if (row.hidden) continue;
+    ++count;
+    if (group) group.hidden = false;
+  }
+  wanted.querySelector('span').textContent = `${count} statements`;
+};
+wanted.addEventListener('input', pick);
 for (const table of document.querySelectorAll('table.sortable')) {
   const heads = [...table.tHead.rows[0].cells];
   heads.forEach((head, column) => {
@@ -177,7 +227,8 @@ for (const table of document.querySelectorAll('table.sortable')) {
       const up = head.getAttribute('aria-sort') !== 'ascending';
       for (const other of heads) other.removeAttribute('aria-sort');
       head.setAttribute('aria-sort', up ? 'ascending' : 'descending');
-      const key = row => row.cells[column] ? row.cells[column].textContent.trim() : '';
+      const text = cell => cell ? cell.dataset.value ?? cell.textContent.trim().replace(/^\u2212/, '-') : '';
+      const key = row => text(row.cells[column]);
       const order = (p, q) => {
         const a = key(p), b = key(q), m = parseFloat(a), n = parseFloat(b);
         return (up ? 1 : -1) * (isNaN(m) || isNaN(n) ? a.localeCompare(b) : m - n);
@@ -193,44 +244,14 @@ for (const table of document.querySelectorAll('table.sortable')) {
       }
     };
     head.addEventListener('click', sort);
-    head.addEventListener('keydown', event => { if (event.key === 'Enter') sort(); });
+    head.addEventListener('keydown', event => {
+      if (event.key !== 'Enter' && event.key !== ' ') return;
+      event.preventDefault();
+      sort();
+    });
   });
 }
 )";
-
-/// A colour of the figures: as they are drawn, as a name of the page's style, and on a dark page.
-struct PageColour {
-  const char *drawn, *name, *dark;
-};
-constexpr PageColour colours[] = {{"#ffffff", "paper", "#181b1f"},
-                                  {style::ink, "ink", "#e8e8e6"},
-                                  {"#404040", "axis", "#b8bec6"},
-                                  {"#202020", "edge", "#c8ccd2"},
-                                  {style::grey, "grey", "#9aa0a6"},
-                                  {style::outside_domain, "out", "#747a80"},
-                                  {"#e4e4e4", "met", "#31373e"},
-                                  {"#d0d0d0", "flow", "#4a5058"},
-                                  {"#c8c8c8", "stored", "#50565e"},
-                                  {"#ececec", "returned", "#2c3137"},
-                                  {"#e0e0e0", "slider", "#4a5058"},
-                                  {style::with_springs, "springs", "#5ab4f0"},
-                                  {style::without_springs, "bare", "#ff8c42"},
-                                  {style::in_vacuum, "vacuum", "#5cc9b7"},
-                                  {style::without_wings, "wingless", "#c6c65a"},
-                                  {style::ordered[0], "first", "#5f4a7c"},
-                                  {style::ordered[1], "second", "#8d68b5"},
-                                  {style::ordered[2], "third", "#b79be0"},
-                                  {style::ordered[3], "fourth", "#e3d3ff"},
-                                  {"#8f3d6e", "friction", "#e39cc4"},
-                                  {"#7a5300", "copper", "#f0bc55"},
-                                  {"#6b6000", "viscous", "#e6dc6a"},
-                                  {"#505050", "residual", "#bbbbbb"},
-                                  {"#1f6f9c", "air", "#7cc4ee"}};
-
-void replace_in(std::string& text, std::string_view from, std::string_view to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
-    text.replace(at, from.size(), to);
-}
 
 }  // namespace
 
@@ -241,10 +262,8 @@ std::string page_style() {
               dark =
                   "--page: #111417; --soft: #a5abb2; --line: #3a4047; --accent: #7cc0ea; --band: #1d2227; --good: "
                   "#41c99a; --bad: #ff9a66; --mixed: #e0bb55; color-scheme: dark;";
-  for (const PageColour& c : colours) {
-    light += fmt::format(" --{}: {};", c.name, c.drawn);
-    dark += fmt::format(" --{}: {};", c.name, c.dark);
-  }
+  light += colour_variables(false);
+  dark += colour_variables(true);
   // Paper is white, whatever the screen is.
   return fmt::format(":root {{ {} }}\n@media screen and (prefers-color-scheme: dark) {{ :root {{ {} }} }}", light,
                      dark) +
@@ -260,18 +279,5 @@ std::string with_minus_signs(std::string html) {
 }
 
 std::string page_script() { return script; }
-
-void use_page_colours(std::string& svg) {
-  for (const PageColour& c : colours) {
-    const std::string_view hex = c.drawn;
-    const auto part = [&](std::size_t n) { return std::stoi(std::string(hex.substr(1 + 2 * n, 2)), nullptr, 16); };
-    const std::string to = fmt::format("var(--{})", c.name);
-    replace_in(svg, hex, to);
-    replace_in(svg, fmt::format("rgb({:3},{:4},{:4})", part(0), part(1), part(2)), to);
-    replace_in(svg, fmt::format("rgb({},{},{})", part(0), part(1), part(2)), to);
-  }
-  replace_in(svg, "\"black\"", "\"var(--ink)\"");
-  replace_in(svg, " font-family=\"sans-serif\"", "");
-}
 
 }  // namespace wingbeat::reproduction

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "report/page_colours.hpp"
 #include "reproduction/html.hpp"
 
 namespace wingbeat::reproduction {

@@ -40,6 +40,13 @@ std::string strip(const Claim& c) {
   return html + "</span>";
 }
 
+/// By which the strips are sorted; -1 without one.
+double largest_deviation(const Claim& c) {
+  double largest = -1.0;
+  for (const double d : c.deviation) largest = std::isfinite(d) ? std::max(largest, std::abs(d)) : largest;
+  return largest;
+}
+
 std::string cell(const Claim& c, std::size_t f) {
   const std::string off = percent_text(c.deviation[f]);
   std::string html = fmt::format("<td class=\"{}\" data-label=\"{}\">", c.within[f] ? "yes" : "no", variant_name(f));
@@ -60,16 +67,22 @@ std::string cell(const Claim& c, std::size_t f) {
 
 std::string scorecard_html(const Assessment& a) {
   std::string html =
-      "<div class=\"scorecard\"><table><thead><tr><th>statement</th><th>published</th><th>rod-force</th>"
+      "<div class=\"scorecard\"><div class=\"filter\" hidden><label>Show <select><option value=\"\">all "
+      "statements</option><option value=\"0\">reproduced in neither formulation</option><option value=\"1\">in one"
+      "</option><option value=\"2\">in both</option></select></label><label>with the words <input type=\"search\">"
+      "</label><span role=\"status\"></span></div>\n<table class=\"sortable\"><thead><tr><th>statement</th>"
+      "<th>published</th><th>rod-force</th>"
       "<th>virtual-work</th><th>deviation</th></tr></thead><tbody>\n";
   for (const ClaimGroup& group : claim_groups()) {
     const std::vector<const Claim*> claims = worst_first(a, group);
     if (claims.empty()) continue;
     html += fmt::format("<tr><th class=\"group\" colspan=\"5\">{}</th></tr>\n", group.heading);
     for (const Claim* c : claims) {
-      html += fmt::format("<tr><td>{}</td><td data-label=\"published\">{}</td>{}{}<td>{}</td></tr>\n",
-                          markup_escaped(short_statement(*c, group.heading)), markup_escaped(c->published_text),
-                          cell(*c, 0), cell(*c, 1), strip(*c));
+      html += fmt::format(
+          "<tr><td>{}</td><td data-label=\"published\">{}</td>{}{}"
+          "<td data-value=\"{:.4f}\">{}</td></tr>\n",
+          markup_escaped(short_statement(*c, group.heading)), markup_escaped(c->published_text), cell(*c, 0),
+          cell(*c, 1), largest_deviation(*c), strip(*c));
     }
   }
   return with_minus_signs(html + "</tbody></table></div>\n");

@@ -452,7 +452,7 @@ TEST_F(Sweep, PlotsThatCannotBeAreRefusedBeforeComputing) {
     EXPECT_THAT(o.err, HasSubstr(reason));
     EXPECT_FALSE(fs::exists(path("o.nc")));
   };
-  refused({"--plot", path("o.txt")}, "the name must end in .svg, .pdf or .png");
+  refused({"--plot", path("o.txt")}, "the name must end in .svg, .pdf, .png or .html");
   refused({"--plot", path("o.svg"), "--plot-metric", "lift"}, "\"lift\" is not among the study's metrics: voltage_v,");
   refused({"--plot-metric", "lift_mean_n"}, "--plot-metric requires --plot");
   EXPECT_THAT(run({"sweep", long_study(), "-o", path("o.nc"), "--plot", path("o.svg")}).err,

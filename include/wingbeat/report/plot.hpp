@@ -17,7 +17,7 @@ inline constexpr double single_column_width = 89.0 / 25.4, double_column_width =
 
 /// What a figure is written as, and how wide it is printed.
 struct PlotFormat {
-  enum Kind { svg, pdf, png };
+  enum Kind { svg, pdf, png, html };
   Kind kind = svg;
   double width = single_column_width;  ///< [in]
 
@@ -28,6 +28,8 @@ struct PlotFormat {
 
 /// As OutputRules expects them.
 inline constexpr const char* plot_extensions = ".svg .pdf .png";
+/// Of sweeps and fronts also a page that shows the numbers of the design under the pointer.
+inline constexpr const char* page_extensions = ".svg .pdf .png .html";
 /// By the extension; empty for any other.
 std::optional<PlotFormat> plot_format(const std::filesystem::path& file);
 

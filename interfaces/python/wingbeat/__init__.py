@@ -11,6 +11,7 @@
     wb.solve({"supply.voltage": [2, 3, 4]}, vehicle=vehicle).lift_mean
     vehicle.equations_of_motion().rates(time, state)    # for SciPy
     wb.optimise("optimise-hover.toml").vehicle          # likewise fit, tolerance, endurance, identify_motor
+    import wingbeat.plot                                # figures, with matplotlib
 
 Everything is SI and radians unless a unit says otherwise; wherever a quantity is expected, a number is SI and a text has
 its unit. A vehicle that does not flap is a result, never an exception; input that cannot be used raises InputError.
