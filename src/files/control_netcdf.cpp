@@ -130,8 +130,8 @@ void write_control_netcdf(const ControlModels& models, const std::string& versio
       const std::string unit = std::string(c_of.unit) + (unit_of(m.input) == std::string("V") ? " V-1" : "");
       for (const AllocationSlope& s : allocation_slopes) {
         const std::string variable = std::string(c_of.name) + "_" + s.name + "_by_" + name;
-        put_numbers(data, variable, {}, unit, std::string("slope of the ") + c_of.meaning + ", " + s.meaning,
-                    {(m.*s.member).*c_of.member});
+        put_numbers(data, variable, {}, s.of_input ? std::string(unit_of(m.input)) : unit,
+                    std::string("slope of the ") + c_of.meaning + ", " + s.meaning, {(m.*s.member).*c_of.member});
       }
     }
   }

@@ -232,6 +232,7 @@ void put_map(std::string& text, const AllocationMap& map) {
   line(fmt::format("slope at {}", number(map.slope.input)), map.slope);
   line("  from these points", map.slope_of_points);
   line("  off by at most about", map.slope_of_points_error);
+  line("  points apart by", map.slope_of_points_step);
 }
 
 }  // namespace

@@ -9,11 +9,13 @@
 #include <utility>
 
 #include "reproduction/intervals.hpp"
+#include "reproduction/searched_intervals.hpp"
 #include "reproduction/statement_answers.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/report/report.hpp"
 #include "wingbeat/study/bench_fit.hpp"
+#include "wingbeat/study/run.hpp"
 
 namespace wingbeat {
 namespace {
@@ -115,6 +117,32 @@ LawPrediction predict(PublishedFile file, std::size_t rival, std::size_t variant
         loss_along_stiffness(file.designs.at(target.design), *frequency, max_loss_stiffness * stiffness, loss_points);
   }
   return p;
+}
+
+/// The published change of the electrical input at a held frequency.
+const PublishedValue* input_change(const PublishedFile& file) {
+  for (const PublishedValue& v : file.values) {
+    if (v.metric == Metric::power_electrical && v.change && v.frequency && v.relative_to) return &v;
+  }
+  return nullptr;
+}
+
+/// Drag of a rival, calibrated anew for each uncertain parameter, and what springs then do to the input.
+void add_intervals_of_drag(LawPrediction& p, const PublishedFile& file) {
+  const PublishedValue* v = input_change(file);
+  if (!rivals[p.rival].own_drag || !p.law.calibrated || !v || p.variant == recalibrated) return;
+  const auto numbers = [&](PublishedFile of) -> std::vector<double> {
+    const LawPrediction there = calibrated(of, p.rival, p.variant);
+    if (!there.law.calibrated) return {absent, absent};
+    const auto input = [&](const std::string& design) {
+      const RunOptions options{.tolerance = 1e-8, .frequency = v->frequency, .allow_extrapolation = true};
+      return run_design(of.designs.at(design), options).metrics[Metric::power_electrical];
+    };
+    return {there.drag_factor, input(v->design) / input(*v->relative_to) - 1.0};
+  };
+  const auto intervals = propagated(file, numbers(file), numbers);
+  p.drag_interval = intervals[0];
+  p.input_change_interval = intervals[1];
 }
 
 Claim claim_of(const PublishedValue& v, const Assessment& a, std::size_t n) {
@@ -305,6 +333,7 @@ Assessment assess(const PublishedFile& file, const ForEach& for_each, const std:
   }
   const std::size_t trends = file.trends.size();
   std::vector<std::vector<Answer>> answers(trends, std::vector<Answer>(variant_count));
+  std::vector<std::array<Interval, variant_count>> searched(trends);
   const bool laws_wanted = std::any_of(file.trends.begin(), file.trends.end(), [](const PublishedTrend& t) {
     return t.kind == PublishedTrend::Kind::best_friction_law;
   });
@@ -312,20 +341,32 @@ Assessment assess(const PublishedFile& file, const ForEach& for_each, const std:
   for (std::size_t f = 0; f < a.variants; ++f) {
     tasks.push_back([&, f] { a.comparisons[f] = compare(files[f]); });
     for (std::size_t t = 0; t < trends; ++t) {
-      tasks.push_back([&, f, t] { answers[t][f] = answer_to(files[f], file.trends[t]); });
+      tasks.push_back([&, f, t] {
+        answers[t][f] = answer_to(files[f], file.trends[t]);
+        if (rests_on_points(file.trends[t])) return;
+        searched[t][f] = searched_interval(files[f], file.trends[t], answers[t][f]);
+      });
     }
   }
   if (laws_wanted) {
     constexpr std::size_t count = std::size(rivals);
     a.laws.resize(a.variants * count);
     for (std::size_t n = 0; n < a.laws.size(); ++n) {
-      tasks.push_back([&, n] { a.laws[n] = predict(files[n / count], n % count, n / count); });
+      tasks.push_back([&, n] {
+        a.laws[n] = predict(files[n / count], n % count, n / count);
+        add_intervals_of_drag(a.laws[n], files[n / count]);
+      });
     }
   }
   run_tasks(tasks, for_each, done);
 
   for (std::size_t n = 0; n < file.values.size(); ++n) a.claims.push_back(claim_of(file.values[n], a, n));
-  for (std::size_t n = 0; n < trends; ++n) a.claims.push_back(claim_of(file.trends[n], a, answers[n]));
+  for (std::size_t n = 0; n < trends; ++n) {
+    a.claims.push_back(claim_of(file.trends[n], a, answers[n]));
+    if (rests_on_points(file.trends[n])) continue;
+    a.claims.back().interval = searched[n];
+    a.claims.back().searched = true;
+  }
   for (Claim& c : a.claims) settle(c);
   add_intervals(a, std::span<const PublishedFile>(files.data(), a.variants), for_each);
   return a;

@@ -222,6 +222,8 @@ std::string json_claims(const PublishedFile& file, const Assessment& a) {
       side["deviation"] = number(c.deviation[f]);
       side["ratio_deviation"] = number(c.ratio_deviation[f]);
       side["interval_95"] = json_interval(c.interval[f]);
+      side["interval_from"] =
+          std::isfinite(c.interval[f].low) ? Json(c.searched ? "searches" : "samples") : Json(nullptr);
       side["residual"] = number(c.residual[f]);
       side["domain"] = domain_text(c, f);
       side["within"] = has_outcome(c) ? Json(c.within[f]) : Json(nullptr);
@@ -238,6 +240,8 @@ std::string json_claims(const PublishedFile& file, const Assessment& a) {
     Json entry;
     entry["law"] = name_of(p.law.law);
     entry["drag_factor"] = p.drag_factor;
+    entry["drag_factor_95"] = json_interval(p.drag_interval);
+    entry["input_change_by_springs_95"] = json_interval(p.input_change_interval);
     entry["formulation"] = variant_name(p.variant);
     entry["coefficient"] = p.law.coefficient;
     entry["calibrated"] = p.law.calibrated;

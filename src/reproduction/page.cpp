@@ -88,16 +88,22 @@ body[data-shown=virtual-work] [data-formulation=rod-force] { display: none; }
   .scorecard td[data-label]::before { content: attr(data-label) ": "; color: var(--soft); }
   .scorecard td.yes[data-label]::before { content: "\25CF  " attr(data-label) ": "; }
   .scorecard td.no[data-label]::before { content: "\25CB  " attr(data-label) ": "; } }
-@media print { body { max-width: none; padding: 0; font-size: 9pt; } h2 { break-after: avoid; }
-  figure, tr { break-inside: avoid; }
-  .figures { display: block; columns: 2; column-gap: 6mm; } figure { margin-bottom: 4mm; }
-  figure.page { column-span: all; } figure.page .drawing svg { min-width: 0; } .drawing svg { max-height: 115mm; }
+@page { size: A4; margin: 13mm 14mm; }
+@media print { html { font-size: 9pt; } body { max-width: none; padding: 0; font-size: 9pt; }
+  h2, h3, h2 + p, thead, th.group { break-after: avoid; }
+  figure, tr, h2 + p, pre { break-inside: avoid; } p, li { orphans: 3; widows: 3; }
+  .figures { display: block; margin: .6rem 0; orphans: 1; widows: 1; }
+  figure { display: inline-block; vertical-align: top; width: 48.5%; margin: 0 1% 3mm 0; }
+  figure.page { display: block; width: auto; margin: 0 0 3mm; } figure.page .drawing svg { min-width: 0; }
+  .drawing svg { max-height: 112mm; } figure.page .drawing svg { max-height: 96mm; }
   p, ul, ol, .answer { max-width: none; } h2 { margin-top: 1.2rem; }
   details:not([open]), .moving { display: none; } .scorecard td:nth-child(5), .strip { min-width: 30mm; }
   nav, .tools, .tip { display: none !important; }
-  .wide, .drawing { overflow: visible; } table, table.laws { width: 100%; font-size: 6.6pt; }
+  .wide, .drawing { overflow: visible; } table, table.laws, .scorecard table { width: 100%; font-size: 6.6pt; }
   th, td { padding: .2rem .3rem; } td:first-child { min-width: 9rem; }
-  td.n, table.laws td.n, .v { white-space: normal; min-width: 0; } pre { white-space: pre-wrap; } }
+  .scorecard td:nth-child(3), .scorecard td:nth-child(4) { width: 24%; }
+  td.n, table.laws td.n, .v { white-space: normal; min-width: 0; } h3 { margin: .7rem 0 .2rem; }
+  pre { white-space: pre-wrap; font-size: 7pt; margin: .3rem 0; padding: .3rem .6rem; } }
 )";
 
 constexpr const char* script = R"(

@@ -115,7 +115,7 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
   fmt::format_to(
       out,
       "<h3 id=\"{0}\">Scorecard</h3>\n<p>Every statement that can be checked; within a group those that are not "
-      "reproduced come first. In square brackets 95 % of the samples, in bold the deviation. On the strip the shaded "
+      "reproduced come first. In square brackets intervals of 95 % (<a href=\"#uncertainty\">how</a>), in bold the deviation. On the strip the shaded "
       "middle is the tolerance of {1:g} %, either end {2:g} % or more; discs are rod-force, squares virtual-work, bars "
       "their intervals; hollow ones were used in the calibration. ‡ outside the domain; without the mark inside. "
       "<span class=\"files\">As a figure: {3}</span></p>\n",

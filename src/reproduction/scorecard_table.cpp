@@ -82,10 +82,15 @@ std::string uncertainty_html(const Material& m) {
       "parameter. The relative standard deviations below are assumptions of this project, with normal distributions "
       "that are independent of each other; intervals hold the middle 95 % of {} samples (scrambled Sobol, as "
       "<code>wingbeat tolerance</code> draws them), the same samples for both vehicles of a change. The chord moments "
-      "stay as calibrated. Numbers that are searched for along a frequency or a crank radius have no interval.</p>\n"
+      "stay as calibrated.</p>\n<p>A number that is searched for - an optimum, a crossing, a range, a largest lift, the "
+      "drag of the rival without friction - has an interval by propagation of the same deviations: the search is solved "
+      "anew with each parameter one standard deviation to either side, {} searches in all; half of each difference is "
+      "the contribution of a parameter, contributions add in squares, and the interval is 1.96 times their sum to "
+      "either side. Such an interval is symmetric. There is none where the number lies at an edge of the domain, or its "
+      "place at an end of the window.</p>\n"
       "<div class=\"wide\"><table><thead><tr><th>parameter</th><th>standard deviation</th><th>why</th></tr></thead>"
       "<tbody>\n",
-      m.assessment.samples);
+      m.assessment.samples, 2 * m.file.uncertain.size());
   for (const UncertainPublished& u : m.file.uncertain) {
     html += fmt::format("<tr><td><code>{}</code></td><td class=\"n\">{:g} %</td><td>{}</td></tr>\n", u.key,
                         100.0 * u.relative_deviation, markup_escaped(u.why));

@@ -142,7 +142,10 @@ Answer extreme(const Asked& ask, const PublishedTrend& t) {
         remark += fmt::format("; {} at {}", shown_quantity(value(end), t), readable(end, unit));
     }
   }
-  return {height ? peak.value : peak.at, fmt::format("{} ({})", height ? reached : at, remark)};
+  Answer answer{height ? peak.value : peak.at, fmt::format("{} ({})", height ? reached : at, remark)};
+  answer.place = peak.at;
+  answer.inside = peak.inside;
+  return answer;
 }
 
 /// The range of held frequency, `width` wide, with equal values at both ends around the highest one.
@@ -162,10 +165,13 @@ Answer best_range(const Asked& ask, const PublishedTrend& t) {
     return {absent, fmt::format("no such range; highest at {}", readable(peak.at, "Hz"))};
   }
   for (const double f : {start, start + width}) ask.counted(ask.metrics(design, f));
-  return {start + 0.5 * width,
-          fmt::format("{:.1f} to {:.1f} Hz (at least {} of the maximum of {}, which is at {})", start, start + width,
-                      fmt::format("{:.1f} %", 100.0 * value(start) / peak.value), percent(peak.value),
-                      readable(peak.at, "Hz"))};
+  Answer answer{start + 0.5 * width,
+                fmt::format("{:.1f} to {:.1f} Hz (at least {} of the maximum of {}, which is at {})", start,
+                            start + width, fmt::format("{:.1f} %", 100.0 * value(start) / peak.value),
+                            percent(peak.value), readable(peak.at, "Hz"))};
+  answer.place = start;
+  answer.inside = true;
+  return answer;
 }
 
 Answer between(const Asked& ask, const PublishedTrend& t) {
@@ -299,7 +305,10 @@ Answer answer_by(const Asked& ask, const PublishedFile& file, const PublishedTre
       const double at = crossing_along(ratio, 1.0, t.from, t.to);
       if (!std::isfinite(at)) return {absent, "never"};
       for (const std::string& name : {t.design, *t.relative_to}) ask.counted(ask.along(name, at));
-      return of_number(at, t, false);
+      Answer answer = of_number(at, t, false);
+      answer.place = at;
+      answer.inside = true;
+      return answer;
     }
     case TrendKind::peak_at:
     case TrendKind::trough_at:
@@ -343,6 +352,20 @@ Answer answer_to(const PublishedFile& file, const PublishedTrend& t) {
 bool rests_on_points(const PublishedTrend& t) {
   return t.kind == TrendKind::value || t.kind == TrendKind::change || t.kind == TrendKind::difference ||
          t.kind == TrendKind::power_balance;
+}
+
+bool is_searched(const PublishedTrend& t) {
+  return t.kind == TrendKind::peak_at || t.kind == TrendKind::trough_at || t.kind == TrendKind::peak ||
+         t.kind == TrendKind::crossing || t.kind == TrendKind::best_range;
+}
+
+double searched_metric(const PublishedFile& file, const PublishedTrend& t, double x) {
+  const Asked ask(file, t);
+  if (t.kind == TrendKind::best_range) {
+    return ask.metrics(ask.design(t.design, t.over.empty() ? std::nullopt : std::optional(t.at)), x)[t.metric];
+  }
+  if (t.kind == TrendKind::crossing) return ask.along(t.design, x)[t.metric] / ask.along(*t.relative_to, x)[t.metric];
+  return quantity(t, ask.along(t.design, x));
 }
 
 std::vector<Design<double>> designs_of(const PublishedFile& file, const PublishedTrend& t) {

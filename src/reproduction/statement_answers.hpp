@@ -13,6 +13,8 @@ struct Answer {
   std::string text;          ///< for reading
   bool holds = false;        ///< of a statement without a number
   double residual = absent;  ///< largest formulation residual over input of the cycles behind the value; absent: none
+  double place = absent;     ///< of a number that is searched for: where along the quantity; of a range its lower end
+  bool inside = false;       ///< that place is not an end of the window, nor an edge of flapping or of the domain
 };
 
 /// `file` holds the designs in the formulation, and with the chord moments, to be asked for. Of the limits of the
@@ -24,6 +26,11 @@ bool rests_on_points(const PublishedTrend& statement);
 /// Of such a statement: its designs at their operating point, one or two, and the number from their metrics.
 std::vector<Design<double>> designs_of(const PublishedFile& file, const PublishedTrend& statement);
 double number_of(const PublishedTrend& statement, const Metrics<double>& one, const Metrics<double>& other);
+
+/// What such a search looks at: the statement's metric at `x` along its quantity, of a crossing the ratio of two;
+/// absent where it does not flap or leaves the domain.
+double searched_metric(const PublishedFile& file, const PublishedTrend& statement, double x);
+bool is_searched(const PublishedTrend& statement);
 
 /// "outside the domain, residual 6.7 %" of such a share of the input; empty inside.
 std::string residual_remark(double share);

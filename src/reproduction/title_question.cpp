@@ -127,8 +127,10 @@ const ComparedValue* change_of(const LawPrediction& p, Metric metric) {
 
 std::string milliwatts(double watt) { return std::isfinite(watt) ? fmt::format("{:.0f} mW", 1e3 * watt) : "-"; }
 
-std::string between(const Interval& i, double scale, const char* unit) {
-  return std::isfinite(i.low) ? fmt::format(" ({:.0f} to {:.0f} {})", scale * i.low, scale * i.high, unit) : "";
+std::string between(const Interval& i, double scale, const char* unit, int digits = 0) {
+  return std::isfinite(i.low)
+             ? fmt::format(" ({:.{}f} to {:.{}f} {})", scale * i.low, digits, scale * i.high, digits, unit)
+             : "";
 }
 
 /// What the vehicle as published takes at the held frequency, and what it takes with its friction left out.
@@ -195,19 +197,22 @@ std::string answer_html(const Material& m) {
   if (a.samples > 0) {
     html += fmt::format(
         "<p>With friction the input is {}{} by virtual-work and {}{} by rod-force; without, {}{} and {}{}. In brackets: "
-        "95 % of {} samples of the uncertain parameters, <a href=\"#uncertainty\">whose deviations are assumed</a>.</p>\n",
+        "95 % of {} samples of {} uncertain parameters, <a href=\"#uncertainty\">whose deviations are assumed</a>; below, "
+        "of calibrated numbers, 95 % by {} calibrations anew.</p>\n",
         milliwatts(work.with), between(work.with_interval, 1e3, "mW"), milliwatts(rod.with),
         between(rod.with_interval, 1e3, "mW"), milliwatts(work.without), between(work.without_interval, 1e3, "mW"),
-        milliwatts(rod.without), between(rod.without_interval, 1e3, "mW"), a.samples);
+        milliwatts(rod.without), between(rod.without_interval, 1e3, "mW"), a.samples, m.file.uncertain.size(),
+        2 * m.file.uncertain.size());
   }
   std::string refitted;
   for (const std::size_t f : {1, 0}) {
     const ComparedValue* input = change_of(*drag[f], Metric::power_electrical);
     if (!input) continue;
     const bool outside = is_outside(*drag[f], input->published, input->published.design);
-    refitted +=
-        fmt::format("{} {:.2f} times the drag and {:+.1f} % ({}, {} the domain)", refitted.empty() ? "" : ";",
-                    drag[f]->drag_factor, 100.0 * input->computed, variant_name(f), outside ? "outside" : "inside");
+    refitted += fmt::format(
+        "{} {:.2f} times the drag{} and {:+.1f} %{} ({}, {} the domain)", refitted.empty() ? "" : ";",
+        drag[f]->drag_factor, between(drag[f]->drag_interval, 1.0, "times", 2), 100.0 * input->computed,
+        between(drag[f]->input_change_interval, 100.0, "%", 1), variant_name(f), outside ? "outside" : "inside");
   }
   const ComparedValue* published = change_of(*load, Metric::power_electrical);
   html += fmt::format(

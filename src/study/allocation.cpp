@@ -9,6 +9,9 @@
 namespace wingbeat {
 namespace {
 
+constexpr double point_tolerance = 1e-9;  ///< relative, of the cycle behind a point
+constexpr int max_halvings = 8;           ///< of the step of a map, where it bends within
+
 /// Cycle means of half of the wings, as those of the right side; or their derivatives.
 struct SideMeans {
   double lift = absent;           ///< [N]
@@ -75,6 +78,7 @@ class Sides {
   }
 
   const Vehicle<double>& vehicle() const { return vehicle_; }
+  double arm() const { return hinge_offset_ + centre_; }
 
   /// The points at `count` even distances from `low` to `high`, the operating point in their midst.
   std::vector<AllocationPoint> points(AllocationInput which, double low, double high, int count, double centre) {
@@ -97,6 +101,17 @@ class Sides {
     }();
     for (std::size_t n = 0; n < inputs.size(); ++n) points.push_back(point_of(inputs[n], {right[n], left[n]}));
     return points;
+  }
+
+  /// A point by itself, followed from the operating point.
+  AllocationPoint point(AllocationInput which, double input, double centre) {
+    const InputOfSides effect = effect_of(which);
+    const auto side = [&](double share) {
+      return effect.which == DriveInput::voltage ? at_voltage(vehicle_.voltage + share * (input - centre))
+                                                 : under_wave(effect.which, share * input);
+    };
+    const SideMeans right = side(effect.right);
+    return point_of(input, {right, effect.left == effect.right ? right : side(effect.left)});
   }
 
   AllocationPoint slope(AllocationInput which, double centre) const {
@@ -131,7 +146,7 @@ class Sides {
     SideMeans means;
     Vehicle<double> there = vehicle_;
     there.voltage = voltage;
-    const SteadyFlapping found = find_steady_flapping(there, {1e-9, false, reporting_}, start_up_in_time());
+    const SteadyFlapping found = find_steady_flapping(there, {point_tolerance, false, reporting_}, start_up_in_time());
     if (found.status == FlappingStatus::flapping && !found.record.empty()) means = side_of(wing_loads(found.record));
     by_voltage_[key_of(voltage)] = means;
     return means;
@@ -153,6 +168,14 @@ class Sides {
     return means;
   }
 
+  SideMeans under_wave(DriveInput which, double input) {
+    const auto [entry, added] = by_wave_.try_emplace({which, std::llround(1e12 * input)});
+    if (added) {
+      if (const auto found = loads_under_wave(orbit_, wave_of(which, input))) entry->second = side_of(found->loads);
+    }
+    return entry->second;
+  }
+
   Vehicle<double> vehicle_;
   const CycleRecord& orbit_;
   Reporting reporting_;
@@ -160,22 +183,55 @@ class Sides {
   WingLoadSlopes slopes_;
   SideMeans at_orbit_;
   std::map<long long, SideMeans> by_voltage_;
+  std::map<std::pair<DriveInput, long long>, SideMeans> by_wave_;
 };
 
-/// Fills in the slope that the points on either side of point number `middle` give, and its error.
-void set_slope_of_points(AllocationMap& map, std::size_t middle) {
-  const auto set = [&](double AllocationPoint::* member) {
-    const auto value = [&](int away) { return map.points[std::size_t(int(middle) + away)].*member; };
-    const double step = map.points[middle + 1].input - map.points[middle].input;
-    const double near = (value(1) - value(-1)) / (2.0 * step), far = (value(2) - value(-2)) / (4.0 * step);
-    map.slope_of_points.*member = (4.0 * near - far) / 3.0;
-    // Where the map bends within the nearer step, the curvatures that both pairs show differ.
-    const double near_curvature = (value(1) - 2.0 * value(0) + value(-1)) / (step * step);
-    const double far_curvature = (value(2) - 2.0 * value(0) + value(-2)) / (4.0 * step * step);
-    map.slope_of_points_error.*member = std::abs(near - far) + step * std::abs(near_curvature - far_curvature);
-  };
-  map.slope_of_points.input = map.slope_of_points_error.input = map.slope.input;
-  for (const AllocationColumn& column : allocation_columns) set(column.member);
+/// The operating point and those one and two steps to either side.
+struct PointsAround {
+  AllocationPoint scale;  ///< of the quantities, also of those that a symmetry makes zero
+  double step;
+  AllocationPoint far_below, below, at, above, far_above;
+};
+
+/// Sets a quantity's slope from points, its error and the step; whether the exact slope is within that error.
+bool set_slope_of_points(AllocationMap& map, const PointsAround& p, double AllocationPoint::* member) {
+  const double h = p.step, at = p.at.*member;
+  const double near = (p.above.*member - p.below.*member) / (2.0 * h);
+  const double far = (p.far_above.*member - p.far_below.*member) / (4.0 * h);
+  // Where the map bends within the nearer step, the curvatures that both pairs show differ.
+  const double near_curvature = (p.above.*member - 2.0 * at + p.below.*member) / (h * h);
+  const double far_curvature = (p.far_above.*member - 2.0 * at + p.far_below.*member) / (4.0 * h * h);
+  const double rounding = 2.0 * point_tolerance * p.scale.*member / h;
+  map.slope_of_points.*member = (4.0 * near - far) / 3.0;
+  map.slope_of_points_error.*member = std::abs(near - far) + h * std::abs(near_curvature - far_curvature) + rounding;
+  map.slope_of_points_step.*member = h;
+  const double slope = map.slope.*member;
+  return std::isnan(slope) || std::abs(slope - map.slope_of_points.*member) <= map.slope_of_points_error.*member;
+}
+
+/// Fills in the slopes that points around the operating point, number `middle` of the map, give. `point_at` computes
+/// one that the map does not have.
+template <class PointAt>
+void set_slopes_of_points(AllocationMap& map, std::size_t middle, double arm, const PointAt& point_at) {
+  const AllocationPoint* at = &map.points[middle];
+  const double lift = std::abs(at->lift), moment = arm * lift;
+  PointsAround around{{0.0, lift, moment, moment, moment, at->frequency},
+                      (at + 1)->input - at->input,
+                      at[-2],
+                      at[-1],
+                      at[0],
+                      at[1],
+                      at[2]};
+  map.slope_of_points.input = map.slope_of_points_error.input = map.slope_of_points_step.input = map.slope.input;
+  std::vector<double AllocationPoint::*> open;
+  for (const AllocationColumn& column : allocation_columns) open.push_back(column.member);
+  for (int halvings = 0;; ++halvings) {
+    std::erase_if(open, [&](double AllocationPoint::* member) { return set_slope_of_points(map, around, member); });
+    if (open.empty() || halvings == max_halvings) return;
+    const double step = 0.5 * around.step, centre = map.slope.input;
+    around = {around.scale, step, around.below, point_at(centre - step), around.at, point_at(centre + step),
+              around.above};
+  }
 }
 
 }  // namespace
@@ -188,8 +244,9 @@ std::vector<AllocationMap> allocation_maps(const Linearisation& at, double hinge
   const bool direct = drive_of(sides.vehicle()).alternating, two = sides.vehicle().motors == 2.0;
   const auto add = [&](AllocationInput which, double low, double high, int count, int middle) {
     const double centre = which == AllocationInput::voltage ? voltage : 0.0;
-    AllocationMap map{which, sides.points(which, low, high, count, centre), sides.slope(which, centre), {}, {}};
-    set_slope_of_points(map, std::size_t(middle));
+    AllocationMap map{which, sides.points(which, low, high, count, centre), sides.slope(which, centre), {}, {}, {}};
+    set_slopes_of_points(map, std::size_t(middle), sides.arm(),
+                         [&](double input) { return sides.point(which, input, centre); });
     maps.push_back(std::move(map));
   };
   add(AllocationInput::voltage, 0.5 * voltage, 1.3 * voltage, 17, 10);

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
+#include "reproduction/statement_answers.hpp"
 #include "wingbeat/cycle/domain.hpp"
+#include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/files/optimise_file.hpp"
 #include "wingbeat/files/tolerance_file.hpp"
 #include "wingbeat/reproduction/claims.hpp"
@@ -268,8 +271,52 @@ TEST(Claims, IntervalsAreThoseOfTheProgramsOwnTolerance) {
             (rod.with_interval.high - rod.with_interval.low) / rod.with);
   EXPECT_LT(change.interval[0].low, change.ours[0]);
   EXPECT_GT(change.interval[0].high, change.ours[0]);
-  // What is searched for has none.
-  EXPECT_FALSE(std::isfinite(claim("springs raise the electrical input").interval[0].low));
+}
+
+// The interval of a searched number against searches of the whole window, one for each end of each deviation.
+TEST(Claims, IntervalsOfSearchedNumbersAreThoseOfSearchesSolvedAnew) {
+  using Kind = PublishedTrend::Kind;
+  std::set<Kind> seen;
+  for (std::size_t n = 0; n < paper().trends.size(); ++n) {
+    const PublishedTrend& t = paper().trends[n];
+    const Claim& c = assessment().claims[paper().values.size() + n];
+    if (!is_searched(t) || !std::isfinite(c.interval[0].low) || !seen.insert(t.kind).second) continue;
+    EXPECT_TRUE(c.searched);
+    double squares = 0.0;
+    for (const UncertainPublished& u : paper().uncertain) {
+      std::array<double, 2> ends{};
+      for (const int end : {0, 1}) {
+        PublishedFile file = paper();
+        const DesignParameter parameter = design_parameter(u.key);
+        for (auto& [name, design] : file.designs) {
+          const auto value = parameter.value(design);
+          if (value && *value > 0.0) parameter.set(design, *value * (1.0 + (2 * end - 1) * u.relative_deviation));
+        }
+        ends[std::size_t(end)] = answer_to(file, t).value;
+      }
+      squares += std::pow(0.5 * (ends[1] - ends[0]), 2.0);
+    }
+    const double half = 1.96 * std::sqrt(squares);
+    EXPECT_NEAR(0.5 * (c.interval[0].high - c.interval[0].low), half, 0.01 * half) << t.statement;
+    EXPECT_NEAR(0.5 * (c.interval[0].high + c.interval[0].low), c.ours[0], 1e-9 * std::abs(c.ours[0])) << t.statement;
+  }
+  EXPECT_EQ(seen, (std::set<Kind>{Kind::peak_at, Kind::trough_at, Kind::peak, Kind::crossing, Kind::best_range}));
+  // At an end of the window an optimum has no interval, the largest lift there has.
+  const Claim& radius = claim("crank radius of maximum mean lift at 3 V, with springs, stroke held");
+  EXPECT_TRUE(std::isfinite(radius.interval[0].low));
+  EXPECT_FALSE(std::isfinite(radius.interval[1].low));
+  EXPECT_NEAR(radius.ours[1], 14e-3, 1e-6);
+}
+
+TEST(Claims, TheDragOfTheRivalHasAnInterval) {
+  for (const LawPrediction& p : assessment().laws) {
+    const bool drag = rivals[p.rival].own_drag && p.variant != recalibrated && p.law.calibrated;
+    EXPECT_EQ(std::isfinite(p.drag_interval.low), drag);
+    if (!drag) continue;
+    EXPECT_LT(p.drag_interval.low, p.drag_factor - 0.05);
+    EXPECT_GT(p.drag_interval.high, p.drag_factor + 0.05);
+    EXPECT_LT(p.input_change_interval.low, p.input_change_interval.high);
+  }
 }
 
 TEST(Claims, WithoutUncertainParametersThereAreNoIntervals) {

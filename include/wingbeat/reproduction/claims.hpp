@@ -44,7 +44,8 @@ enum class Scoring {
   digits    ///< within the digits of the printed number: half a unit of the last one, a whole unit of "about"
 };
 
-/// Where 95 % of the samples of the uncertain parameters lie.
+/// Where a number lies with a probability of 95 %: the middle of the samples of the uncertain parameters or, of a
+/// number that is searched for, by propagation of their standard deviations.
 struct Interval {
   double low = absent, high = absent;
 };
@@ -60,8 +61,9 @@ struct Claim {
   /// Of a change the deviation of the ratio, (1 + ours) / (1 + published) - 1; else absent.
   std::array<double, variant_count> ratio_deviation{absent, absent, absent};
   double digits = absent;  ///< how far the printed digits let the published number lie from the true one [its unit]
-  std::array<Interval, variant_count> interval;  ///< of ours; absent where the number is searched for along a quantity
-  std::array<bool, variant_count> within{};      ///< by Scoring::printed, with the file's tolerance
+  std::array<Interval, variant_count> interval;  ///< of ours
+  bool searched = false;  ///< the interval is that of a search solved anew for each parameter, not of samples
+  std::array<bool, variant_count> within{};  ///< by Scoring::printed, with the file's tolerance
   /// Largest formulation residual over input of the cycles behind the number; absent where no cycle is.
   std::array<double, variant_count> residual{absent, absent, absent};
   std::array<bool, variant_count> outside{};  ///< of the domain; as answers keep the other limits, by that residual
@@ -97,6 +99,8 @@ struct LawPrediction {
   std::size_t rival = 0;
   CalibratedLaw law;
   double drag_factor = 1.0;        ///< of S_3
+  Interval drag_interval;          ///< of drag_factor, where it is calibrated
+  Interval input_change_interval;  ///< of the change of the electrical input by springs, of the same rival
   Comparison comparison;           ///< of all published values, with that law
   std::vector<std::size_t> tests;  ///< those with springs that no calibration has seen
   std::vector<std::size_t> seen;   ///< those with springs that were used when S_2 and S_3 were chosen: not scored

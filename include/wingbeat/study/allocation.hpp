@@ -59,10 +59,12 @@ struct AllocationMap {
   AllocationInput input;
   std::vector<AllocationPoint> points;
   AllocationPoint slope;  ///< by the input at the operating point, exact derivatives [.../V or .../1]
-  /// The same from the two points next to the operating point on either side, by Richardson's extrapolation, and what
-  /// that may be off by: how far the slopes of both pairs are apart and, times the step, their curvatures. Where the
-  /// slope is further off than that, the map bends or jumps between its points.
-  AllocationPoint slope_of_points, slope_of_points_error;
+  /// The same from two pairs of points around the operating point, one and two steps away, by Richardson's
+  /// extrapolation, and what that may be off by: how far the slopes of both pairs are apart, times the step their
+  /// curvatures, and the tolerance of the points. The step is that of the map. Where the slope is further off, the map
+  /// bends or jumps between its points, which no error estimate from them alone can show (a map that is odd about the
+  /// operating point bends on both sides alike): then the step is halved, for each quantity by itself, up to 8 times.
+  AllocationPoint slope_of_points, slope_of_points_error, slope_of_points_step;
 };
 
 /// What a map has of slopes, as it is named outside the program.
@@ -70,11 +72,14 @@ struct AllocationSlope {
   const char* name;
   const char* meaning;
   AllocationPoint AllocationMap::* member;
+  bool of_input = false;  ///< in the unit of the input, not per unit of it
 };
 inline constexpr AllocationSlope allocation_slopes[] = {
     {"slope", "at the operating point, exact", &AllocationMap::slope},
-    {"slope_of_points", "at the operating point, from the points next to it", &AllocationMap::slope_of_points},
-    {"slope_of_points_error", "estimated error of slope_of_points", &AllocationMap::slope_of_points_error}};
+    {"slope_of_points", "at the operating point, from points around it", &AllocationMap::slope_of_points},
+    {"slope_of_points_error", "estimated error of slope_of_points", &AllocationMap::slope_of_points_error},
+    {"slope_of_points_step", "distance of the points behind slope_of_points", &AllocationMap::slope_of_points_step,
+     true}};
 
 /// The maps that the vehicle has, in the order of AllocationInput, about an operating point that flaps: voltages from
 /// half to 1.3 times its own, differences up to half of it, biases up to a fifth, splits up to 0.3. A pwm supply's
