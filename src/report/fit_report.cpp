@@ -436,7 +436,7 @@ void plot_residuals(const BenchFit& fit, const FitResult& r, PlotFormat format, 
                   : voltages              ? "voltage (V)"
                                           : "frequency (Hz)";
   if (waveforms) x += "; waveform: crank angle (deg)";
-  plot_panels(panels, {"Residuals of the fit", x, "measured - fitted, in standard deviations", 3.0}, format, file);
+  plot_panels(panels, {"Residuals of the fit", x, "measured − fitted, in standard deviations", 3.0}, format, file);
 }
 
 }  // namespace wingbeat

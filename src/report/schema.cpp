@@ -318,6 +318,7 @@ Json reproduce_schema() {
                             {"deviation", number_if_any},
                             {"ratio_deviation", number_if_any},
                             {"interval_95", interval},
+                            {"interval_from", text_if_any},
                             {"residual", number_if_any},
                             {"domain", any_text},
                             {"within", or_null(yes_or_no)}});
@@ -365,6 +366,8 @@ Json reproduce_schema() {
                             sides + SchemaKeys{{"reason", any_text}, {"note", any_text}, {"erratum", any_text}});
   const Json law = object({{"law", one_of_names<FrictionLaw>()},
                            {"drag_factor", any_number},
+                           {"drag_factor_95", interval},
+                           {"input_change_by_springs_95", interval},
                            {"formulation", any_text},
                            {"coefficient", any_number},
                            {"calibrated", yes_or_no},

@@ -162,7 +162,7 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
   }
   std::string note = broken ? "no line: does not flap" : "";
   if (leaves) note += fmt::format("{}grey band: outside the model's domain", note.empty() ? "" : "; ");
-  if (carried) note += fmt::format("{}best sought where lift >= weight", note.empty() ? "" : "; ");
+  if (carried) note += fmt::format("{}best sought where lift ≥ weight", note.empty() ? "" : "; ");
   const std::vector<std::string> remarks = remark_lines(note, format.width);
   const double panel = 1.45, gap = 0.45, foot = 0.54 + remarks_height(remarks), head = 0.58 + key.height();
   const double inches = head + double(metrics.size()) * panel + double(metrics.size() - 1) * gap + foot;

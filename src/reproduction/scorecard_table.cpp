@@ -85,7 +85,7 @@ std::string uncertainty_html(const Material& m) {
       "stay as calibrated.</p>\n<p>A number that is searched for - an optimum, a crossing, a range, a largest lift, the "
       "drag of the rival without friction - has an interval by propagation of the same deviations: the search is solved "
       "anew with each parameter one standard deviation to either side, {} searches in all; half of each difference is "
-      "the contribution of a parameter, contributions add in squares, and the interval is 1.96 times their sum to "
+      "the contribution of a parameter, contributions add in squares, and the interval is 1.96 times the root of that sum to "
       "either side. Such an interval is symmetric. There is none where the number lies at an edge of the domain, or its "
       "place at an end of the window.</p>\n"
       "<div class=\"wide\"><table><thead><tr><th>parameter</th><th>standard deviation</th><th>why</th></tr></thead>"

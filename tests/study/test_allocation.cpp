@@ -179,6 +179,24 @@ TEST(Allocation, SlopesWhereWingsHitStopsAreThoseOfThePoints) {
   }
 }
 
+// The roll moment of a differential voltage is odd: the bends where either side's wings begin to reach their stops
+// cancel in the curvatures of the map's points, whose error estimate missed them (6.6 times what it allowed).
+TEST(Allocation, BendsOnBothSidesOfTheOperatingPointAreFound) {
+  const Linearisation at = linearise(map_vehicle(MapKind::hinged_crank, true, 3));
+  ASSERT_TRUE(at.model);
+  const std::vector<AllocationMap> maps = allocation_maps(at, 4e-3);
+  const SlopeCheck points = slopes_against_points(maps);
+  EXPECT_EQ(points.compared, 8);
+  EXPECT_EQ(points.beyond, 0) << points.where << ' ' << points.worst;
+  const AllocationMap& map = map_by(maps, AllocationInput::differential_voltage);
+  const double of_map = map.points[6].input - map.points[5].input, step = map.slope_of_points_step.roll;
+  EXPECT_LT(step, 0.6 * of_map);
+  EXPECT_GT(step, of_map / 300.0);
+  // Within the stated error by itself, without the thousandth that slopes_against_points() allows.
+  EXPECT_LE(std::abs(map.slope.roll - map.slope_of_points.roll), map.slope_of_points_error.roll);
+  EXPECT_LT(map.slope_of_points_error.roll, 0.1 * std::abs(map.slope.roll));
+}
+
 TEST(Allocation, MapsHoldTheMotorsTemperatures) {
   Design<double> design = reference_design();
   design.motor.thermal.resistance_winding = 20.0;
