@@ -1,5 +1,6 @@
 #include "reproduction/searched_intervals.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
