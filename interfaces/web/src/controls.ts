@@ -145,11 +145,7 @@ export class Controls {
           html(
             'details',
             {class: 'others', 'data-section': `${section}+`, ...(open.has(`${section}+`) ? {open: true} : {})},
-            html(
-              'summary',
-              {},
-              others.length === 1 ? '1 optional key' : `${others.length} optional keys`,
-            ),
+            html('summary', {}, others.length === 1 ? '1 optional key' : `${others.length} optional keys`),
             ...others.map((key) => this.build_row(key, values, base)),
           ),
         );
