@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -134,9 +135,8 @@ class OrbitSearch {
   }
 
   /// True where wings over-rotate for a notable part of the period: there, a second orbit is stable now and then.
-  bool over_rotates() const {
-    return system_.vehicle.wings.air_density > 0.0 &&
-           pitch_metrics(system_, iterate_).over_rotation_of_moving() > notable_over_rotation;
+  bool over_rotates() {
+    return system_.vehicle.wings.air_density > 0.0 && pitch().over_rotation_of_moving() > notable_over_rotation;
   }
 
   void fill(SteadyFlapping& result) {
@@ -145,7 +145,7 @@ class OrbitSearch {
     const CycleExtremes<double> extremes = cycle_extremes(system_, iterate_, options_.get().tolerance);
     constexpr bool pitching = requires { System::pitch; };
     PitchMetrics of_pitch{};
-    if constexpr (pitching) of_pitch = pitch_metrics(system_, iterate_);
+    if constexpr (pitching) of_pitch = pitch();
     result.record = CycleRecord(RecordedCycle<System>{system_, std::move(iterate_)});
     result.metrics = cycle_metrics(system_.vehicle, result.record.integrals(), extremes,
                                    summary_.floquet_multiplier_max, options_.get().reporting);
@@ -156,8 +156,14 @@ class OrbitSearch {
   }
 
  private:
+  const PitchMetrics& pitch() {
+    if (!pitch_) pitch_ = pitch_metrics(system_, iterate_);
+    return *pitch_;
+  }
+
   /// An orbit whose energy balance stays open is none: finer steps first.
   void solve(const State& guess, solver::PeriodicOptions periodic) {
+    pitch_.reset();
     constexpr double finer = 1e-2, finest = 1e-12;
     summary_ = solver::solve_periodic(system_, guess, periodic, iterate_, work_.get());
     if (summary_.status != solver::PeriodicStatus::converged || balances()) return;
@@ -195,6 +201,7 @@ class OrbitSearch {
   std::reference_wrapper<solver::WorkBudget> work_;
   solver::Iterate<System> iterate_;
   solver::PeriodicSummary summary_;
+  std::optional<PitchMetrics> pitch_;
   double imbalance_ = absent;
 };
 
