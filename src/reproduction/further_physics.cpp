@@ -172,7 +172,8 @@ std::string further_html(const Material& m) {
   std::string html = fmt::format(
       "<p>The paper's model has constant motor parameters, no gear loss and no added mass of the air, and its wings "
       "pitch by a law. The program can add each of these. <b>The answer to the title question stays yes:</b> without "
-      "friction the model predicts {:.0f} to {:.0f} % less input at {:g} Hz (numbers marked ‡ below are outside the domain). Springs change the input by {:+.1f} to "
+      "friction the model predicts {:.0f} to {:.0f} % less input at {:g} Hz (numbers marked ‡ below are outside the "
+      "domain). Springs change the input by {:+.1f} to "
       "{:+.1f} % and the mean lift at {:g} V by {:+.1f} to {:+.1f} %. Mean lift at {:g} V with springs and the crank "
       "of Table 2 is {:.2f} to {:.2f} of the weight{}.</p>\n",
       -100.0 * least, -100.0 * most, f0, 100.0 * saved_most, 100.0 * saved_least, m.computed.options.voltage,
@@ -205,7 +206,8 @@ std::string further_html(const Material& m) {
       "to air, a semi-elliptic planform of 63 mm by 25 mm for the added mass, and wings on pitch hinges of 6·10"
       "<sup>-4</sup> N·m/rad that have the paper's inertia, normal-force coefficients and added mass. The wings on "
       "pitch hinges are other wings than the paper's, whose pitch follows a law. Equation (1) is taken as printed, "
-      "also where its formulation residual exceeds 5 % of the input: ‡ marks numbers outside the domain, all others are "
+      "also where its formulation residual exceeds 5 % of the input: ‡ marks numbers outside the domain, all others "
+      "are "
       "inside.</p>\n",
       f0, m.computed.options.voltage);
   return html;

@@ -72,8 +72,8 @@ svg[data-panels]:focus-visible { outline: 2px solid var(--accent); outline-offse
 .strip .beyond { border-style: dotted; background: var(--page); }
 .strip .span { height: 2px; min-width: 1px; background: var(--grey); }
 .strip .span.rod { top: .22rem; } .strip .span.work { top: .62rem; }
-pre { white-space: pre-wrap; background: var(--band); border: 1px solid var(--line); padding: .7rem .9rem; overflow-x: auto;
-  font-size: .85rem; line-height: 1.4; }
+pre { white-space: pre-wrap; background: var(--band); border: 1px solid var(--line); padding: .7rem .9rem;
+  overflow-x: auto; font-size: .85rem; line-height: 1.4; }
 code { font-size: .9em; }
 .tools { position: sticky; top: 0; z-index: 2; background: var(--page); padding: .4rem 0;
   font: .85rem Arial, Helvetica, sans-serif; border-bottom: 1px solid var(--line); }

@@ -116,7 +116,8 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
   fmt::format_to(
       out,
       "<h3 id=\"{0}\">Scorecard</h3>\n<p>Every statement that can be checked; within a group those that are not "
-      "reproduced come first. In square brackets intervals of 95 % (<a href=\"#uncertainty\">how</a>), in bold the deviation. On the strip the shaded "
+      "reproduced come first. In square brackets intervals of 95 % (<a href=\"#uncertainty\">how</a>), in bold the "
+      "deviation. On the strip the shaded "
       "middle is the tolerance of {1:g} %, either end {2:g} % or more; discs are rod-force, squares virtual-work, bars "
       "their intervals; hollow ones were used in the calibration. ‡ outside the domain; without the mark inside. "
       "<span class=\"files\">As a figure: {3}</span></p>\n",
@@ -176,7 +177,8 @@ std::string report_html(const Material& m, const std::vector<Sheet>& sheets, con
   fmt::format_to(
       out,
       "<p>The deviation is computed over published minus 1, of changes as the paper prints them. A number is met "
-      "within {:g} %, the same for every statement; a bound (\"below\", \"above\") where it holds. ● met in both formulations, ◐ in one, ○ in "
+      "within {:g} %, the same for every statement; a bound (\"below\", \"above\") where it holds. ● met in both "
+      "formulations, ◐ in one, ○ in "
       "neither; the outcome compares rod-force and virtual-work with the same chord moments, the third column "
       "has those calibrated for virtual-work. Also as <a href=\"claims.csv\">claims.csv</a> and <a "
       "href=\"claims.json\">claims.json</a>.</p>\n",

@@ -88,7 +88,8 @@ Sheet laws_sheet(const Material& m) {
   s.section = "summary";
   const LawPrediction& first = m.assessment.laws.front();
   s.caption = fmt::format(
-      "Each model has one number, calibrated without springs: the coefficient of its friction, or a factor on the drag. "
+      "Each model has one number, calibrated without springs: the coefficient of its friction, or a factor on the "
+      "drag. "
       "(a) Root mean square of its deviations from the {} published values with springs that were not used in a "
       "calibration, changes as the paper prints them. (b) By how much springs then cut the electrical input at {:g} "
       "Hz. Without friction rod-force is outside the domain.",

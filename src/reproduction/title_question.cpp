@@ -192,12 +192,15 @@ std::string answer_html(const Material& m) {
   const TitleAnswer &work = a.answers[1], &rod = a.answers[0];
   std::string html = fmt::format(
       "<div class=\"answer\"><p><b>Should friction losses be included? Yes, in this model.</b> At {:g} Hz without "
-      "springs, a model without friction predicts an electrical input of {}. By the paper's equation (1) it is {}.</p>\n",
+      "springs, a model without friction predicts an electrical input of {}. By the paper's equation (1) it is "
+      "{}.</p>\n",
       m.computed.options.frequency, cost_of_leaving_out(a, 1), cost_of_leaving_out(a, 0));
   if (a.samples > 0) {
     html += fmt::format(
-        "<p>With friction the input is {}{} by virtual-work and {}{} by rod-force; without, {}{} and {}{}. In brackets: "
-        "95 % of {} samples of {} uncertain parameters, <a href=\"#uncertainty\">whose deviations are assumed</a>; below, "
+        "<p>With friction the input is {}{} by virtual-work and {}{} by rod-force; without, {}{} and {}{}. In "
+        "brackets: "
+        "95 % of {} samples of {} uncertain parameters, <a href=\"#uncertainty\">whose deviations are assumed</a>; "
+        "below, "
         "of calibrated numbers, 95 % by {} calibrations anew.</p>\n",
         milliwatts(work.with), between(work.with_interval, 1e3, "mW"), milliwatts(rod.with),
         between(rod.with_interval, 1e3, "mW"), milliwatts(work.without), between(work.without_interval, 1e3, "mW"),
@@ -217,8 +220,10 @@ std::string answer_html(const Material& m) {
   const ComparedValue* published = change_of(*load, Metric::power_electrical);
   html += fmt::format(
       "<p><b>Rivals, refitted.</b> Without friction, more drag meets the published frequency as well, but then springs "
-      "raise the input, where {} is published:{}. Calibrated without springs, load-proportional friction predicts the {} "
-      "published values with springs to {:.1f} % (root mean square, changes as printed; rod-force), every rival only to "
+      "raise the input, where {} is published:{}. Calibrated without springs, load-proportional friction predicts "
+      "the {} "
+      "published values with springs to {:.1f} % (root mean square, changes as printed; rod-force), every rival only "
+      "to "
       "{:.0f} to {:.0f} %.</p>\n"
       "<p><b>Simulation against simulation.</b> The published values are those of the paper's simulation. No "
       "measurement is compared here: that this model reproduces them shows what follows from its equations, not how "
@@ -284,7 +289,8 @@ std::string question_html(const Material& m) {
   html +=
       "<p><b>Why.</b> At prescribed frequency springs change neither speed nor stroke much: they carry part of the "
       "inertial load at stroke reversal. A loss that depends on the speed alone - viscous, quadratic, constant, drag - "
-      "stays as it is. A loss that depends on the force inside the mechanism falls with it. The laws differ only where the "
+      "stays as it is. A loss that depends on the force inside the mechanism falls with it. The laws differ only "
+      "where the "
       "force "
       "changes and the speed does not; a single operating point cannot discriminate between laws.</p>\n"
       "<p><b>What this does not show.</b> The published values are themselves the paper's simulation of a vehicle "
