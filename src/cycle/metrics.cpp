@@ -73,7 +73,7 @@ const char* lacking_of_heat(Metric metric, const Design<double>& design) {
   }
 }
 
-const char* lacking_for(Metric metric, const Design<double>& design) {
+const char* missing_key(Metric metric, const Design<double>& design) {
   if (metric == Metric::added_mass_inertia_ratio && !design.aerodynamics.added_mass) return "aerodynamics.added_mass";
   switch (metric) {
     case Metric::hover:

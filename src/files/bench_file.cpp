@@ -185,7 +185,7 @@ class BenchReader {
         l.refuse(l.at("file"), "file",
                  fmt::format("{} is a whole flight's: a cycle cannot be fitted to it", metric_info(q.metric).key));
       }
-      if (const char* lacks = lacking_for(q.metric, fit.design)) {
+      if (const char* lacks = missing_key(q.metric, fit.design)) {
         l.refuse(l.at("file"), "file",
                  fmt::format("{} needs {} in the vehicle file", metric_info(q.metric).key, lacks));
       }

@@ -83,7 +83,7 @@ class OptimiseReader : public detail::StudySections {
     const Metric metric = metric_called(node, where, name);
     const bool flight = metric == Metric::endurance;
     counts_flight_ = counts_flight_ || flight;
-    const bool while_hovering = flight && !counts_after_hover_ && !lacking_for(metric, design);
+    const bool while_hovering = flight && !counts_after_hover_ && !missing_key(metric, design);
     if (while_hovering && !design.mass) {
       refuse(node, where,
              "endurance_s counts while lift carries the weight, which needs vehicle.mass; give it, or "
@@ -97,7 +97,7 @@ class OptimiseReader : public detail::StudySections {
     if (metric == Metric::power_motor_reference && !design.bench_torque_constant) {
       refuse(node, where, "power_motor_reference_w needs bench.torque_constant");
     }
-    if (const char* lacks = lacking_for(metric, design)) {
+    if (const char* lacks = missing_key(metric, design)) {
       refuse(node, where, fmt::format("{} needs {} in the vehicle file", name, lacks));
     }
     return while_hovering ? Metric::hover : metric;

@@ -242,7 +242,7 @@ void StudySections::read_metrics(EnsembleOptions& options) const {
 void StudySections::complete_metrics(EnsembleOptions& options, std::span<const Design<double>* const> designs) const {
   const auto no_design_has = [&](Metric metric) {
     return std::all_of(designs.begin(), designs.end(),
-                       [&](const Design<double>* design) { return lacking_for(metric, *design) != nullptr; });
+                       [&](const Design<double>* design) { return missing_key(metric, *design) != nullptr; });
   };
   if (options.metrics[std::size_t(Metric::endurance)] && !no_design_has(Metric::hover)) {
     options.metrics.set(std::size_t(Metric::hover));

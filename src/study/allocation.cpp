@@ -10,7 +10,7 @@ namespace wingbeat {
 namespace {
 
 constexpr double point_tolerance = 1e-9;  ///< relative, of the cycle behind a point
-constexpr int max_halvings = 8;           ///< of the step of a map, where it bends within
+constexpr int max_halvings = 8;           ///< of the step of a map, where it has a kink within
 
 /// Cycle means of half of the wings, as those of the right side; or their derivatives.
 struct SideMeans {
@@ -198,7 +198,7 @@ bool set_slope_of_points(AllocationMap& map, const PointsAround& p, double Alloc
   const double h = p.step, at = p.at.*member;
   const double near = (p.above.*member - p.below.*member) / (2.0 * h);
   const double far = (p.far_above.*member - p.far_below.*member) / (4.0 * h);
-  // Where the map bends within the nearer step, the curvatures that both pairs show differ.
+  // Where the map has a kink within the nearer step, the curvatures that both pairs show differ.
   const double near_curvature = (p.above.*member - 2.0 * at + p.below.*member) / (h * h);
   const double far_curvature = (p.far_above.*member - 2.0 * at + p.far_below.*member) / (4.0 * h * h);
   const double rounding = 2.0 * point_tolerance * p.scale.*member / h;

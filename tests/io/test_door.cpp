@@ -1,4 +1,4 @@
-// wingbeat/wingbeat.hpp says what the storeys below it say.
+// wingbeat/wingbeat.hpp says what the layers below it say.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

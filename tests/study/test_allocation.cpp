@@ -179,7 +179,7 @@ TEST(Allocation, SlopesWhereWingsHitStopsAreThoseOfThePoints) {
   }
 }
 
-// The roll moment of a differential voltage is odd: the bends where either side's wings begin to reach their stops
+// The roll moment of a differential voltage is odd: the kinks where either side's wings begin to reach their stops
 // cancel in the curvatures of the map's points, whose error estimate missed them (6.6 times what it allowed).
 TEST(Allocation, BendsOnBothSidesOfTheOperatingPointAreFound) {
   const Linearisation at = linearise(map_vehicle(MapKind::hinged_crank, true, 3));

@@ -72,8 +72,8 @@ TEST(EnduranceMetric, HoverIsTheTimeUntilLiftFallsBelowTheWeight) {
   EXPECT_TRUE(std::isfinite(never.by_parameter.at(0)));
   d.mass.reset();
   EXPECT_TRUE(std::isnan(endurance_of(d, Condition::air, 1e-6).hover));
-  EXPECT_STREQ(lacking_for(Metric::hover, d), "vehicle.mass");
-  EXPECT_STREQ(lacking_for(Metric::hover, reference_design()), "supply.type = \"battery\"");
+  EXPECT_STREQ(missing_key(Metric::hover, d), "vehicle.mass");
+  EXPECT_STREQ(missing_key(Metric::hover, reference_design()), "supply.type = \"battery\"");
 }
 
 TEST(EnduranceMetric, DerivativesOfHover) {
@@ -169,8 +169,8 @@ TEST(EnduranceMetric, IsComputedWhereItIsAskedFor) {
   EXPECT_TRUE(std::isnan(run_design(d).metrics[Metric::endurance]));
   EXPECT_NEAR(run_design(d, {.endurance = true}).metrics[Metric::endurance], time, 1e-5 * time);
   EXPECT_TRUE(std::isnan(run_design(reference_design(), {.endurance = true}).metrics[Metric::endurance]));
-  EXPECT_STREQ(lacking_for(Metric::endurance, reference_design()), "supply.type = \"battery\"");
-  EXPECT_EQ(lacking_for(Metric::endurance, d), nullptr);
+  EXPECT_STREQ(missing_key(Metric::endurance, reference_design()), "supply.type = \"battery\"");
+  EXPECT_EQ(missing_key(Metric::endurance, d), nullptr);
 
   DesignPointOptions options;
   EXPECT_TRUE(std::isnan(design_point(d, options, {}, start_up_in_time()).metrics[Metric::endurance]));

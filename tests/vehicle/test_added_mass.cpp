@@ -104,9 +104,9 @@ TEST(AddedMass, ItsShareOfTheWingsInertiaIsAMetric) {
   EXPECT_NEAR(slope[gradient_first_slot], 2.0 * expected / 25e-3, 1e-11);
   EXPECT_NEAR(slope[gradient_first_slot + 1] * 7.205e-8, -expected, 1e-13);
 
-  EXPECT_STREQ(lacking_for(Metric::added_mass_inertia_ratio, reference_design()), "aerodynamics.added_mass");
-  EXPECT_EQ(lacking_for(Metric::added_mass_inertia_ratio, d), nullptr);
-  EXPECT_EQ(lacking_for(Metric::lift_mean, reference_design()), nullptr);
+  EXPECT_STREQ(missing_key(Metric::added_mass_inertia_ratio, reference_design()), "aerodynamics.added_mass");
+  EXPECT_EQ(missing_key(Metric::added_mass_inertia_ratio, d), nullptr);
+  EXPECT_EQ(missing_key(Metric::lift_mean, reference_design()), nullptr);
   d.aerodynamics.added_mass = false;
   EXPECT_TRUE(std::isnan(ratio_of(d, Condition::air)));
 }

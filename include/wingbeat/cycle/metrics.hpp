@@ -189,7 +189,7 @@ inline Reporting reporting_of(const Design<double>& d) {
 /// The key that a design would have to state for a metric of the motor's heat; null where the metric is none, or known.
 const char* lacking_of_heat(Metric metric, const Design<double>& design);
 /// The key that a design would have to state for a metric of a part that it leaves out; null where nothing is missing.
-const char* lacking_for(Metric metric, const Design<double>& design);
+const char* missing_key(Metric metric, const Design<double>& design);
 
 /// The metrics of a cycle from its integrals and extremes: of all motors together, but for the force of one rod and the
 /// temperatures of one motor. `extremes` holds the maxima of extreme_candidates(). A

@@ -62,8 +62,9 @@ struct AllocationMap {
   /// The same from two pairs of points around the operating point, one and two steps away, by Richardson's
   /// extrapolation, and what that may be off by: how far the slopes of both pairs are apart, times the step their
   /// curvatures, and the tolerance of the points. The step is that of the map. Where the slope is further off, the map
-  /// bends or jumps between its points, which no error estimate from them alone can show (a map that is odd about the
-  /// operating point bends on both sides alike): then the step is halved, for each quantity by itself, up to 8 times.
+  /// has a kink or jumps between its points, which no error estimate from them alone can show (a map that is odd about
+  /// the operating point has kinks on both sides alike): then the step is halved, for each quantity by itself, up to 8
+  /// times.
   AllocationPoint slope_of_points, slope_of_points_error, slope_of_points_step;
 };
 
