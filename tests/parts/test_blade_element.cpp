@@ -11,7 +11,7 @@
 namespace wingbeat {
 namespace {
 
-BladeElement<double> reference() { return {1.225, 5e-3, 2.457e-6, 1.048e-7, translational_2022()}; }
+BladeElement<double> reference_wings() { return {1.225, 5e-3, 2.457e-6, 1.048e-7, translational_2022()}; }
 
 double radians(double degrees) { return degrees / degrees_per_radian; }
 
@@ -32,13 +32,13 @@ TEST(BladeElement, CoefficientsHaveThePublishedNumbers) {
 }
 
 TEST(BladeElement, AngleOfAttackFallsWithTheStrokeSpeed) {
-  const auto w = reference();
+  const auto w = reference_wings();
   EXPECT_DOUBLE_EQ(degrees_per_radian * aero_loads(w, 0.0).angle_of_attack, 90.0);
   EXPECT_NEAR(degrees_per_radian * aero_loads(w, 100.0).angle_of_attack, 90.0 - 0.5 * 180.0 / pi, 1e-13);
 }
 
 TEST(BladeElement, ForcesFollowTheirDefinition) {
-  const auto w = reference();
+  const auto w = reference_wings();
   const double speed = 120.0, alpha = radians(90.0 - 0.6 * 180.0 / pi);
   const double C_L = 0.225 + 1.58 * std::sin(2.13 * alpha - radians(7.2));
   const double C_D = 1.92 - 1.55 * std::cos(2.04 * alpha - radians(9.82));
@@ -47,12 +47,12 @@ TEST(BladeElement, ForcesFollowTheirDefinition) {
 }
 
 TEST(BladeElement, DragMomentNeverDrives) {
-  const auto w = reference();
+  const auto w = reference_wings();
   for (double speed = 0.0; speed < 500.0; speed += 5.0) EXPECT_GE(aero_loads(w, speed).moment, 0.0);
 }
 
 TEST(BladeElement, NoForceWithoutMotionOrAir) {
-  auto w = reference();
+  auto w = reference_wings();
   EXPECT_EQ(aero_loads(w, 0.0).lift, 0.0);
   EXPECT_EQ(aero_loads(w, 0.0).moment, 0.0);
   w.air_density = 0.0;
@@ -61,19 +61,19 @@ TEST(BladeElement, NoForceWithoutMotionOrAir) {
 }
 
 TEST(BladeElement, SlowStrokeMeetsTheBroadsideWing) {
-  const auto w = reference();
+  const auto w = reference_wings();
   const double speed = 1e-6;
   EXPECT_NEAR(aero_loads(w, speed).moment / (0.5 * 1.225 * speed * speed * 1.048e-7), 3.46087546700445, 1e-7);
 }
 
 BladeElement<double> with_pitch_stop() {
-  auto w = reference();
+  auto w = reference_wings();
   w.angle_of_attack_min = radians(40.0);
   return w;
 }
 
 TEST(AeroLoads, PowerIsMomentTimesVelocityAndNeverDrives) {
-  for (const auto& w : {reference(), with_pitch_stop()}) {
+  for (const auto& w : {reference_wings(), with_pitch_stop()}) {
     for (double velocity = -400.0; velocity <= 400.0; velocity += 12.5) {
       const double stroke = sign_of(velocity);
       const auto loads = aero_loads(w, velocity, stroke, sign_of(pitch_margin(w, std::abs(velocity))));
@@ -84,7 +84,7 @@ TEST(AeroLoads, PowerIsMomentTimesVelocityAndNeverDrives) {
 }
 
 TEST(AeroLoads, BothStrokesAreEachOthersMirrorImage) {
-  const auto w = reference();
+  const auto w = reference_wings();
   for (double speed = 0.0; speed < 400.0; speed += 12.5) {
     const auto forth = aero_loads(w, speed, 1.0, 1.0), back = aero_loads(w, -speed, -1.0, 1.0);
     EXPECT_EQ(forth.angle_of_attack, back.angle_of_attack);
@@ -111,12 +111,12 @@ TEST(AeroLoads, BranchesOfThePitchingMeetAtTheStop) {
     EXPECT_EQ(loads.pitch_margin, aero_loads(w, speed, 1.0, -1.0).pitch_margin);
     EXPECT_EQ(loads.angle_of_attack, std::max(pi / 2.0 - 5e-3 * speed, w.angle_of_attack_min));
   }
-  EXPECT_EQ(aero_loads(reference(), 300.0).pitch_margin, 1.0);
+  EXPECT_EQ(aero_loads(reference_wings(), 300.0).pitch_margin, 1.0);
 }
 
 TEST(AeroLoads, DualNumbersAgreeWithDifferences) {
   using J = Jet<1>;
-  for (const auto& w : {reference(), with_pitch_stop()}) {
+  for (const auto& w : {reference_wings(), with_pitch_stop()}) {
     for (const double pitching : {1.0, -1.0}) {
       for (const double velocity : {-310.0, -90.0, -1.0, 1.0, 90.0, 310.0}) {
         const double stroke = sign_of(velocity), h = 1e-3 * std::abs(velocity);
@@ -145,7 +145,7 @@ TEST(AeroLoads, DualNumbersAgreeWithDifferences) {
 
 TEST(AeroLoads, HaveDerivativesAtTheReversal) {
   using J = Jet<1>;
-  const auto w = cast<J>(reference());
+  const auto w = cast<J>(reference_wings());
   for (const double stroke : {1.0, -1.0}) {
     const auto loads = aero_loads(w, J(0.0, 0), J(stroke), J(1.0));
     // Forces grow with the square of the speed; the angle falls at the rate C_alpha on either side.
@@ -272,7 +272,7 @@ TEST(CoefficientTable, HasTheSamePiecesByEqualSteps) {
 }
 
 TEST(CoefficientTable, ReplacesTheWavesInTheForces) {
-  auto w = reference();
+  auto w = reference_wings();
   w.coefficients = tabulated({0.0, 1.0, 2.0}, {1.5, 1.5, 1.5}, {2.5, 2.5, 2.5});
   EXPECT_NEAR(aero_loads(w, 50.0).lift, 0.5 * 1.225 * 1.5 * 2500.0 * 2.457e-6, 1e-16);
   EXPECT_NEAR(aero_loads(w, 50.0).moment, 0.5 * 1.225 * 2.5 * 2500.0 * 1.048e-7, 1e-17);
@@ -298,13 +298,13 @@ TEST(CoefficientTable, RefusesTablesThatAreNoFunction) {
 
 TEST(BladeElement, RefusesValuesOutOfRange) {
   using W = BladeElement<double>;
-  EXPECT_NO_THROW(validate(reference()));
-  EXPECT_EQ(refusal(reference(), [](W& w) { w.air_density = -1.0; }),
+  EXPECT_NO_THROW(validate(reference_wings()));
+  EXPECT_EQ(refusal(reference_wings(), [](W& w) { w.air_density = -1.0; }),
             "aerodynamics.air_density: must be >= 0 [kg/m3], got -1");
-  EXPECT_EQ(refusal(reference(), [](W& w) { w.pitch_coefficient = -5e-3; }),
+  EXPECT_EQ(refusal(reference_wings(), [](W& w) { w.pitch_coefficient = -5e-3; }),
             "aerodynamics.pitch_coefficient: must be >= 0 [s], got -0.005");
-  EXPECT_EQ(refusal(reference(), [](W& w) { w.s2 = -1.0; }), "wing.planform.s2: must be >= 0 [m4], got -1");
-  EXPECT_EQ(refusal(reference(), [](W& w) { w.s3 = -1.0; }), "wing.planform.s3: must be >= 0 [m5], got -1");
+  EXPECT_EQ(refusal(reference_wings(), [](W& w) { w.s2 = -1.0; }), "wing.planform.s2: must be >= 0 [m4], got -1");
+  EXPECT_EQ(refusal(reference_wings(), [](W& w) { w.s3 = -1.0; }), "wing.planform.s3: must be >= 0 [m5], got -1");
 }
 
 }  // namespace

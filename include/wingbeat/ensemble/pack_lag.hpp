@@ -82,7 +82,7 @@ auto PackOrbit<L, N>::relaxation(System system, std::size_t base, const L& force
 }
 
 /// What relaxation() leaves out, relative: what grows with the angle of a time constant, and with what the speed
-/// changes by meanwhile. The factor is measured, on the coreless motors of tests/study/test_ensemble.cpp.
+/// changes by meanwhile. The factor is measured, on the coreless motors of tests/ensemble/test_ensemble.cpp.
 template <class L, int N>
 L PackOrbit<L, N>::lag_left_out() const {
   const L angle = vehicle_.motor.armature_inductance * no_load_ * inverse_of(circuit_resistance(vehicle_));

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "study/ensemble_comparison.hpp"
+#include "ensemble/ensemble_comparison.hpp"
 #include "vehicle/reference_vehicle.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
 #include "wingbeat/ensemble/lane_statics.hpp"

@@ -7,9 +7,10 @@
 
 #include "vehicle/case_design.hpp"
 #include "vehicle/reference_vehicle.hpp"
+#include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
-#include "wingbeat/study/run.hpp"
+#include "wingbeat/time/transient.hpp"
 
 namespace wingbeat {
 namespace {

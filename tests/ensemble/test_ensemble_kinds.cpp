@@ -6,12 +6,12 @@
 #include <random>
 #include <vector>
 
-#include "study/ensemble_comparison.hpp"
+#include "ensemble/ensemble_comparison.hpp"
 #include "vehicle/kind_boxes.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "vehicle/reference_vehicle.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
-#include "wingbeat/study/run.hpp"
+#include "wingbeat/time/transient.hpp"
 
 namespace wingbeat {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "published/assessed_paper.hpp"
+#include "reproduction/assessed_paper.hpp"
 #include "reproduction/statement_answers.hpp"
 #include "wingbeat/cycle/domain.hpp"
 #include "wingbeat/files/design_parameter.hpp"

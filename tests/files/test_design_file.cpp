@@ -3,7 +3,7 @@
 
 #include <fstream>
 
-#include "io/vehicle_text.hpp"
+#include "files/vehicle_text.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "published/assessed_paper.hpp"
+#include "reproduction/assessed_paper.hpp"
 
 namespace wingbeat {
 namespace {

@@ -8,7 +8,7 @@
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
-#include "wingbeat/study/run.hpp"
+#include "wingbeat/time/transient.hpp"
 
 namespace wingbeat {
 namespace {

@@ -13,8 +13,9 @@
 #include <string>
 #include <vector>
 
+#include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
-#include "wingbeat/study/run.hpp"
+#include "wingbeat/time/transient.hpp"
 
 namespace wingbeat {
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <random>
 
-#include "study/ensemble_comparison.hpp"
+#include "ensemble/ensemble_comparison.hpp"
 #include "vehicle/direct_design.hpp"
 #include "vehicle/metrics_apart.hpp"
 #include "wingbeat/cycle/direct_balance.hpp"

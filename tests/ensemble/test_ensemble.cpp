@@ -1,3 +1,4 @@
+#include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
 
 #include <gmock/gmock.h>
@@ -7,11 +8,11 @@
 #include <map>
 #include <random>
 
-#include "study/ensemble_comparison.hpp"
+#include "ensemble/ensemble_comparison.hpp"
 #include "vehicle/known_orbits.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "vehicle/reference_vehicle.hpp"
-#include "wingbeat/study/run.hpp"
+#include "wingbeat/time/transient.hpp"
 
 namespace wingbeat {
 namespace {
