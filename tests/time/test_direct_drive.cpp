@@ -8,9 +8,9 @@
 
 #include "vehicle/direct_design.hpp"
 #include "vehicle/random_vehicle.hpp"
-#include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/cycle/direct_balance.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
+#include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/time/transient.hpp"
 
 namespace wingbeat {

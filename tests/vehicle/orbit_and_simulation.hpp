@@ -7,8 +7,8 @@
 #include <string>
 
 #include "vehicle/metrics_apart.hpp"
-#include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
+#include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/time/transient.hpp"
 
