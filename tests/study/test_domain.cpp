@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "reference_vehicle.hpp"
+#include "vehicle/reference_vehicle.hpp"
 #include "wingbeat/cycle/domain.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/study/run.hpp"
