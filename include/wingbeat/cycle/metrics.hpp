@@ -15,49 +15,49 @@ namespace wingbeat {
 
 /// Every metric of a cycle, in the order of reports and data sets.
 enum class Metric {
-  voltage,
-  frequency,
-  current_mean,
-  current_peak,
-  current_rms,
-  power_electrical,
-  power_motor,
-  power_motor_reference,
-  power_friction,
-  power_aerodynamic,
-  power_reactive,
-  power_copper,
-  power_viscous,
-  power_motor_friction,
-  power_gear,
-  power_loss,
-  power_residual,
-  lift_mean,
-  lift_peak,
-  rod_force_peak,
-  rod_force_mean,
-  stroke_amplitude,
-  flapping_velocity_peak,
-  angle_of_attack_min,
-  crank_speed_min,
-  crank_speed_max,
-  efficiency_system,
-  efficiency_motor,
-  efficiency_mechanism,
-  floquet_multiplier_max,
-  lift_to_weight,
-  winding_temperature,
-  case_temperature,
-  winding_temperature_margin,
-  added_mass_inertia_ratio,
-  power_hinge,
-  pitch_amplitude,
-  pitch_phase,
-  angle_of_attack_max,
-  lift_added_mass_share,
-  reynolds_number,
-  hover,     ///< as the next
-  endurance  ///< of a flight, not of a cycle: absent unless a study asks for it
+  voltage,                     ///< \f$v\f$ at the motor's terminals; of a direct drive its amplitude [V]
+  frequency,                   ///< \f$f\f$ of flapping [Hz]
+  current_mean,                ///< \f$\overline{i}\f$ [A]
+  current_peak,                ///< largest \f$i\f$ [A]
+  current_rms,                 ///< \f$\sqrt{\overline{i^2}}\f$ [A]
+  power_electrical,            ///< \f$P_\mathrm{e}\f$, input (15) [W]
+  power_motor,                 ///< \f$P_\mathrm{m}\f$, output of the motor (16) [W]
+  power_motor_reference,       ///< \f$P_\mathrm{m,ref}\f$, the bench's estimate (17) [W]
+  power_friction,              ///< \f$P_\mathrm{friction}\f$ of the mechanism (18) [W]
+  power_aerodynamic,           ///< \f$P_\mathrm{aero}\f$ (19) [W]
+  power_reactive,              ///< \f$P_\mathrm{re}\f$ (23) [W]
+  power_copper,                ///< \f$P_\mathrm{cu}\f$ [W]
+  power_viscous,               ///< \f$P_\mathrm{visc}\f$ of the motor [W]
+  power_motor_friction,        ///< \f$P_\mathrm{motor}\f$ in the motor's own friction [W]
+  power_gear,                  ///< \f$P_\mathrm{gear}\f$ lost in the gearbox [W]
+  power_loss,                  ///< \f$P_\mathrm{loss}\f$ (20) [W]
+  power_residual,              ///< \f$P_\mathrm{residual}\f$ that the formulation fails to conserve [W]
+  lift_mean,                   ///< [N]
+  lift_peak,                   ///< largest lift [N]
+  rod_force_peak,              ///< largest \f$|F|\f$ of one rod [N]
+  rod_force_mean,              ///< \f$\overline{|F|}\f$ of one rod [N]
+  stroke_amplitude,            ///< half of \f$\beta\f$ from peak to peak [rad]
+  flapping_velocity_peak,      ///< largest \f$|\dot\beta|\f$ [rad/s]
+  angle_of_attack_min,         ///< smallest \f$\alpha\f$ [deg]
+  crank_speed_min,             ///< smallest \f$\omega\f$ [rad/s]
+  crank_speed_max,             ///< largest \f$\omega\f$ [rad/s]
+  efficiency_system,           ///< \f$P_\mathrm{aero}/P_\mathrm{e}\f$ (24) [1]
+  efficiency_motor,            ///< \f$P_\mathrm{m}/P_\mathrm{e}\f$ (25) [1]
+  efficiency_mechanism,        ///< \f$P_\mathrm{aero}/P_\mathrm{m}\f$ (26) [1]
+  floquet_multiplier_max,      ///< largest magnitude of the orbit's multipliers [1]
+  lift_to_weight,              ///< mean lift over the weight [1]
+  winding_temperature,         ///< \f$T_\mathrm{w}\f$ [degC]
+  case_temperature,            ///< \f$T_\mathrm{case}\f$ [degC]
+  winding_temperature_margin,  ///< largest temperature allowed less \f$T_\mathrm{w}\f$ [K]
+  added_mass_inertia_ratio,    ///< \f$J_\mathrm{a} / (N_\mathrm{w} J_\mathrm{w})\f$ [1]
+  power_hinge,                 ///< lost in pitch hinges and at their stops [W]
+  pitch_amplitude,             ///< half of \f$\psi\f$ from peak to peak [deg]
+  pitch_phase,                 ///< by which pitching is ahead of the pitch that opposes \f$\dot\beta\f$ [deg]
+  angle_of_attack_max,         ///< largest \f$\alpha\f$ of wings on pitch hinges [deg]
+  lift_added_mass_share,       ///< of the added mass in the mean lift [1]
+  reynolds_number,             ///< of the mean chord at the mean speed of the tips [1]
+  hover,                       ///< time for which a battery lets it hover [s]; absent unless a study asks for it
+  endurance                    ///< time for which a battery lets it flap [s]; absent unless a study asks for it
 };
 inline constexpr int metric_count = int(Metric::endurance) + 1;
 
