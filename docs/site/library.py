@@ -8,35 +8,6 @@ import pathlib
 import re
 import xml.etree.ElementTree as ElementTree
 
-# Equations of docs/model.md that a header computes, by how they begin.
-computed = {
-    "parts/slider_crank.hpp": [r"N_\mathrm{w} J_\mathrm{w} \ddot\beta", r"\begin{aligned}|T_\mathrm{m} &="],
-    "parts/four_bar.hpp": [r"\beta = n_\mathrm{s}"],
-    "parts/friction.hpp": [r"T_\mathrm{f} = \mu"],
-    "parts/motor.hpp": [r"\begin{aligned}|T_\mathrm{m} &=", r"\dot\omega = \frac{e"],
-    "parts/motor_thermal.hpp": [r"\begin{aligned}|P_\mathrm{cu}", r"\begin{aligned}|\tau_\mathrm{w}"],
-    "parts/blade_element.hpp": [r"\begin{aligned}|\alpha &=", r"J_\mathrm{a}"],
-    "parts/planform.hpp": [r"\begin{aligned}|\alpha &="],
-    "parts/pitching_wings.hpp": [r"m_{rr}", r"M_{bb} =", r"\begin{aligned}|M_{bb}", r"\begin{aligned}|F_\mathrm{N}"],
-    "parts/wing_mass.hpp": [r"\begin{aligned}|m &="],
-    "vehicle/vehicle.hpp": [r"\begin{aligned}|F &= A"],
-    "cycle/thermal_equilibrium.hpp": [r"\begin{aligned}|P_\mathrm{cu}"],
-    "study/endurance.hpp": [r"\begin{aligned}|\tau_\mathrm{w}"],
-}
-
-
-def equations_for(header, model):
-    """The displayed equations of the page `model` that a header computes, with the headings they stand under."""
-    shown = []
-    for start in computed.get(header.removeprefix("wingbeat/"), []):
-        start = "$$\n" + start.replace("|", "\n")
-        at = model.find(start)
-        if at < 0:
-            raise LookupError(f"docs/model.md has no equation that begins with {start!r}")
-        heading = model[:at].rsplit("\n## ", 1)[1].split("\n", 1)[0]
-        shown.append((heading, model[at : model.index("$$", at + 2) + 2]))
-    return shown
-
 
 def hidden(name):
     """Tables and lists of the code itself."""
@@ -62,7 +33,8 @@ def tidy(code):
 class Library:
     def __init__(self, xml, include):
         self.include = include
-        self.model = (include.parent / "docs/model.md").read_text()
+        model = (include.parent / "docs/model.md").read_text()
+        self.sections = {found[1]: anchor_of(found[0]) for found in re.finditer(r"(?<=^## )(\d+)\. .*$", model, re.M)}
         self.entries = {}  # header -> [(line, node, kind)]
         self.places = {}   # id -> (header, anchor, name)
         for path in sorted(xml.glob("*.xml")):
@@ -107,6 +79,11 @@ class Library:
 
     # --- text
 
+    def prose(self, text):
+        """Text of a comment, with links to the sections of the model that it names."""
+        return re.sub(r"model\.md section (\d+)",
+                      lambda found: f"[{found[0]}](../../model.md#{self.sections[found[1]]})", escaped(text))
+
     def link(self, node, here):
         text = flat(node)
         place = self.places.get(node.get("refid"))
@@ -118,7 +95,7 @@ class Library:
         return f"../{page_of(header)}.md#{anchor}"
 
     def inline(self, node, here):
-        parts = [escaped(node.text or "")]
+        parts = [self.prose(node.text or "")]
         for child in node:
             if child.tag == "ref":
                 parts.append(self.link(child, here))
@@ -126,7 +103,9 @@ class Library:
                 tex = child.text.strip()
                 shown = tex.startswith("\\[")
                 tex = tex[2:-2] if shown else tex.strip("$")
-                parts.append(f"\n\n$$\n{tex.strip()}\n$$\n\n" if shown else f"${tex.strip()}$")
+                # Inline ones stand in tables, too, whose cells a bar would end.
+                inline = tex.strip().replace("|", r"\vert ")
+                parts.append(f"\n\n$$\n{tex.strip()}\n$$\n\n" if shown else f"${inline}$")
             elif child.tag == "computeroutput":
                 parts.append(f"`{flat(child)}`")
             elif child.tag in ("emphasis", "bold"):
@@ -144,16 +123,23 @@ class Library:
                 parts.append(f"\n\n{child.get('kind').capitalize()}: {self.paragraphs(child, here, ' ')}\n\n")
             else:
                 parts.append(self.inline(child, here))
-            parts.append(escaped(child.tail or ""))
+            parts.append(self.prose(child.tail or ""))
         return re.sub(r" *\n *", "\n", "".join(parts)).strip(" ")
 
     def paragraphs(self, node, here, between="\n\n"):
         return between.join(filter(None, (self.inline(para, here).strip() for para in node.findall("para"))))
 
     def text_of(self, node, here, between="\n\n"):
-        texts = [self.paragraphs(node.find(part), here, between) for part in ("briefdescription", "detaileddescription")
-                 if node.find(part) is not None]
-        return between.join(filter(None, texts))
+        brief, rest = (self.paragraphs(node.find(part), here, between) if node.find(part) is not None else ""
+                       for part in ("briefdescription", "detaileddescription"))
+        # Doxygen parts the first sentence from those behind it, and takes "J." for the end of one.
+        goes_on = brief and rest and not rest.startswith(("$$", "*", "```"))
+        return brief + " " + rest if goes_on else between.join(filter(None, (brief, rest)))
+
+    def cell_of(self, node, here):
+        """The same for a table; Doxygen ends some phrases with a full stop."""
+        text = self.text_of(node, here, " ")
+        return text if ". " in text else text.removesuffix(".")
 
     # --- declarations
 
@@ -214,8 +200,6 @@ class Library:
         first = escaped(first).replace("model.md", "[model.md](../../model.md)")
         lines = [f"# {name}\n", first + "\n" if first else "",
                  f'```cpp\n#include "{header}"\n```\n', f'<a href="{source}">Source</a>\n']
-        for heading, equation in equations_for(header, self.model):
-            lines.append(f"{equation}\n\n[The model](../../model.md), section {heading}.\n")
         entries = [node for _, node in self.entries[header]]
         # Constants that say nothing of themselves, such as keys, are one list.
         bare = [node for node in entries if node.get("kind") == "variable" and not self.text_of(node, header)]
@@ -232,7 +216,7 @@ class Library:
                 lines.append(f"```cpp\n{tidy(self.declaration(one))}\n```\n")
                 lines.append(self.text_of(one, header) + "\n")
                 if one.get("kind") == "enum":
-                    lines.append(table([(f"`{value.findtext('name')}`", self.text_of(value, header, " "))
+                    lines.append(table([(f"`{value.findtext('name')}`", self.cell_of(value, header))
                                         for value in one.findall("enumvalue")]))
                 if one.tag == "compounddef":
                     lines.append(self.members(one, header))
@@ -250,7 +234,7 @@ class Library:
             if member.get("prot") != "public" or hidden(member.findtext("name")) or member.get("kind") == "friend":
                 continue
             if member.get("kind") == "variable" and member.find("templateparamlist") is None:
-                fields.append((f"`{tidy(self.declaration(member)).rstrip(';')}`", self.text_of(member, here, " ")))
+                fields.append((f"`{tidy(self.declaration(member)).rstrip(';')}`", self.cell_of(member, here)))
             else:
                 rest.append(member)
         text = table(fields)

@@ -153,14 +153,17 @@ py::dict run(const Design<double>& design, const std::string& condition, const s
   return result;
 }
 
-/// The members of EnergyAudit in their order [W], of metrics in the order of the table.
-py::tuple balance(const py::array_t<double>& values) {
+/// The members of EnergyAudit by name [W], of metrics in the order of the table.
+py::dict balance(const py::array_t<double>& values) {
   Metrics<double> metrics;
   if (values.size() != py::ssize_t(metric_count)) throw py::value_error("expected a number for each metric");
   std::copy_n(values.data(), metric_count, metrics.values.begin());
   const EnergyAudit a = energy_audit(metrics);
-  return py::make_tuple(a.electrical, a.copper, a.viscous, a.gear, a.friction, a.hinge, a.aerodynamic, a.residual,
-                        a.imbalance);
+  using namespace py::literals;
+  return py::dict("electrical"_a = a.electrical, "copper"_a = a.copper, "viscous"_a = a.viscous,
+                  "motor_friction"_a = a.motor_friction, "gear"_a = a.gear, "friction"_a = a.friction,
+                  "hinge"_a = a.hinge, "aerodynamic"_a = a.aerodynamic, "residual"_a = a.residual,
+                  "imbalance"_a = a.imbalance);
 }
 
 py::dict differentiate(const Design<double>& design, const std::vector<std::string>& keys, const std::string& condition,

@@ -182,8 +182,12 @@ void plot_powers(std::span<const PowerBar> bars, const std::string& title, PlotF
     return std::any_of(bars.begin(), bars.end(), [&](const PowerBar& bar) { return bar.audit.*power != 0.0; });
   };
   const bool gearbox = lost_in(&EnergyAudit::gear), hinges = lost_in(&EnergyAudit::hinge);
+  const bool motor_friction = lost_in(&EnergyAudit::motor_friction);
   if (hinges) parts.insert(parts.begin() + 2, {"hinges", &EnergyAudit::hinge, style::hinges, false});
   if (gearbox) parts.insert(parts.begin() + 2, {"gearbox", &EnergyAudit::gear, style::gearbox, false});
+  if (motor_friction) {
+    parts.insert(parts.begin() + 2, {"motor friction", &EnergyAudit::motor_friction, style::motor_friction, false});
+  }
   std::vector<KeyEntry> named;
   for (const Part& part : parts) named.push_back(fill_key(part.name, part.fill));
   const Key key(std::move(named), 0.94 * format.width);

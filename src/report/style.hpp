@@ -23,6 +23,7 @@ inline constexpr const char* without_springs = "#d55e00";
 // Where power goes; black is the electrical input or a quantity that stands alone.
 inline constexpr const char* copper = "#e69f00";
 inline constexpr const char* viscous = "#f0e442";
+inline constexpr const char* motor_friction = "#882255";  // of P. Tol's muted scheme
 inline constexpr const char* gearbox = "#009e73";
 inline constexpr const char* hinges = "#8c6d46";
 inline constexpr const char* friction = "#cc79a7";

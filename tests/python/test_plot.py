@@ -225,6 +225,13 @@ class Figures(unittest.TestCase):
         with self.assertRaisesRegex(wb.InputError, "^metric: the study has no shares of the variance of voltage"):
             plot.sensitivity(tolerances(), "voltage")
 
+    def test_power_flow_shows_all_losses(self):
+        result = reference().replace({"motor.friction_torque": "0.2 mN m"}).solve(tolerance=1e-9)
+        ax = plot.power_flow(result)
+        widths = {bars.get_label(): bars.patches[0].get_width() for bars in ax.containers}
+        self.assertAlmostEqual(widths["motor friction"], 1e3 * result.energy_balance.motor_friction, 9)
+        self.assertAlmostEqual(sum(widths.values()), 1e3 * result.power_electrical, 5)
+
     def test_numbers(self):
         result = reference().solve(voltage="3 V", tolerance=1e-9)
         balance = result.energy_balance

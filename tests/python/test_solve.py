@@ -52,6 +52,15 @@ class Solve(unittest.TestCase):
         self.assertLess(abs(balance.error), 1e-10)
         self.assertAlmostEqual(sum(balance[1:]), balance.electrical, 15)
 
+    def test_the_energy_balance_holds_the_motors_own_friction(self):
+        vehicle = reference().replace({"motor.friction_torque": "0.2 mN m"})
+        result = vehicle.solve(tolerance=1e-10)
+        balance = result.energy_balance
+        self.assertGreater(balance.motor_friction, 0.01 * balance.electrical)
+        self.assertEqual(balance.motor_friction, result.power_motor_friction)
+        self.assertLess(abs(balance.error), 1e-10)
+        self.assertAlmostEqual(sum(balance[1:]), balance.electrical, 15)
+
     @unittest.skipUnless(PROGRAM, "needs the program")
     def test_every_number_is_the_programs(self):
         for file in sorted((DATA / "designs").glob("*.toml")):

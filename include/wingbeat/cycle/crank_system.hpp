@@ -16,7 +16,13 @@
 namespace wingbeat {
 
 /// States crank speed omega and, with inductance (N = 2), current i; independent variable crank angle from 0 to 2 pi.
-/// Valid while omega > 0. V: a Vehicle, or what has the same members with another transmission.
+/// Valid while omega > 0. V: a Vehicle, or what has the same members with another transmission. With the acceleration
+/// of motion_on(), and i following omega without inductance (model.md section 2):
+/// \f[
+/// \frac{\mathrm{d}\omega}{\mathrm{d}\theta} = \frac{\dot\omega}{\omega}, \qquad
+/// \frac{\mathrm{d}i}{\mathrm{d}\theta} = \frac{v - (R_\mathrm{a} + R_\mathrm{i})\, i - K \omega}{L_\mathrm{a} \omega},
+/// \qquad f = \left( \int_0^{2\pi} \frac{\mathrm{d}\theta}{\omega} \right)^{-1}
+/// \f]
 template <Scalar S, int N, class V = Vehicle<S>>
 struct CrankSystem : CrankTurn<S> {
   static_assert(Transmission<decltype(V::transmission), S>);

@@ -24,6 +24,10 @@ struct CycleSignal {
   bool operator==(const CycleSignal&) const = default;
 };
 
+/// Deviations from the orbit: x the state where cycle k begins, u what is held throughout it, y its means.
+/// \f[
+/// x_{k+1} = A x_k + B u_k, \qquad y_k = C x_k + D u_k
+/// \f]
 struct CycleMap {
   double period = absent;  ///< of the orbit [s]
   /// crank_speed or stroke_angle and flapping_velocity; current, where there is an inductance; of wings on hinges

@@ -17,7 +17,9 @@ struct HarmonicResponse {
 };
 
 struct DirectBalance {
-  double drive_torque;      ///< K V / |R_a + j w L_a|: amplitude of the torque on a shaft that stands still [N m]
+  /// Amplitude of the torque on a shaft that stands still [N m]:
+  /// \f$K V / |R_\mathrm{a} + \mathrm{j} w L_\mathrm{a}|\f$.
+  double drive_torque;
   double breakaway_torque;  ///< T_c, the constant friction that holds the shaft [N m]
   /// Responses in which drag and friction are replaced by the viscous damping that takes the same power from a harmonic
   /// motion (harmonic balance), slowest first: first guesses for periodic orbits. More than one hints at several
@@ -28,6 +30,15 @@ struct DirectBalance {
   bool stalled() const { return drive_torque <= breakaway_torque; }
 };
 
+/// Harmonic balance at the drive's angular frequency w: the amplitude \f$\Omega\f$ of the flapping velocity [rad/s],
+/// with the amplitude \f$M_1(|\Omega|)\f$ of the first harmonic of aerodynamic moment, friction and damping [N m]
+/// (model.md section 6).
+/// \f[
+/// \left( \frac{M_1(|\Omega|)}{|\Omega|}
+/// + \mathrm{j} \left( w\, (J + N_\mathrm{w} J_\mathrm{w}) - \frac{N_\mathrm{w} k}{w} \right)
+/// + \frac{K^2}{R_\mathrm{a} + \mathrm{j} w L_\mathrm{a}} \right) \Omega
+/// = \frac{K V}{R_\mathrm{a} + \mathrm{j} w L_\mathrm{a}}
+/// \f]
 DirectBalance direct_balance(const Vehicle<double>& vehicle);
 
 /// Of wings that pitch, about how far [rad] at a stroke velocity [rad/s]: what inertia and drag of an upright wing ask

@@ -14,7 +14,13 @@
 namespace wingbeat {
 
 /// States stroke angle beta, its velocity and, with inductance (N = 3), current i; independent variable the phase of
-/// the supply, v = V sin phi, from 0 to 2 pi.
+/// the supply, v = V sin phi, from 0 to 2 pi. In time, with the drive frequency f (model.md section 6; friction is
+/// added to the damping):
+/// \f[
+/// (J + N_\mathrm{w} J_\mathrm{w})\, \ddot\beta = K i - b\, \dot\beta - M_\mathrm{aero} - N_\mathrm{w} k \beta, \qquad
+/// L_\mathrm{a} \frac{\mathrm{d}i}{\mathrm{d}t} = V \sin\varphi - R_\mathrm{a} i - K \dot\beta, \qquad
+/// \dot\varphi = 2 \pi f
+/// \f]
 ///
 /// Constant friction (T_c) makes the right-hand side jump where the velocity changes sign, and holds the shaft at rest
 /// while |K i - N_w k beta| <= T_c. Whether it holds is one more sign: `slip` is -1 then.

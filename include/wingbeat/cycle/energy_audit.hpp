@@ -10,17 +10,21 @@
 
 namespace wingbeat {
 
-/// Mean powers of a cycle [W]. P_e = copper + viscous + motor_friction + gear + friction + hinge + aerodynamic +
-/// residual, to the solver's accuracy; what follows the gearbox is the motor's output.
+/// Mean powers of a cycle [W], which add up to the input to the solver's accuracy; what follows the gearbox is the
+/// motor's output (model.md section 4).
+/// \f[
+/// P_\mathrm{e} = R_\mathrm{a} \overline{i^2} + b\, \overline{\omega^2} + P_\mathrm{motor} + P_\mathrm{gear}
+/// + P_\mathrm{friction} + P_\mathrm{hinge} + P_\mathrm{aero} + P_\mathrm{residual}
+/// \f]
 struct EnergyAudit {
   double electrical;      ///< P_e
-  double copper;          ///< R_a mean(i^2)
-  double viscous;         ///< b mean(omega^2)
-  double motor_friction;  ///< T_c,m mean(|omega|)
-  double gear;            ///< mean((1 - e) T_g omega)
-  double friction;        ///< mean(T_f omega) of the transmission
+  double copper;          ///< \f$R_\mathrm{a} \overline{i^2}\f$
+  double viscous;         ///< \f$b\, \overline{\omega^2}\f$
+  double motor_friction;  ///< \f$P_\mathrm{motor} = T_\mathrm{c,m} \overline{\lvert\omega\rvert}\f$
+  double gear;            ///< \f$P_\mathrm{gear} = \overline{(1 - e)\, T_\mathrm{g} \omega}\f$
+  double friction;        ///< \f$P_\mathrm{friction} = \overline{T_\mathrm{f} \omega}\f$ of the transmission
   double hinge;           ///< mean of c_psi psi'^2 and of what stops take in impacts; 0 where wings have no pitch hinge
-  double aerodynamic;     ///< mean(M_aero beta' + M_pitch psi')
+  double aerodynamic;     ///< \f$P_\mathrm{aero} = \overline{M_\mathrm{aero} \dot\beta + M_\mathrm{pitch} \dot\psi}\f$
   double residual;        ///< what the formulation fails to conserve; zero to rounding for virtual-work
   double imbalance;       ///< P_e minus all of these: zero but for the error of the solution
 };
@@ -42,7 +46,7 @@ inline EnergyAudit energy_audit(const Metrics<double>& m) {
                                  hinge, m[Metric::power_aerodynamic], m[Metric::power_residual], 0.0});
 }
 
-/// What a load takes in a cycle [J].
+/// What a load takes in a cycle [J], \f$2 \pi T_\mathrm{x}\f$ of a crank.
 template <class V>
 double load_work(const V& v) {
   return drive_of(v).rotates ? two_pi * v.load_torque : 0.0;

@@ -11,7 +11,12 @@
 namespace wingbeat {
 
 /// Electrical work of a closed cycle of a vehicle whose wings follow the pitch law, less its losses and the work on air
-/// and load [J]: zero but for errors, since what is stored returns.
+/// and load [J]: zero but for errors, since what is stored returns. Integrals over the time of the cycle:
+/// \f[
+/// \int \left( v i - R_\mathrm{a} i^2 - b\, \omega^2 - T_\mathrm{c,m} |\omega| - T_\mathrm{f} \omega
+/// - M_\mathrm{aero} \dot\beta - F (h \omega - g \dot\beta) - (1 - e)\, T_\mathrm{g} \omega \right) \mathrm{d}t
+/// - W_\mathrm{load}
+/// \f]
 template <class V>
 double energy_gap(const V& v, const CycleIntegrals<double>& work) {
   const auto total = [&](Integral which) { return work[std::size_t(which)]; };

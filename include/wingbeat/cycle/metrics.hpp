@@ -15,49 +15,49 @@ namespace wingbeat {
 
 /// Every metric of a cycle, in the order of reports and data sets.
 enum class Metric {
-  voltage,
-  frequency,
-  current_mean,
-  current_peak,
-  current_rms,
-  power_electrical,
-  power_motor,
-  power_motor_reference,
-  power_friction,
-  power_aerodynamic,
-  power_reactive,
-  power_copper,
-  power_viscous,
-  power_motor_friction,
-  power_gear,
-  power_loss,
-  power_residual,
-  lift_mean,
-  lift_peak,
-  rod_force_peak,
-  rod_force_mean,
-  stroke_amplitude,
-  flapping_velocity_peak,
-  angle_of_attack_min,
-  crank_speed_min,
-  crank_speed_max,
-  efficiency_system,
-  efficiency_motor,
-  efficiency_mechanism,
-  floquet_multiplier_max,
-  lift_to_weight,
-  winding_temperature,
-  case_temperature,
-  winding_temperature_margin,
-  added_mass_inertia_ratio,
-  power_hinge,
-  pitch_amplitude,
-  pitch_phase,
-  angle_of_attack_max,
-  lift_added_mass_share,
-  reynolds_number,
-  hover,     ///< as the next
-  endurance  ///< of a flight, not of a cycle: absent unless a study asks for it
+  voltage,                     ///< \f$v\f$ at the motor's terminals; of a direct drive its amplitude [V]
+  frequency,                   ///< \f$f\f$ of flapping [Hz]
+  current_mean,                ///< \f$\overline{i}\f$ [A]
+  current_peak,                ///< largest \f$i\f$ [A]
+  current_rms,                 ///< \f$\sqrt{\overline{i^2}}\f$ [A]
+  power_electrical,            ///< \f$P_\mathrm{e}\f$, input (15) [W]
+  power_motor,                 ///< \f$P_\mathrm{m}\f$, output of the motor (16) [W]
+  power_motor_reference,       ///< \f$P_\mathrm{m,ref}\f$, the bench's estimate (17) [W]
+  power_friction,              ///< \f$P_\mathrm{friction}\f$ of the mechanism (18) [W]
+  power_aerodynamic,           ///< \f$P_\mathrm{aero}\f$ (19) [W]
+  power_reactive,              ///< \f$P_\mathrm{re}\f$ (23) [W]
+  power_copper,                ///< \f$P_\mathrm{cu}\f$ [W]
+  power_viscous,               ///< \f$P_\mathrm{visc}\f$ of the motor [W]
+  power_motor_friction,        ///< \f$P_\mathrm{motor}\f$ in the motor's own friction [W]
+  power_gear,                  ///< \f$P_\mathrm{gear}\f$ lost in the gearbox [W]
+  power_loss,                  ///< \f$P_\mathrm{loss}\f$ (20) [W]
+  power_residual,              ///< \f$P_\mathrm{residual}\f$ that the formulation fails to conserve [W]
+  lift_mean,                   ///< [N]
+  lift_peak,                   ///< largest lift [N]
+  rod_force_peak,              ///< largest \f$|F|\f$ of one rod [N]
+  rod_force_mean,              ///< \f$\overline{|F|}\f$ of one rod [N]
+  stroke_amplitude,            ///< half of \f$\beta\f$ from peak to peak [rad]
+  flapping_velocity_peak,      ///< largest \f$|\dot\beta|\f$ [rad/s]
+  angle_of_attack_min,         ///< smallest \f$\alpha\f$ [deg]
+  crank_speed_min,             ///< smallest \f$\omega\f$ [rad/s]
+  crank_speed_max,             ///< largest \f$\omega\f$ [rad/s]
+  efficiency_system,           ///< \f$P_\mathrm{aero}/P_\mathrm{e}\f$ (24) [1]
+  efficiency_motor,            ///< \f$P_\mathrm{m}/P_\mathrm{e}\f$ (25) [1]
+  efficiency_mechanism,        ///< \f$P_\mathrm{aero}/P_\mathrm{m}\f$ (26) [1]
+  floquet_multiplier_max,      ///< largest magnitude of the orbit's multipliers [1]
+  lift_to_weight,              ///< mean lift over the weight [1]
+  winding_temperature,         ///< \f$T_\mathrm{w}\f$ [degC]
+  case_temperature,            ///< \f$T_\mathrm{case}\f$ [degC]
+  winding_temperature_margin,  ///< largest temperature allowed less \f$T_\mathrm{w}\f$ [K]
+  added_mass_inertia_ratio,    ///< \f$J_\mathrm{a} / (N_\mathrm{w} J_\mathrm{w})\f$ [1]
+  power_hinge,                 ///< lost in pitch hinges and at their stops [W]
+  pitch_amplitude,             ///< half of \f$\psi\f$ from peak to peak [deg]
+  pitch_phase,                 ///< by which pitching is ahead of the pitch that opposes \f$\dot\beta\f$ [deg]
+  angle_of_attack_max,         ///< largest \f$\alpha\f$ of wings on pitch hinges [deg]
+  lift_added_mass_share,       ///< of the added mass in the mean lift [1]
+  reynolds_number,             ///< of the mean chord at the mean speed of the tips [1]
+  hover,                       ///< time for which a battery lets it hover [s]; absent unless a study asks for it
+  endurance                    ///< time for which a battery lets it flap [s]; absent unless a study asks for it
 };
 inline constexpr int metric_count = int(Metric::endurance) + 1;
 
@@ -95,19 +95,19 @@ double error_scale(const Metrics<double>& metrics, Metric which);
 /// Quantities integrated over the TIME of a cycle.
 enum class Integral {
   time,             ///< dt: the period [s]
-  current,          ///< i [A s]
-  current_square,   ///< i^2
-  speed_square,     ///< omega^2
-  electrical_work,  ///< v i [J] (eq 15)
-  motor_work,       ///< T_m omega [J] (eq 16)
-  friction_work,    ///< T_f omega [J] (eq 18), without the motor's own friction
-  aero_work,        ///< M_aero beta' [J] (eq 19), of wings on pitch hinges with M_pitch psi'
-  reactive_work,    ///< |(N_w J_w beta'' + N_w k beta) beta'| [J] (eq 23)
-  residual_work,    ///< F (h omega - g beta') [J]: what the formulation fails to conserve
+  current,          ///< \f$i\f$ [A s]
+  current_square,   ///< \f$i^2\f$ [A2 s]
+  speed_square,     ///< \f$\omega^2\f$ [rad2/s]
+  electrical_work,  ///< \f$v i\f$ [J] (eq 15)
+  motor_work,       ///< \f$T_\mathrm{m} \omega\f$ [J] (eq 16)
+  friction_work,    ///< \f$T_\mathrm{f} \omega\f$ [J] (eq 18), without the motor's own friction
+  aero_work,        ///< \f$M_\mathrm{aero} \dot\beta\f$ [J] (eq 19); on hinges \f$+ M_\mathrm{pitch} \dot\psi\f$
+  reactive_work,    ///< \f$|(N_\mathrm{w} J_\mathrm{w} \ddot\beta + N_\mathrm{w} k \beta)\, \dot\beta|\f$ [J] (eq 23)
+  residual_work,    ///< \f$F (h \omega - g \dot\beta)\f$ [J]: what the formulation fails to conserve
   lift,             ///< lift [N s]
-  rod_force,        ///< |F| [N s]
-  gear_work,        ///< (1 - e) T_g omega [J], lost in the gearbox
-  travel            ///< |omega|: what crank or shaft turns by [rad]
+  rod_force,        ///< \f$|F|\f$ [N s]
+  gear_work,        ///< \f$(1 - e)\, T_\mathrm{g} \omega\f$ [J], lost in the gearbox
+  travel            ///< \f$|\omega|\f$: what crank or shaft turns by [rad]
 };
 inline constexpr int integral_count = int(Integral::travel) + 1;
 
@@ -198,6 +198,32 @@ const char* missing_key(Metric metric, const Design<double>& design);
 /// those that the losses of this cycle lead to, absent without thermal resistances; the ratio of inertias is that at
 /// rest, J_a / (N_w J_w), absent without added mass or without wings. The Reynolds number is that of the mean chord at
 /// the mean speed of the wing tips, absent without air and of wings without a shape.
+///
+/// A bar is the mean over the time of the cycle, from the integrals: \f$\overline{x} = f \int x\,\mathrm{d}t\f$,
+/// \f$f = 1 / \int \mathrm{d}t\f$. Equation numbers of the 2022 paper; model.md section 4:
+/// \f[
+/// \begin{aligned}
+/// P_\mathrm{e} &= \overline{v i} && (15) & P_\mathrm{m} &= \overline{T_\mathrm{m} \omega} && (16) \\
+/// P_\mathrm{m,ref} &= 2 \pi f K_\mathrm{ref}\, \overline{i} && (17) &
+/// P_\mathrm{friction} &= \overline{T_\mathrm{f} \omega} && (18) \\
+/// P_\mathrm{aero} &= \overline{M_\mathrm{aero} \dot\beta} && (19) &
+/// P_\mathrm{loss} &= P_\mathrm{e} - P_\mathrm{aero} && (20) \\
+/// P_\mathrm{re} &= \overline{|(N_\mathrm{w} J_\mathrm{w} \ddot\beta + N_\mathrm{w} k \beta)\, \dot\beta|} && (23) &
+/// \eta_\mathrm{system} &= P_\mathrm{aero} / P_\mathrm{e} && (24) \\
+/// \eta_\mathrm{motor} &= P_\mathrm{m} / P_\mathrm{e} && (25) &
+/// \eta_\mathrm{mechanism} &= P_\mathrm{aero} / P_\mathrm{m} && (26) \\
+/// P_\mathrm{cu} &= R_\mathrm{a} \overline{i^2} &&& P_\mathrm{visc} &= b\, \overline{\omega^2} \\
+/// P_\mathrm{motor} &= T_\mathrm{c,m} \overline{|\omega|} &&&
+/// P_\mathrm{gear} &= \overline{(1 - e)\, T_\mathrm{g} \omega} \\
+/// P_\mathrm{residual} &= \overline{F (h \omega - g \dot\beta)} &&&
+/// i_\mathrm{rms} &= \sqrt{\overline{i^2}}
+/// \end{aligned}
+/// \f]
+/// With the stroke amplitude \f$\beta_\mathrm{max}\f$ (half of peak to peak) and the mass m of the vehicle:
+/// \f[
+/// \mathrm{Re} = \frac{\overline{c}\, (R + d)}{\nu}\, 4 \beta_\mathrm{max} f, \qquad
+/// \frac{\text{lift}}{\text{weight}} = \frac{\overline{L}}{m\, g_0}
+/// \f]
 template <template <Scalar> class V, Scalar S>
 Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, const CycleExtremes<S>& extremes,
                          const S& floquet_multiplier_max, const ReportingOf<S>& reporting) {

@@ -81,7 +81,13 @@ struct OrbitGradient {
 
 /// Derivatives of every metric but floquet_multiplier_max (which needs second ones: absent), in SI like the metrics.
 /// Absent too: by the inductance of a vehicle without one, by a gear efficiency of 1. `orbit` must be
-/// flapping and `vehicle` the one it was found for; `orbit.record` is the cycle repeated.
+/// flapping and `vehicle` the one it was found for; `orbit.record` is the cycle repeated. The start y of the orbit is
+/// the fixed point of the return map, \f$y = P(y, p)\f$; with the frequency held the voltage v follows the parameter p:
+/// \f[
+/// \frac{\mathrm{d}y}{\mathrm{d}p}
+/// = \left( I - \frac{\partial P}{\partial y} \right)^{-1} \frac{\partial P}{\partial p}, \qquad
+/// \left. \frac{\mathrm{d}v}{\mathrm{d}p} \right|_f = -\frac{\mathrm{d}f/\mathrm{d}p}{\mathrm{d}f/\mathrm{d}v}
+/// \f]
 OrbitGradient orbit_gradient(const SteadyFlapping& orbit, const GradientVehicle& vehicle,
                              const GradientOptions& options = {});
 

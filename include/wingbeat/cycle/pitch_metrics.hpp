@@ -35,7 +35,11 @@ struct PitchMetrics {
 };
 
 /// Part of a mean lift [N] that the added mass gives, where there is some, `chordwise` being the mean of
-/// chordwise_lift() [N]: normal to the chord it gives as much, along it the share that counts takes away.
+/// chordwise_lift() [N]: normal to the chord it gives as much, along it the share that counts takes away (model.md
+/// section 12).
+/// \f[
+/// \frac{(1 - s_\mathrm{L})\, \overline{p_\mathrm{n} \dot\psi \cos\psi}}{\overline{L}}
+/// \f]
 template <Scalar S>
 S added_mass_share(const PitchingWings<S>& p, const S& chordwise, const S& lift) {
   return value_of(p.air.rr) > 0.0 ? S((S(1.0) - p.edge_suction) * chordwise / lift) : S(absent);

@@ -37,26 +37,37 @@ struct StaticBalance {
   bool can_lock() const { return has_wings && advance_min <= 0.0; }
 };
 
-/// K v / (R_a + R_i) [N m].
+/// Torque of the motor that stands [N m].
+/// \f[
+/// T_\mathrm{stall} = \frac{K v}{R_\mathrm{a} + R_\mathrm{i}}
+/// \f]
 template <template <Scalar> class V, Scalar S>
 S stall_torque(const V<S>& v) {
   return v.motor.torque_constant * v.voltage / circuit_resistance(v);
 }
 
 /// T_c, the constant friction that holds the motor at rest, its own included [N m]; that of the mechanism as the motor
-/// meets it through the gearbox.
+/// meets it through the gearbox. With up(T) of torque_before_gear(), \f$\operatorname{up}(T) = T\f$ without a loss
+/// there:
+/// \f[
+/// \operatorname{up}(T_\mathrm{c}) + T_\mathrm{c,m}
+/// \f]
 template <template <Scalar> class V, Scalar S>
 S breakaway_torque(const V<S>& v) {
   return torque_before_gear(v.motor, v.friction.torque) + v.motor.friction_torque;
 }
 
-/// F_s = N_w k beta / g [N], the rod force at rest under the springs' moment N_w k beta [N m].
+/// The rod force at rest [N] under the springs' moment N_w k beta [N m] (model.md section 2, "Not flapping").
+/// \f[
+/// F_\mathrm{s} = \frac{N_\mathrm{w} k \beta}{g}
+/// \f]
 template <Scalar S>
 S static_rod_force(const CrankKinematics<S>& k, const S& N_k_beta) {
   return N_k_beta / k.wing_lever;
 }
 
-/// mu r_e |F_s| + T_c [N m]: what friction can hold at rest.
+/// What friction can hold at rest [N m], \f$T_\mathrm{c}\f$ being breakaway_torque():
+/// \f$\mu r_\mathrm{e} |F_\mathrm{s}| + T_\mathrm{c}\f$.
 template <template <Scalar> class V, Scalar S>
 S holding_torque(const V<S>& v, const S& F_s) {
   using std::abs;
@@ -64,7 +75,16 @@ S holding_torque(const V<S>& v, const S& F_s) {
 }
 
 /// Torques of the motor [N m] between which a crank stands. Behind a gearbox that loses torque the motor needs more
-/// than the load to start the crank either way, so that the gearbox helps to hold it (model.md section 9).
+/// than the load to start the crank either way, so that the gearbox helps to hold it (model.md section 9). With up(T)
+/// of torque_before_gear() and the load \f$T_\mathrm{x}\f$:
+/// \f[
+/// \begin{aligned}
+/// T_\mathrm{high} &= T_\mathrm{c,m} + \operatorname{up}\left( F_\mathrm{s} h + T_\mathrm{x}
+/// + \mu r_\mathrm{e} |F_\mathrm{s}| + T_\mathrm{c} \right) \\
+/// T_\mathrm{low} &= -T_\mathrm{c,m} - \operatorname{up}\left( -F_\mathrm{s} h - T_\mathrm{x}
+/// + \mu r_\mathrm{e} |F_\mathrm{s}| + T_\mathrm{c} \right)
+/// \end{aligned}
+/// \f]
 template <Scalar S>
 struct StandingTorques {
   S low, high;
@@ -78,8 +98,11 @@ StandingTorques<S> standing_torques(const V<S>& v, const CrankKinematics<S>& k, 
           torque_before_gear(v.motor, S(load + friction)) + own};
 }
 
-/// Torque that would start the crank forward from rest, `torque` being the motor's: torque - F_s h - mu r_e |F_s| - T_c
-/// [N m]; behind a gearbox what the motor's torque exceeds the upper standing torque by.
+/// Torque that would start the crank forward from rest [N m], `torque` T being the motor's; behind a gearbox what the
+/// motor's torque exceeds the upper standing torque by.
+/// \f[
+/// T - F_\mathrm{s} h - T_\mathrm{x} - \mu r_\mathrm{e} |F_\mathrm{s}| - T_\mathrm{c}
+/// \f]
 template <template <Scalar> class V, Scalar S>
 S advance_torque(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta, const S& torque) {
   const S F_s = static_rod_force(k, N_k_beta);
@@ -87,8 +110,11 @@ S advance_torque(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta, 
   return torque - F_s * k.crank_lever - v.load_torque - holding_torque(v, F_s);
 }
 
-/// mu r_e |F_s| + T_c - |torque - F_s h| [N m]: >= 0 where friction holds a crank at rest. Behind a gearbox: what the
-/// motor's torque lies within the standing torques by.
+/// >= 0 where friction holds a crank at rest under the motor's `torque` T [N m]. Behind a gearbox: what the motor's
+/// torque lies within the standing torques by.
+/// \f[
+/// \mu r_\mathrm{e} |F_\mathrm{s}| + T_\mathrm{c} - |T - F_\mathrm{s} h - T_\mathrm{x}|
+/// \f]
 template <template <Scalar> class V, Scalar S>
 S lock_margin(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta, const S& torque) {
   using std::abs;
@@ -101,7 +127,7 @@ S lock_margin(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta, con
   return holding_torque(v, F_s) - abs(S(torque - F_s * k.crank_lever - v.load_torque));
 }
 
-/// The least of J + A (h + s mu r_e) over both branches [kg m2]; <= 0 jams.
+/// The least of \f$J + A (h + s \mu r_\mathrm{e})\f$ over both branches s [kg m2]; <= 0 jams.
 template <template <Scalar> class V, Scalar S>
 S min_inertia(const V<S>& v, const CrankKinematics<S>& k) {
   using std::min;
@@ -157,7 +183,13 @@ LoadPlace<S> load_place(const V<S>& v, const CrankKinematics<S>& k, const S& N_k
           inverse_of(k.wing_lever)};
 }
 
-/// Motor torque less the mean load over evenly spaced places of a cycle at the constant crank speed omega [N m].
+/// Motor torque less the mean load over evenly spaced places of a cycle at the constant crank speed omega [N m], a bar
+/// being the mean over them and F the rod force at that speed:
+/// \f[
+/// e \left( K \frac{v - K \omega}{R_\mathrm{a} + R_\mathrm{i}} - b\, \omega - T_\mathrm{c,m} \right) - T_\mathrm{l}
+/// - \overline{F h + \mu r_\mathrm{e} |F|} - T_\mathrm{x}, \qquad
+/// F = \frac{N_\mathrm{w} J_\mathrm{w} B_2 \omega^2 + M_\mathrm{aero} + N_\mathrm{w} k \beta}{g}
+/// \f]
 template <template <Scalar> class V, Scalar S>
 S torque_surplus(const V<S>& v, std::span<const LoadPlace<S>> places, const S& omega) {
   using std::abs;
@@ -182,7 +214,7 @@ struct BalancedSpeed {
   S slope;    ///< of the surplus of torque by the speed there, about [N m s]
 };
 
-/// What passive pitching can turn the drag's torque by: C_alpha |B1| omega at the largest stroke slope [rad].
+/// Angle that passive pitching can turn the wings by [rad], \f$C_\alpha |B_1| \omega\f$ at the largest stroke slope.
 template <template <Scalar> class V, Scalar S>
 S largest_pitch(const V<S>& v, std::span<const LoadPlace<S>> places, const S& omega) {
   using std::max;

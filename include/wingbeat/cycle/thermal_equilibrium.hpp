@@ -22,6 +22,11 @@ enum class ThermalOutcome {
 /// Solves for the temperatures T = G(T), where G are those that the losses of steady flapping with the motor at T lead
 /// to. Whoever solves the vehicle does so at(), tells advance() what came out, and goes on until that says that the
 /// search is over: secants (of two temperatures Anderson's mixing with one step of memory), from the surroundings on.
+/// With the losses of the orbit at T (model.md section 11):
+/// \f[
+/// G(T) = \begin{pmatrix} T_\mathrm{case} + R_\mathrm{th1} P_\mathrm{cu} \\ T_\mathrm{case} \end{pmatrix}, \qquad
+/// T_\mathrm{case} = T_\mathrm{amb} + R_\mathrm{th2} (P_\mathrm{cu} + P_\mathrm{visc} + P_\mathrm{motor})
+/// \f]
 class ThermalEquilibrium {
  public:
   /// `tolerance`: wanted relative accuracy of the motor's constants.

@@ -15,8 +15,12 @@
 
 namespace wingbeat {
 
-/// The terminals of n cells carrying the current i see n (E(charge) - R_i i). Charge, voltages and resistance are those
-/// of one cell; the capacity is that of a cell and, the cells being in series, of the whole battery.
+/// Cells in series, n of them, at the state of charge s. Charge, voltages and resistance are those of one cell; the
+/// capacity is that of a cell and, the cells being in series, of the whole battery. Under the current i, positive where
+/// it empties the battery, the terminals see
+/// \f[
+/// v = n \left( E(s) - R_\mathrm{i} i \right), \qquad Q \frac{\mathrm{d}s}{\mathrm{d}t} = -i
+/// \f]
 template <Scalar S>
 struct Battery {
   S cells = S(1);         ///< n, cells in series [1], whole number >= 1
@@ -61,7 +65,13 @@ double monotone_slope(const std::vector<std::pair<double, double>>& curve, std::
 }  // namespace detail
 
 /// Open-circuit voltage of the whole battery at a state of charge [V]: piecewise cubic Hermite interpolation of the
-/// discharge curve that keeps it monotone, with a continuous first derivative.
+/// discharge curve that keeps it monotone, with a continuous first derivative. From a row \f$(s_0, E_0)\f$ to the next
+/// \f$(s_1, E_1)\f$, with slopes \f$d_0\f$, \f$d_1\f$ there, \f$\Delta = s_1 - s_0\f$ and the secant
+/// \f$m = (E_1 - E_0)/\Delta\f$:
+/// \f[
+/// n E(s) = n \left( E_0 + d_0 x + \frac{3 m - 2 d_0 - d_1}{\Delta} x^2 + \frac{d_0 + d_1 - 2 m}{\Delta^2} x^3 \right),
+/// \qquad x = s - s_0
+/// \f]
 template <Scalar S>
 S open_circuit_voltage(const Battery<S>& b, const S& charge) {
   const auto& curve = b.discharge_curve;
@@ -80,6 +90,10 @@ S open_circuit_voltage(const Battery<S>& b, const S& charge) {
 
 /// Mean of that voltage over the state of charge, from 0 to 1 [V]: the integral of every cubic in closed form. Times
 /// the capacity it is the energy of the full battery.
+/// \f[
+/// n \overline{E} = n \int_0^1 E\,\mathrm{d}s
+/// = n \sum \left( \tfrac12 \Delta (E_0 + E_1) + \tfrac{1}{12} \Delta^2 (d_0 - d_1) \right)
+/// \f]
 template <Scalar S>
 S mean_open_circuit_voltage(const Battery<S>& b) {
   const auto& curve = b.discharge_curve;
@@ -95,14 +109,17 @@ S mean_open_circuit_voltage(const Battery<S>& b) {
   return b.cells * S(sum);
 }
 
-/// Mass of a battery that weighs by its capacity, Q mean(n E) / e [kg]; empty without a specific energy.
+/// Mass of a battery that weighs by its capacity [kg]; empty without a specific energy e [J/kg].
+/// \f[
+/// m = \frac{Q\, n \overline{E}}{e}
+/// \f]
 template <Scalar S>
 std::optional<S> battery_mass(const Battery<S>& b) {
   if (!b.specific_energy) return std::nullopt;
   return b.capacity * mean_open_circuit_voltage(b) / *b.specific_energy;
 }
 
-/// Resistance between that voltage and the terminals, n R_i [ohm].
+/// Resistance between that voltage and the terminals, \f$n R_\mathrm{i}\f$ [ohm].
 template <Scalar S>
 S source_resistance(const Battery<S>& b) {
   return b.cells * b.internal_resistance;

@@ -18,7 +18,12 @@
 
 namespace wingbeat {
 
-/// offset + amplitude * wave(rate * alpha + phase), the wave being sine for lift and cosine for drag.
+/// A force coefficient as a wave over the angle of attack: sine for lift, cosine for drag. With offset a, amplitude b,
+/// rate m and phase \f$\alpha_0\f$:
+/// \f[
+/// C_\mathrm{L}(\alpha) = a + b \sin(m \alpha + \alpha_0), \qquad
+/// C_\mathrm{D}(\alpha) = a + b \cos(m \alpha + \alpha_0)
+/// \f]
 template <Scalar S>
 struct CoefficientWave {
   S offset;     ///< [1]
@@ -125,23 +130,35 @@ struct ForceCoefficients {
   }
 };
 
-/// "translational-2022": C_L = 0.225 + 1.58 sin(2.13 alpha - 7.2 deg), C_D = 1.92 - 1.55 cos(2.04 alpha - 9.82 deg),
-/// eqs (12, 13) of the 2022 friction paper.
+/// "translational-2022": eqs (12, 13) of the 2022 friction paper, fitted for angles of attack from 0 to 90 degrees.
+/// \f[
+/// C_\mathrm{L} = 0.225 + 1.58 \sin(2.13\, \alpha - 7.2^\circ), \qquad
+/// C_\mathrm{D} = 1.92 - 1.55 \cos(2.04\, \alpha - 9.82^\circ)
+/// \f]
 inline ForceCoefficients<double> translational_2022() {
   return {{0.225, 1.58, 2.13, -7.2 / degrees_per_radian}, {1.92, -1.55, 2.04, -9.82 / degrees_per_radian}, nullptr};
 }
 
-/// J_a of all wings [kg m2] by strip theory: (pi/4) rho S_22.
+/// J_a of all wings [kg m2] by strip theory (model.md section 10).
+/// \f[
+/// J_\mathrm{a} = \frac{\pi}{4} \rho\, S_{22}
+/// \f]
 template <Scalar S>
 S added_inertia_of(const S& air_density, const S& s22) {
   return S(0.25 * pi) * air_density * s22;
 }
 
-/// Aerodynamics of all wings. Positive stroke velocity beta' meets a positive moment that opposes it.
+/// Aerodynamics of all wings. Positive stroke velocity beta' meets a positive moment that opposes it. Passive pitching
+/// (eq 14), lift normal to the stroke plane [N] (eq 2) and moment about the hinges [N m] (eq 3):
+/// \f[
+/// \alpha = \frac{\pi}{2} - C_\alpha |\dot\beta|, \qquad
+/// L = \tfrac12 \rho\, C_\mathrm{L}(\alpha)\, \dot\beta^2 S_2, \qquad
+/// M_\mathrm{aero} = \tfrac12 \rho\, C_\mathrm{D}(\alpha)\, \dot\beta |\dot\beta|\, S_3
+/// \f]
 template <Scalar S>
 struct BladeElement {
   S air_density;        ///< rho [kg/m3], >= 0
-  S pitch_coefficient;  ///< C_alpha: alpha = pi/2 - C_alpha |beta'| [s], >= 0 (eq 14)
+  S pitch_coefficient;  ///< \f$C_\alpha\f$ [s], >= 0 (eq 14)
   S s2;                 ///< S_2 of all wings [m4], >= 0
   S s3;                 ///< S_3 of all wings [m5], >= 0
   ForceCoefficients<S> coefficients;
@@ -213,7 +230,10 @@ template <Scalar S>
 
 }  // namespace detail
 
-/// C_L (eq 12) at angle of attack alpha [rad].
+/// C_L [1] (eq 12) at angle of attack alpha [rad]: a sine of CoefficientWave, or the table's spline.
+/// \f[
+/// C_\mathrm{L}(\alpha) = a_\mathrm{L} + b_\mathrm{L} \sin(m_\mathrm{L} \alpha + \alpha_\mathrm{0,L})
+/// \f]
 template <Scalar S>
 S lift_coefficient(const ForceCoefficients<S>& c, const S& alpha) {
   using std::sin;
@@ -223,7 +243,10 @@ S lift_coefficient(const ForceCoefficients<S>& c, const S& alpha) {
   return c.lift.offset + c.lift.amplitude * sin(c.lift.rate * alpha + c.lift.phase);
 }
 
-/// C_D (eq 13) at angle of attack alpha [rad].
+/// C_D [1] (eq 13) at angle of attack alpha [rad]: a cosine of CoefficientWave, or the table's spline.
+/// \f[
+/// C_\mathrm{D}(\alpha) = a_\mathrm{D} + b_\mathrm{D} \cos(m_\mathrm{D} \alpha + \alpha_\mathrm{0,D})
+/// \f]
 template <Scalar S>
 S drag_coefficient(const ForceCoefficients<S>& c, const S& alpha) {
   using std::cos;
@@ -247,8 +270,11 @@ bool has_pitch_stop(const BladeElement<S>& w) {
   return std::isfinite(value_of(w.angle_of_attack_min));
 }
 
-/// How far the passive pitching is from its stop at stroke speed |beta'| [rad/s]: alpha - alpha_min [rad], 1 where
+/// How far the passive pitching is from its stop at stroke speed |beta'| [rad/s], in the angle of attack [rad]; 1 where
 /// there is no stop. Its sign says which branch of aero_loads() holds. On lanes the start of a table counts as well.
+/// \f[
+/// \frac{\pi}{2} - C_\alpha |\dot\beta| - \alpha_\mathrm{min}
+/// \f]
 template <Scalar S>
 S pitch_margin(const BladeElement<S>& w, const S& stroke_speed) {
   if constexpr (ScalarTraits<S>::reads_tables) {
@@ -265,8 +291,8 @@ struct AeroLoads {
   S angle_of_attack;  ///< alpha, geometric [rad] (eq 14)
   S pitch_margin;     ///< as pitch_margin() [rad]
   S lift;             ///< normal to the stroke plane [N] (eq 2)
-  S moment;           ///< M_aero about the hinges, along beta' [N m] (eq 3); a positive one opposes a positive beta'
-  S power;            ///< M_aero beta', what the air takes from the wings [W] (eq 19)
+  S moment;           ///< \f$M_\mathrm{aero}\f$ about the hinges [N m] (eq 3); a positive one opposes a positive beta'
+  S power;            ///< \f$M_\mathrm{aero} \dot\beta\f$, what the air takes from the wings [W] (eq 19)
   /// Of the added mass: its moment is this times beta'', the slope of its momentum J_a sin^2(alpha) beta' by beta'
   /// [kg m2] (model.md section 10). It takes no mean power and is not in `moment` and `power`.
   S added_inertia;
@@ -290,14 +316,18 @@ template <Scalar S>
   return w.added_inertia * share;
 }
 
-/// J_a (sin^2(alpha) - C_alpha |beta'| sin(alpha) cos(alpha)) [kg m2] at the angle of attack alpha = pi/2 - C_alpha
-/// |beta'| [rad]; J_a sin^2(alpha) where the pitching is at its stop. Even and smooth in beta'.
+/// Inertia of the air that moves with the wings [kg m2], by which beta'' is multiplied in their moment (model.md
+/// section 10), at the angle of attack \f$\alpha = \pi/2 - C_\alpha |\dot\beta|\f$ [rad];
+/// \f$J_\mathrm{a} \sin^2\alpha\f$ where the pitching is at its stop. Even and smooth in beta'.
+/// \f[
+/// J_\mathrm{a} \left( \sin^2\alpha - C_\alpha |\dot\beta| \sin\alpha \cos\alpha \right)
+/// \f]
 template <Scalar S>
 S added_inertia(const BladeElement<S>& w, const S& alpha, const S& pitching) {
   return any<S>(w.added_inertia > S(0.0)) ? added_inertia_at(w, alpha, pitching) : S(0.0);
 }
 
-/// Kinetic energy of the air that moves with the wings, J_a sin^2(alpha) beta'^2 / 2 [J].
+/// Kinetic energy of the air that moves with the wings [J], \f$\tfrac12 J_\mathrm{a} \sin^2\alpha\, \dot\beta^2\f$.
 template <Scalar S>
 S added_energy(const BladeElement<S>& w, const S& alpha, const S& stroke_velocity) {
   using std::sin;
@@ -308,7 +338,14 @@ S added_energy(const BladeElement<S>& w, const S& alpha, const S& stroke_velocit
 /// The loads at stroke velocity beta' [rad/s] of the sign `stroke`. `pitching` is the branch of the passive pitching:
 /// +1 free, -1 at the stop. Without `every_law` lanes know waves alone: no table, no stop, no added mass. Always
 /// inlined, with all that returns it (motion_at and below): a right-hand side that reads the moment alone pays for
-/// nothing else.
+/// nothing else. Eqs (14, 2, 3, 19), with \f$\alpha_\mathrm{min}\f$ in place of a smaller \f$\alpha\f$:
+/// \f[
+/// \begin{aligned}
+/// \alpha &= \frac{\pi}{2} - C_\alpha |\dot\beta|, & L &= \tfrac12 \rho\, C_\mathrm{L}(\alpha)\, \dot\beta^2 S_2, \\
+/// M_\mathrm{aero} &= \tfrac12 \rho\, C_\mathrm{D}(\alpha)\, \dot\beta |\dot\beta|\, S_3, \qquad
+/// & P_\mathrm{aero} &= M_\mathrm{aero} \dot\beta
+/// \end{aligned}
+/// \f]
 template <bool every_law = true, Scalar S>
 [[gnu::always_inline]] inline AeroLoads<S> aero_loads(const BladeElement<S>& w, const S& stroke_velocity,
                                                       const S& stroke, const S& pitching) {
@@ -348,7 +385,10 @@ template <Scalar S>
 }
 
 /// The stroke speed |beta'| [rad/s] at which passive pitching without a stop brings the angle of attack down to alpha
-/// [rad]: eq 14 the other way round.
+/// [rad]: eq (14) solved for it.
+/// \f[
+/// |\dot\beta| = \frac{\pi/2 - \alpha}{C_\alpha}
+/// \f]
 template <Scalar S>
 S stroke_speed_at(const BladeElement<S>& w, const S& alpha) {
   return (S(0.5 * pi) - alpha) / w.pitch_coefficient;

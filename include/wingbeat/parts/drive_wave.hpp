@@ -25,7 +25,21 @@ struct DriveWave {
 /// Where the falling half of the cosine begins: at the peak of the sine.
 inline constexpr double cosine_start = 0.5 * pi;
 
-/// The voltage [V] at the phase phi, 0 to 2 pi, of a wave of amplitude V [V].
+/// The voltage [V] at the phase phi, 0 to 2 pi, of a wave of amplitude V [V]. With the bias \f$v_0\f$, the split
+/// \f$\delta\f$ and the split \f$\delta_\mathrm{c}\f$ of the cosine, and \f$\psi = \varphi - \pi/2\f$ from
+/// \f$-\pi/2\f$ to \f$3\pi/2\f$:
+/// \f[
+/// \begin{aligned}
+/// v &= V \left( s(\varphi) - \frac{2 \delta}{\pi} + c(\psi) - \sin\varphi \right) + v_0 \\
+/// s(\varphi) &= \begin{cases}
+/// \sin\dfrac{\varphi}{1 + \delta} & \varphi < \pi (1 + \delta) \\
+/// \sin\dfrac{\varphi - 2\pi}{1 - \delta} & \text{otherwise} \end{cases} \\
+/// c(\psi) &= \begin{cases}
+/// \cos\dfrac{\psi}{1 + \delta_\mathrm{c}} & 0 \le \psi < \pi (1 + \delta_\mathrm{c}) \\
+/// \cos\dfrac{\psi_\mathrm{p}}{1 - \delta_\mathrm{c}} & \text{otherwise} \end{cases}
+/// \end{aligned}
+/// \f]
+/// where \f$\psi_\mathrm{p}\f$ is \f$\psi\f$ before the peak and \f$\psi - 2\pi\f$ after the trough.
 template <Scalar S>
 S voltage_of_wave(const DriveWave<S>& wave, const S& V, const S& phi) {
   using std::cos;

@@ -11,9 +11,13 @@
 
 namespace wingbeat {
 
-/// Crank axis at the origin, rocker axis at d on the x axis: d + p e^(i phi) = r_c e^(i theta) + l e^(i chi), the
-/// rocker pointing to y > 0. Stroke angle beta = n_s (phi - phi_mid). The crank angle theta is measured from the line
-/// of the two axes and grows with rotation.
+/// Crank axis at the origin, rocker axis at d on the x axis, the rocker pointing to y > 0. The crank angle theta is
+/// measured from the line of the two axes and grows with rotation. Loop closure with the angles \f$\varphi\f$ of the
+/// rocker and \f$\chi\f$ of the coupler, and stroke angle (model.md section 8):
+/// \f[
+/// d + p\, e^{\mathrm{i}\varphi} = r_\mathrm{c} e^{\mathrm{i}\theta} + l\, e^{\mathrm{i}\chi}, \qquad
+/// \beta = n_\mathrm{s} (\varphi - \varphi_\mathrm{mid})
+/// \f]
 template <Scalar S>
 struct FourBar {
   S crank_radius = S(0);    ///< r_c [m], > 0, the shortest link
@@ -46,8 +50,15 @@ inline constexpr double transmission_angle_min_deg = 5.0;
 /// Refuses what has no crank that turns (Grashof), and a transmission angle beyond its bounds.
 void validate(const FourBar<double>& f);
 
-/// Kinematics at a crank angle given by its sine and cosine. The internal force F is the coupler's, g = p sin(mu) / n_s
-/// its lever on the wings at the transmission angle mu, h = r_c sin(theta - chi) its lever on the crank: h = g B1.
+/// Kinematics at a crank angle given by its sine and cosine. The internal force F is the coupler's, with the levers g
+/// on the wings and h on the crank at the transmission angle \f$\mu\f$. A prime is a derivative by \f$\theta\f$.
+/// \f[
+/// \begin{aligned}
+/// \mu &= \varphi - \chi, \qquad g = \frac{p \sin\mu}{n_\mathrm{s}}, \qquad h = r_\mathrm{c} \sin(\theta - \chi) \\
+/// \varphi' &= \frac{h}{p \sin\mu}, \qquad B_1 = n_\mathrm{s} \varphi' = \frac{h}{g}, \qquad
+/// B_2 = n_\mathrm{s} \frac{h' - \varphi' (p \sin\mu)'}{p \sin\mu}
+/// \end{aligned}
+/// \f]
 template <Scalar S>
 CrankKinematics<S> crank_kinematics(const FourBar<S>& f, const S& sin_theta, const S& cos_theta) {
   using std::atan;
@@ -85,7 +96,10 @@ CrankKinematics<S> crank_kinematics(const FourBar<S>& f, const S& sin_theta, con
   return k;
 }
 
-/// The rocker's angles phi [rad] where its swing ends, with crank and coupler stretched out and folded over.
+/// The rocker's angles phi [rad] where its swing ends, with crank and coupler stretched out (+) and folded over (-).
+/// \f[
+/// \varphi_\pm = \pi - \arccos\frac{d^2 + p^2 - (l \pm r_\mathrm{c})^2}{2\, d\, p}
+/// \f]
 template <Scalar S>
 struct RockerEnds {
   S stretched, folded;
@@ -103,7 +117,7 @@ RockerEnds<S> rocker_ends(const FourBar<S>& f) {
   return {at(S(f.coupler_length + f.crank_radius)), at(S(f.coupler_length - f.crank_radius))};
 }
 
-/// phi_mid [rad] that centres the stroke at zero.
+/// \f$\varphi_\mathrm{mid} = \tfrac12 (\varphi_+ + \varphi_-)\f$ [rad], which centres the stroke at zero.
 template <Scalar S>
 S centred_ground_angle(const FourBar<S>& f) {
   const RockerEnds<S> ends = rocker_ends(f);
@@ -112,32 +126,32 @@ S centred_ground_angle(const FourBar<S>& f) {
 
 Reversals reversals(const FourBar<double>& f);
 
-/// Half the peak-to-peak stroke angle [rad].
+/// Half the peak-to-peak stroke angle, \f$\tfrac12 n_\mathrm{s} (\varphi_- - \varphi_+)\f$ [rad].
 template <Scalar S>
 S stroke_amplitude(const FourBar<S>& f) {
   const RockerEnds<S> ends = rocker_ends(f);
   return S(0.5) * f.stroke_ratio * (ends.folded - ends.stretched);
 }
 
-/// Largest stroke angle to either side [rad].
+/// Largest stroke angle to either side, \f$n_\mathrm{s} \max_\pm |\varphi_\pm - \varphi_\mathrm{mid}|\f$ [rad].
 inline double stroke_reach(const FourBar<double>& f) {
   const RockerEnds<double> ends = rocker_ends(f);
   return f.stroke_ratio * std::fmax(std::abs(ends.folded - f.ground_angle), std::abs(ends.stretched - f.ground_angle));
 }
 
-/// n_s r_c / p, B1 where crank and rocker are perpendicular to the coupler [1].
+/// \f$n_\mathrm{s} r_\mathrm{c} / p\f$, B1 where crank and rocker are perpendicular to the coupler [1].
 template <Scalar S>
 S typical_stroke_slope(const FourBar<S>& f) {
   return f.stroke_ratio * f.crank_radius / f.rocker_length;
 }
 
-/// g where rocker and coupler are perpendicular [m].
+/// g where rocker and coupler are perpendicular, \f$p / n_\mathrm{s}\f$ [m].
 template <Scalar S>
 S typical_lever(const FourBar<S>& f) {
   return f.rocker_length / f.stroke_ratio;
 }
 
-/// h where crank and coupler are perpendicular [m].
+/// h where crank and coupler are perpendicular, \f$r_\mathrm{c}\f$ [m].
 template <Scalar S>
 S typical_crank_lever(const FourBar<S>& f) {
   return f.crank_radius;

@@ -18,13 +18,18 @@ inline constexpr std::pair<const char*, FrictionLaw> names_of<FrictionLaw>[] = {
     {"quadratic", FrictionLaw::quadratic},
     {"constant", FrictionLaw::constant}};
 
-/// All laws side by side, the unused coefficients zero: a batch may mix laws, and a sum of laws is legal.
+/// All laws side by side, the unused coefficients zero: a batch may mix laws, and a sum of laws is legal. The torque of
+/// the mechanism's friction on the crank opposes rotation, F being the rod force [N] (eq 6; model.md section 2):
+/// \f[
+/// T_\mathrm{f} = \left( \mu r_\mathrm{e} |F| + T_\mathrm{c} \right) \operatorname{sign}\omega + b_\mathrm{f}\, \omega
+/// + c_\mathrm{f}\, \omega |\omega|
+/// \f]
 template <Scalar S>
 struct Friction {
-  S radius = S(0);     ///< mu r_e: T_f = mu r_e |F| sign(omega), load-proportional [m], >= 0
-  S damping = S(0);    ///< b_f: T_f = b_f omega [N m s/rad], >= 0
-  S quadratic = S(0);  ///< c_f: T_f = c_f omega |omega| [N m s2/rad2], >= 0
-  S torque = S(0);     ///< T_c: T_f = T_c sign(omega) [N m], >= 0
+  S radius = S(0);     ///< \f$\mu r_\mathrm{e}\f$, load-proportional [m], >= 0
+  S damping = S(0);    ///< \f$b_\mathrm{f}\f$, viscous [N m s/rad], >= 0
+  S quadratic = S(0);  ///< \f$c_\mathrm{f}\f$ [N m s2/rad2], >= 0
+  S torque = S(0);     ///< \f$T_\mathrm{c}\f$, constant [N m], >= 0
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
@@ -48,20 +53,29 @@ inline void validate(const Friction<double>& f) {
 }
 
 /// The friction of `count` equal transmissions that move in phase, against their common speed: what follows the load
-/// follows the sum of their rod forces.
+/// follows the sum of their rod forces (model.md section 13). For M of them:
+/// \f[
+/// \mu r_\mathrm{e}, \qquad M b_\mathrm{f}, \qquad M c_\mathrm{f}, \qquad M T_\mathrm{c}
+/// \f]
 template <Scalar S>
 Friction<S> side_by_side(const Friction<S>& f, const S& count) {
   return {f.radius, f.damping * count, f.quadratic * count, f.torque * count};
 }
 
 /// The part of the friction torque [N m] that does not depend on the rod force, at crank speed omega turning in
-/// `direction` (+-1).
+/// `direction` s (+-1), omega having the sign s or being 0.
+/// \f[
+/// T_\mathrm{l} = s\, T_\mathrm{c} + b_\mathrm{f}\, \omega + s\, c_\mathrm{f}\, \omega^2
+/// \f]
 template <Scalar S>
 S load_free_friction(const Friction<S>& f, const S& omega, const S& direction) {
   return direction * f.torque + f.damping * omega + direction * f.quadratic * square(omega);
 }
 
-/// The load-proportional part of the friction torque, mu r_e |F| sign(omega) [N m] (eq 6).
+/// The load-proportional part of the friction torque [N m] (eq 6), `direction` being the sign of omega.
+/// \f[
+/// T_\mathrm{f} = \mu r_\mathrm{e} |F| \operatorname{sign}\omega
+/// \f]
 template <Scalar S>
 S load_friction(const Friction<S>& f, const S& rod_force_magnitude, const S& direction) {
   return direction * f.radius * rod_force_magnitude;

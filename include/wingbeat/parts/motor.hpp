@@ -7,7 +7,13 @@
 
 namespace wingbeat {
 
-/// A DC motor seen from the output shaft. Positive torque drives the crank towards larger crank angle.
+/// A DC motor seen from the output shaft. Positive torque drives the crank towards larger crank angle. With the
+/// terminal voltage \f$v\f$ [V], the current \f$i\f$ [A], the shaft speed \f$\omega\f$ [rad/s] and the torque
+/// \f$T_\mathrm{m}\f$ that the mechanism takes [N m], without a loss in the gearbox (eqs 9-11; model.md section 2):
+/// \f[
+/// J \dot\omega = K i - b\, \omega - T_\mathrm{c,m} \operatorname{sign}\omega - T_\mathrm{m}, \qquad
+/// L_\mathrm{a} \frac{\mathrm{d}i}{\mathrm{d}t} = v - R_\mathrm{a} i - K \omega
+/// \f]
 template <Scalar S>
 struct Motor {
   S armature_resistance;     ///< R_a [ohm], > 0
@@ -33,7 +39,10 @@ bool has_gear_loss(const Motor<S>& m) {
 }
 
 /// e [1], the torque behind the gearbox over that before it (model.md section 9): eta where the motor drives the load,
-/// `gear` = +1, and 1/eta where the load drives the motor, -1.
+/// `gear` = +1, and 1/eta where the load drives the motor, -1. With the torque \f$T_\mathrm{g}\f$ before the gearbox:
+/// \f[
+/// e = \begin{cases} \eta & T_\mathrm{g} \omega > 0 \\ 1/\eta & T_\mathrm{g} \omega < 0 \end{cases}
+/// \f]
 template <Scalar S>
 S gear_torque_ratio(const Motor<S>& m, const S& gear) {
   if (!has_gear_loss(m)) return S(1.0);
@@ -41,7 +50,10 @@ S gear_torque_ratio(const Motor<S>& m, const S& gear) {
 }
 
 /// Torque before the gearbox [N m] that balances the torque `load` behind it while the shaft starts forward. For a
-/// start backward: the negative of it, of the negative load.
+/// start backward: the negative of it, of the negative load. In model.md section 9:
+/// \f[
+/// \operatorname{up}(T) = \begin{cases} T/\eta & T > 0 \\ \eta\, T & T \le 0 \end{cases}
+/// \f]
 template <Scalar S>
 S torque_before_gear(const Motor<S>& m, const S& load) {
   if (!has_gear_loss(m)) return load;
@@ -62,8 +74,12 @@ struct GearMotor {
   }
 };
 
-/// Motor-shaft constants referred to the output shaft: K = n K_b, J = J_G + n^2 J_m, b = b_G + n^2 b_m, friction torque
-/// times n; resistance and inductance are unchanged (model.md section 1).
+/// Motor-shaft constants referred to the output shaft; resistance and inductance are unchanged (model.md section 1).
+/// Index m: at the motor shaft, G: of the gearbox at the output shaft.
+/// \f[
+/// K = n K_\mathrm{b}, \qquad J = J_\mathrm{G} + n^2 J_\mathrm{m}, \qquad b = b_\mathrm{G} + n^2 b_\mathrm{m}, \qquad
+/// T_\mathrm{c,m} = n\, T_\mathrm{c,m}^\mathrm{shaft}
+/// \f]
 template <Scalar S>
 Motor<S> at_output_shaft(const GearMotor<S>& geared) {
   const S n = geared.gear_ratio;
@@ -78,7 +94,10 @@ Motor<S> at_output_shaft(const GearMotor<S>& geared) {
 }
 
 /// The motor that acts as `count` equal ones do on the same terminals and on shafts that turn in phase: current and
-/// torque are the sums of theirs (model.md section 13).
+/// torque are the sums of theirs (model.md section 13). For M motors, K and the gear efficiency being those of one:
+/// \f[
+/// R_\mathrm{a} / M, \qquad L_\mathrm{a} / M, \qquad M J, \qquad M b, \qquad M T_\mathrm{c,m}
+/// \f]
 template <Scalar S>
 Motor<S> side_by_side(Motor<S> m, const S& count) {
   m.armature_resistance = m.armature_resistance / count;
@@ -114,11 +133,11 @@ inline void validate(const Motor<double>& m) {
 /// Electrical side of the motor at crank speed omega and current i.
 template <Scalar S>
 struct MotorLoads {
-  S torque;             ///< K i [N m]
-  S drag_torque;        ///< b omega [N m], opposes rotation
-  S inductive_voltage;  ///< v - R_a i - K omega [V], what is left to change the current: L_a di/dt
-  S power_copper;       ///< R_a i^2 [W]
-  S power_viscous;      ///< b omega^2 [W]
+  S torque;             ///< \f$K i\f$ [N m]
+  S drag_torque;        ///< \f$b\, \omega\f$ [N m], opposes rotation
+  S inductive_voltage;  ///< \f$v - R_\mathrm{a} i - K \omega\f$ [V], what is left to change the current
+  S power_copper;       ///< \f$R_\mathrm{a} i^2\f$ [W]
+  S power_viscous;      ///< \f$b\, \omega^2\f$ [W]
 };
 
 /// Loads and losses of the motor (eqs 9-11) at terminal voltage v [V], current i [A], crank speed omega [rad/s].
@@ -128,7 +147,10 @@ MotorLoads<S> motor_loads(const Motor<S>& m, const S& v, const S& i, const S& om
           m.armature_resistance * i * i, m.viscous_damping * omega * omega};
 }
 
-/// Steady speed without load and friction, K v / (K^2 + R_a b) [rad/s]: the closed form of the wingless condition.
+/// Steady speed without load and friction [rad/s]: the closed form of the wingless condition (model.md section 3).
+/// \f[
+/// \omega_0 = \frac{K v}{K^2 + R_\mathrm{a} b}
+/// \f]
 template <Scalar S>
 S no_load_speed(const Motor<S>& m, const S& v) {
   return m.torque_constant * v / (m.torque_constant * m.torque_constant + m.armature_resistance * m.viscous_damping);

@@ -22,17 +22,25 @@ inline constexpr double copper_resistance_slope = 0.0039;  ///< a_Cu of annealed
 
 /// Two lumps: the copper loss heats the winding, which passes it on to the case, which passes it on to the air together
 /// with what the motor loses in viscous damping and in its own friction. Not a number for both resistances: the motor
-/// keeps its constants at any load.
+/// keeps its constants at any load. In steady flapping (model.md section 11), with what is lost in the case
+/// \f$P_\mathrm{visc} + P_\mathrm{motor}\f$:
+/// \f[
+/// \begin{aligned}
+/// T_\mathrm{case} &= T_\mathrm{amb} + R_\mathrm{th2} (P_\mathrm{cu} + P_\mathrm{visc} + P_\mathrm{motor}), \qquad
+/// T_\mathrm{w} = T_\mathrm{case} + R_\mathrm{th1} P_\mathrm{cu} \\
+/// R_\mathrm{a} &= R_\mathrm{a0} \left( 1 + a_\mathrm{Cu} (T_\mathrm{w} - T_0) \right), \qquad
+/// K = K_0 \left( 1 + a_B (T_\mathrm{case} - T_0) \right)
+/// \end{aligned}
+/// \f]
 template <Scalar S>
 struct MotorThermal {
   S resistance_winding = S(std::numeric_limits<double>::quiet_NaN());  ///< R_th1 [K/W], >= 0
   S resistance_case = S(std::numeric_limits<double>::quiet_NaN());     ///< R_th2 [K/W], >= 0
   S ambient_temperature = S(catalogue_temperature);                    ///< T_amb [K]
-  S reference_temperature = S(catalogue_temperature);  ///< T_0 at which the motor's constants are stated [K]
-  S copper_temperature_coefficient =
-      S(copper_resistance_slope);           ///< a_Cu: R_a = R_a0 (1 + a_Cu (T_w - T_0)) [1/K], >= 0
-  S magnet_temperature_coefficient = S(0);  ///< a_B: K = K_0 (1 + a_B (T_case - T_0)) [1/K], <= 0
-  S winding_temperature_max = S(usual_winding_temperature_max);  ///< largest temperature allowed to the winding [K]
+  S reference_temperature = S(catalogue_temperature);             ///< T_0 at which the motor's constants are stated [K]
+  S copper_temperature_coefficient = S(copper_resistance_slope);  ///< \f$a_\mathrm{Cu}\f$ [1/K], >= 0
+  S magnet_temperature_coefficient = S(0);                        ///< \f$a_B\f$ [1/K], <= 0
+  S winding_temperature_max = S(usual_winding_temperature_max);   ///< largest temperature allowed to the winding [K]
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
@@ -41,7 +49,8 @@ struct MotorThermal {
   }
 };
 
-/// What the losses of `count` equal motors together heat each of them by.
+/// What the losses of `count` equal motors together heat each of them by: \f$R_\mathrm{th1}/M\f$,
+/// \f$R_\mathrm{th2}/M\f$.
 template <Scalar S>
 MotorThermal<S> side_by_side(MotorThermal<S> t, const S& count) {
   t.resistance_winding = t.resistance_winding / count;
@@ -64,6 +73,10 @@ bool heats_up(const MotorThermal<S>& t) {
 
 /// Temperatures [K] at which the motor settles under steady losses [W], P_case being those in viscous damping and in
 /// its own friction; not a number without thermal resistances.
+/// \f[
+/// T_\mathrm{case} = T_\mathrm{amb} + R_\mathrm{th2} (P_\mathrm{cu} + P_\mathrm{case}), \qquad
+/// T_\mathrm{w} = T_\mathrm{case} + R_\mathrm{th1} P_\mathrm{cu}
+/// \f]
 template <Scalar S>
 MotorTemperatures<S> settled_temperatures(const MotorThermal<S>& t, const S& P_copper, const S& P_case) {
   const S T_case = t.ambient_temperature + t.resistance_case * (P_copper + P_case);
@@ -72,6 +85,10 @@ MotorTemperatures<S> settled_temperatures(const MotorThermal<S>& t, const S& P_c
 
 /// The motor, whose constants are stated at T_0, at other temperatures. A magnet too hot to have a field has none: K is
 /// never negative.
+/// \f[
+/// R_\mathrm{a}(T_\mathrm{w}) = R_\mathrm{a0} \left( 1 + a_\mathrm{Cu} (T_\mathrm{w} - T_0) \right), \qquad
+/// K(T_\mathrm{case}) = K_0 \max\left( 1 + a_B (T_\mathrm{case} - T_0),\, 0 \right)
+/// \f]
 template <Scalar S>
 Motor<S> at_temperatures(Motor<S> motor, const MotorThermal<S>& t, const MotorTemperatures<S>& at) {
   const S T_0 = t.reference_temperature;

@@ -42,7 +42,7 @@ bool has_stop(const PitchHinge<S>& h) {
   return std::isfinite(value_of(h.stop));
 }
 
-/// The hinges of `count` wings as one.
+/// The hinges of `count` wings as one, of stiffness \f$N_\mathrm{w} k_\psi\f$ and damping \f$N_\mathrm{w} c_\psi\f$.
 template <Scalar S>
 PitchHinge<S> hinges_together(const PitchHinge<S>& one, const S& count) {
   return {count * one.stiffness, count * one.damping, one.stop};
@@ -50,12 +50,17 @@ PitchHinge<S> hinges_together(const PitchHinge<S>& one, const S& count) {
 
 template <Scalar S>
 struct PitchHingeLoads {
-  S moment;  ///< k_psi psi + c_psi psi' [N m], opposes a positive psi
-  S energy;  ///< k_psi psi^2 / 2 [J]
-  S loss;    ///< c_psi psi'^2 [W]
+  S moment;  ///< [N m], opposes a positive psi
+  S energy;  ///< [J]
+  S loss;    ///< [W]
 };
 
-/// The loads at pitch angle psi [rad] and its velocity psi' [rad/s], without the reaction of a stop.
+/// The loads at pitch angle psi [rad] and its velocity psi' [rad/s], without the reaction of a stop: moment, elastic
+/// energy and loss (model.md section 12).
+/// \f[
+/// M_\mathrm{h} = k_\psi \psi + c_\psi \dot\psi, \qquad E_\mathrm{h} = \tfrac12 k_\psi \psi^2, \qquad
+/// P_\mathrm{h} = c_\psi \dot\psi^2
+/// \f]
 template <Scalar S>
 PitchHingeLoads<S> hinge_loads(const PitchHinge<S>& h, const S& psi, const S& velocity) {
   return {h.stiffness * psi + h.damping * velocity, S(0.5) * h.stiffness * square(psi), h.damping * square(velocity)};

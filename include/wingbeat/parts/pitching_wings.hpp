@@ -22,18 +22,23 @@
 
 namespace wingbeat {
 
-/// C_rot of an axis along the leading edge: pi (0.75 - x_0), x_0 = 0 being its position over the chord (Sane and
-/// Dickinson, J. Exp. Biol. 205, 2002).
+/// C_rot of an axis along the leading edge, \f$\hat x_0 = 0\f$ being its position over the chord (Sane and Dickinson,
+/// J. Exp. Biol. 205, 2002).
+/// \f[
+/// C_\mathrm{rot} = \pi (0.75 - \hat x_0)
+/// \f]
 inline constexpr double leading_edge_rotational_coefficient = 0.75 * pi;
 /// C_rd of rotational damping [1] (Whitney and Wood, J. Fluid Mech. 660, 2010).
 inline constexpr double rotational_damping_coefficient = 5.0;
 
-/// A normal-force coefficient that is odd in the angle of attack and symmetric about 90 degrees,
-/// C_N = first sin(alpha) + third sin(3 alpha).
+/// A normal-force coefficient that is odd in the angle of attack and symmetric about 90 degrees.
+/// \f[
+/// C_\mathrm{N}(\alpha) = C_\mathrm{N,1} \sin\alpha + C_\mathrm{N,3} \sin 3\alpha
+/// \f]
 template <Scalar S>
 struct NormalForceCoefficient {
-  S first;  ///< [1]
-  S third;  ///< [1]
+  S first;  ///< \f$C_\mathrm{N,1}\f$ [1]
+  S third;  ///< \f$C_\mathrm{N,3}\f$ [1]
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
@@ -41,8 +46,12 @@ struct NormalForceCoefficient {
   }
 };
 
-/// "normal-force-robofly": C_N = 1.8 sin(2 alpha) cos(alpha) + 1.95 sin(alpha) - 1.5 cos(2 alpha) sin(alpha), that is
-/// C_L = 1.8 sin(2 alpha) and C_D = 1.95 - 1.5 cos(2 alpha) along the normal of the chord, in the form above.
+/// "normal-force-robofly": \f$C_\mathrm{L} = 1.8 \sin 2\alpha\f$ and \f$C_\mathrm{D} = 1.95 - 1.5 \cos 2\alpha\f$ along
+/// the normal of the chord, in the form above.
+/// \f[
+/// C_\mathrm{N} = 1.8 \sin 2\alpha \cos\alpha + (1.95 - 1.5 \cos 2\alpha) \sin\alpha
+/// = 3.6 \sin\alpha + 0.15 \sin 3\alpha
+/// \f]
 inline NormalForceCoefficient<double> normal_force_robofly() { return {3.6, 0.15}; }
 
 /// How vehicle files name it.
@@ -84,11 +93,11 @@ enum class NormalForce {
 /// Added mass of strips that move normal to their chord, of all wings; zero in vacuum.
 template <Scalar S>
 struct PitchAddedMass {
-  S rr = S(0);  ///< m_rr = (pi/4) rho S_22 [kg m2]
-  S rp = S(0);  ///< m_rp = (pi/8) rho S_31 [kg m2]
-  S pp = S(0);  ///< m_pp = (9 pi/128) rho S_40 [kg m2]
-  S r = S(0);   ///< (pi/4) rho S_21 [kg m]: momentum normal to the chord per stroke velocity
-  S p = S(0);   ///< (pi/8) rho S_30 [kg m]: the same per pitch velocity
+  S rr = S(0);  ///< \f$m_{rr} = \tfrac{\pi}{4} \rho S_{22}\f$ [kg m2]
+  S rp = S(0);  ///< \f$m_{rp} = \tfrac{\pi}{8} \rho S_{31}\f$ [kg m2]
+  S pp = S(0);  ///< \f$m_{pp} = \tfrac{9 \pi}{128} \rho S_{40}\f$ [kg m2]
+  S r = S(0);   ///< \f$m_r = \tfrac{\pi}{4} \rho S_{21}\f$ [kg m]: momentum normal to the chord per stroke velocity
+  S p = S(0);   ///< \f$m_p = \tfrac{\pi}{8} \rho S_{30}\f$ [kg m]: the same per pitch velocity
 
   template <class Self, class Use>
   static constexpr auto members(Self& of, const Use& use) {
@@ -96,6 +105,7 @@ struct PitchAddedMass {
   }
 };
 
+/// The added mass in air of that density [kg/m3] of wings with these chord moments; formulas at the members.
 template <Scalar S>
 PitchAddedMass<S> pitch_added_mass(const S& air_density, const PitchChordMoments<S>& s) {
   const S quarter = S(0.25 * pi) * air_density, eighth = S(0.125 * pi) * air_density;
@@ -152,12 +162,16 @@ PitchState<S> pitch_state(const S& psi, const S& velocity, const S& stroke_veloc
   return {sin(psi), cos(psi), psi, velocity, stroke_velocity};
 }
 
-/// Inertia of wings and added mass in stroke and pitch [kg m2].
+/// Inertia of wings and added mass in stroke and pitch [kg m2], all of all wings together (model.md section 12).
+/// \f[
+/// M_{bb} = N_\mathrm{w} J_\mathrm{w} + I_\psi \sin^2\psi + m_{rr} \cos^2\psi, \qquad
+/// M_{bp} = (P + m_{rp}) \cos\psi, \qquad M_{pp} = I_\psi + m_{pp}
+/// \f]
 template <Scalar S>
 struct PitchInertia {
-  S bb;  ///< M_bb = N_w J_w + I_psi sin^2(psi) + m_rr cos^2(psi)
-  S bp;  ///< M_bp = (P + m_rp) cos(psi)
-  S pp;  ///< M_pp = I_psi + m_pp
+  S bb;  ///< \f$M_{bb}\f$
+  S bp;  ///< \f$M_{bp}\f$
+  S pp;  ///< \f$M_{pp}\f$
 };
 
 /// `stroke_inertia`: N_w J_w [kg m2], of what else turns with the stroke as the caller likes.
@@ -168,13 +182,20 @@ PitchInertia<S> pitch_inertia(const PitchingWings<S>& w, const S& stroke_inertia
 }
 
 /// Kinetic energy [J] of an inertia at pitch and stroke velocity.
+/// \f[
+/// T = \tfrac12 M_{bb} \dot\beta^2 + M_{bp} \dot\beta \dot\psi + \tfrac12 M_{pp} \dot\psi^2
+/// \f]
 template <Scalar S>
 S kinetic_energy(const PitchInertia<S>& m, const PitchState<S>& at) {
   return S(0.5) * (m.bb * square(at.stroke_velocity) + m.pp * square(at.velocity)) +
          m.bp * at.stroke_velocity * at.velocity;
 }
 
-/// C_N at the angle of attack alpha [rad].
+/// C_N [1] at the angle of attack alpha [rad]: a NormalForceCoefficient, or the components of lift and drag normal to
+/// the chord.
+/// \f[
+/// C_\mathrm{N} = C_\mathrm{L} \cos\alpha + C_\mathrm{D} \sin\alpha
+/// \f]
 template <Scalar S>
 S normal_force_coefficient(const BladeElement<S>& w, const PitchingWings<S>& p, const S& alpha) {
   using std::cos;
@@ -186,8 +207,11 @@ S normal_force_coefficient(const BladeElement<S>& w, const PitchingWings<S>& p, 
 }
 
 /// Centre of pressure behind the leading edge over the chord at the angle of attack alpha [rad]: the first terms of the
-/// Fourier series of 0.05 + 0.82 alpha / pi (Dickson and others, AIAA 2006-34; Whitney and Wood 2010), which is kinked
-/// at 0 and 180 degrees.
+/// Fourier series of \f$0.05 + 0.82\, \alpha/\pi\f$ (Dickson and others, AIAA 2006-34; Whitney and Wood 2010), which is
+/// kinked at 0 and 180 degrees.
+/// \f[
+/// d(\alpha) = 0.46 - 0.332 \cos\alpha - 0.037 \cos 3\alpha - 0.013 \cos 5\alpha
+/// \f]
 template <Scalar S>
 S centre_of_pressure(const S& alpha) {
   using std::cos;
@@ -197,14 +221,26 @@ S centre_of_pressure(const S& alpha) {
 /// What the air does to wings that pitch, without added mass. Moments oppose positive velocities.
 template <Scalar S>
 struct PitchAeroLoads {
-  S angle_of_attack;  ///< alpha = pi/2 + sign(beta') psi [rad], over 90 degrees where the wing over-rotates
-  S normal_force;     ///< F_N + F_rot, normal to the chord, against a positive velocity [N]
-  S stroke_moment;    ///< M_aero about the stroke hinges [N m]
-  S pitch_moment;     ///< M_pitch about the pitch hinges [N m]
-  S power;            ///< M_aero beta' + M_pitch psi' [W]
+  S angle_of_attack;  ///< \f$\alpha\f$ [rad], over 90 degrees where the wing over-rotates
+  S normal_force;     ///< \f$F_\mathrm{N} + F_\mathrm{rot}\f$, normal to the chord, against a positive velocity [N]
+  S stroke_moment;    ///< \f$M_\mathrm{aero}\f$ about the stroke hinges [N m]
+  S pitch_moment;     ///< \f$M_\mathrm{pitch}\f$ about the pitch hinges [N m]
+  S power;            ///< \f$M_\mathrm{aero} \dot\beta + M_\mathrm{pitch} \dot\psi\f$ [W]
 };
 
-/// `stroke` and `turn` are the signs of beta' and psi'.
+/// What the air does at a pitch state; `stroke` and `turn` are the signs of beta' and psi'. With the chord moments of
+/// all wings (model.md section 12):
+/// \f[
+/// \begin{aligned}
+/// \alpha &= \frac{\pi}{2} + \psi \operatorname{sign}\dot\beta, \qquad
+/// q = \tfrac12 \rho\, C_\mathrm{N}(\alpha)\, \dot\beta |\dot\beta|, \qquad
+/// q_\mathrm{rot} = C_\mathrm{rot}\, \rho\, |\dot\beta| \dot\psi \\
+/// F_\mathrm{N} + F_\mathrm{rot} &= q\, S_2 + q_\mathrm{rot} S_{21} \\
+/// M_\mathrm{aero} &= (q\, S_3 + q_\mathrm{rot} S_{22}) \cos\psi \\
+/// M_\mathrm{pitch} &= q\, d(\alpha)\, S_{22} + \tfrac12 q_\mathrm{rot} S_{31}
+/// + \tfrac18 \rho\, C_\mathrm{rd} |\dot\psi| \dot\psi\, S_{40}
+/// \end{aligned}
+/// \f]
 template <Scalar S>
 PitchAeroLoads<S> aero_loads(const BladeElement<S>& w, const PitchingWings<S>& p, const PitchState<S>& at,
                              const S& stroke, const S& turn) {
@@ -225,24 +261,37 @@ PitchAeroLoads<S> aero_loads(const BladeElement<S>& w, const PitchingWings<S>& p
   return loads;
 }
 
-/// Wings that pitch, as the stroke sees them: (inertia) beta'' + moment is the moment that turns them, and
-/// psi'' = free_acceleration + coupling beta''.
+/// Wings that pitch, as the stroke sees them. The moment M of the drive and of the stroke's springs turns them with the
+/// inertia \f$I\f$ and the moment \f$M_0\f$, and the pitch follows with the coupling \f$\kappa\f$:
+/// \f[
+/// M = I \ddot\beta + M_0, \qquad \ddot\psi = \ddot\psi_0 + \kappa\, \ddot\beta
+/// \f]
 template <Scalar S>
 struct WingsAtPitch {
   PitchAeroLoads<S> aero;
   PitchHingeLoads<S> hinge;
-  S inertia;            ///< M_bb - M_bp^2 / M_pp; M_bb where the wings are held at a stop [kg m2]
-  S moment;             ///< of all that acts on the wings but the springs of the stroke [N m]
-  S free_acceleration;  ///< psi'' of a stroke at constant velocity [rad/s2]
-  S coupling;           ///< of psi'' to beta'' [1]
+  S inertia;            ///< \f$I\f$; \f$M_{bb}\f$ where the wings are held at a stop [kg m2]
+  S moment;             ///< \f$M_0\f$ of all that acts on the wings but the springs of the stroke [N m]
+  S free_acceleration;  ///< \f$\ddot\psi_0\f$ of a stroke at constant velocity [rad/s2]
+  S coupling;           ///< \f$\kappa\f$ of psi'' to beta'' [1]
   /// Of wings that are held at a stop: with coupling_moment beta'' it is the moment that presses towards a positive psi
   /// [N m], and the stop's reaction its negative.
   S pitching_moment;
-  S coupling_moment;  ///< -M_bp [kg m2]
+  S coupling_moment;  ///< \f$-M_{bp}\f$ [kg m2]
 };
 
 /// The wings with `stroke_inertia` N_w J_w [kg m2]. `stroke` and `turn` as in aero_loads(); `held` is -1 where a stop
-/// holds them (psi' is 0 then), else +1.
+/// holds them (psi' is 0 then), else +1. The equation of motion of the pitch, solved for psi'', leaves of that of the
+/// stroke (model.md section 12):
+/// \f[
+/// \begin{aligned}
+/// h_b &= 2 (I_\psi - m_{rr}) \sin\psi \cos\psi\, \dot\beta \dot\psi - (P + m_{rp}) \sin\psi\, \dot\psi^2, \qquad
+/// h_p = -(I_\psi - m_{rr}) \sin\psi \cos\psi\, \dot\beta^2 \\
+/// \ddot\psi_0 &= -\frac{h_p + k_\psi \psi + c_\psi \dot\psi + M_\mathrm{pitch}}{M_{pp}}, \qquad
+/// \kappa = -\frac{M_{bp}}{M_{pp}} \\
+/// I &= M_{bb} - \frac{M_{bp}^2}{M_{pp}}, \qquad M_0 = h_b + M_\mathrm{aero} + M_{bp} \ddot\psi_0
+/// \end{aligned}
+/// \f]
 template <Scalar S>
 WingsAtPitch<S> wings_at_pitch(const BladeElement<S>& w, const PitchingWings<S>& p, const S& stroke_inertia,
                                const PitchState<S>& at, const S& stroke, const S& turn, const S& held) {
@@ -264,7 +313,11 @@ WingsAtPitch<S> wings_at_pitch(const BladeElement<S>& w, const PitchingWings<S>&
   return of;
 }
 
-/// Momentum of the air that moves with the wings, normal to the chord [N s].
+/// Momentum of the air that moves with the wings, normal to the chord [N s], with \f$m_r\f$ and \f$m_p\f$ of
+/// PitchAddedMass.
+/// \f[
+/// p_\mathrm{n} = m_r \dot\beta \cos\psi + m_p \dot\psi
+/// \f]
 template <Scalar S>
 S air_momentum(const PitchingWings<S>& p, const PitchState<S>& at) {
   return p.air.r * at.stroke_velocity * at.cos_psi + p.air.p * at.velocity;
@@ -272,13 +325,23 @@ S air_momentum(const PitchingWings<S>& p, const PitchState<S>& at) {
 
 /// Lift that the added mass's force along the chord takes away where it counts in full [N]: its momentum turns with the
 /// wings. Over a closed cycle its mean is that of the force normal to the chord (model.md section 12).
+/// \f[
+/// p_\mathrm{n} \dot\psi \cos\psi
+/// \f]
 template <Scalar S>
 S chordwise_lift(const PitchingWings<S>& p, const PitchState<S>& at) {
   return air_momentum(p, at) * at.velocity * at.cos_psi;
 }
 
 /// Lift of all wings normal to the stroke plane [N] at the accelerations beta'' and psi'' [rad/s2]: that of the forces
-/// normal to the chord, of which the air's inertia is one, and of the share of its force along the chord that counts.
+/// normal to the chord, of which the air's inertia is one, and of the share \f$s_\mathrm{L}\f$ of its force along the
+/// chord that counts.
+/// \f[
+/// \begin{aligned}
+/// F_\mathrm{am} &= \dot p_\mathrm{n} = m_r (\ddot\beta \cos\psi - \dot\beta \dot\psi \sin\psi) + m_p \ddot\psi \\
+/// L &= -(F_\mathrm{N} + F_\mathrm{rot} + F_\mathrm{am}) \sin\psi - s_\mathrm{L}\, p_\mathrm{n} \dot\psi \cos\psi
+/// \end{aligned}
+/// \f]
 template <Scalar S>
 S lift_at_pitch(const PitchingWings<S>& p, const WingsAtPitch<S>& of, const PitchState<S>& at,
                 const S& stroke_acceleration, const S& pitch_acceleration) {

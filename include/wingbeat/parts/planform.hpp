@@ -25,7 +25,8 @@ inline constexpr std::pair<const char*, PlanformShape> names_of<PlanformShape>[]
     {"tabulated", PlanformShape::tabulated},
     {"moments", PlanformShape::moments}};
 
-/// One wing's outline. Lengths run from the wing root; the hub offset shifts the root away from the hinge.
+/// One wing's outline. Lengths run from the wing root; the hub offset shifts the root away from the hinge. At the
+/// distance x from the root a semi-ellipse has the chord \f$c(x) = c_0 \sqrt{1 - (x/R)^2}\f$, a rectangle \f$c_0\f$.
 template <Scalar S>
 struct Planform {
   PlanformShape shape = PlanformShape::moments;
@@ -47,7 +48,11 @@ struct Planform {
   }
 };
 
-/// S_2 = N_w integral c r^2 dr [m4] and S_3 = N_w integral c r^3 dr [m5], r measured from the hinge.
+/// Moments of the chord that the pitch law needs, \f$S_2\f$ [m4] and \f$S_3\f$ [m5], r measured from the hinge (eqs
+/// 2-4).
+/// \f[
+/// S_n = N_\mathrm{w} \int c\, r^n\,\mathrm{d}r
+/// \f]
 template <Scalar S>
 struct ChordMoments {
   S s2;
@@ -127,14 +132,24 @@ std::array<S, 4> root_moments(const Planform<S>& p) {
 
 }  // namespace detail
 
-/// Chord moments of ONE wing about the hinge; of a planform that has a shape.
+/// Chord moments of ONE wing about the hinge; of a planform that has a shape. With the hub offset d and the moments
+/// \f$m_n\f$ about the root:
+/// \f[
+/// \int c\, r^2\,\mathrm{d}r = m_2 + 2 d\, m_1 + d^2 m_0, \qquad
+/// \int c\, r^3\,\mathrm{d}r = m_3 + 3 d\, m_2 + 3 d^2 m_1 + d^3 m_0
+/// \f]
+/// Of a semi-ellipse and of a rectangle these are
+/// \f[
+/// (m_0, m_1, m_2, m_3) = c_0 \left( \tfrac{\pi}{4} R, \tfrac13 R^2, \tfrac{\pi}{16} R^3, \tfrac{2}{15} R^4 \right),
+/// \qquad c_0 \left( R, \tfrac12 R^2, \tfrac13 R^3, \tfrac14 R^4 \right)
+/// \f]
 template <Scalar S>
 ChordMoments<S> one_wing_moments(const Planform<S>& p) {
   const std::array<S, 4> m = detail::root_moments(p);
   return detail::shift_moments<S>(m[0], m[1], m[2], m[3], p.hub_offset);
 }
 
-/// S_1 = N_w integral c r dr [m3] of all `count` wings, of a planform that has a shape.
+/// \f$S_1 = N_\mathrm{w} \int c\, r\,\mathrm{d}r\f$ [m3] of all `count` wings, of a planform that has a shape.
 template <Scalar S>
 S first_chord_moment(const Planform<S>& p, const S& count) {
   const std::array<S, 4> m = detail::root_moments(p);
@@ -149,8 +164,15 @@ ChordMoments<S> chord_moments(const Planform<S>& p, const S& count) {
   return {count * one.s2, count * one.s3};
 }
 
-/// S_22 = N_w integral c^2 r^2 dr [m5] of all `count` wings, which added mass needs (model.md section 10); 0 where
-/// moments are given without it. Semi-ellipse without offset: (2/15) c_0^2 R^3 a wing.
+/// S_22 [m5] of all `count` wings, which added mass needs (model.md section 10); 0 where moments are given without it.
+/// Of semi-ellipse and rectangle with the hub offset d:
+/// \f[
+/// \begin{aligned}
+/// S_{22} = N_\mathrm{w} \int c^2 r^2\,\mathrm{d}r
+/// &= N_\mathrm{w} c_0^2 R \left( \tfrac{2}{15} R^2 + \tfrac12 d R + \tfrac23 d^2 \right) && \text{semi-ellipse} \\
+/// &= N_\mathrm{w} c_0^2 R \left( \tfrac13 R^2 + d R + d^2 \right) && \text{rectangle}
+/// \end{aligned}
+/// \f]
 template <Scalar S>
 S squared_chord_moment(const Planform<S>& p, const S& count) {
   if (p.shape == PlanformShape::moments) return p.s22 ? *p.s22 : S(0.0);
@@ -187,7 +209,8 @@ S chord_at(const Planform<S>& p, double part) {
   return S(c0 + (next->second - c0) * (x - x0) / (next->first - x0));
 }
 
-/// Area of one wing [m2], of a planform that has a shape.
+/// Area of one wing [m2], of a planform that has a shape: \f$\int c\,\mathrm{d}x\f$, of a semi-ellipse
+/// \f$\tfrac{\pi}{4} c_0 R\f$, of a rectangle \f$c_0 R\f$.
 template <Scalar S>
 S wing_area(const Planform<S>& p) {
   if (p.shape == PlanformShape::tabulated) {
@@ -199,8 +222,11 @@ S wing_area(const Planform<S>& p) {
   return p.shape == PlanformShape::semi_ellipse ? S(S(0.25 * pi) * rectangle) : rectangle;
 }
 
-/// S_mn = N_w integral c^m r^n dr of higher powers of the chord, r measured from the hinge: what pitch as a degree of
-/// freedom needs (model.md section 12).
+/// Moments of higher powers of the chord, r measured from the hinge: what pitch as a degree of freedom needs (model.md
+/// section 12).
+/// \f[
+/// S_{mn} = N_\mathrm{w} \int c^m r^n\,\mathrm{d}r
+/// \f]
 template <Scalar S>
 struct PitchChordMoments {
   S s21 = S(0);  ///< [m4], >= 0
@@ -215,8 +241,16 @@ struct PitchChordMoments {
   }
 };
 
-/// Chord moments of all `count` wings for pitch, of a planform that has a shape. Semi-ellipse: root moments 2/3 and 1/4
-/// of c^2, 3 pi/16 and 1/5 of c^3, 8/15 of c^4, in powers of c_0 and R.
+/// Chord moments of all `count` wings for pitch, of a planform that has a shape. Of a semi-ellipse with the hub offset
+/// d:
+/// \f[
+/// \begin{aligned}
+/// S_{21} &= N_\mathrm{w} c_0^2 R \left( \tfrac14 R + \tfrac23 d \right), &
+/// S_{30} &= \tfrac{3 \pi}{16} N_\mathrm{w} c_0^3 R, \\
+/// S_{31} &= N_\mathrm{w} c_0^3 R \left( \tfrac15 R + \tfrac{3 \pi}{16} d \right), &
+/// S_{40} &= \tfrac{8}{15} N_\mathrm{w} c_0^4 R
+/// \end{aligned}
+/// \f]
 template <Scalar S>
 PitchChordMoments<S> pitch_chord_moments(const Planform<S>& p, const S& count) {
   const S R = p.length, d = p.hub_offset;

@@ -13,14 +13,21 @@ namespace wingbeat {
 
 /// How the rod force turns the wings (model.md section 2).
 enum class Formulation {
-  rod_force,    ///< the paper's eq (1) as printed: g = H (sin gamma tan beta + cos gamma); does not conserve power
-  virtual_work  ///< straight frictionless guide: g = H cos gamma / cos^2 beta; F h omega = F g beta' identically
+  /// The paper's eq (1) as printed: \f$g = H (\sin\gamma \tan\beta + \cos\gamma)\f$; does not conserve power.
+  rod_force,
+  /// Straight frictionless guide: \f$g = H \cos\gamma / \cos^2\beta\f$; \f$F h \omega = F g \dot\beta\f$ identically.
+  virtual_work
 };
 template <>
 inline constexpr std::pair<const char*, Formulation> names_of<Formulation>[] = {
     {"rod-force", Formulation::rod_force}, {"virtual-work", Formulation::virtual_work}};
 
-/// Geometry of the mechanism. The crank angle theta is measured from the horizontal and grows with rotation.
+/// Geometry of the mechanism. The crank angle theta is measured from the horizontal and grows with rotation. The rod is
+/// at \f$\gamma\f$ from the vertical, the slider at the height y over the crank axis (model.md section 1):
+/// \f[
+/// \sin\gamma = \frac{r_\mathrm{c}}{l} \cos\theta, \qquad y = r_\mathrm{c} \sin\theta + l \cos\gamma, \qquad
+/// \tan\beta = \frac{y - y_0}{H}
+/// \f]
 template <Scalar S>
 struct SliderCrank {
   S crank_radius = S(0);       ///< r_c [m], > 0, < l
@@ -66,7 +73,18 @@ CrankGeometry<S> geometry_of(const SliderCrank<S>& c) {
   return {c, c.crank_radius / c.rod_length, S(1.0) / c.hinge_offset};
 }
 
-/// Kinematics at a crank angle given by its sine and cosine. Beta' = B1 omega, beta'' = B1 omega' + B2 omega^2.
+/// Kinematics at a crank angle given by its sine and cosine. A prime is a derivative by \f$\theta\f$; g as under
+/// Formulation (eqs 1, 5; model.md section 2).
+/// \f[
+/// \begin{aligned}
+/// y' &= r_\mathrm{c} (\cos\theta + \sin\theta \tan\gamma), \qquad
+/// y'' = r_\mathrm{c} \left( \cos\theta \tan\gamma - \sin\theta
+/// - \frac{r_\mathrm{c}}{l} \frac{\sin^2\theta}{\cos^3\gamma} \right) \\
+/// B_1 &= \frac{\mathrm{d}\beta}{\mathrm{d}\theta} = \frac{y'}{H} \cos^2\beta, \qquad
+/// B_2 = \frac{\mathrm{d}^2\beta}{\mathrm{d}\theta^2} = \frac{y''}{H} \cos^2\beta - 2 \tan\beta\, B_1^2 \\
+/// h &= y' \cos\gamma = r_\mathrm{c} (\sin\theta \sin\gamma + \cos\theta \cos\gamma)
+/// \end{aligned}
+/// \f]
 template <Scalar S>
 CrankKinematics<S> crank_kinematics(const CrankGeometry<S>& geometry, const S& sin_theta, const S& cos_theta) {
   const SliderCrank<S>& c = geometry.crank;
@@ -105,7 +123,7 @@ CrankKinematics<S> crank_kinematics(const SliderCrank<S>& c, const S& sin_theta,
   return crank_kinematics(geometry_of(c), sin_theta, cos_theta);
 }
 
-/// y = r_c sin theta + l cos gamma, the slider's height over the crank axis [m].
+/// The slider's height over the crank axis [m], \f$y = r_\mathrm{c} \sin\theta + l \cos\gamma\f$.
 template <Scalar S>
 S slider_height(const SliderCrank<S>& c, const S& sin_theta, const S& cos_theta) {
   const S sin_gamma = c.crank_radius / c.rod_length * cos_theta;
@@ -120,7 +138,7 @@ inline Reversals reversals(const SliderCrank<double>&) {
   return {{slider_crank_dead_centre, two_pi - slider_crank_dead_centre}, 2, 1.0};
 }
 
-/// B1 at mid-stroke, r_c / H [1].
+/// B1 at mid-stroke, \f$r_\mathrm{c} / H\f$ [1].
 template <Scalar S>
 S typical_stroke_slope(const SliderCrank<S>& c) {
   return c.crank_radius / c.hinge_offset;
@@ -139,6 +157,9 @@ S typical_crank_lever(const SliderCrank<S>& c) {
 }
 
 /// Largest stroke angle to either side [rad].
+/// \f[
+/// \max_\pm \left| \arctan\frac{l \pm r_\mathrm{c} - y_0}{H} \right|
+/// \f]
 inline double stroke_reach(const SliderCrank<double>& c) {
   const double top = std::atan((c.rod_length + c.crank_radius - c.mid_stroke_height) / c.hinge_offset);
   const double bottom = std::atan((c.rod_length - c.crank_radius - c.mid_stroke_height) / c.hinge_offset);
@@ -146,6 +167,9 @@ inline double stroke_reach(const SliderCrank<double>& c) {
 }
 
 /// Half the peak-to-peak stroke angle [rad], between the dead centres.
+/// \f[
+/// \frac12 \left( \arctan\frac{l + r_\mathrm{c} - y_0}{H} - \arctan\frac{l - r_\mathrm{c} - y_0}{H} \right)
+/// \f]
 template <Scalar S>
 S stroke_amplitude(const SliderCrank<S>& c) {
   using std::atan;
@@ -154,7 +178,11 @@ S stroke_amplitude(const SliderCrank<S>& c) {
   return S(0.5) * (top - bottom);
 }
 
-/// The hinge offset H [m] that gives a stroke amplitude [rad] with the mid-stroke at y_0 = l: tan(amplitude) = r_c / H.
+/// The hinge offset H [m] that gives a stroke amplitude \f$\beta_\mathrm{max}\f$ [rad] with the mid-stroke at
+/// \f$y_0 = l\f$.
+/// \f[
+/// H = \frac{r_\mathrm{c}}{\tan\beta_\mathrm{max}}
+/// \f]
 template <Scalar S>
 S hinge_offset_for(const S& amplitude, const S& crank_radius) {
   using std::tan;

@@ -29,23 +29,33 @@ inline void validate(const HingeSpring<double>& s) { require(spring_key::stiffne
 
 template <Scalar S>
 struct SpringLoads {
-  S moment;  ///< k beta [N m], returns the wing to stroke angle zero
-  S energy;  ///< k beta^2 / 2 [J]
+  S moment;  ///< \f$k \beta\f$ [N m], returns the wing to stroke angle zero
+  S energy;  ///< \f$\tfrac12 k \beta^2\f$ [J]
 };
 
+/// Moment and energy of ONE hinge spring at the stroke angle \f$\beta\f$ [rad] (eq 21):
+/// \f[
+/// M_\mathrm{s} = k \beta, \qquad E_\mathrm{s} = \tfrac12 k \beta^2
+/// \f]
 template <Scalar S>
 SpringLoads<S> spring_loads(const HingeSpring<S>& s, const S& beta) {
   return {s.stiffness * beta, S(0.5) * s.stiffness * square(beta)};
 }
 
-/// Stiffness k = J_w (2 pi f_s)^2 [N m/rad] that makes a wing of inertia J_w [kg m2] resonate at f_s [Hz] (eq 22). A
-/// direct drive swings its rotor too: there the inertia on one spring is J/N_w + J_w.
+/// Stiffness k [N m/rad] that makes a wing of inertia J_w [kg m2] resonate at f_s [Hz] (eq 22). A direct drive swings
+/// its rotor too: there the inertia on one spring is \f$J/N_\mathrm{w} + J_\mathrm{w}\f$.
+/// \f[
+/// k = J_\mathrm{w} (2 \pi f_\mathrm{s})^2
+/// \f]
 template <Scalar S>
 S stiffness_for_resonance(const S& wing_inertia, const S& resonance) {
   return wing_inertia * square(S(two_pi) * resonance);
 }
 
-/// The frequency [Hz] at which an inertia [kg m2] resonates on a spring [N m/rad].
+/// The frequency [Hz] at which an inertia [kg m2] resonates on a spring [N m/rad]: eq (22) solved for it.
+/// \f[
+/// f_\mathrm{s} = \frac{1}{2 \pi} \sqrt{k / J_\mathrm{w}}
+/// \f]
 template <Scalar S>
 S resonance_of(const S& inertia, const S& stiffness) {
   using std::sqrt;

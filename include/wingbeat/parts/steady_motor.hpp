@@ -6,8 +6,10 @@
 
 namespace wingbeat {
 
-/// Steady speed without load, against the motor's own friction as well [rad/s]: (K v - R_a T_c) / (K^2 + R_a b); 0
-/// where that friction stalls it.
+/// Steady speed without load, against the motor's own friction as well [rad/s]; 0 where that friction stalls it.
+/// \f[
+/// \omega_0 = \frac{\max(K v - R_\mathrm{a} T_\mathrm{c,m},\, 0)}{K^2 + R_\mathrm{a} b}
+/// \f]
 template <Scalar S>
 S free_speed(const Motor<S>& m, const S& v) {
   const S drive = m.torque_constant * v - m.armature_resistance * m.friction_torque;
@@ -18,13 +20,17 @@ S free_speed(const Motor<S>& m, const S& v) {
 /// A motor that turns forwards at a constant speed.
 template <Scalar S>
 struct SteadyMotor {
-  S current;           ///< (v - K omega) / R_a [A]
-  S torque;            ///< on the shaft, behind the gearbox: e (K i - b omega - T_c) [N m]
-  S power_electrical;  ///< v i [W]
-  S power_mechanical;  ///< torque times omega [W]
+  S current;           ///< \f$i\f$ [A]
+  S torque;            ///< \f$T\f$ on the shaft, behind the gearbox [N m]
+  S power_electrical;  ///< \f$v i\f$ [W]
+  S power_mechanical;  ///< \f$T \omega\f$ [W]
 };
 
 /// The motor at terminal voltage v [V] and shaft speed omega >= 0 [rad/s]; of torques below zero the load drives it.
+/// With e of gear_torque_ratio() (eqs 9-11 at constant speed and current; model.md section 9):
+/// \f[
+/// i = \frac{v - K \omega}{R_\mathrm{a}}, \qquad T = e \left( K i - b\, \omega - T_\mathrm{c,m} \right)
+/// \f]
 template <Scalar S>
 SteadyMotor<S> steady_motor(const Motor<S>& m, const S& v, const S& omega) {
   const S i = (v - m.torque_constant * omega) / m.armature_resistance;

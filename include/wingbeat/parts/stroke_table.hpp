@@ -19,7 +19,10 @@ namespace wingbeat {
 
 /// Stroke angle against crank angle over a turn as a periodic spline of degree five with four continuous derivatives. A
 /// cubic one would do for the kinematics, but its third derivative jumps at the rows, where the rod force, which holds
-/// the second, would then have corners.
+/// the second, would then have corners. From a row at \f$\theta_0\f$ to the next:
+/// \f[
+/// \beta_\mathrm{table}(\theta) = \sum_{k=0}^{5} c_k (\theta - \theta_0)^k
+/// \f]
 class StrokeCurve {
  public:
   /// Rows (crank angle, stroke angle) [rad], crank angles strictly growing within less than 2 pi; at least four. Throws
@@ -49,8 +52,11 @@ class StrokeCurve {
   Reversals reversals_;
 };
 
-/// beta = scale times the curve. Friction acts on the reaction to the wings' moment at the radius r_ref: g = r_ref, h =
-/// r_ref B1, which conserves power.
+/// A curve times a scale \f$s\f$. Friction acts on the reaction to the wings' moment at the radius r_ref, with levers
+/// that conserve power (model.md section 8).
+/// \f[
+/// \beta = s\, \beta_\mathrm{table}(\theta), \qquad g = r_\mathrm{ref}, \qquad h = r_\mathrm{ref} B_1
+/// \f]
 template <Scalar S>
 struct StrokeTable {
   using Curve = std::conditional_t<ScalarTraits<S>::reads_tables, std::shared_ptr<const StrokeCurve>, std::nullptr_t>;

@@ -61,8 +61,8 @@ inline void validate(const Supply<double>& s) {
   if (s.type == SupplyType::pwm) require(supply_key::duty, s.duty);
 }
 
-/// The constant voltage [V] that steady flapping sees: v itself, the mean over a switching period for pwm, the
-/// open-circuit voltage at its state of charge for a battery.
+/// The constant voltage [V] that steady flapping sees: v itself (of a sine its amplitude), the mean \f$D v\f$ over a
+/// switching period for pwm of the duty D, the open-circuit voltage \f$n E(s)\f$ at its state of charge for a battery.
 template <Scalar S>
 S mean_voltage(const Supply<S>& s) {
   if (s.type == SupplyType::battery) return open_circuit_voltage(s.battery, s.battery.charge);
@@ -76,7 +76,12 @@ S source_resistance(const Supply<S>& s) {
   return s.type == SupplyType::battery ? source_resistance(s.battery) : S(0.0);
 }
 
-/// Voltage [V] at time t [s] that the supply drives through its resistance.
+/// Voltage [V] at time t [s] that the supply drives through its resistance: of a sine of the amplitude V and the
+/// frequency f [Hz], of pwm of the voltage V while it is switched on; otherwise mean_voltage().
+/// \f[
+/// v_\mathrm{sine} = V \sin 2 \pi f t, \qquad
+/// v_\mathrm{pwm} = \begin{cases} V & f t - \lfloor f t \rfloor < D \\ 0 & \text{otherwise} \end{cases}
+/// \f]
 inline double voltage_at(const Supply<double>& s, double t) {
   if (is_sine(s.type)) return s.voltage * std::sin(two_pi * s.frequency * t);
   if (s.type == SupplyType::pwm) {

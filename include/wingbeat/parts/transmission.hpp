@@ -16,13 +16,19 @@ namespace wingbeat {
 
 /// Position of a transmission and its levers at one crank angle theta. Friction acts on the internal force F, the rod
 /// force of a slider-crank. The stroke angle is beta = stroke_offset + arctan(tan_stroke): a law that knows the tangent
-/// leaves the arc tangent to those who need the angle, one that knows the angle puts it into the offset.
+/// leaves the arc tangent to those who need the angle, one that knows the angle puts it into the offset. The wings'
+/// motion follows the crank's, and F turns the wings with the moment \f$F g\f$ and loads the crank with the torque
+/// \f$F h\f$ (eqs 1, 5, 21; model.md section 2):
+/// \f[
+/// \dot\beta = B_1 \omega, \qquad \ddot\beta = B_1 \dot\omega + B_2 \omega^2, \qquad
+/// F h \omega = F g \dot\beta \iff h = g B_1
+/// \f]
 template <Scalar S>
 struct CrankKinematics {
   S stroke_offset;  ///< [rad]; 0 of a slider-crank
   S tan_stroke;     ///< tangent of the stroke angle, less the offset [1]
-  S stroke_slope;   ///< B1 = d beta / d theta [1]
-  S stroke_curve;   ///< B2 = d2 beta / d theta2 [1]
+  S stroke_slope;   ///< \f$B_1 = \mathrm{d}\beta/\mathrm{d}\theta\f$ [1]
+  S stroke_curve;   ///< \f$B_2 = \mathrm{d}^2\beta/\mathrm{d}\theta^2\f$ [1]
   S wing_lever;     ///< g: moment on all wings per unit of F [m]
   S crank_lever;    ///< h: torque on the crank per unit of F [m]; h = g B1 conserves power
 };

@@ -52,8 +52,13 @@ inline ReynoldsRange reynolds_range_of(std::string_view coefficients) {
   return named_coefficients(coefficients) ? robofly_reynolds_range : ReynoldsRange{};
 }
 
-/// c_mean (R + hub offset) / nu [s/rad], which the mean of |beta'| makes the Reynolds number of the mean chord at the
-/// mean speed of the tip (Ellington, Phil. Trans. R. Soc. Lond. B 305, 1984); not a number without a shape.
+/// What the mean of |beta'| makes, by this factor [s/rad], the Reynolds number of the mean chord \f$\overline{c}\f$ at
+/// the mean speed of the tip (Ellington, Phil. Trans. R. Soc. Lond. B 305, 1984); not a number without a shape. With
+/// the hub offset d:
+/// \f[
+/// \frac{\mathrm{Re}}{\overline{|\dot\beta|}} = \frac{\overline{c}\, (R + d)}{\nu}, \qquad
+/// \overline{c} = \frac1R \int c\,\mathrm{d}r
+/// \f]
 template <Scalar S>
 S reynolds_number_per_speed(const Planform<S>& p, const S& kinematic_viscosity) {
   if (p.shape == PlanformShape::moments) return S(std::numeric_limits<double>::quiet_NaN());
@@ -62,7 +67,11 @@ S reynolds_number_per_speed(const Planform<S>& p, const S& kinematic_viscosity) 
 }
 
 /// Where the tips of two wings meet in the plane between them [rad]: 90 deg, and by as much more as the shoulders leave
-/// room for; infinite where the wings are too short to meet. Wings without a shape are taken to meet at 90 deg.
+/// room for; infinite where the wings are too short to meet. Wings without a shape are taken to meet at 90 deg. With
+/// the shoulder distance b and the hub offset d:
+/// \f[
+/// \beta_\mathrm{meet} = \frac{\pi}{2} + \arcsin\frac{b}{2 (R + d)}
+/// \f]
 template <Scalar S>
 S stroke_where_wings_meet(const Planform<S>& p) {
   using std::asin;

@@ -34,13 +34,23 @@ inline constexpr ParameterKey rib_count{"wing.rib_count", "1", range::at_most_th
 /// pitches.
 template <Scalar S>
 struct WingMass {
-  S mass;           ///< [kg]
-  S inertia;        ///< J_w = integral r^2 dm about the flapping hinge [kg m2]
-  S pitch_inertia;  ///< I_psi = integral x^2 dm about the leading edge [kg m2]
-  S mass_product;   ///< P = integral r x dm [kg m2]
+  S mass;           ///< \f$m\f$ [kg]
+  S inertia;        ///< \f$J_\mathrm{w} = \int r^2\,\mathrm{d}m\f$ about the flapping hinge [kg m2]
+  S pitch_inertia;  ///< \f$I_\psi = \int x^2\,\mathrm{d}m\f$ about the leading edge [kg m2]
+  S mass_product;   ///< \f$P = \int r x\,\mathrm{d}m\f$ [kg m2]
 };
 
-/// Mass properties of one wing of that outline; not for planforms given by moments, which have none.
+/// Mass properties of one wing of that outline; not for planforms given by moments, which have none. With the hub
+/// offset d and ribs at \f$r_n = d + n R/(n_\mathrm{r} + 1)\f$, n = 1 to n_r (model.md section 14):
+/// \f[
+/// \begin{aligned}
+/// m &= \sigma \int c\,\mathrm{d}r + \lambda R + \sum_n \lambda_\mathrm{r}\, c(r_n) \\
+/// J_\mathrm{w} &= \sigma \int c\, r^2\,\mathrm{d}r + \lambda\, \frac{(R + d)^3 - d^3}{3}
+/// + \sum_n \lambda_\mathrm{r}\, c(r_n)\, r_n^2 \\
+/// I_\psi &= \frac{\sigma}{3} \int c^3\,\mathrm{d}r + \sum_n \lambda_\mathrm{r} \frac{c(r_n)^3}{3} \\
+/// P &= \frac{\sigma}{2} \int c^2 r\,\mathrm{d}r + \sum_n \lambda_\mathrm{r} \frac{c(r_n)^2 r_n}{2}
+/// \end{aligned}
+/// \f]
 template <Scalar S>
 WingMass<S> wing_mass(const WingMaterial<S>& material, const Planform<S>& p) {
   const S& sigma = material.areal_density;

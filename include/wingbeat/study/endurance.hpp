@@ -87,7 +87,21 @@ struct EnduranceResult {
 };
 
 /// Flies the design's battery from its charge until it is empty, at its cut-off voltage, or no longer turns the crank.
-/// Throws ParameterError for a supply that is no battery and for options out of range.
+/// Throws ParameterError for a supply that is no battery and for options out of range. With the mean current
+/// \f$\overline{i}(s)\f$ of steady flapping at the charge s, from \f$s_0\f$ at the start (behind a bridge the direct
+/// current I that the mean power asks for, \f$(n E - n R_\mathrm{i} I)\, I = P_\mathrm{e}\f$):
+/// \f[
+/// Q \frac{\mathrm{d}s}{\mathrm{d}t} = -\overline{i}(s), \qquad t(s) = \int_s^{s_0} \frac{Q}{\overline{i}}\,\mathrm{d}s
+/// \f]
+/// With thermal time constants the motor warms up on the way (model.md section 11):
+/// \f[
+/// \begin{aligned}
+/// \tau_\mathrm{w} \frac{\mathrm{d}(T_\mathrm{w} - T_\mathrm{case})}{\mathrm{d}t}
+/// &= R_\mathrm{th1} P_\mathrm{cu} - (T_\mathrm{w} - T_\mathrm{case}) \\
+/// \tau_\mathrm{c} \frac{\mathrm{d}T_\mathrm{case}}{\mathrm{d}t}
+/// &= T_\mathrm{amb} + R_\mathrm{th2} (P_\mathrm{cu} + P_\mathrm{visc} + P_\mathrm{motor}) - T_\mathrm{case}
+/// \end{aligned}
+/// \f]
 EnduranceResult simulate_discharge(const Design<double>& design, const EnduranceOptions& options = {});
 
 /// Which metrics of a whole flight are wanted.

@@ -13,12 +13,17 @@
 
 namespace wingbeat {
 
-/// An eigenvalue of A. Of a complex pair the one with a positive imaginary part stands for both.
+/// An eigenvalue \f$\mu\f$ of A. Of a complex pair the one with a positive imaginary part stands for both. With the
+/// period T of the orbit:
+/// \f[
+/// s = \frac{\ln\mu}{T}, \qquad \tau = -\frac{1}{\operatorname{Re} s} = -\frac{T}{\ln|\mu|}, \qquad
+/// \omega_\mathrm{n} = |s|, \qquad \zeta = -\frac{\operatorname{Re} s}{|s|}
+/// \f]
 struct CycleMode {
   std::complex<double> multiplier;
-  double time_constant;      ///< -T / ln |multiplier|, in which it fades to 1/e; negative: it grows [s]
-  double natural_frequency;  ///< |s|, s = ln(multiplier) / T [rad/s]
-  double damping_ratio;      ///< -Re(s) / |s|
+  double time_constant;      ///< \f$\tau\f$, in which it fades to 1/e; negative: it grows [s]
+  double natural_frequency;  ///< \f$\omega_\mathrm{n}\f$ [rad/s]
+  double damping_ratio;      ///< \f$\zeta\f$ [1]
   bool settled;              ///< fades within a cycle, or alternates: left out of the continuous-time model
 };
 
@@ -32,7 +37,7 @@ struct ContinuousModel {
 struct LinearModel {
   CycleMap map;
   std::vector<CycleMode> modes;  ///< the slowest first
-  Eigen::MatrixXd steady_gain;   ///< C (I - A)^-1 B + D; not finite where an eigenvalue is 1
+  Eigen::MatrixXd steady_gain;   ///< \f$C (I - A)^{-1} B + D\f$; not finite where an eigenvalue is 1
   ContinuousModel continuous;
   /// Of each input, one column for each output: the outputs of cycles 0, 1, ... after a unit step at cycle 0.
   std::vector<Eigen::MatrixXd> step_responses;

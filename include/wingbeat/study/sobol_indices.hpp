@@ -22,7 +22,12 @@ struct SobolIndices {
 /// From two independent samples of the inputs, A and B: `a` and `b` hold f of each row, `mixed[i]` f of A with input i
 /// taken from B. First-order indices by Saltelli and others, total ones by Jansen (Saltelli et al., "Variance based
 /// sensitivity analysis of model output", Comput. Phys. Commun. 181, 2010, Table 2: b and f). Rows with a NaN anywhere
-/// are left out. `resamples` 0: no intervals (NaN). Without two rows or without variance the indices are NaN.
+/// are left out. `resamples` 0: no intervals (NaN). Without two rows or without variance the indices are NaN. With f
+/// counted from its mean, V its variance over A and B, and \f$A_B^{(i)}\f$ for A with input i taken from B:
+/// \f[
+/// S_i = \frac{1}{V} \overline{f(B) \left( f(A_B^{(i)}) - f(A) \right)}, \qquad
+/// S_{\mathrm{T}i} = \frac{1}{2 V} \overline{\left( f(A) - f(A_B^{(i)}) \right)^2}
+/// \f]
 SobolIndices sobol_indices(std::span<const double> a, std::span<const double> b,
                            std::span<const std::vector<double>> mixed, int resamples, std::uint64_t seed);
 

@@ -246,7 +246,12 @@ std::optional<S> rod_length(const TransmissionDesign<S>& t) {
 }
 
 /// Mass of the whole vehicle [kg]: vehicle.mass, every mass stated for itself and that of a battery that weighs by its
-/// capacity; empty where vehicle.mass is not known.
+/// capacity; empty where vehicle.mass is not known. M motors with a rod of the linear density \f$\lambda_l\f$ and N
+/// wings each, a hinge spring at every wing:
+/// \f[
+/// m = m_\mathrm{vehicle} + m_\mathrm{supply} + m_\mathrm{battery}
+/// + M \left( m_\mathrm{motor} + \lambda_l\, l + N m_\mathrm{spring} \right)
+/// \f]
 template <Scalar S>
 std::optional<S> total_mass(const Design<S>& design) {
   if (!design.mass) return std::nullopt;

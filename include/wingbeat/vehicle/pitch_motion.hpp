@@ -64,7 +64,17 @@ struct StopImpact {
 
 /// The impact at pitch angle psi [rad] of a vehicle at shaft speed omega [rad/s], which moves on in `direction` (its
 /// sign), from the pitch velocity psi' to the one `left` [rad/s]. The impulse on the rod, F^ = -e J d omega /
-/// (h + s mu r_e), has the sign of -M_bp (psi' - left); e as in Instant.
+/// (h + s mu r_e), has the sign of -M_bp (psi' - left); e as in Instant. With \f$\Delta\f$ for what a velocity gains
+/// and \f$\bar\omega = \omega + \tfrac12 \Delta\omega\f$ (model.md section 12):
+/// \f[
+/// \begin{aligned}
+/// e J \Delta\omega &= -\hat F (h + s \mu r_\mathrm{e}), \qquad
+/// M_{bb} \Delta\dot\beta + M_{bp} \Delta\dot\psi = \hat F g, \qquad \Delta\dot\beta = B_1 \Delta\omega \\
+/// W_\mathrm{motor} &= -e J \Delta\omega\, \bar\omega, \qquad W_\mathrm{gear} = -(1 - e) J \Delta\omega\, \bar\omega \\
+/// W_\mathrm{friction} &= \mu r_\mathrm{e} |\hat F \bar\omega|, \qquad
+/// W_\mathrm{residual} = \hat F (h - g B_1)\, \bar\omega
+/// \end{aligned}
+/// \f]
 template <template <Scalar> class V, Scalar S>
 StopImpact<S> stop_impact(const V<S>& v, const PitchingWings<S>& p, const CrankKinematics<S>& k, const S& omega,
                           const S& psi, const S& velocity, const S& direction, const S& left = S(0.0)) {

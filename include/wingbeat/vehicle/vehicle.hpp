@@ -31,7 +31,7 @@ struct Vehicle {
   Friction<S> friction;
   HingeSpring<S> spring;
   S wing_count;    ///< N_w, of all motors
-  S wing_inertia;  ///< J_w of one wing [kg m2]; 0 when wingless
+  S wing_inertia;  ///< \f$J_\mathrm{w}\f$ of one wing [kg m2]; 0 when wingless
   BladeElement<S> wings;
   S source_resistance = S(0);  ///< R_i inside the supply [ohm], >= 0: the terminals see v - R_i i
   S drive_frequency = S(0);    ///< of a sine supply, whose amplitude is `voltage` [Hz]; else 0
@@ -230,7 +230,7 @@ template <Scalar S>
 struct Motion {
   CrankKinematics<S> kinematics;
   S crank_acceleration;   ///< omega' [rad/s2]
-  S inductive_voltage;    ///< v - R_a i - K omega = L_a di/dt [V]
+  S inductive_voltage;    ///< \f$v - R_\mathrm{a} i - K \omega = L_\mathrm{a}\,\mathrm{d}i/\mathrm{d}t\f$ [V]
   S current;              ///< i [A]
   S voltage;              ///< v at the terminals [V]
   S rod_force;            ///< F [N], positive when the crank pushes the slider up
@@ -239,15 +239,19 @@ struct Motion {
   S stroke_acceleration;  ///< beta'' [rad/s2]
   AeroLoads<S> aero;      ///< of all wings
   S friction_torque;      ///< T_f of the mechanism [N m]; of a shaft that stands, all that holds it
-  S motor_torque;         ///< T_m = F h + T_f [N m] (eq 5), behind the motor's own friction; standing, K i
+  S motor_torque;         ///< \f$T_\mathrm{m} = F h + T_\mathrm{f}\f$ [N m] (eq 5), behind the motor's own friction;
+                          ///< standing, K i
   S gear_torque;          ///< T_g that the gearbox takes from the motor, along omega [N m] (model.md section 9)
-  S gear_loss;            ///< (1 - e) T_g omega [W]
-  S stored_moment;        ///< N_w J_w beta'' + N_w k beta [N m]
+  S gear_loss;            ///< \f$(1 - e)\, T_\mathrm{g} \omega\f$ [W]
+  S stored_moment;        ///< \f$N_\mathrm{w} J_\mathrm{w} \ddot\beta + N_\mathrm{w} k \beta\f$ [N m]
 };
 
 /// J + A (h + s mu r_e) [kg m2], the divisor of omega' on the branch s (model.md section 2), with all of the added mass
 /// that there may be: that at rest; eta J behind a gearbox that loses torque. The equations have one solution while it
 /// is positive for s = +1 and s = -1 and the lever g is positive.
+/// \f[
+/// J + A (h + s \mu r_\mathrm{e}), \qquad A = \frac{(N_\mathrm{w} J_\mathrm{w} + J_\mathrm{a}) B_1}{g}
+/// \f]
 template <template <Scalar> class V, Scalar S>
 S effective_inertia(const V<S>& v, const CrankKinematics<S>& k, const S& s) {
   const S A = (v.wing_count * v.wing_inertia + v.wings.added_inertia) * k.stroke_slope / k.wing_lever;
@@ -255,7 +259,7 @@ S effective_inertia(const V<S>& v, const CrankKinematics<S>& k, const S& s) {
   return J + A * (k.crank_lever + s * v.friction.radius);
 }
 
-/// Moment of all hinge springs, N_w k beta [N m].
+/// Moment of all hinge springs, \f$N_\mathrm{w} k \beta\f$ [N m].
 template <template <Scalar> class V, Scalar S>
 S spring_moment(const V<S>& v, const CrankKinematics<S>& k) {
   // Without springs the arc tangent is a tenth of all the work; its derivative by the stiffness is still wanted.
@@ -299,7 +303,17 @@ struct Instant {
 
 /// The instant at crank speed omega [rad/s] and current i [A] under the terminal voltage v_t [V], N_k_beta being the
 /// spring_moment() there, of wings that ask (inertia) beta'' + moment of the stroke, springs apart; `aero` is what the
-/// air does to them, `direction` the sign of omega, `gear` as in Branch.
+/// air does to them, `direction` the sign of omega, `gear` as in Branch. The wings' equation (1, 21) gives the rod
+/// force as \f$F = A \dot\omega + C\f$, with the inertia \f$I\f$ and the moment \f$M_0\f$, under the pitch law
+/// \f$I = N_\mathrm{w} J_\mathrm{w}\f$ with the added mass and \f$M_0 = M_\mathrm{aero}\f$. The torque D drives the
+/// crank before the rod force acts, e being that of gear_torque_ratio(), \f$T_\mathrm{l}\f$ that of
+/// load_free_friction() and \f$T_\mathrm{x}\f$ the load's:
+/// \f[
+/// \begin{aligned}
+/// A g &= I B_1, \qquad C g = I B_2 \omega^2 + M_0 + N_\mathrm{w} k \beta \\
+/// D &= e \left( K i - b\, \omega - T_\mathrm{c,m} \operatorname{sign}\omega \right) - T_\mathrm{l} - T_\mathrm{x}
+/// \end{aligned}
+/// \f]
 template <template <Scalar> class V, Scalar S>
 [[gnu::always_inline]] inline Instant<S> instant_under(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta,
                                                        const S& omega, const S& i, const S& v_t, const S& direction,
@@ -345,7 +359,17 @@ template <bool every_law = true, template <Scalar> class V, Scalar S>
   return instant_under<V, S>(v, k, N_k_beta, omega, i, v_t, direction, gear, aero, inertia, aero.moment);
 }
 
-/// Rod force and accelerations of an instant, on a given branch (model.md section 2, eqs 1, 5-11, 21).
+/// Rod force and accelerations of an instant, on a given branch (model.md section 2, eqs 1, 5-11, 21). With A, C and
+/// the driving torque D of instant_under(), and \f$s = \operatorname{sign} F \operatorname{sign}\omega\f$ on that
+/// branch:
+/// \f[
+/// \begin{aligned}
+/// \dot\omega &= \frac{D - C (h + s \mu r_\mathrm{e})}{e J + A (h + s \mu r_\mathrm{e})}, \qquad
+/// F = A \dot\omega + C = \frac{e J\, C + A D}{e J + A (h + s \mu r_\mathrm{e})} \\
+/// \ddot\beta &= B_1 \dot\omega + B_2 \omega^2, \qquad
+/// T_\mathrm{m} = F h + \mu r_\mathrm{e} |F| \operatorname{sign}\omega + T_\mathrm{l} + T_\mathrm{x}
+/// \end{aligned}
+/// \f]
 template <template <Scalar> class V, Scalar S>
 [[gnu::always_inline]] inline Motion<S> motion_on(const V<S>& v, const Instant<S>& at, const S& i, const S& v_t,
                                                   const Branch<S>& branch) {
@@ -383,8 +407,11 @@ template <template <Scalar> class V, Scalar S>
   return m;
 }
 
-/// The levers of a direct drive, whose shaft angle is the stroke angle itself: B1 = g = h = 1, B2 = 0. The "rod force"
-/// is then the torque passed on to the wings [N m]. It holds no position: that is the stroke angle of the state.
+/// The levers of a direct drive, whose shaft angle is the stroke angle itself. The "rod force" is then the torque
+/// passed on to the wings [N m]. It holds no position: that is the stroke angle of the state (model.md section 6).
+/// \f[
+/// B_1 = g = h = 1, \qquad B_2 = 0
+/// \f]
 template <Scalar S>
 CrankKinematics<S> direct_kinematics() {
   return {S(0.0), S(0.0), S(1.0), S(0.0), S(1.0), S(1.0)};
@@ -407,26 +434,32 @@ template <template <Scalar> class V, Scalar S>
   return motion_at(v, configuration_at(v, sin_theta, cos_theta), omega, i, v_t, branch);
 }
 
-/// Voltage at the motor terminals [V] under the current i [A], where the supply drives `voltage` [V].
+/// Voltage at the motor terminals, \f$v - R_\mathrm{i} i\f$ [V], under the current i [A], where the supply drives
+/// `voltage` v [V].
 template <template <Scalar> class V, Scalar S>
 S terminal_voltage(const V<S>& v, const S& voltage, const S& i) {
   return voltage - v.source_resistance * i;
 }
 
-/// All resistance that the current passes, R_a + R_i [ohm].
+/// All resistance that the current passes, \f$R_\mathrm{a} + R_\mathrm{i}\f$ [ohm].
 template <template <Scalar> class V, Scalar S>
 S circuit_resistance(const V<S>& v) {
   return v.motor.armature_resistance + v.source_resistance;
 }
 
-/// The current [A] where L_a = 0 and the supply drives `voltage` [V]: i = (v - K omega) / (R_a + R_i).
+/// The current [A] without inductance, where the supply drives `voltage` v [V] (eq 11 with L_a = 0).
+/// \f[
+/// i = \frac{v - K \omega}{R_\mathrm{a} + R_\mathrm{i}}
+/// \f]
 template <template <Scalar> class V, Scalar S>
 S algebraic_current(const V<S>& v, const S& voltage, const S& omega) {
   return (voltage - v.motor.torque_constant * omega) / circuit_resistance(v);
 }
 
-/// Steady speed without load and friction [rad/s], K v / (K^2 + (R_a + R_i) b): the closed form of the wingless
-/// condition.
+/// Steady speed without load and friction [rad/s]: the closed form of the wingless condition.
+/// \f[
+/// \omega_0 = \frac{K v}{K^2 + (R_\mathrm{a} + R_\mathrm{i})\, b}
+/// \f]
 template <template <Scalar> class V, Scalar S>
 S no_load_speed(const V<S>& v) {
   const S& K = v.motor.torque_constant;
@@ -434,6 +467,9 @@ S no_load_speed(const V<S>& v) {
 }
 
 /// Angle that a crank turns by at the speed without load while its motor's current decays by a factor of e [rad].
+/// \f[
+/// \frac{L_\mathrm{a}}{R_\mathrm{a} + R_\mathrm{i}}\, \omega_0
+/// \f]
 template <template <Scalar> class V, Scalar S>
 S electrical_lag(const V<S>& v) {
   return v.motor.armature_inductance / circuit_resistance(v) * no_load_speed(v);
@@ -455,6 +491,9 @@ bool has_current_state(const V<S>& v) {
 }
 
 /// Kinetic energy of all wings, without the air that moves with them, and elastic energy of all hinge springs [J].
+/// \f[
+/// E_\mathrm{w} = \tfrac12 N_\mathrm{w} J_\mathrm{w} \dot\beta^2 + \tfrac12 N_\mathrm{w} k \beta^2
+/// \f]
 template <template <Scalar> class V, Scalar S>
 S wing_energy(const V<S>& v, const CrankKinematics<S>& k, const S& stroke_velocity) {
   const S kinetic = S(0.5) * v.wing_count * v.wing_inertia * square(stroke_velocity);
@@ -462,7 +501,10 @@ S wing_energy(const V<S>& v, const CrankKinematics<S>& k, const S& stroke_veloci
   return kinetic + v.wing_count * spring_loads(v.spring, stroke_angle(k)).energy;
 }
 
-/// Kinetic and elastic energy of rotor, wings, springs and inductance [J].
+/// Energy of rotor, wings, springs and inductance [J], with wing_energy() \f$E_\mathrm{w}\f$.
+/// \f[
+/// E = \tfrac12 J \omega^2 + E_\mathrm{w} + \tfrac12 L_\mathrm{a} i^2
+/// \f]
 template <template <Scalar> class V, Scalar S>
 S stored_energy(const V<S>& v, const CrankKinematics<S>& k, const S& omega, const S& i) {
   return S(0.5) * v.motor.inertia * square(omega) + wing_energy(v, k, S(k.stroke_slope * omega)) +

@@ -36,6 +36,7 @@ COLOURS: dict[str, str] = {
     "without_springs": "#d55e00",
     "copper": "#e69f00",
     "viscous": "#f0e442",
+    "motor_friction": "#882255",
     "gearbox": "#009e73",
     "hinges": "#8c6d46",
     "friction": "#cc79a7",

@@ -54,6 +54,7 @@ class EnergyBalance(NamedTuple):
     electrical: float  #: the input [W]
     copper: float  #: heat of the winding [W]
     viscous: float  #: viscous loss of the motor [W]
+    motor_friction: float  #: loss by the motor's own friction [W]
     gear: float  #: loss of the gearbox [W]
     friction: float  #: loss by friction of the mechanism [W]
     hinge: float  #: loss in the hinges of the wings [W]
@@ -113,7 +114,7 @@ class RunResult(WithMetrics):
         """Where the electrical power goes; None unless flapping."""
         if self.power_electrical is None:
             return None
-        return EnergyBalance(*_core.energy_balance(self._metrics))
+        return EnergyBalance(**_core.energy_balance(self._metrics))
 
     @property
     def cycle(self) -> xarray.Dataset:

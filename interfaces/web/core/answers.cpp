@@ -76,6 +76,7 @@ const Description<EnergyAudit>& balance_description() {
     power("electrical", "input", &R::electrical);
     power("copper", "heat of the winding", &R::copper);
     power("viscous", "viscous loss of the motor", &R::viscous);
+    power("motor_friction", "loss by the motor's own friction", &R::motor_friction);
     power("gear", "loss of the gearbox", &R::gear);
     power("friction", "loss by friction of the mechanism", &R::friction);
     power("hinge", "loss in the hinges of the wings", &R::hinge);
@@ -167,12 +168,43 @@ const Description<Vehicle<double>>& mechanism_description() {
   return description;
 }
 
+const Description<Slopes>& slopes_description() {
+  static const Description<Slopes> description =
+      Description<Slopes>()
+          .always("status", "", "", &Slopes::status)
+          .always("detail", "", "a sentence with the evidence", &Slopes::detail)
+          .always("gradients", "", "of all metrics by each key, SI per SI; null where there are none", &Slopes::by_key);
+  return description;
+}
+
+const Description<OfferedMotor>& motor_description() {
+  static const Description<OfferedMotor> description =
+      Description<OfferedMotor>()
+          .always("model", "", "", &OfferedMotor::model)
+          .always("refused", "", "why it cannot be tried", &OfferedMotor::refused)
+          .always("values", "", "of its keys, SI", &OfferedMotor::values, schema::by_name(schema::any_number));
+  return description;
+}
+
+const Description<Problem>& problem_description() {
+  static const Description<Problem> description =
+      Description<Problem>()
+          .always("message", "", "a sentence", &Problem::message)
+          .sometimes("key", "", "", &Problem::key)
+          .sometimes("line", "", "0: of the input as a whole", &Problem::line)
+          .sometimes("column", "", "", &Problem::column);
+  return description;
+}
+
 }  // namespace
 
 Json tables_of_the_library() { return tables_description().json({}); }
 Json solved_answer(const RunResult& result) { return solved_description().json(result); }
 Json start_up_answer(const TransientResult& result) { return start_up_description().json(result); }
 Json mechanism_answer(const Vehicle<double>& vehicle) { return mechanism_description().json(vehicle); }
+Json slopes_answer(const Slopes& slopes) { return slopes_description().json(slopes); }
+Json motors_answer(const std::vector<OfferedMotor>& motors) { return {{"motors", motor_description().list(motors)}}; }
+Json problem_answer(const Problem& problem) { return problem_description().json(problem); }
 
 Json answer_schemas() {
   return {{"Key", key_description().schema()},
@@ -183,7 +215,10 @@ Json answer_schemas() {
           {"Tables", tables_description().schema()},
           {"Solved", solved_description().schema()},
           {"StartUp", start_up_description().schema()},
-          {"Mechanism", mechanism_description().schema()}};
+          {"Mechanism", mechanism_description().schema()},
+          {"Gradients", slopes_description().schema()},
+          {"Motor", motor_description().schema()},
+          {"Problem", problem_description().schema()}};
 }
 
 }  // namespace wingbeat::web

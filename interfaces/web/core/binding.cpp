@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "answers.hpp"
 #include "explored.hpp"
 
 namespace wingbeat::web {
@@ -25,13 +26,9 @@ std::vector<std::string> texts_of(const std::string& json) { return nlohmann::js
 std::vector<double> numbers_of(const val& array) { return emscripten::convertJSArrayToNumberVector<double>(array); }
 
 std::string in_json(const std::string& message, const InputError* error = nullptr) {
-  Json entry = {{"message", message}};
-  if (error) {
-    entry["key"] = error->key();
-    entry["line"] = error->line();
-    entry["column"] = error->column();
-  }
-  return entry.dump(-1, ' ', false, Json::error_handler_t::replace);
+  Problem problem{message, {}, {}, {}};
+  if (error) problem = {message, error->key(), error->line(), error->column()};
+  return problem_answer(problem).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 /// The result of `work` as an object for JavaScript, or its errors.

@@ -120,16 +120,13 @@ Json differentiated(const Design<double>& design, const std::vector<std::string>
   point.frequency = options.frequency;
   point.tolerance = options.tolerance;
   const DesignPoint found = gradient(design, keys, point);
-  Json json = {{"status", name_of(found.status)}, {"detail", describe(found)}, {"gradients", Json::object()}};
+  Slopes slopes{name_of(found.status), describe(found), {}};
   for (std::size_t k = 0; k < keys.size(); ++k) {
-    Json slopes = Json::array();
-    for (int m = 0; m < metric_count; ++m) {
-      slopes.push_back(found.gradients.empty() ? Json(nullptr)
-                                               : detail::number_or_null(found.gradients[k][std::size_t(m)]));
-    }
-    json["gradients"][keys[k]] = std::move(slopes);
+    std::vector<double> by_metric(std::size_t(metric_count), absent);
+    if (!found.gradients.empty()) by_metric.assign(found.gradients[k].begin(), found.gradients[k].end());
+    slopes.by_key.emplace_back(keys[k], std::move(by_metric));
   }
-  return json;
+  return slopes_answer(slopes);
 }
 
 Json mechanism_of(const Design<double>& design, const std::vector<double>& angles, Columns& columns) {

@@ -56,7 +56,7 @@ Json solved_together(const Design<double>& design, const std::vector<std::string
                      const std::vector<double>& values, const RunOptions& options, Columns& columns);
 
 /// The motors of a catalogue (CSV) in the design behind a gearbox of ratio `gear`: {"motors": [{"model", "refused",
-/// "assignments"}]}. Throws InputError.
+/// "values"}]}. Throws InputError.
 Json motors_for(const Design<double>& design, const std::string& catalogue, double gear);
 
 }  // namespace wingbeat::web

@@ -1,5 +1,6 @@
 #include <optional>
 
+#include "answers.hpp"
 #include "explored.hpp"
 #include "files/motor_catalogue.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
@@ -7,22 +8,20 @@
 namespace wingbeat::web {
 
 Json motors_for(const Design<double>& design, const std::string& catalogue, double gear) {
-  Json motors = Json::array();
+  std::vector<OfferedMotor> motors;
   for (const MotorCandidate& motor :
        detail::parse_motor_catalogue(catalogue, "motors.csv", gear, std::nullopt, design)) {
-    Json entry = {{"model", motor.model},
-                  {"refused", motor.refused.empty() ? Json(nullptr) : Json(motor.refused)},
-                  {"values", Json::object()}};
+    OfferedMotor offered{motor.model, std::nullopt, {}};
+    if (!motor.refused.empty()) offered.refused = motor.refused;
     if (motor.refused.empty()) {
       for (const Parameter<double>& key : parameter_table<double>()) {
         if (!key.get || !key.path.starts_with("motor.")) continue;
-        if (const std::optional<double> number = key.get(motor.design))
-          entry["values"][std::string(key.path)] = *number;
+        if (const std::optional<double> number = key.get(motor.design)) offered.values.emplace_back(key.path, *number);
       }
     }
-    motors.push_back(std::move(entry));
+    motors.push_back(std::move(offered));
   }
-  return {{"motors", std::move(motors)}};
+  return motors_answer(motors);
 }
 
 }  // namespace wingbeat::web

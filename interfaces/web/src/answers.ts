@@ -177,6 +177,8 @@ export type Balance = {
   copper: number;
   /** viscous loss of the motor [W] */
   viscous: number;
+  /** loss by the motor's own friction [W] */
+  motor_friction: number;
   /** loss of the gearbox [W] */
   gear: number;
   /** loss by friction of the mechanism [W] */
@@ -256,4 +258,29 @@ export type Mechanism = {
   ground_angle?: number;
   /** of a four-bar */
   stroke_ratio?: number;
+};
+
+export type Gradients = {
+  status: string;
+  /** a sentence with the evidence */
+  detail: string;
+  /** of all metrics by each key, SI per SI; null where there are none */
+  gradients: Record<string, (number | null)[]>;
+};
+
+export type Motor = {
+  model: string;
+  /** why it cannot be tried */
+  refused: string | null;
+  /** of its keys, SI */
+  values: Record<string, number>;
+};
+
+export type Problem = {
+  /** a sentence */
+  message: string;
+  key?: string;
+  /** 0: of the input as a whole */
+  line?: number;
+  column?: number;
 };

@@ -2,16 +2,10 @@
 import createCore from '#core/wingbeat-core.mjs';
 import wasmUrl from '#core/wingbeat-core.wasm?url';
 import type * as answers from './answers';
-import type {Tables} from './answers';
+import type {Gradients, Motor, Problem, Tables} from './answers';
 
-export type {Balance, Evidence, Key, Quantity, Report, Tables} from './answers';
+export type {Balance, Evidence, Key, Motor, Problem, Quantity, Report, Tables} from './answers';
 
-export interface Problem {
-  message: string;
-  key?: string;
-  line?: number;
-  column?: number;
-}
 export type Columns = Record<string, Float64Array>;
 export type Values = Record<string, number | string | boolean | null>;
 export type Solved = answers.Solved & {columns: Columns};
@@ -26,11 +20,6 @@ export interface RunOptions {
   allow_extrapolation?: boolean;
   endurance?: boolean;
   rows?: number;
-}
-export interface Motor {
-  model: string;
-  refused: string | null;
-  values: Record<string, number>;
 }
 /** A vehicle file and values of keys on top of it, as `--set` takes them. */
 export interface Stated {
@@ -87,11 +76,8 @@ export class Core {
   startUp(s: Stated, options: RunOptions): StartUp {
     return unpacked(this.module.startUp(s.text, list(s), pack(options)));
   }
-  gradients(s: Stated, keys: string[], options: RunOptions): Record<string, (number | null)[]> {
-    const found = unpacked<{gradients: Record<string, (number | null)[]>}>(
-      this.module.gradients(s.text, list(s), JSON.stringify(keys), pack(options)),
-    );
-    return found.gradients;
+  gradients(s: Stated, keys: string[], options: RunOptions): Gradients['gradients'] {
+    return unpacked<Gradients>(this.module.gradients(s.text, list(s), JSON.stringify(keys), pack(options))).gradients;
   }
   mechanism(s: Stated, angles: Float64Array): Mechanism {
     return unpacked(this.module.mechanism(s.text, list(s), angles));

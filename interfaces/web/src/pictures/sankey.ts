@@ -31,7 +31,8 @@ function network(b: Balance): {nodes: Place[]; links: Flow[]} {
   flow(supply, motor, b.electrical, 'useful');
   if (b.copper > least) flow(motor, add('copper loss', 'loss'), b.copper, 'copper');
   if (b.viscous > least) flow(motor, add('motor viscous loss', 'loss'), b.viscous, 'viscous');
-  const onward = b.electrical - Math.max(b.copper, 0) - Math.max(b.viscous, 0);
+  if (b.motor_friction > least) flow(motor, add('motor friction', 'loss'), b.motor_friction, 'friction');
+  const onward = b.electrical - Math.max(b.copper, 0) - Math.max(b.viscous, 0) - Math.max(b.motor_friction, 0);
   if (!(onward > least)) return {nodes, links};
   const mechanism = add('mechanism', 'station');
   flow(motor, mechanism, onward, 'useful');
@@ -105,6 +106,7 @@ export function balanceRows(b: Balance): [string, number, number][] {
     ['electrical input', b.electrical],
     ['copper loss', b.copper],
     ['motor viscous loss', b.viscous],
+    ['motor friction', b.motor_friction],
     ['gear loss', b.gear],
     ['friction', b.friction],
     ['pitch hinges', b.hinge],
