@@ -165,7 +165,7 @@ class Library:
         if kind == "enum":
             return f"enum {'class ' if node.get('strong') == 'yes' else ''}{name};"
         if kind == "typedef":
-            return head + flat(node.find("definition")).replace("wingbeat::", "") + ";"
+            return head + flat(node.find("definition")).replace("wingbeat::", "").replace("= typedef ", "= ") + ";"
         arguments = flat(node.find("argsstring"))
         initial = flat(node.find("initializer")).strip()
         initial = f" {initial}" if initial and len(initial) < 80 and "\n" not in initial else ""

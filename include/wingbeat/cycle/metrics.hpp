@@ -32,7 +32,7 @@ enum class Metric {
   power_gear,                  ///< \f$P_\mathrm{gear}\f$ lost in the gearbox [W]
   power_loss,                  ///< \f$P_\mathrm{loss}\f$ (20) [W]
   power_residual,              ///< \f$P_\mathrm{residual}\f$ that the formulation fails to conserve [W]
-  lift_mean,                   ///< [N]
+  lift_mean,                   ///< mean lift [N]
   lift_peak,                   ///< largest lift [N]
   rod_force_peak,              ///< largest \f$|F|\f$ of one rod [N]
   rod_force_mean,              ///< \f$\overline{|F|}\f$ of one rod [N]
