@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {

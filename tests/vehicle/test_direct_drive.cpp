@@ -10,6 +10,7 @@
 #include "vehicle/random_vehicle.hpp"
 #include "wingbeat/cycle/direct_balance.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
+#include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {

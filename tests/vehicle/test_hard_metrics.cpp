@@ -8,7 +8,9 @@
 #include "vehicle/case_design.hpp"
 #include "vehicle/reference_vehicle.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
+#include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {

@@ -9,6 +9,7 @@
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/cycle/orbit_gradient.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/study/run.hpp"
 

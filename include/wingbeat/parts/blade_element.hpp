@@ -18,6 +18,8 @@
 
 namespace wingbeat {
 
+inline constexpr double air_kinematic_viscosity = 1.5e-5;  ///< nu of air at 20 degC and 1 atm [m2/s], rounded
+
 /// offset + amplitude * wave(rate * alpha + phase), the wave being sine for lift and cosine for drag.
 template <Scalar S>
 struct CoefficientWave {
