@@ -32,6 +32,12 @@ inline constexpr std::pair<std::string_view, InstructionSet> instruction_sets[] 
 #endif
 };
 
+#ifdef WINGBEAT_NO_LANES
+inline constexpr bool has_packs = false;
+#else
+inline constexpr bool has_packs = true;
+#endif
+
 /// True if this processor can run it.
 bool is_available(InstructionSet isa);
 /// The widest one this processor can run.

@@ -85,11 +85,6 @@ void solve_block_avx512(const EnsembleMember* const* members, int count, const P
                         PackResult* const* results);
 #endif
 
-#ifdef WINGBEAT_NO_LANES
-inline constexpr bool has_packs = false;
-#else
-inline constexpr bool has_packs = true;
-#endif
 inline constexpr int lanes_base = 4, lanes_avx2 = 8, lanes_avx512 = 16;
 
 }  // namespace wingbeat
