@@ -8,6 +8,7 @@
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/report/describe.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat::app {
 namespace {

@@ -15,6 +15,7 @@
 #include "vehicle/wide_design.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/time/transient.hpp"
 
 using namespace wingbeat;

@@ -15,6 +15,7 @@
 #include "vehicle/direct_design.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace {

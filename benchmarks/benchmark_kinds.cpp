@@ -16,6 +16,7 @@
 
 #include "ensemble_timing.hpp"
 #include "vehicle/kind_boxes.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace {

@@ -32,6 +32,7 @@
 #endif
 #include "vehicle/random_vehicle.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/study/run.hpp"
 
 using namespace wingbeat;

@@ -2,8 +2,10 @@
 #include <cstdio>
 #include <exception>
 
+#include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/study/run.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
 
 int main(int argc, char** argv) try {
   using wingbeat::Metric;

@@ -15,6 +15,7 @@
 #include "peers/integrators.hpp"
 #include "peers/tuning.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 
 namespace wingbeat::peers {
 

@@ -14,6 +14,7 @@
 // throw ParameterError, files InputError.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -26,7 +27,7 @@
 #include "wingbeat/study/design_point.hpp"
 #include "wingbeat/study/run.hpp"
 #include "wingbeat/time/simulation.hpp"
-#include "wingbeat/vehicle/pitch_motion.hpp"
+#include "wingbeat/vehicle/forward.hpp"
 
 namespace wingbeat {
 
@@ -70,17 +71,14 @@ class EquationsOfMotion {
   explicit EquationsOfMotion(const Design<double>& design, Condition condition = Condition::air);
 
   /// Of waveform_columns(), without units: "crank_angle", "crank_speed", "current".
-  std::vector<std::string> state_names() const { return time_state_names(vehicle_); }
+  std::vector<std::string> state_names() const { return time_state_names(*vehicle_); }
   std::size_t state_count() const { return 2u + std::size_t(inductive_) + 2u * std::size_t(pitching_); }
   /// Derivatives of the state at a time [s], under the supply or, given one, under a voltage that is driven in its
   /// place through the same resistance [V]. Both hold state_count() numbers.
   void rates(double time, const double* state, double* derivatives, std::optional<double> voltage = {}) const;
 
  private:
-  /// Of wings that do not pitch the acceleration of the pitch is 0.
-  PitchMotion<double> motion(const double* state, double current, double voltage) const;
-
-  Vehicle<double> vehicle_;
+  std::shared_ptr<const Vehicle<double>> vehicle_;
   Supply<double> supply_;
   bool direct_, inductive_, pitching_;
 };

@@ -1,8 +1,7 @@
 #include "wingbeat/cycle/cycle_instants.hpp"
 
-#include <variant>
-
 #include "wingbeat/cycle/pitch_metrics.hpp"
+#include "wingbeat/cycle/recorded_cycle.hpp"
 
 namespace wingbeat {
 namespace {
@@ -32,7 +31,7 @@ std::vector<CycleInstant> instants_of(const RecordedCycle<System>& recorded) {
 }  // namespace
 
 std::vector<CycleInstant> cycle_instants(const CycleRecord& cycle) {
-  return std::visit([](const auto& recorded) { return instants_of(recorded); }, cycle.cycles());
+  return visit(cycle, [](const auto& recorded) { return instants_of(recorded); });
 }
 
 }  // namespace wingbeat

@@ -107,7 +107,7 @@ CycleMap linearised(const RecordedCycle<System>& recorded, const Vehicle<double>
 
 CycleMap cycle_map(const SteadyFlapping& orbit, const Vehicle<double>& vehicle, const Supply<double>& supply) {
   if (orbit.status != FlappingStatus::flapping || orbit.record.empty()) return {};
-  return std::visit([&](const auto& recorded) { return linearised(recorded, vehicle, supply); }, orbit.record.cycles());
+  return visit(orbit.record, [&](const auto& recorded) { return linearised(recorded, vehicle, supply); });
 }
 
 }  // namespace wingbeat

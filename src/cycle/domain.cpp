@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "wingbeat/core/jet.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
 namespace {

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "wingbeat/cycle/record.hpp"
+#include "wingbeat/cycle/recorded_cycle.hpp"
 #include "wingbeat/parts/drive_wave.hpp"
 
 namespace wingbeat::detail {

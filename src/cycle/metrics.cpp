@@ -62,6 +62,10 @@ int metric_index(std::string_view key) {
   return metric_count;
 }
 
+Reporting reporting_of(const Design<double>& d) {
+  return {total_mass(d).value_or(absent), d.bench_torque_constant.value_or(absent)};
+}
+
 const char* lacking_of_heat(Metric metric, const Design<double>& design) {
   const MotorThermalDesign<double>& thermal = design.motor.thermal;
   switch (metric) {

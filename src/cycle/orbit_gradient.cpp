@@ -1,28 +1,17 @@
 #include "wingbeat/cycle/orbit_gradient.hpp"
 
-#include "wingbeat/cycle/cycle_gradient.hpp"
-
 #include <algorithm>
 #include <cmath>
-#include <tuple>
-#include <utility>
+#include <vector>
+
+#include "cycle/repeat_recorded.hpp"
+#include "wingbeat/solve/linear.hpp"
 
 namespace wingbeat {
 namespace {
 
 using J = GradientJet;
 constexpr int slots = gradient_slots;
-
-void make_absent(J& x) { x.v.setConstant(absent); }
-
-/// What wings that pitch have instead of the metrics of the pitch law.
-void set_pitch_metrics(const PitchGradient& of, Metrics<J>& m) {
-  m[Metric::pitch_amplitude] = degrees_per_radian * of.amplitude;
-  m[Metric::pitch_phase] = degrees_per_radian * of.phase;
-  if (!(of.amplitude.a > still_pitch)) m[Metric::pitch_phase] = J(absent), make_absent(m[Metric::pitch_phase]);
-  m[Metric::angle_of_attack_min] = degrees_per_radian * of.angle_of_attack_min;
-  m[Metric::angle_of_attack_max] = degrees_per_radian * of.angle_of_attack_max;
-}
 
 /// All numbers of a gradient.
 template <class Visit>
@@ -35,35 +24,11 @@ void for_each_jet(OrbitGradient& g, const Visit& visit) {
   }
 }
 
-template <class System>
-OrbitGradient repeat_recorded(const SteadyFlapping& orbit, const RecordedCycle<System>& recorded,
-                              const Vehicle<J>& vehicle, const GradientVehicle& given, const GradientOptions& options) {
-  const bool voltage_varies = drive_of(vehicle).voltage_sets_frequency;
-  CycleGradient<System> cycle(recorded, vehicle);
-  OrbitGradient g;
-  g.regular = cycle.run();
-  CycleExtremes<J> extremes;
-  extremes.fill(J(absent));
-  if (options.peaks) extremes = cycle.extremes();
-  g.metrics = cycle_metrics(vehicle, cycle.integrals(), extremes, J(orbit.metrics[Metric::floquet_multiplier_max]), {});
-  if constexpr (CycleGradient<System>::pitching) {
-    g.metrics[Metric::power_hinge] = cycle.hinge_power();
-    g.metrics[Metric::lift_added_mass_share] = added_mass_share(vehicle.pitch, cycle.chordwise_share(), J(1.0));
-    if (options.peaks) set_pitch_metrics(cycle.pitch_gradient(), g.metrics);
-  }
-  const J bench = voltage_varies ? given.bench_torque_constant : J(absent);
-  g.metrics[Metric::power_motor_reference] =
-      two_pi * bench * g.metrics[Metric::frequency] * g.metrics[Metric::current_mean];
-  g.metrics[Metric::lift_to_weight] = g.metrics[Metric::lift_mean] / (given.mass * standard_gravity);
-  for (const double theta : options.crank_angles) g.instants.push_back(cycle.instant(theta));
-  return g;
-}
-
 /// Derivatives with the motor's constants at the temperatures of `vehicle`.
 OrbitGradient repeat(const SteadyFlapping& orbit, const Vehicle<J>& vehicle, const GradientVehicle& given,
                      const GradientOptions& options) {
-  return std::visit([&](const auto& recorded) { return repeat_recorded(orbit, recorded, vehicle, given, options); },
-                    orbit.record.cycles());
+  return visit(orbit.record,
+               [&](const auto& recorded) { return detail::repeat_recorded(orbit, recorded, vehicle, given, options); });
 }
 
 /// Lets the motor's temperatures follow: they are the fixed point T = G(T, p), so dT/dp = (I - dG/dT)^-1 dG/dp, and
@@ -105,12 +70,8 @@ void follow_temperatures(const SteadyFlapping& orbit, Vehicle<J> constant, const
 OrbitGradient orbit_gradient(const SteadyFlapping& orbit, const GradientVehicle& given,
                              const GradientOptions& options) {
   Vehicle<J> vehicle = given.vehicle;
-  std::visit(
-      [&](const auto& recorded) {
-        vehicle.voltage.a = recorded.system.vehicle.voltage;
-        vehicle.drive_frequency.a = recorded.system.vehicle.drive_frequency;
-      },
-      orbit.record.cycles());
+  vehicle.voltage.a = orbit.record.vehicle().voltage;
+  vehicle.drive_frequency.a = orbit.record.vehicle().drive_frequency;
   // A direct drive's frequency is its supply's: no voltage follows it, and its slot is a third state's.
   const bool voltage_varies = drive_of(vehicle).voltage_sets_frequency;
   if (voltage_varies) vehicle.voltage.v[gradient_voltage_slot] = 1.0;
@@ -133,11 +94,11 @@ OrbitGradient orbit_gradient(const SteadyFlapping& orbit, const GradientVehicle&
     };
     for_each_jet(g, follow);
   }
-  make_absent(g.metrics[Metric::floquet_multiplier_max]);
+  detail::make_absent(g.metrics[Metric::floquet_multiplier_max]);
   if (!options.peaks) {
     const Drive drive = drive_of(vehicle);
     for (int m = 0; m < metric_count; ++m) {
-      if (is_peak(Metric(m), drive)) make_absent(g.metrics.values[std::size_t(m)]);
+      if (is_peak(Metric(m), drive)) detail::make_absent(g.metrics.values[std::size_t(m)]);
     }
   }
   // A value is the orbit's own, to the last digit.

@@ -6,6 +6,7 @@
 
 #include "cycle/loads_system.hpp"
 #include "wingbeat/cycle/cycle_gradient.hpp"
+#include "wingbeat/solve/periodic.hpp"
 
 namespace wingbeat {
 namespace {
@@ -181,24 +182,22 @@ std::optional<LoadsUnderWave> loads_of_wave(const RecordedCycle<System>& recorde
 }  // namespace
 
 WingLoads wing_loads(const CycleRecord& orbit) {
-  return std::visit(
-      [](const auto& recorded) {
-        using Loaded = LoadsSystem<std::remove_cvref_t<decltype(recorded.system)>>;
-        typename Loaded::Quadrature totals{};
-        const solver::Iterate<Loaded> cycle = detail::with_loads(recorded.cycle);
-        solver::repeat_iterate<true>(Loaded{recorded.system, {}}, cycle.steps.front().y, cycle, &totals);
-        return means_of<Loaded>(totals);
-      },
-      orbit.cycles());
+  return visit(orbit, [](const auto& recorded) {
+    using Loaded = LoadsSystem<std::remove_cvref_t<decltype(recorded.system)>>;
+    typename Loaded::Quadrature totals{};
+    const solver::Iterate<Loaded> cycle = detail::with_loads(recorded.cycle);
+    solver::repeat_iterate<true>(Loaded{recorded.system, {}}, cycle.steps.front().y, cycle, &totals);
+    return means_of<Loaded>(totals);
+  });
 }
 
 WingLoadSlopes wing_load_slopes(const CycleRecord& orbit) {
-  return std::visit([](const auto& recorded) { return slopes_of(recorded); }, orbit.cycles());
+  return visit(orbit, [](const auto& recorded) { return slopes_of(recorded); });
 }
 
 std::optional<LoadsUnderWave> loads_under_wave(const CycleRecord& orbit, const DriveWave<double>& wave,
                                                const std::vector<double>& near) {
-  return std::visit([&](const auto& recorded) { return loads_of_wave(recorded, wave, near); }, orbit.cycles());
+  return visit(orbit, [&](const auto& recorded) { return loads_of_wave(recorded, wave, near); });
 }
 
 }  // namespace wingbeat

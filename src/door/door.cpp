@@ -6,9 +6,11 @@
 
 #include "files/read_number.hpp"
 #include "files/study_sections.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
 #include "wingbeat/wingbeat.hpp"
 
 namespace wingbeat {

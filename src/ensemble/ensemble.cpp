@@ -29,7 +29,7 @@ struct PackSolver {
 
 PackSolver solver_for(InstructionSet isa) {
   switch (isa) {
-#ifdef WINGBEAT_X86
+#ifdef WINGBEAT_HAS_WIDE_LANES
     case InstructionSet::avx2: return {solve_block_avx2, solve_direct_block_avx2, lanes_avx2};
     case InstructionSet::avx512: return {solve_block_avx512, solve_direct_block_avx512, lanes_avx512};
 #endif
@@ -415,7 +415,7 @@ void solve_warm(std::span<const EnsembleMember> members, const std::vector<std::
 bool is_available(InstructionSet isa) {
   switch (isa) {
     case InstructionSet::base: return true;
-#ifdef WINGBEAT_X86
+#ifdef WINGBEAT_HAS_WIDE_LANES
     case InstructionSet::avx2: return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
     case InstructionSet::avx512:
       return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&

@@ -21,6 +21,7 @@
 #include "wingbeat/files/file_record.hpp"
 #include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/parts/pitching_wings.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "wingbeat/cycle/metric_gradients.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/netcdf.hpp"
 #include "wingbeat/vehicle/parameters.hpp"

@@ -10,6 +10,7 @@
 #include "files/study_sections.hpp"
 #include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/study/sampling.hpp"
 
 namespace wingbeat {
 namespace {

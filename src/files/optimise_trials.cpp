@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "wingbeat/cycle/metric_gradients.hpp"
 #include "wingbeat/files/optimise_file.hpp"
 
 namespace wingbeat {

@@ -14,6 +14,7 @@
 #include "files/toml_prevalidation.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/parts/pitching_wings.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {

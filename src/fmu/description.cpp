@@ -278,7 +278,8 @@ class Writer {
   std::string with_dependencies(const char* element, const Variable& v, const std::vector<std::size_t>& known) const {
     std::string on, kinds;
     for (const std::size_t reference : known) {
-      on += (on.empty() ? "" : " ") + std::to_string(is3() ? reference : place_of(reference));
+      if (!on.empty()) on += ' ';
+      on += std::to_string(is3() ? reference : place_of(reference));
       kinds += kinds.empty() ? "dependent" : " dependent";
     }
     std::string text = std::string("<") + element +

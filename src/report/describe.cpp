@@ -4,6 +4,12 @@
 
 #include <cmath>
 
+#include "wingbeat/study/bench_fit.hpp"
+#include "wingbeat/study/design_point.hpp"
+#include "wingbeat/study/endurance.hpp"
+#include "wingbeat/study/frequency_search.hpp"
+#include "wingbeat/study/run.hpp"
+
 namespace wingbeat {
 namespace {
 

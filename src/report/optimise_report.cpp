@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "report/report_tools.hpp"
+#include "wingbeat/cycle/metric_gradients.hpp"
 #include "wingbeat/report/report.hpp"
 
 namespace wingbeat {

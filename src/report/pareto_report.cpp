@@ -11,6 +11,7 @@
 #include "report/report_tools.hpp"
 #include "report/sweep_scales.hpp"
 #include "report/vehicle_counts.hpp"
+#include "wingbeat/cycle/metric_gradients.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/netcdf.hpp"
 #include "wingbeat/report/optimise_report.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "wingbeat/cycle/record.hpp"
+#include "wingbeat/cycle/waveform_row.hpp"
 
 namespace wingbeat::style {
 

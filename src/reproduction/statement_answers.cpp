@@ -14,6 +14,7 @@
 #include "wingbeat/study/reproduction.hpp"
 #include "wingbeat/study/run.hpp"
 #include "wingbeat/study/trend.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
 namespace {

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "wingbeat/cycle/wing_loads.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
 namespace {
@@ -69,7 +70,7 @@ class Sides {
         reporting_(reporting_of(at.operating_point.design)),
         hinge_offset_(hinge_offset),
         slopes_(wing_load_slopes(orbit_)) {
-    std::visit([&](const auto& recorded) { vehicle_ = recorded.system.vehicle; }, orbit_.cycles());
+    vehicle_ = orbit_.vehicle();
     vehicle_.thermal = {};  // the record's motor is as warm as it gets
     const double s2 = vehicle_.wings.s2;
     centre_ = s2 > 0.0 ? vehicle_.wings.s3 / s2 : 0.0;

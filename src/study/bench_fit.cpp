@@ -13,6 +13,7 @@
 #include "study/fit_stages.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/study/sampling.hpp"
+#include "wingbeat/vehicle/drive.hpp"
 
 namespace wingbeat {
 namespace {

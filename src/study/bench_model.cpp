@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "wingbeat/cycle/orbit_gradient.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
+
 namespace wingbeat {
 namespace {
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/study/bench_fit.hpp"
 #include "wingbeat/study/for_each.hpp"
 #include "wingbeat/study/frequency_search.hpp"

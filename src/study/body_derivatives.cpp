@@ -7,6 +7,7 @@
 #include "wingbeat/cycle/cycle_instants.hpp"
 #include "wingbeat/parts/pitching_wings.hpp"
 #include "wingbeat/parts/planform.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
 namespace {

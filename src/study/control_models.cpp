@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "wingbeat/core/status.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
 

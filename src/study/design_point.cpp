@@ -1,6 +1,7 @@
 #include "wingbeat/study/design_point.hpp"
 
 #include "wingbeat/study/endurance.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
 

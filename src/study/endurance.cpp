@@ -8,8 +8,10 @@
 #include "study/flight_path.hpp"
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/root.hpp"
+#include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/cycle/thermal_equilibrium.hpp"
 #include "wingbeat/study/run.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
 namespace {

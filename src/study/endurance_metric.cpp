@@ -3,6 +3,7 @@
 
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/study/endurance.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
 namespace {

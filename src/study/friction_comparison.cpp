@@ -3,7 +3,9 @@
 
 #include "study/bench_fitter.hpp"
 #include "study/fit_stages.hpp"
+#include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/study/run.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
 namespace {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "wingbeat/vehicle/vehicle.hpp"
+
 namespace wingbeat {
 namespace {
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "wingbeat/study/trend.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
 

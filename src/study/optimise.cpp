@@ -7,6 +7,7 @@
 #include "study/optimise_screen.hpp"
 #include "study/optimum_neighbourhood.hpp"
 #include "wingbeat/core/text.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
 namespace {

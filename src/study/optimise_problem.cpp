@@ -2,6 +2,9 @@
 
 #include <span>
 
+#include "wingbeat/cycle/metric_gradients.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
+
 namespace wingbeat::detail {
 namespace {
 

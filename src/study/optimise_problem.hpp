@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/study/optimise.hpp"
 
 namespace wingbeat::detail {

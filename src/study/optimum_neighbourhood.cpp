@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "wingbeat/core/text.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat::detail {
 namespace {

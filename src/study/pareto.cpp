@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/study/sampling.hpp"
+#include "wingbeat/study/sweep.hpp"
+
 namespace wingbeat {
 namespace {
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "wingbeat/core/root.hpp"
+#include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/study/ensemble_frequency.hpp"
 #include "wingbeat/study/trend.hpp"
 

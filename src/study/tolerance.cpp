@@ -5,6 +5,8 @@
 #include <cmath>
 #include <functional>
 
+#include "wingbeat/cycle/metric_gradients.hpp"
+
 namespace wingbeat {
 namespace {
 

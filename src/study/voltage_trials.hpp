@@ -4,7 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/study/frequency_search.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat::detail {
 

@@ -11,6 +11,7 @@
 #include "wingbeat/core/root.hpp"
 #include "wingbeat/solve/explicit_step.hpp"
 #include "wingbeat/solve/implicit_step.hpp"
+#include "wingbeat/solve/iterate_record.hpp"
 
 namespace wingbeat::detail {
 namespace {

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "wingbeat/time/transient.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
 namespace {

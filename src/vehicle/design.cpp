@@ -3,6 +3,10 @@
 #include <cmath>
 
 #include "wingbeat/core/text.hpp"
+#include "wingbeat/parts/any_transmission.hpp"
+#include "wingbeat/parts/pitching_wings.hpp"
+#include "wingbeat/parts/spring.hpp"
+#include "wingbeat/parts/wing_limits.hpp"
 #include "wingbeat/vehicle/drive.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"

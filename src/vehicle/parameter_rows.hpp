@@ -7,6 +7,10 @@
 #include <string>
 
 #include "vehicle/parameter_access.hpp"
+#include "wingbeat/parts/any_transmission.hpp"
+#include "wingbeat/parts/pitching_wings.hpp"
+#include "wingbeat/parts/spring.hpp"
+#include "wingbeat/parts/wing_limits.hpp"
 
 namespace wingbeat {
 

@@ -6,6 +6,7 @@
 #include "vehicle/reference_vehicle.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/time/transient.hpp"
 
 using namespace wingbeat;

@@ -1,6 +1,7 @@
 // Every kind of evidence in words.
 #include <gtest/gtest.h>
 
+#include "wingbeat/core/math.hpp"
 #include "wingbeat/cycle/status_evidence.hpp"
 
 namespace wingbeat {

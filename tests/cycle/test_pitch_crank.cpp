@@ -10,6 +10,7 @@
 #include "wingbeat/cycle/pitch_crank_system.hpp"
 #include "wingbeat/cycle/pitch_metrics.hpp"
 #include "wingbeat/cycle/record.hpp"
+#include "wingbeat/cycle/recorded_cycle.hpp"
 #include "wingbeat/solve/periodic.hpp"
 
 namespace wingbeat {

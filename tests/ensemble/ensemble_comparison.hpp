@@ -15,6 +15,7 @@
 
 #include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/time/transient.hpp"
 
 namespace wingbeat {

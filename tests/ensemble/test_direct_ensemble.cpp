@@ -13,6 +13,7 @@
 #include "wingbeat/cycle/direct_balance.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 
 namespace wingbeat {
 namespace {

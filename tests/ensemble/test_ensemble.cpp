@@ -12,6 +12,8 @@
 #include "vehicle/known_orbits.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "vehicle/reference_vehicle.hpp"
+#include "wingbeat/cycle/steady_flapping.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/time/transient.hpp"
 
 namespace wingbeat {

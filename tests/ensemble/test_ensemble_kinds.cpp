@@ -11,6 +11,7 @@
 #include "vehicle/random_vehicle.hpp"
 #include "vehicle/reference_vehicle.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/time/transient.hpp"
 
 namespace wingbeat {

@@ -7,6 +7,7 @@
 #include "ensemble/ensemble_comparison.hpp"
 #include "vehicle/reference_vehicle.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/ensemble/lane_statics.hpp"
 
 namespace wingbeat {

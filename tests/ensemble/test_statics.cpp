@@ -10,6 +10,7 @@
 #include "wingbeat/cycle/static_balance.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/time/transient.hpp"
 
 namespace wingbeat {

@@ -1,5 +1,8 @@
 // What searches, runs, points and flights found, in words.
 #include "wingbeat/report/describe.hpp"
+#include "wingbeat/study/endurance.hpp"
+#include "wingbeat/study/frequency_search.hpp"
+#include "wingbeat/study/run.hpp"
 
 #include <gtest/gtest.h>
 

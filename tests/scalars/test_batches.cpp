@@ -6,6 +6,7 @@
 
 #include "scalars/arch/packs.hpp"
 #include "vehicle/random_vehicle.hpp"
+#include "wingbeat/ensemble/instruction_set.hpp"
 
 namespace wingbeat {
 namespace {

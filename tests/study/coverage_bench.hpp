@@ -8,6 +8,7 @@
 
 #include "study/synthetic_bench.hpp"
 #include "vehicle/reference_vehicle.hpp"
+#include "wingbeat/cycle/steady_flapping.hpp"
 
 namespace wingbeat {
 

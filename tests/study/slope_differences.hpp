@@ -10,6 +10,7 @@
 
 #include "wingbeat/cycle/wing_loads.hpp"
 #include "wingbeat/study/allocation.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
 
@@ -65,8 +66,7 @@ inline SlopeCheck slopes_against_cycles(const SteadyFlapping& orbit) {
   static constexpr const char* load_names[] = {"lift",   "lift_sideways",   "lift_forward",
                                                "moment", "moment_sideways", "frequency"};
   static constexpr const char* input_names[] = {"voltage", "bias", "split", "cosine_split"};
-  Vehicle<double> vehicle;
-  std::visit([&](const auto& recorded) { vehicle = recorded.system.vehicle; }, orbit.record.cycles());
+  Vehicle<double> vehicle = orbit.record.vehicle();
   vehicle.thermal = {};
   const WingLoadSlopes slopes = wing_load_slopes(orbit.record);
   const auto scales = load_scales(orbit.metrics);

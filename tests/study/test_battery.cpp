@@ -6,6 +6,8 @@
 
 #include "vehicle/random_vehicle.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
+#include "wingbeat/cycle/static_balance.hpp"
+#include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/study/run.hpp"
 

@@ -7,6 +7,7 @@
 #include "study/synthetic_bench.hpp"
 #include "vehicle/hinged_design.hpp"
 #include "vehicle/reference_vehicle.hpp"
+#include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/report/fit_report.hpp"
 #include "wingbeat/run/parallel.hpp"

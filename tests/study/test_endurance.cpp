@@ -1,4 +1,5 @@
 // Flight to the end of a battery: closed forms, energy accounts by other ways, and the moments that end it.
+#include "wingbeat/cycle/static_balance.hpp"
 #include "wingbeat/study/endurance.hpp"
 
 #include <gmock/gmock.h>

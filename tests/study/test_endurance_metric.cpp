@@ -7,6 +7,7 @@
 #include "study/battery_design.hpp"
 #include "study/optimised_parameters.hpp"
 #include "vehicle/reference_vehicle.hpp"
+#include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/study/endurance.hpp"
 #include "wingbeat/study/optimise.hpp"

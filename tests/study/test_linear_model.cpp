@@ -11,6 +11,7 @@
 #include "vehicle/hinged_design.hpp"
 #include "wingbeat/cycle/orbit_gradient.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/study/linear_model.hpp"
 #include "wingbeat/time/simulation.hpp"
 #include "wingbeat/time/transient.hpp"

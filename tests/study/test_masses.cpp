@@ -6,6 +6,7 @@
 #include "vehicle/reference_vehicle.hpp"
 #include "wingbeat/cycle/orbit_gradient.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/study/run.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 

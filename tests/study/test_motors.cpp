@@ -8,7 +8,9 @@
 #include "vehicle/random_vehicle.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/cycle/orbit_gradient.hpp"
+#include "wingbeat/cycle/static_balance.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/study/run.hpp"
 

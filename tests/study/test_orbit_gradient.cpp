@@ -1,5 +1,7 @@
 // Derivatives through the orbit against central differences, every metric by every numeric parameter.
+#include "wingbeat/cycle/crank_system.hpp"
 #include "wingbeat/cycle/orbit_gradient.hpp"
+#include "wingbeat/cycle/recorded_cycle.hpp"
 
 #include <gtest/gtest.h>
 
@@ -164,7 +166,7 @@ TEST(OrbitGradient, BatteriesByResistanceChargeAndEverythingElse) {
 TEST(OrbitGradient, ReferenceOrbitsCrossTheKink) {
   for (const bool springs : {false, true}) {
     const SteadyFlapping s = find_steady_flapping(reference_vehicle(springs));
-    const auto& cycle = std::get<CycleRecord::Recorded<2>>(s.record.cycles()).cycle;
+    const auto& cycle = std::get<RecordedCycle<CrankSystem<double, 2>>>(s.record.recorded().cycle).cycle;
     EXPECT_GE(std::count_if(cycle.switches.begin(), cycle.switches.end(), [](const auto& w) { return w.sign == 0; }),
               2);
   }

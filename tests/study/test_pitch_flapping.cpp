@@ -9,6 +9,7 @@
 #include "vehicle/hinged_design.hpp"
 #include "vehicle/orbit_and_simulation.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
+#include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/study/run.hpp"
 #include "wingbeat/vehicle/parameters.hpp"

@@ -11,6 +11,7 @@
 #include "vehicle/rungs.hpp"
 #include "wingbeat/cycle/thermal_equilibrium.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/study/run.hpp"
 

@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "vehicle/wide_boxes.hpp"
+#include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/study/run.hpp"
 

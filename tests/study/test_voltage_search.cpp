@@ -8,6 +8,7 @@
 
 #include "vehicle/hinged_design.hpp"
 #include "vehicle/random_vehicle.hpp"
+#include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/study/ensemble_frequency.hpp"

@@ -6,7 +6,9 @@
 #include <complex>
 
 #include "vehicle/wide_design.hpp"
+#include "wingbeat/cycle/crank_system.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
+#include "wingbeat/solve/iterate.hpp"
 #include "wingbeat/time/transient.hpp"
 
 namespace wingbeat {

@@ -4,8 +4,11 @@
 #include "vehicle/reference_vehicle.hpp"
 #include "vehicle/stroke_law.hpp"
 #include "vehicle/wide_boxes.hpp"
+#include "wingbeat/cycle/crank_system.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
+#include "wingbeat/cycle/recorded_cycle.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
+#include "wingbeat/solve/periodic.hpp"
 #include "wingbeat/time/transient.hpp"
 
 namespace wingbeat {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "vehicle/further_boxes.hpp"
+#include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/time/transient.hpp"
 
 using namespace wingbeat;

@@ -7,6 +7,8 @@
 #include "vehicle/direct_design.hpp"
 #include "vehicle/reference_vehicle.hpp"
 #include "vehicle/wide_boxes.hpp"
+#include "wingbeat/cycle/static_balance.hpp"
+#include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/time/transient.hpp"
 
 namespace wingbeat {

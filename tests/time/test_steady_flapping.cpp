@@ -5,9 +5,12 @@
 #include "vehicle/known_orbits.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "vehicle/reference_vehicle.hpp"
+#include "wingbeat/cycle/crank_system.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
+#include "wingbeat/solve/iterate.hpp"
+#include "wingbeat/solve/linear.hpp"
 #include "wingbeat/time/transient.hpp"
 
 namespace wingbeat {

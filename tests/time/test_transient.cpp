@@ -1,3 +1,4 @@
+#include "wingbeat/cycle/static_balance.hpp"
 #include "wingbeat/time/transient.hpp"
 
 #include <algorithm>

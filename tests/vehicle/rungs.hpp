@@ -6,6 +6,7 @@
 #include <random>
 #include <string_view>
 
+#include "wingbeat/parts/pitching_wings.hpp"
 #include "wingbeat/vehicle/design.hpp"
 
 namespace wingbeat {

@@ -22,6 +22,7 @@
 #include "wide/words.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/study/run.hpp"

@@ -26,6 +26,7 @@
 #include "vehicle/rungs.hpp"
 #include "vehicle/wide_boxes.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/study/run.hpp"
 

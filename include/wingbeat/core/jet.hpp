@@ -3,23 +3,4 @@
 
 #include <ceres/jet.h>
 
-#include "wingbeat/core/scalar.hpp"
-
-namespace wingbeat {
-
-template <int N>
-using Jet = ceres::Jet<double, N>;
-
-template <int N>
-struct ScalarTraits<ceres::Jet<double, N>> {
-  using Mask = bool;
-  static constexpr int lanes = 1;
-  static constexpr bool differentiates = true;
-  static constexpr bool reads_tables = true;
-  static Jet<N> select(bool mask, const Jet<N>& a, const Jet<N>& b) { return mask ? a : b; }
-  static bool any(bool mask) { return mask; }
-  static bool all(bool mask) { return mask; }
-  static double value_of(const Jet<N>& x) { return x.a; }
-};
-
-}  // namespace wingbeat
+#include "wingbeat/core/jet_traits.hpp"

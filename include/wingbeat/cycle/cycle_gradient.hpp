@@ -12,7 +12,7 @@
 #include "wingbeat/core/members.hpp"
 #include "wingbeat/cycle/orbit_gradient.hpp"
 #include "wingbeat/cycle/pitch_metrics.hpp"
-#include "wingbeat/cycle/record.hpp"
+#include "wingbeat/cycle/recorded_cycle.hpp"
 #include "wingbeat/solve/linear.hpp"
 
 namespace wingbeat {

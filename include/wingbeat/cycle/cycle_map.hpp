@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "wingbeat/cycle/steady_flapping.hpp"
+#include "wingbeat/parts/supply.hpp"
 
 namespace wingbeat {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "wingbeat/cycle/metrics.hpp"
-#include "wingbeat/vehicle/vehicle.hpp"
+#include "wingbeat/cycle/metric_values.hpp"
+#include "wingbeat/vehicle/forward.hpp"
 
 namespace wingbeat {
 

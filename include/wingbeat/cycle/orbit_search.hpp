@@ -12,7 +12,10 @@
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/cycle/extremes.hpp"
 #include "wingbeat/cycle/pitch_metrics.hpp"
+#include "wingbeat/cycle/recorded_cycle.hpp"
+#include "wingbeat/cycle/static_balance.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
+#include "wingbeat/solve/periodic.hpp"
 
 namespace wingbeat::detail {
 
@@ -146,7 +149,7 @@ class OrbitSearch {
     constexpr bool pitching = requires { System::pitch; };
     PitchMetrics of_pitch{};
     if constexpr (pitching) of_pitch = pitch();
-    result.record = CycleRecord(RecordedCycle<System>{system_, std::move(iterate_)});
+    result.record = CycleRecord(CycleRecord::Recorded{RecordedCycle<System>{system_, std::move(iterate_)}});
     result.metrics = cycle_metrics(system_.vehicle, result.record.integrals(), extremes,
                                    summary_.floquet_multiplier_max, options_.get().reporting);
     if constexpr (pitching) {

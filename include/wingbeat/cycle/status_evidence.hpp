@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "wingbeat/cycle/metrics.hpp"
-#include "wingbeat/cycle/static_balance.hpp"
-#include "wingbeat/solve/periodic.hpp"
+#include "wingbeat/cycle/metric_values.hpp"
+#include "wingbeat/cycle/statics.hpp"
+#include "wingbeat/solve/periodic_summary.hpp"
 
 namespace wingbeat {
 

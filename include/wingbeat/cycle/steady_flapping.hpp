@@ -2,46 +2,19 @@
 // reason why it does not flap.
 #pragma once
 
-#include <functional>
 #include <optional>
 
 #include "wingbeat/core/status.hpp"
-#include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/cycle/metric_values.hpp"
 #include "wingbeat/cycle/record.hpp"
-#include "wingbeat/cycle/static_balance.hpp"
+#include "wingbeat/cycle/statics.hpp"
 #include "wingbeat/cycle/status_evidence.hpp"
-#include "wingbeat/solve/periodic.hpp"
+#include "wingbeat/cycle/steady_options.hpp"
+#include "wingbeat/parts/motor_thermal.hpp"
+#include "wingbeat/solve/periodic_summary.hpp"
+#include "wingbeat/vehicle/forward.hpp"
 
 namespace wingbeat {
-
-/// A settled cycle as it was simulated in time, where the crank angle cannot be the independent variable.
-struct SimulatedCycle {
-  Metrics<double> metrics;         ///< floquet_multiplier_max is absent
-  double error_estimate = absent;  ///< of the metrics, relative
-  int cycles = 1;                  ///< after which the motion repeats; the metrics are averages over them
-};
-
-/// What a vehicle does when it is switched on at rest at stroke angle zero; the transient solver supplies it.
-struct StartUpOutcome {
-  FlappingStatus status = FlappingStatus::flapping;
-  bool settled = false;  ///< false: undecided within the solver's limits
-  StatusEvidence evidence;
-  double crank_speed = 0.0;     ///< flapping: omega at crank angle 0 (direct drive: phase 0 of the supply) [rad/s]
-  double current = 0.0;         ///< flapping: i there [A]
-  double stroke_angle = 0.0;    ///< flapping, direct drive: beta there [rad]
-  double pitch_angle = 0.0;     ///< flapping, of wings that pitch: psi there [rad]
-  double pitch_velocity = 0.0;  ///< psi' there [rad/s]
-  /// Flapping: goes on with the simulation for the metrics of the settled cycle, to a tolerance; empty if it does not
-  /// settle. An assessment that cannot tell them leaves this empty.
-  std::function<std::optional<SimulatedCycle>(double tolerance, const Reporting& reporting)> cycle;
-};
-using StartUp = std::function<StartUpOutcome(const Vehicle<double>&)>;
-
-struct SteadyOptions {
-  double tolerance = 1e-6;  ///< wanted relative accuracy of every metric; 1e-12 is the tightest that makes sense
-  bool stability = true;    ///< compute floquet_multiplier_max
-  Reporting reporting = {};
-};
 
 struct SteadyFlapping {
   FlappingStatus status = FlappingStatus::stalled;

@@ -28,7 +28,7 @@ struct DirectPackResult {
 /// the others.
 void solve_direct_block_base(const EnsembleMember* const* members, int count, const DirectPackSettings& settings,
                              DirectPackResult* const* results);
-#ifdef WINGBEAT_X86
+#ifdef WINGBEAT_HAS_WIDE_LANES
 void solve_direct_block_avx2(const EnsembleMember* const* members, int count, const DirectPackSettings& settings,
                              DirectPackResult* const* results);
 void solve_direct_block_avx512(const EnsembleMember* const* members, int count, const DirectPackSettings& settings,

@@ -4,31 +4,14 @@
 #include <bitset>
 #include <optional>
 #include <span>
-#include <string_view>
 
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/cycle/domain.hpp"
-#include "wingbeat/cycle/metrics.hpp"
-#include "wingbeat/cycle/steady_flapping.hpp"
-#include "wingbeat/ensemble/pack_blocks.hpp"
+#include "wingbeat/cycle/metric_values.hpp"
+#include "wingbeat/cycle/steady_options.hpp"
+#include "wingbeat/ensemble/instruction_set.hpp"
 
 namespace wingbeat {
-
-/// SIMD instruction sets the batched solver is compiled for, narrowest first: `base` is what every processor of the
-/// target has. Where that is none, the scalar solver does the work.
-enum class InstructionSet { base, avx2, avx512 };
-inline constexpr std::pair<std::string_view, InstructionSet> instruction_sets[] = {
-    {WINGBEAT_BASE_ISA, InstructionSet::base},
-#ifdef WINGBEAT_X86
-    {"avx2", InstructionSet::avx2},
-    {"avx512", InstructionSet::avx512},
-#endif
-};
-
-/// True if this processor can run it.
-bool is_available(InstructionSet isa);
-/// The widest one this processor can run.
-InstructionSet best_instruction_set();
 
 /// Indexed by Metric.
 using MetricSet = std::bitset<metric_count>;
@@ -53,6 +36,9 @@ struct EnsembleOutcome {
   Metrics<double> metrics;         ///< all absent unless flapping
   DomainStatus domain = {};        ///< limits of the model that it exceeds; none unless flapping
 };
+
+/// ensemble/ensemble_member.hpp
+struct EnsembleMember;
 
 /// Solves every member into the outcome of the same index, on the calling thread. A member's outcome depends on nothing
 /// but the member, the options and the instruction set: not on its neighbours, its place or the number of members.

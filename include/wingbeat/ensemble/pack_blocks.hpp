@@ -4,18 +4,9 @@
 #include <array>
 
 #include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
+#include "wingbeat/ensemble/instruction_set.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
-
-// What every processor of the target has: SSE2 on x86-64, NEON on 64-bit ARM; elsewhere nothing that lanes could use.
-#if defined(__x86_64__) || defined(_M_X64)
-#define WINGBEAT_X86
-#define WINGBEAT_BASE_ISA "sse2"
-#elif defined(__aarch64__)
-#define WINGBEAT_BASE_ISA "neon64"
-#else
-#define WINGBEAT_BASE_ISA "none"
-#define WINGBEAT_NO_LANES
-#endif
 
 namespace wingbeat {
 
@@ -25,12 +16,6 @@ inline constexpr int max_force_switches = 3;  ///< sign changes of the rod force
 /// A quantity of which extremes are sought.
 enum class Quantity { velocity, current, negated_speed, speed, force, energy };
 inline constexpr int quantity_count = 6;
-
-/// One vehicle of an ensemble, validated and resolved.
-struct EnsembleMember {
-  Vehicle<double> vehicle;
-  Reporting reporting;
-};
 
 /// Where an iterate begins: near the orbit, at the lower dead centre.
 struct IterateStart {
@@ -93,18 +78,13 @@ struct PackResult {
 /// current. A member's result does not depend on the others.
 void solve_block_base(const EnsembleMember* const* members, int count, const PackSettings& settings,
                       PackResult* const* results);
-#ifdef WINGBEAT_X86
+#ifdef WINGBEAT_HAS_WIDE_LANES
 void solve_block_avx2(const EnsembleMember* const* members, int count, const PackSettings& settings,
                       PackResult* const* results);
 void solve_block_avx512(const EnsembleMember* const* members, int count, const PackSettings& settings,
                         PackResult* const* results);
 #endif
 
-#ifdef WINGBEAT_NO_LANES
-inline constexpr bool has_packs = false;
-#else
-inline constexpr bool has_packs = true;
-#endif
 inline constexpr int lanes_base = 4, lanes_avx2 = 8, lanes_avx512 = 16;
 
 }  // namespace wingbeat

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "wingbeat/cycle/orbit_gradient.hpp"
+#include "wingbeat/cycle/metric_gradients.hpp"
 
 namespace wingbeat {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "wingbeat/cycle/record.hpp"
+#include "wingbeat/cycle/waveform_row.hpp"
 #include "wingbeat/files/netcdf.hpp"
 
 namespace wingbeat {

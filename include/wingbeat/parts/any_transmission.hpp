@@ -2,30 +2,15 @@
 // transmission.hpp, a name, a member and a case here.
 #pragma once
 
-#include <utility>
-
 #include "wingbeat/core/members.hpp"
-#include "wingbeat/core/names.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/parts/four_bar.hpp"
 #include "wingbeat/parts/slider_crank.hpp"
 #include "wingbeat/parts/stroke_table.hpp"
 #include "wingbeat/parts/transmission.hpp"
+#include "wingbeat/parts/transmission_type.hpp"
 
 namespace wingbeat {
-
-enum class TransmissionType {
-  slider_crank,
-  four_bar,
-  tabulated,
-  direct  ///< the motor shaft is the wing hinge: its angle is the stroke angle
-};
-template <>
-inline constexpr std::pair<const char*, TransmissionType> names_of<TransmissionType>[] = {
-    {"slider-crank", TransmissionType::slider_crank},
-    {"four-bar", TransmissionType::four_bar},
-    {"tabulated", TransmissionType::tabulated},
-    {"direct", TransmissionType::direct}};
 
 /// One of the transmissions, by its type; the members of the others are unused. Of a direct drive there is none: its
 /// kinematics are direct_kinematics().

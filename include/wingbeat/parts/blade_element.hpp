@@ -18,6 +18,8 @@
 
 namespace wingbeat {
 
+inline constexpr double air_kinematic_viscosity = 1.5e-5;  ///< nu of air at 20 degC and 1 atm [m2/s], rounded
+
 /// A force coefficient as a wave over the angle of attack: sine for lift, cosine for drag. With offset a, amplitude b,
 /// rate m and phase \f$\alpha_0\f$:
 /// \f[

@@ -4,23 +4,12 @@
 #include <cmath>
 
 #include "wingbeat/core/math.hpp"
-#include "wingbeat/core/names.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/parts/transmission.hpp"
+#include "wingbeat/parts/transmission_type.hpp"
 
 namespace wingbeat {
-
-/// How the rod force turns the wings (model.md section 2).
-enum class Formulation {
-  /// The paper's eq (1) as printed: \f$g = H (\sin\gamma \tan\beta + \cos\gamma)\f$; does not conserve power.
-  rod_force,
-  /// Straight frictionless guide: \f$g = H \cos\gamma / \cos^2\beta\f$; \f$F h \omega = F g \dot\beta\f$ identically.
-  virtual_work
-};
-template <>
-inline constexpr std::pair<const char*, Formulation> names_of<Formulation>[] = {
-    {"rod-force", Formulation::rod_force}, {"virtual-work", Formulation::virtual_work}};
 
 /// Geometry of the mechanism. The crank angle theta is measured from the horizontal and grows with rotation. The rod is
 /// at \f$\gamma\f$ from the vertical, the slider at the height y over the crank axis (model.md section 1):
@@ -53,11 +42,12 @@ inline constexpr ParameterKey mid_stroke_height{"transmission.mid_stroke_height"
 }  // namespace slider_crank_key
 
 inline void validate(const SliderCrank<double>& c) {
-  using namespace slider_crank_key;
+  namespace key = slider_crank_key;
   require(crank_radius_key, c.crank_radius);
-  require(c.rod_length > c.crank_radius, rod_length.path, rod_length.range.expected, rod_length.unit, c.rod_length);
-  require(hinge_offset, c.hinge_offset);
-  require(mid_stroke_height, c.mid_stroke_height);
+  require(c.rod_length > c.crank_radius, key::rod_length.path, key::rod_length.range.expected, key::rod_length.unit,
+          c.rod_length);
+  require(key::hinge_offset, c.hinge_offset);
+  require(key::mid_stroke_height, c.mid_stroke_height);
 }
 
 /// A slider-crank with the quotients that its kinematics needs at every crank angle.

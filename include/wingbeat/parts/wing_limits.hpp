@@ -14,8 +14,6 @@
 
 namespace wingbeat {
 
-inline constexpr double air_kinematic_viscosity = 1.5e-5;  ///< nu of air at 20 degC and 1 atm [m2/s], rounded
-
 template <Scalar S>
 struct WingLimits {
   /// Reynolds number over the mean of |beta'| [s/rad]; not a number without air and of wings without a shape.

@@ -3,13 +3,13 @@
 
 #include <string>
 
-#include "wingbeat/study/bench_fit.hpp"
-#include "wingbeat/study/design_point.hpp"
-#include "wingbeat/study/endurance.hpp"
-#include "wingbeat/study/frequency_search.hpp"
-#include "wingbeat/study/run.hpp"
-
 namespace wingbeat {
+
+struct DesignPoint;
+struct EnduranceResult;
+struct RunResult;
+struct SearchFinding;
+struct UnreachedRow;
 
 /// What the search found, or which frequencies or lifts can be reached: "60 Hz cannot be reached inside the domain of
 /// validity: at ...".

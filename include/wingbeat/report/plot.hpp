@@ -7,7 +7,7 @@
 #include <string>
 
 #include "wingbeat/cycle/energy_audit.hpp"
-#include "wingbeat/cycle/record.hpp"
+#include "wingbeat/cycle/waveform_row.hpp"
 #include "wingbeat/vehicle/design.hpp"
 
 namespace wingbeat {

@@ -10,9 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "wingbeat/cycle/orbit_gradient.hpp"
+#include "wingbeat/cycle/metric_gradients.hpp"
 #include "wingbeat/study/for_each.hpp"
 #include "wingbeat/study/frequency_search.hpp"
+#include "wingbeat/vehicle/design.hpp"
 
 namespace wingbeat {
 

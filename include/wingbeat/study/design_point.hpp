@@ -6,12 +6,16 @@
 #include <string>
 
 #include "wingbeat/cycle/domain.hpp"
-#include "wingbeat/cycle/orbit_gradient.hpp"
-#include "wingbeat/study/endurance.hpp"
+#include "wingbeat/cycle/metric_values.hpp"
+#include "wingbeat/cycle/steady_options.hpp"
+#include "wingbeat/study/flight_metrics.hpp"
 #include "wingbeat/study/frequency_search.hpp"
-#include "wingbeat/study/sweep.hpp"
+#include "wingbeat/study/sweep_status.hpp"
+#include "wingbeat/vehicle/design.hpp"
 
 namespace wingbeat {
+
+struct DesignParameter;
 
 struct DesignPointOptions {
   Condition condition = Condition::air;

@@ -11,14 +11,14 @@
 // P_e of a cycle at the direct current that its terminal voltage asks for, (E - R_i I) I = P_e.
 #pragma once
 
-#include <bitset>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "wingbeat/cycle/domain.hpp"
-#include "wingbeat/cycle/orbit_gradient.hpp"
+#include "wingbeat/cycle/metric_gradients.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
+#include "wingbeat/study/flight_metrics.hpp"
 #include "wingbeat/vehicle/design.hpp"
 
 namespace wingbeat {
@@ -103,15 +103,6 @@ struct EnduranceResult {
 /// \end{aligned}
 /// \f]
 EnduranceResult simulate_discharge(const Design<double>& design, const EnduranceOptions& options = {});
-
-/// Which metrics of a whole flight are wanted.
-struct FlightMetrics {
-  bool hover = false, endurance = false;
-  bool allow_extrapolation = false;  ///< a vehicle outside the model's domain may hover
-
-  bool any() const { return hover || endurance; }
-};
-FlightMetrics flight_metrics(const std::bitset<metric_count>& metrics, bool allow_extrapolation);
 
 /// Metric::hover and Metric::endurance of a design on a battery.
 struct Endurance {

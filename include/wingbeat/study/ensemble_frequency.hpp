@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/study/frequency_search.hpp"
 
 namespace wingbeat {

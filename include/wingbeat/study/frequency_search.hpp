@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "wingbeat/cycle/domain.hpp"
-#include "wingbeat/cycle/steady_flapping.hpp"
+#include "wingbeat/cycle/steady_options.hpp"
 
 namespace wingbeat {
 

@@ -5,9 +5,12 @@
 #include <vector>
 
 #include "wingbeat/cycle/domain.hpp"
-#include "wingbeat/cycle/steady_flapping.hpp"
+#include "wingbeat/cycle/status_evidence.hpp"
+#include "wingbeat/cycle/waveform_row.hpp"
+#include "wingbeat/solve/periodic_summary.hpp"
 #include "wingbeat/study/frequency_search.hpp"
 #include "wingbeat/time/transient.hpp"
+#include "wingbeat/vehicle/design.hpp"
 
 namespace wingbeat {
 

@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/study/frequency_search.hpp"
 #include "wingbeat/study/sampling.hpp"
+#include "wingbeat/study/sweep_status.hpp"
 #include "wingbeat/vehicle/design.hpp"
 
 namespace wingbeat {
@@ -66,20 +68,6 @@ struct Sweep {
 
 /// Place of a design along each axis.
 std::vector<std::uint64_t> places(const Sweep& sweep, std::uint64_t index);
-
-/// What became of a design of a sweep: FlappingStatus, and two cases more. The numbers are those of data sets.
-enum class SweepStatus : std::int8_t {
-  flapping,
-  stalled,
-  locked,
-  jammed,
-  unreached,  ///< it flaps, but not at the frequency asked for
-  invalid,    ///< a parameter out of its physical range, for itself or beside the others
-  undecided   ///< start-up showed none of these within the solvers' limits
-};
-inline constexpr int sweep_status_count = 7;
-const char* name_of(SweepStatus status);
-SweepStatus sweep_status(FlappingStatus status);
 
 /// A design of the sweep, with its variant's condition. Not validated.
 struct SweepDesign {

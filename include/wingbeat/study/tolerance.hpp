@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "wingbeat/cycle/metric_gradients.hpp"
 #include "wingbeat/study/design_point.hpp"
 #include "wingbeat/study/distribution.hpp"
 #include "wingbeat/study/sobol_indices.hpp"

@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "wingbeat/cycle/record.hpp"
+#include "wingbeat/cycle/waveform_row.hpp"
 #include "wingbeat/parts/supply.hpp"
 #include "wingbeat/time/transient.hpp"
-#include "wingbeat/vehicle/vehicle.hpp"
+#include "wingbeat/vehicle/forward.hpp"
 
 namespace wingbeat {
 

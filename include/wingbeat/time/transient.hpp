@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "wingbeat/core/status.hpp"
-#include "wingbeat/cycle/metrics.hpp"
-#include "wingbeat/cycle/record.hpp"
-#include "wingbeat/cycle/steady_flapping.hpp"
+#include "wingbeat/cycle/metric_values.hpp"
+#include "wingbeat/cycle/steady_options.hpp"
+#include "wingbeat/cycle/waveform_row.hpp"
 #include "wingbeat/parts/supply.hpp"
-#include "wingbeat/vehicle/vehicle.hpp"
+#include "wingbeat/vehicle/forward.hpp"
 
 namespace wingbeat {
 

@@ -8,16 +8,14 @@
 
 #include "wingbeat/core/members.hpp"
 #include "wingbeat/core/names.hpp"
-#include "wingbeat/parts/any_transmission.hpp"
 #include "wingbeat/parts/blade_element.hpp"
 #include "wingbeat/parts/friction.hpp"
 #include "wingbeat/parts/motor.hpp"
 #include "wingbeat/parts/motor_thermal.hpp"
-#include "wingbeat/parts/pitching_wings.hpp"
 #include "wingbeat/parts/planform.hpp"
-#include "wingbeat/parts/spring.hpp"
+#include "wingbeat/parts/stroke_table.hpp"
 #include "wingbeat/parts/supply.hpp"
-#include "wingbeat/parts/wing_limits.hpp"
+#include "wingbeat/parts/transmission_type.hpp"
 #include "wingbeat/parts/wing_mass.hpp"
 
 namespace wingbeat {

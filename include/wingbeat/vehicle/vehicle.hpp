@@ -200,6 +200,7 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
   v.wing_limits = wing_limits_of(design, v.wing_count, condition);
   return v;
 }
+extern template Vehicle<double> resolve(const Design<double>&, Condition);  // compiled once, in src/vehicle/vehicle.cpp
 
 /// The vehicle with its motor, stated at the reference temperature, at other temperatures [K].
 template <template <Scalar> class V, Scalar S>

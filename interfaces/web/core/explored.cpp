@@ -10,6 +10,7 @@
 #include "wingbeat/files/waveform_file.hpp"
 #include "wingbeat/vehicle/drive.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat::web {
 namespace {

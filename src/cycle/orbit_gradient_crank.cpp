@@ -1,0 +1,11 @@
+// Gradients of cranks whose wings follow the pitch law.
+#include "cycle/repeat_recorded_body.hpp"
+
+namespace wingbeat::detail {
+
+template OrbitGradient repeat_recorded(const SteadyFlapping&, const RecordedCycle<CrankSystem<double, 1>>&,
+                                       const Vehicle<GradientJet>&, const GradientVehicle&, const GradientOptions&);
+template OrbitGradient repeat_recorded(const SteadyFlapping&, const RecordedCycle<CrankSystem<double, 2>>&,
+                                       const Vehicle<GradientJet>&, const GradientVehicle&, const GradientOptions&);
+
+}  // namespace wingbeat::detail

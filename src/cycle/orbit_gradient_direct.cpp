@@ -1,0 +1,11 @@
+// Gradients of direct drives whose wings follow the pitch law.
+#include "cycle/repeat_recorded_body.hpp"
+
+namespace wingbeat::detail {
+
+template OrbitGradient repeat_recorded(const SteadyFlapping&, const RecordedCycle<DirectSystem<double, 2>>&,
+                                       const Vehicle<GradientJet>&, const GradientVehicle&, const GradientOptions&);
+template OrbitGradient repeat_recorded(const SteadyFlapping&, const RecordedCycle<DirectSystem<double, 3>>&,
+                                       const Vehicle<GradientJet>&, const GradientVehicle&, const GradientOptions&);
+
+}  // namespace wingbeat::detail

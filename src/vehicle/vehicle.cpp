@@ -1,0 +1,7 @@
+#include "wingbeat/vehicle/vehicle.hpp"
+
+namespace wingbeat {
+
+template Vehicle<double> resolve(const Design<double>&, Condition);
+
+}  // namespace wingbeat
