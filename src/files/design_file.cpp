@@ -252,11 +252,9 @@ class Reader {
   }
 
   bool is_required(const ParameterText& key) const {
-    constexpr std::string_view unless = "required unless ";
-    if (key.fallback == "required") return !key.has_alternative();
-    if (!key.fallback.starts_with(unless)) return false;
-    const std::string_view other = key.fallback.substr(unless.size());
-    return find_parameter<double>(other) && !document_.find(other);
+    if (key.fallback != "required" || key.has_alternative()) return false;
+    // read_coefficients() requires the numbers of a section that is given.
+    return !is_section(key.required_unless) && !document_.find(key.required_unless);
   }
 
   /// Each at its own line; validate() sees to what needs another key.
