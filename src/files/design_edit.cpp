@@ -12,7 +12,6 @@
 
 #include "files/design_write.hpp"
 #include "files/toml_document.hpp"
-#include "files/toml_spans.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
@@ -79,11 +78,30 @@ std::optional<std::string> in_unit_of(std::string_view quantity, double si, std:
   }
 }
 
+/// A key with its value in a vehicle file.
+struct StatedKey {
+  std::string path;
+  const TomlNode* node;
+  bool in_line;  ///< within a table in braces
+};
+
+void collect(const TomlNode& table, const std::string& above, std::vector<StatedKey>& keys) {
+  for (const auto& [key, node] : table.members) {
+    const std::string path = above.empty() ? key : above + "." + key;
+    const bool is_section = node.kind == TomlNode::Kind::table && !node.in_line;
+    if (!is_section) keys.push_back({path, &node, table.in_line});
+    collect(node, path, keys);
+  }
+}
+
 class Editor {
  public:
   Editor(std::string_view text, const Design<double>& before, const Design<double>& after)
-      : text_(text), spans_(toml_spans(text)), before_(keys_of(before)), after_(keys_of(after)) {
+      : text_(text), tree_(parse_toml_tree(text, "")), before_(keys_of(before)), after_(keys_of(after)) {
     newline_ = text.find("\r\n") != std::string_view::npos ? "\r\n" : "\n";
+    collect(tree_, "", stated_);
+    std::sort(stated_.begin(), stated_.end(),
+              [](const auto& a, const auto& b) { return a.node->key_begin < b.node->key_begin; });
   }
 
   std::string edit() {
@@ -91,23 +109,24 @@ class Editor {
     for (const auto& [path, key] : after_) {
       const auto old = before_.find(path);
       if (old != before_.end() && old->second.text == key.text) continue;
-      if (const TomlSpan* span = spans_.find(path)) {
-        replace(span->value, span->value_end, value_for(*span, key));
+      if (const TomlNode* node = tree_.find_path(path)) {
+        replace(node->begin, node->end, value_for(*node, key));
       } else {
         added.push_back(&key);
       }
     }
-    for (const TomlSpan& span : spans_.values) {
-      if (after_.contains(span.path) || !before_.contains(span.path)) continue;
+    for (const StatedKey& stated : stated_) {
+      if (after_.contains(stated.path) || !before_.contains(stated.path)) continue;
       const auto instead = std::find_if(added.begin(), added.end(), [&](const WrittenKey* key) {
-        return parent_of(key->path) == parent_of(span.path) && are_alternatives(key->path, span.path);
+        return parent_of(key->path) == parent_of(stated.path) && are_alternatives(key->path, stated.path);
       });
       if (instead == added.end()) {
-        remove(span);
+        remove(stated);
         continue;
       }
-      replace(span.key, span.key_end, std::string(leaf_of((*instead)->path)));
-      replace(span.value, span.value_end, value_for(span, **instead));
+      const TomlNode& node = *stated.node;
+      replace(node.key_begin, node.key_end, std::string(leaf_of((*instead)->path)));
+      replace(node.begin, node.end, value_for(node, **instead));
       added.erase(instead);
     }
     for (const WrittenKey* key : added) add(*key);
@@ -122,8 +141,8 @@ class Editor {
 
   std::string_view of(std::size_t begin, std::size_t end) const { return text_.substr(begin, end - begin); }
 
-  std::string value_for(const TomlSpan& span, const WrittenKey& key) const {
-    const std::string_view old = of(span.value, span.value_end);
+  std::string value_for(const TomlNode& node, const WrittenKey& key) const {
+    const std::string_view old = of(node.begin, node.end);
     const bool quoted = old.size() >= 2 && (old.front() == '"' || old.front() == '\'');
     if (!key.number) return key.text;
     if (!quoted) return toml_quantity(*key.number, "1");
@@ -149,21 +168,24 @@ class Editor {
   }
 
   /// A line becomes a comment; in an inline table nothing can.
-  void remove(const TomlSpan& span) {
-    if (!span.in_line) {
-      for (std::size_t at = line_begin(span.begin); at <= span.value_end && at < text_.size();) {
+  void remove(const StatedKey& key) {
+    const TomlNode& node = *key.node;
+    if (!key.in_line) {
+      for (std::size_t at = line_begin(node.key_begin); at <= node.end && at < text_.size();) {
         replace(at, at, "# ");
         at = std::min(text_.find('\n', at), text_.size()) + 1;
       }
       return;
     }
-    std::size_t begin = span.begin, end = span.value_end;
+    // The whole of a dotted key, behind the brace or comma before it.
+    std::size_t begin = text_.find_first_not_of(" \t\r\n", text_.find_last_of("{,", node.key_begin) + 1),
+                end = node.end;
     while (end < text_.size() && (text_[end] == ' ' || text_[end] == '\t')) ++end;
     if (end < text_.size() && text_[end] == ',') {
       ++end;
       while (end < text_.size() && text_[end] == ' ') ++end;
     } else {
-      end = span.value_end;
+      end = node.end;
       const auto comma = text_.find_last_not_of(" \t", begin - 1);
       if (comma != std::string_view::npos && text_[comma] == ',') begin = comma;
     }
@@ -172,23 +194,30 @@ class Editor {
 
   void add(const WrittenKey& key) {
     const std::string_view parent = parent_of(key.path);
-    const TomlSpan* sibling = nullptr;
-    for (const TomlSpan& span : spans_.values) {
-      if (parent_of(span.path) == parent && span.path != parent) sibling = &span;
+    const StatedKey* sibling = nullptr;
+    for (const StatedKey& stated : stated_) {
+      if (parent_of(stated.path) == parent && stated.path != parent) sibling = &stated;
     }
     const std::string line = fmt::format("{} = {}", leaf_of(key.path), key.text);
     if (sibling && sibling->in_line) {
-      replace(sibling->value_end, sibling->value_end, ", " + line);
+      replace(sibling->node->end, sibling->node->end, ", " + line);
     } else if (sibling) {
-      const std::size_t from = line_begin(sibling->begin), at = line_end(sibling->value_end);
-      replace(at, at, fmt::format("{}{}{}", newline_, of(from, sibling->key), line));
-    } else if (const auto header = std::find_if(spans_.headers.begin(), spans_.headers.end(),
-                                                [&](const TomlHeader& h) { return h.path == parent; });
-               header != spans_.headers.end()) {
-      replace(header->end, header->end, newline_ + line);
+      const std::size_t key_begin = sibling->node->key_begin, at = line_end(sibling->node->end);
+      replace(at, at, fmt::format("{}{}{}", newline_, of(line_begin(key_begin), key_begin), line));
+    } else if (const TomlNode* section = tree_.find_path(parent); section && is_header_of(section->begin, parent)) {
+      const std::size_t at = line_end(section->begin);
+      replace(at, at, newline_ + line);
     } else {
       new_sections_[std::string(parent)] += line + newline_;
     }
+  }
+
+  /// [path]; a section may also be there by that of one below it, or by a dotted key.
+  bool is_header_of(std::size_t begin, std::string_view path) const {
+    if (text_[begin] != '[') return false;
+    std::string name(of(begin + 1, std::min(text_.find(']', begin), text_.size())));
+    std::erase_if(name, [](char c) { return std::string_view(" \t\"'").find(c) != std::string_view::npos; });
+    return name == path;
   }
 
   std::string applied() {
@@ -210,7 +239,8 @@ class Editor {
   }
 
   std::string_view text_;
-  TomlSpans spans_;
+  TomlNode tree_;
+  std::vector<StatedKey> stated_;  ///< in the order of the text
   Keys before_, after_;
   std::string newline_;
   std::vector<Edit> edits_;
@@ -226,16 +256,13 @@ std::string moved(const std::string& text, const fs::path& from, const fs::path&
   std::string result = text;
   std::error_code error;
   for (const std::string_view path : naming) {
-    const TomlSpans spans = toml_spans(result);
-    const TomlSpan* span = spans.find(path);
-    if (!span || (result[span->value] != '"' && result[span->value] != '\'')) continue;
-    const TomlNode value =
-        *parse_toml_tree("name = " + result.substr(span->value, span->value_end - span->value), "").find("name");
-    if (value.kind != TomlNode::Kind::text || fs::path(value.text).is_absolute()) continue;
-    const fs::path file = fs::weakly_canonical(from / value.text, error);
+    const TomlNode tree = parse_toml_tree(result, "");
+    const TomlNode* value = tree.find_path(path);
+    if (!value || value->kind != TomlNode::Kind::text || fs::path(value->text).is_absolute()) continue;
+    const fs::path file = fs::weakly_canonical(from / value->text, error);
     const fs::path name = error ? fs::path() : fs::relative(file, to, error);
     if (error || name.empty()) continue;
-    result.replace(span->value, span->value_end - span->value, toml_text(name.string()));
+    result.replace(value->begin, value->end - value->begin, toml_text(name.string()));
   }
   return result;
 }

@@ -16,7 +16,7 @@
 #include "files/input_errors.hpp"
 #include "files/read_stream.hpp"
 #include "files/table_csv.hpp"
-#include "files/toml_document.hpp"
+#include "files/toml_reader.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/files/file_record.hpp"
 #include "wingbeat/files/input_file.hpp"
@@ -148,11 +148,11 @@ class Reader {
   }
 
   [[noreturn]] void wrong(const Value& value, std::string_view path, std::string_view expected) const {
-    value.origin.refuse(std::string(path), fmt::format("expected {}, got {}", expected, kind_of(value)));
+    TomlReader(value.origin.file).wrong(value, std::string(path), expected);
   }
 
   const std::string& text_of(const Value& value, std::string_view path, std::string_view expected) const {
-    if (value.kind != Value::Kind::text) wrong(value, path, expected);
+    if (value.kind != TomlNode::Kind::text) wrong(value, path, expected);
     return value.text;
   }
 
@@ -183,17 +183,8 @@ class Reader {
     return std::find(unread_.begin(), unread_.end(), path) != unread_.end();
   }
 
-  double number_of(const Value& value, std::string_view path, std::string_view unit) const {
-    if (value.kind == Value::Kind::number) {
-      if (!std::isfinite(value.number)) wrong(value, path, quantity_example(unit));
-      return value.number;
-    }
-    if (value.kind != Value::Kind::text) wrong(value, path, quantity_example(unit));
-    try {
-      return parse_quantity(value.text, unit, SpeedConstant::inverted);
-    } catch (const UnitError& error) {
-      value.origin.refuse(std::string(path), error.what());
-    }
+  static double number_of(const Value& value, const TomlNode& node, std::string_view path, std::string_view unit) {
+    return TomlReader(value.origin.file).quantity(node, std::string(path), unit, SpeedConstant::inverted);
   }
 
   /// True if the choices made so far leave a place for the key.
@@ -233,8 +224,7 @@ class Reader {
   void read_flag(std::string_view path, bool& flag) const {
     const Value* value = document_.find(path);
     if (!value) return;
-    if (value->kind != Value::Kind::boolean) wrong(*value, path, find_parameter<double>(path)->range.text);
-    flag = value->number > 0.0;
+    flag = TomlReader(value->origin.file).boolean(*value, std::string(path));
   }
 
   void read_numbers(Design<double>& d) {
@@ -242,7 +232,7 @@ class Reader {
       attempt([&] {
         if (!belongs(key) || !key.set) return;
         if (const Value* value = document_.find(key.path)) {
-          const double number = number_of(*value, key.path, key.unit);
+          const double number = number_of(*value, *value, key.path, key.unit);
           if (!key.set(d, number)) value->origin.refuse(std::string(key.path), "has no place in this vehicle");
           check_range(*value, key, number);
         } else if (is_required(key)) {
@@ -253,11 +243,9 @@ class Reader {
   }
 
   bool is_required(const ParameterText& key) const {
-    constexpr std::string_view unless = "required unless ";
-    if (key.fallback == "required") return !key.has_alternative();
-    if (!key.fallback.starts_with(unless)) return false;
-    const std::string_view other = key.fallback.substr(unless.size());
-    return find_parameter<double>(other) && !document_.find(other);
+    if (key.fallback != "required" || key.has_alternative()) return false;
+    // read_coefficients() requires the numbers of a section that is given.
+    return !is_section(key.required_unless) && !document_.find(key.required_unless);
   }
 
   /// Each at its own line; validate() sees to what needs another key.
@@ -307,7 +295,7 @@ class Reader {
     a.coefficients = translational_2022();
     a.coefficients_name = "translational-2022";
     if (const Value* name = document_.find(path)) {
-      const auto named = name->kind == Value::Kind::text ? named_coefficients(name->text) : std::nullopt;
+      const auto named = name->kind == TomlNode::Kind::text ? named_coefficients(name->text) : std::nullopt;
       if (!named) wrong(*name, path, expected);
       a.coefficients = *named;
       a.coefficients_name = name->text;
@@ -358,7 +346,7 @@ class Reader {
     if (!value) return;  // missing, which is among the errors already
     const bool in_place = path == "transmission.stroke_table";
     if (!in_place) text_of(*value, path, "the name of a CSV file");
-    if (in_place && value->kind != Value::Kind::array) wrong(*value, path, "rows [crank angle, stroke angle]");
+    if (in_place && value->kind != TomlNode::Kind::array) wrong(*value, path, "rows [crank angle, stroke angle]");
     std::vector<std::pair<double, double>> rows;
     for (const auto& row : read_table(*value, path, stroke_columns)) rows.emplace_back(row[0], row[1]);
     try {
@@ -375,7 +363,7 @@ class Reader {
     const Value& value = *found;
     const bool in_place = path == "wing.planform.chords";
     if (!in_place) text_of(value, path, "the name of a CSV file");
-    if (in_place && value.kind != Value::Kind::array) wrong(value, path, "rows [distance, chord]");
+    if (in_place && value.kind != TomlNode::Kind::array) wrong(value, path, "rows [distance, chord]");
     for (const auto& row : read_table(value, path, chord_columns)) planform.chord_table.emplace_back(row[0], row[1]);
   }
 
@@ -384,19 +372,19 @@ class Reader {
   std::vector<std::array<double, N>> read_table(const Value& value, std::string_view path,
                                                 const CsvColumn (&columns)[N]) const {
     std::vector<std::array<double, N>> rows;
-    if (value.kind == Value::Kind::array) {
-      for (const Value& row : value.items) {
+    if (value.kind == TomlNode::Kind::array) {
+      for (const TomlNode& row : value.items) {
         const std::size_t number = rows.size() + 1;
-        if (row.kind != Value::Kind::array || row.items.size() != N) {
+        if (row.kind != TomlNode::Kind::array || row.items.size() != N) {
           value.origin.refuse(std::string(path), fmt::format("row {} must hold {} values", number, N));
         }
         std::array<double, N> numbers;
-        for (std::size_t n = 0; n < N; ++n) numbers[n] = number_of(row.items[n], path, columns[n].unit);
+        for (std::size_t n = 0; n < N; ++n) numbers[n] = number_of(value, row.items[n], path, columns[n].unit);
         rows.push_back(numbers);
       }
       return rows;
     }
-    if (value.kind != Value::Kind::text) wrong(value, path, "the name of a CSV file, or rows");
+    if (value.kind != TomlNode::Kind::text) wrong(value, path, "the name of a CSV file, or rows");
     if (!load_table_) value.origin.refuse(std::string(path), "table files cannot be read here; give the rows in place");
     try {
       for (const auto& row : parse_csv(load_table_(value.text), one_line(value.text), columns)) {

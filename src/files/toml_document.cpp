@@ -52,57 +52,34 @@ std::string reason_in(const toml::parse_error& error) {
   return "not TOML: " + one_line(reason, 200);
 }
 
-/// Parses TOML; refuses with `origin` moved to the place of the error unless the origin is an override.
-toml::table parse_toml(std::string_view text, const Origin& origin, std::size_t largest = largest_text) {
-  const auto refuse = [&](int line, int column, const std::string& message) {
-    throw InputError(origin.file, origin.overridden ? 0 : line, origin.overridden ? 0 : column, "", message);
-  };
-  if (text.size() > largest) {
-    refuse(0, 0,
-           fmt::format("larger than {} MB, which no {} file is", largest >> 20,
-                       largest == largest_text ? "vehicle" : "study"));
+/// From toml++'s lines and columns, which count characters, to offsets.
+class TomlOffsets {
+ public:
+  explicit TomlOffsets(std::string_view text) : text_(text), lines_{text.starts_with("\xEF\xBB\xBF") ? 3u : 0u} {
+    for (auto at = text.find('\n'); at != std::string_view::npos; at = text.find('\n', at + 1))
+      lines_.push_back(at + 1);
   }
-  if (const auto complaint = prevalidation_complaint(text)) {
-    refuse(complaint->line, complaint->column, complaint->message);
-  }
-  try {
-    return toml::parse(text, std::string_view{});
-  } catch (const toml::parse_error& error) {
-    refuse(line_of(error.source().begin), column_of(error.source().begin), reason_in(error));
-    throw;
-  }
-}
 
-Value value_of_node(const toml::node& node, const Origin& origin) {
-  Value value;
-  value.origin = origin;
-  if (const auto* text = node.as_string()) {
-    value.kind = Value::Kind::text;
-    value.text = text->get();
-  } else if (const auto* whole = node.as_integer()) {
-    value.kind = Value::Kind::number;
-    value.number = double(whole->get());
-  } else if (const auto* real = node.as_floating_point()) {
-    value.kind = Value::Kind::number;
-    value.number = real->get();
-  } else if (const auto* array = node.as_array()) {
-    value.kind = Value::Kind::array;
-    for (const toml::node& item : *array) value.items.push_back(value_of_node(item, origin));
-  } else if (node.is_table()) {
-    value.kind = Value::Kind::table;
-  } else if (const auto* boolean = node.as_boolean()) {
-    value.kind = Value::Kind::boolean;
-    value.number = boolean->get() ? 1.0 : 0.0;
-  } else {
-    value.text = node.is_time() ? "a time" : "a date";
+  std::size_t of(const toml::source_position& p) const {
+    std::size_t at = lines_[std::clamp<std::size_t>(p.line, 1, lines_.size()) - 1];
+    for (auto n = p.column; n > 1 && at < text_.size(); --n) {
+      do ++at;
+      while (at < text_.size() && (static_cast<unsigned char>(text_[at]) & 0xC0) == 0x80);
+    }
+    return at;
   }
-  return value;
-}
 
-TomlNode tree_of(const toml::node& node) {
+ private:
+  std::string_view text_;
+  std::vector<std::size_t> lines_;  ///< where they begin
+};
+
+TomlNode tree_of(const toml::node& node, const TomlOffsets& offsets) {
   TomlNode tree;
   tree.line = line_of(node.source().begin);
   tree.column = column_of(node.source().begin);
+  tree.begin = offsets.of(node.source().begin);
+  tree.end = offsets.of(node.source().end);
   if (const auto* text = node.as_string()) {
     tree.kind = TomlNode::Kind::text;
     tree.text = text->get();
@@ -118,14 +95,17 @@ TomlNode tree_of(const toml::node& node) {
     tree.number = boolean->get() ? 1.0 : 0.0;
   } else if (const auto* array = node.as_array()) {
     tree.kind = TomlNode::Kind::array;
-    for (const toml::node& item : *array) tree.items.push_back(tree_of(item));
+    for (const toml::node& item : *array) tree.items.push_back(tree_of(item, offsets));
   } else if (const auto* table = node.as_table()) {
     tree.kind = TomlNode::Kind::table;
+    tree.in_line = table->is_inline();
     for (const auto& [key, value] : *table) {
-      TomlNode member = tree_of(value);
+      TomlNode member = tree_of(value, offsets);
       // What is wrong with a key is shown where its name stands.
       member.line = line_of(key.source().begin);
       member.column = column_of(key.source().begin);
+      member.key_begin = offsets.of(key.source().begin);
+      member.key_end = offsets.of(key.source().end);
       tree.members.push_back({std::string(key.str()), std::move(member)});
     }
     std::stable_sort(tree.members.begin(), tree.members.end(), [](const auto& a, const auto& b) {
@@ -135,6 +115,34 @@ TomlNode tree_of(const toml::node& node) {
     tree.text = node.is_time() ? "a time" : "a date";
   }
   return tree;
+}
+
+/// Parses TOML; refuses with `origin` moved to the place of the error unless the origin is an override.
+TomlNode parse_toml(std::string_view text, const Origin& origin, std::size_t largest = largest_text) {
+  const auto refuse = [&](int line, int column, const std::string& message) {
+    throw InputError(origin.file, origin.overridden ? 0 : line, origin.overridden ? 0 : column, "", message);
+  };
+  if (text.size() > largest) {
+    refuse(0, 0,
+           fmt::format("larger than {} MB, which no {} file is", largest >> 20,
+                       largest == largest_text ? "vehicle" : "study"));
+  }
+  if (const auto complaint = prevalidation_complaint(text)) {
+    refuse(complaint->line, complaint->column, complaint->message);
+  }
+  try {
+    return tree_of(toml::parse(text, std::string_view{}), TomlOffsets(text));
+  } catch (const toml::parse_error& error) {
+    refuse(line_of(error.source().begin), column_of(error.source().begin), reason_in(error));
+    throw;
+  }
+}
+
+/// Of a value in a text of its own, whose place is another.
+void set_place(TomlNode& node, int line, int column) {
+  node.line = line;
+  node.column = column;
+  for (TomlNode& item : node.items) set_place(item, line, column);
 }
 
 /// A key as it would stand in a file, so that "motor.inertia" in quotes is not taken for inertia in [motor].
@@ -150,14 +158,15 @@ class Flattener {
  public:
   Flattener(Document& document, Origin origin) : document_(document), base_(std::move(origin)) {}
 
-  void enter(const toml::table& table, const std::string& path) {
-    for (const auto& [key, node] : table) {
-      const std::string name = segment(key.str());
-      enter(node, path.empty() ? name : path + "." + name, origin_at(key.source().begin));
+  void enter_members(const TomlNode& table, const std::string& path) {
+    for (const auto& [key, node] : table.members) {
+      const std::string name = segment(key);
+      const Origin origin = base_.overridden ? base_ : Origin{base_.file, node.line, node.column, false};
+      enter(node, path.empty() ? name : path + "." + name, origin);
     }
   }
 
-  void enter(const toml::node& node, const std::string& path, const Origin& origin) {
+  void enter(const TomlNode& node, const std::string& path, const Origin& origin) {
     const bool known = find_parameter<double>(path) != nullptr, section = is_section(path);
     if (!known && !section && ++unknown_ > most_suggestions) {
       document_.spoiled.push_back(path);
@@ -167,31 +176,27 @@ class Flattener {
       if (!meant.empty()) document_.spoiled.push_back(meant);
       document_.spoiled.push_back(path);
       offend(path, origin, unknown_key_message(path));
-    } else if (const toml::table* table = node.as_table(); table && section) {
+    } else if (section && node.kind == TomlNode::Kind::table) {
       document_.sections.insert_or_assign(path, origin);
-      enter(*table, path);
+      enter_members(node, path);
     } else if (known) {
-      document_.values.insert_or_assign(path, value_of_node(node, origin));
+      Value value{node, origin};
+      set_place(value, origin.line, origin.column);
+      document_.values.insert_or_assign(path, std::move(value));
     } else {
       const std::string example = path == "wing.planform"
                                       ? "a table such as { shape = \"semi-ellipse\", length = \"63 mm\", "
                                         "root_chord = \"25 mm\" }"
                                   : path.find('.') == std::string::npos ? fmt::format("a section [{}]", path)
                                                                         : "a table";
-      const bool list = node.is_array_of_tables();
+      const auto is_table = [](const TomlNode& item) { return item.kind == TomlNode::Kind::table; };
+      const bool list = !node.items.empty() && std::all_of(node.items.begin(), node.items.end(), is_table);
       document_.spoiled.push_back(path);
-      offend(path, origin,
-             fmt::format("expected {}, got {}", example,
-                         list ? "a list of tables" : kind_of(value_of_node(node, origin))));
+      offend(path, origin, fmt::format("expected {}, got {}", example, list ? "a list of tables" : kind_of(node)));
     }
   }
 
  private:
-  Origin origin_at(const toml::source_position& p) const {
-    if (base_.overridden) return base_;
-    return {base_.file, line_of(p), column_of(p), false};
-  }
-
   void offend(const std::string& path, const Origin& origin, const std::string& message) {
     document_.errors.attempt([&] { origin.refuse(path, message); });
   }
@@ -215,9 +220,9 @@ void spell_out_coefficients(Document& document, std::string_view overridden) {
   const std::string path = "aerodynamics.coefficients";
   const Value* name = document.find(path);
   const bool single = at_or_below(overridden, path + ".lift") || at_or_below(overridden, path + ".drag");
-  const auto set = !name                             ? translational_2022()
-                   : name->kind == Value::Kind::text ? named_coefficients(name->text)
-                                                     : std::nullopt;
+  const auto set = !name                                ? translational_2022()
+                   : name->kind == TomlNode::Kind::text ? named_coefficients(name->text)
+                                                        : std::nullopt;
   if (!single || document.has_section(path) || !set) return;
   Design<double> named{};
   named.aerodynamics.coefficients = *set;
@@ -226,20 +231,28 @@ void spell_out_coefficients(Document& document, std::string_view overridden) {
   document.sections.insert_or_assign(path, origin);
   for (const auto& key : parameter_table<double>()) {
     if (key.get && key.path != path && at_or_below(key.path, path)) {
-      document.values[std::string(key.path)] = {Value::Kind::number, "", *key.get(named), {}, origin};
+      Value& value = document.values[std::string(key.path)];
+      value.kind = TomlNode::Kind::number;
+      value.number = *key.get(named);
+      value.line = origin.line;
+      value.column = origin.column;
+      value.origin = origin;
     }
   }
 }
 
-/// The value of an override as the one entry of a table, or nothing where it is a bare string.
-std::optional<toml::table> override_value(std::string_view text, const Origin& origin) {
+/// The value of an override, a text where it is a bare string.
+TomlNode override_value(std::string_view text, const Origin& origin) {
   if (text.find_first_of("\r\n") == std::string_view::npos) {
     try {
-      return parse_toml(fmt::format("value = {}", text), origin);
+      return std::move(parse_toml(fmt::format("value = {}", text), origin).members.front().node);
     } catch (const InputError&) {}
     try {
       parse_toml(fmt::format("# {}", text), origin);  // a comment too may hold no control characters
-      return std::nullopt;
+      TomlNode bare;
+      bare.kind = TomlNode::Kind::text;
+      bare.text = text;
+      return bare;
     } catch (const InputError&) {}
   }
   origin.refuse("", "neither a TOML value nor one line of plain UTF-8 text");
@@ -267,11 +280,7 @@ void apply_override(Document& document, const std::string& assignment) {
     document.sections.try_emplace(above, origin);
   }
   Flattener flattener(document, origin);
-  if (const auto parsed = override_value(text, origin)) {
-    flattener.enter(parsed->begin()->second, path, origin);
-  } else {
-    flattener.enter(toml::value<std::string>(std::string(text)), path, origin);
-  }
+  flattener.enter(override_value(text, origin), path, origin);
 
   const auto from_file = [](const Value& value) { return !value.origin.overridden; };
   for (const auto& key : parameter_table<double>()) {
@@ -284,18 +293,6 @@ void apply_override(Document& document, const std::string& assignment) {
 
 }  // namespace
 
-std::string kind_of(const Value& value) {
-  switch (value.kind) {
-    case Value::Kind::text: return in_quotes(value.text);
-    case Value::Kind::number: return fmt::format("the number {}", value.number);
-    case Value::Kind::array: return "an array";
-    case Value::Kind::table: return "a table";
-    case Value::Kind::boolean: return "a boolean";
-    case Value::Kind::other: break;
-  }
-  return value.text;
-}
-
 const TomlNode* TomlNode::find(std::string_view key) const {
   for (const auto& [name, node] : members) {
     if (name == key) return &node;
@@ -303,15 +300,25 @@ const TomlNode* TomlNode::find(std::string_view key) const {
   return nullptr;
 }
 
+const TomlNode* TomlNode::find_path(std::string_view path) const {
+  const TomlNode* node = this;
+  for (std::size_t dot = 0; node && dot != std::string_view::npos;) {
+    dot = path.find('.');
+    node = node->find(path.substr(0, dot));
+    path.remove_prefix(dot == std::string_view::npos ? path.size() : dot + 1);
+  }
+  return node;
+}
+
 TomlNode parse_toml_tree(std::string_view text, std::string_view file_name, std::size_t largest) {
-  return tree_of(parse_toml(text, Origin{std::string(file_name), 0, 0, false}, largest));
+  return parse_toml(text, Origin{std::string(file_name), 0, 0, false}, largest);
 }
 
 std::string kind_of(const TomlNode& node) {
   switch (node.kind) {
     case TomlNode::Kind::text: return in_quotes(node.text);
     case TomlNode::Kind::number: return fmt::format("the number {}", node.number);
-    case TomlNode::Kind::boolean: return node.number != 0.0 ? "true" : "false";
+    case TomlNode::Kind::boolean: return "a boolean";
     case TomlNode::Kind::array: return "an array";
     case TomlNode::Kind::table: return "a table";
     case TomlNode::Kind::other: break;
@@ -343,9 +350,7 @@ Document parse_document(std::string_view text, std::string_view file_name) {
   document.last_line = 1 + int(std::count(text.begin(), text.end(), '\n')) - int(text.ends_with('\n'));
   document.last_line = std::max(document.last_line, 1);
   const Origin origin{document.file_name, 0, 0, false};
-  const toml::table root = parse_toml(text, origin);
-  Flattener flattener(document, origin);
-  flattener.enter(root, "");
+  Flattener(document, origin).enter_members(parse_toml(text, origin), "");
   return document;
 }
 

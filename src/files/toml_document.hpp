@@ -25,17 +25,42 @@ struct Origin {
   }
 };
 
-struct Value {
+/// A value of any TOML file, tables included.
+struct TomlMember;
+struct TomlNode {
   enum class Kind { text, number, boolean, array, table, other };
   Kind kind = Kind::other;
   std::string text;          ///< the text; of `other` what it is: "a date"
   double number = 0.0;       ///< 1 or 0 for a boolean
-  std::vector<Value> items;  ///< of an array
-  Origin origin;
+  bool whole = false;        ///< a number written without fraction and exponent
+  bool in_line = false;      ///< a table in braces
+  int line = 0, column = 0;  ///< of a member its key's
+  // Offsets into the text [bytes], ends exclusive.
+  std::size_t begin = 0, end = 0;          ///< of the value; of a section [key] the header's begin alone
+  std::size_t key_begin = 0, key_end = 0;  ///< of a member's key, of a dotted one its last part
+  std::vector<TomlNode> items;             ///< of an array
+  std::vector<TomlMember> members;         ///< of a table, in the order of the file
+
+  const TomlNode* find(std::string_view key) const;
+  /// The node of a dotted path.
+  const TomlNode* find_path(std::string_view path) const;
 };
 
-/// "a number", "an array": what a value is, for messages.
-std::string kind_of(const Value& value);
+struct TomlMember {
+  std::string key;  ///< unquoted
+  TomlNode node;
+};
+
+/// A whole file as a table. Throws InputError for text that is not TOML, or longer than that.
+TomlNode parse_toml_tree(std::string_view text, std::string_view file_name, std::size_t largest = largest_text);
+
+/// "a number", "an array": what a node is, for messages.
+std::string kind_of(const TomlNode& node);
+
+/// A value of a vehicle file or of an override; what it holds has its place.
+struct Value : TomlNode {
+  Origin origin;
+};
 
 struct Document {
   std::string file_name;
@@ -50,32 +75,6 @@ struct Document {
   /// The place of a key, of the closest section around it, or the end of the file.
   Origin locate(std::string_view path) const;
 };
-
-/// A value of any TOML file, tables included.
-struct TomlMember;
-struct TomlNode {
-  enum class Kind { text, number, boolean, array, table, other };
-  Kind kind = Kind::other;
-  std::string text;     ///< the text; of `other` what it is: "a date"
-  double number = 0.0;  ///< 1 or 0 for a boolean
-  bool whole = false;   ///< a number written without fraction and exponent
-  int line = 0, column = 0;
-  std::vector<TomlNode> items;      ///< of an array
-  std::vector<TomlMember> members;  ///< of a table, in the order of the file
-
-  const TomlNode* find(std::string_view key) const;
-};
-
-struct TomlMember {
-  std::string key;  ///< unquoted
-  TomlNode node;
-};
-
-/// A whole file as a table. Throws InputError for text that is not TOML, or longer than that.
-TomlNode parse_toml_tree(std::string_view text, std::string_view file_name, std::size_t largest = largest_text);
-
-/// "a number", "an array": what a node is, for messages.
-std::string kind_of(const TomlNode& node);
 
 /// Throws InputError for text that is not TOML. Unknown keys are among the document's errors.
 Document parse_document(std::string_view text, std::string_view file_name);

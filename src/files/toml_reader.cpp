@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "wingbeat/files/units.hpp"
-
 namespace wingbeat {
 
 using Kind = TomlNode::Kind;
@@ -35,11 +33,12 @@ std::string TomlReader::text_of(const TomlNode& node, const std::string& key, st
   return node.text;
 }
 
-double TomlReader::quantity(const TomlNode& node, const std::string& key, std::string_view unit) const {
+double TomlReader::quantity(const TomlNode& node, const std::string& key, std::string_view unit,
+                            SpeedConstant speed_constant) const {
   if (node.kind == Kind::number && std::isfinite(node.number)) return node.number;
   if (node.kind != Kind::text) wrong(node, key, quantity_example(unit));
   try {
-    return parse_quantity(node.text, unit);
+    return parse_quantity(node.text, unit, speed_constant);
   } catch (const UnitError& error) {
     refuse(node, key, error.what());
   }

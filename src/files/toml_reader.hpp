@@ -11,6 +11,7 @@
 
 #include "files/toml_document.hpp"
 #include "wingbeat/core/names.hpp"
+#include "wingbeat/files/units.hpp"
 
 namespace wingbeat {
 
@@ -37,7 +38,8 @@ class TomlReader {
   /// A text that is not empty.
   std::string text_of(const TomlNode& node, const std::string& key, std::string_view expected) const;
   /// A finite number of SI units, or a text with a unit.
-  double quantity(const TomlNode& node, const std::string& key, std::string_view unit) const;
+  double quantity(const TomlNode& node, const std::string& key, std::string_view unit,
+                  SpeedConstant speed_constant = SpeedConstant::refused) const;
   bool boolean(const TomlNode& node, const std::string& key) const;
   std::uint64_t whole_number(const TomlNode& node, const std::string& key, std::uint64_t least,
                              std::uint64_t most) const;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "files/toml_prevalidation.hpp"
 #include "wingbeat/core/text.hpp"
 
 namespace wingbeat {
@@ -28,10 +29,8 @@ std::string toml_text(std::string_view text) {
 }
 
 std::string toml_key(std::string_view key) {
-  const auto bare = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-  };
-  return !key.empty() && std::all_of(key.begin(), key.end(), bare) ? std::string(key) : toml_text(key);
+  const bool bare = !key.empty() && std::all_of(key.begin(), key.end(), is_bare_key_character);
+  return bare ? std::string(key) : toml_text(key);
 }
 
 }  // namespace wingbeat

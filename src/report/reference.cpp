@@ -111,8 +111,8 @@ std::string comment_on(const ParameterText& key, bool is_stated, std::span<const
   const Parameter<double>* other = others.empty() ? nullptr : find_parameter<double>(others.front());
   if (other && has_place(*other, statements)) {
     text += fmt::format("; {} {}{}", is_stated ? "or" : "instead of", key.alternatives[0], is_stated ? " instead" : "");
-  } else if (!is_stated && key.fallback != "required") {
-    text += fmt::format("; default: {}", key.fallback);
+  } else if (!is_stated && default_text(key) != "required") {
+    text += fmt::format("; default: {}", default_text(key));
   }
   return text;
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 
 #include "wingbeat/core/math.hpp"
@@ -35,42 +36,32 @@ class VoltageNodes {
 
   const std::vector<double>& voltages() const { return voltages_; }
 
-  /// Integrals of Lagrange's polynomials of these voltages over the state of charge: Gauss's rule of three points on
-  /// parts of every piece of the discharge curve.
+  /// Integrals of Lagrange's polynomials of these voltages over the state of charge. Gauss's rule of 20 points is exact
+  /// for them: they are of degree 10 in a voltage that is a cubic of the charge on each piece of the discharge curve.
   std::vector<double> integrals(const Battery<double>& battery, double from, double to) const {
     std::vector<double> result(voltages_.size(), 0.0), ends{from};
     for (const auto& [charge, voltage] : battery.discharge_curve) {
       if (charge > from && charge < to) ends.push_back(charge);
     }
     ends.push_back(to);
-    constexpr int parts = 8;
-    constexpr double node = 0.77459666924148337704;  // sqrt(3/5)
     for (std::size_t k = 1; k < ends.size(); ++k) {
-      const double half = 0.5 * (ends[k] - ends[k - 1]) / parts;
-      for (int p = 0; p < parts; ++p) {
-        const double middle = ends[k - 1] + (2 * p + 1) * half;
-        for (int n = -1; n <= 1; ++n) {
-          add(open_circuit_voltage(battery, middle + n * node * half), half * (n == 0 ? 8.0 : 5.0) / 9.0, result);
-        }
+      for (std::size_t j = 0; j < voltages_.size(); ++j) {
+        const auto polynomial = [&](double charge) { return lagrange(j, open_circuit_voltage(battery, charge)); };
+        result[j] += boost::math::quadrature::gauss<double, 20>::integrate(polynomial, ends[k - 1], ends[k]);
       }
     }
     return result;
   }
 
  private:
-  /// Barycentric interpolation (Berrut and Trefethen 2004).
-  void add(double voltage, double factor, std::vector<double>& result) const {
+  /// In barycentric form (Berrut and Trefethen 2004).
+  double lagrange(std::size_t j, double voltage) const {
     double sum = 0.0;
-    std::vector<double> shares(voltages_.size());
-    for (std::size_t j = 0; j < voltages_.size(); ++j) {
-      if (voltage == voltages_[j]) {
-        result[j] += factor;
-        return;
-      }
-      shares[j] = weights_[j] / (voltage - voltages_[j]);
-      sum += shares[j];
+    for (std::size_t n = 0; n < voltages_.size(); ++n) {
+      if (voltage == voltages_[n]) return n == j ? 1.0 : 0.0;
+      sum += weights_[n] / (voltage - voltages_[n]);
     }
-    for (std::size_t j = 0; j < voltages_.size(); ++j) result[j] += factor * shares[j] / sum;
+    return weights_[j] / (voltage - voltages_[j]) / sum;
   }
 
   std::vector<double> voltages_, weights_;

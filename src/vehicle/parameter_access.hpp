@@ -80,6 +80,7 @@ struct PitchingWing : Pitching {
 /// Without a pitch hinge. No choice of its own: the file reader refuses what set() does.
 struct UnderPitchLaw {
   static constexpr std::string_view text = {};
+  static constexpr std::string_view required_unless = Pitching::text;
   static constexpr bool holds(const auto& d) { return !Pitching::holds(d); }
 };
 struct Heated {
@@ -103,6 +104,9 @@ constexpr ParameterText row(const ParameterKey& key, std::string_view fallback, 
 template <class Where>
 constexpr ParameterText placed(ParameterText text) {
   text.only_with = Where::text;
+  if constexpr (requires { Where::required_unless; }) {
+    if (text.fallback == "required") text.required_unless = Where::required_unless;
+  }
   return text;
 }
 
@@ -185,7 +189,8 @@ constexpr Parameter<S> friction_number(const ParameterText& text) {
 
 /// A number of the force coefficients; setting it makes a named set the vehicle's own.
 template <Scalar S, class Access>
-constexpr Parameter<S> wave_number(const ParameterText& text, Access) {
+constexpr Parameter<S> wave_number(ParameterText text, Access) {
+  text.required_unless = "aerodynamics.coefficients";
   return {text,
           [](Design<S>& d, const S& x) {
             if (d.aerodynamics.coefficients.table) return false;

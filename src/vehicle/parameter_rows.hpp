@@ -396,7 +396,7 @@ std::span<const Parameter<S>> parameter_table() {
 
       number<S>(row(aerodynamics_key::air_density, "required", "rho, air density", {}, "1.225 kg/m3"),
                 [](auto& d) -> auto& { return d.aerodynamics.air_density; }),
-      number<S, UnderPitchLaw>(row(aerodynamics_key::pitch_coefficient, "required unless pitch.stiffness",
+      number<S, UnderPitchLaw>(row(aerodynamics_key::pitch_coefficient, "required",
                                    "C_alpha, passive pitching: alpha = pi/2 - C_alpha abs(beta')", {}, "5 ms"),
                                [](auto& d) -> auto& { return d.aerodynamics.pitch_coefficient; }),
       number<S, UnderPitchLaw>(
@@ -431,30 +431,30 @@ std::span<const Parameter<S>> parameter_table() {
             const std::string& name = d.aerodynamics.coefficients_name;
             return name == "custom" || d.aerodynamics.coefficients.table ? std::string() : name;
           }),
-      wave_number<S>({"aerodynamics.coefficients.lift.offset", "1", range::any,
-                      "required unless coefficients is a name", "A of C_L = A + B sin(C alpha + D)"},
-                     [](auto& c) -> auto& { return c.lift.offset; }),
-      wave_number<S>({"aerodynamics.coefficients.lift.amplitude", "1", range::any,
-                      "required unless coefficients is a name", "B of C_L = A + B sin(C alpha + D)"},
+      wave_number<S>(
+          {"aerodynamics.coefficients.lift.offset", "1", range::any, "required", "A of C_L = A + B sin(C alpha + D)"},
+          [](auto& c) -> auto& { return c.lift.offset; }),
+      wave_number<S>({"aerodynamics.coefficients.lift.amplitude", "1", range::any, "required",
+                      "B of C_L = A + B sin(C alpha + D)"},
                      [](auto& c) -> auto& { return c.lift.amplitude; }),
-      wave_number<S>({"aerodynamics.coefficients.lift.rate", "1", range::any, "required unless coefficients is a name",
-                      "C of C_L = A + B sin(C alpha + D)"},
-                     [](auto& c) -> auto& { return c.lift.rate; }),
-      wave_number<S>({"aerodynamics.coefficients.lift.phase", "rad", range::any,
-                      "required unless coefficients is a name", "D of C_L = A + B sin(C alpha + D)"},
-                     [](auto& c) -> auto& { return c.lift.phase; }),
-      wave_number<S>({"aerodynamics.coefficients.drag.offset", "1", range::any,
-                      "required unless coefficients is a name", "A of C_D = A + B cos(C alpha + D)"},
-                     [](auto& c) -> auto& { return c.drag.offset; }),
-      wave_number<S>({"aerodynamics.coefficients.drag.amplitude", "1", range::any,
-                      "required unless coefficients is a name", "B of C_D = A + B cos(C alpha + D)"},
+      wave_number<S>(
+          {"aerodynamics.coefficients.lift.rate", "1", range::any, "required", "C of C_L = A + B sin(C alpha + D)"},
+          [](auto& c) -> auto& { return c.lift.rate; }),
+      wave_number<S>(
+          {"aerodynamics.coefficients.lift.phase", "rad", range::any, "required", "D of C_L = A + B sin(C alpha + D)"},
+          [](auto& c) -> auto& { return c.lift.phase; }),
+      wave_number<S>(
+          {"aerodynamics.coefficients.drag.offset", "1", range::any, "required", "A of C_D = A + B cos(C alpha + D)"},
+          [](auto& c) -> auto& { return c.drag.offset; }),
+      wave_number<S>({"aerodynamics.coefficients.drag.amplitude", "1", range::any, "required",
+                      "B of C_D = A + B cos(C alpha + D)"},
                      [](auto& c) -> auto& { return c.drag.amplitude; }),
-      wave_number<S>({"aerodynamics.coefficients.drag.rate", "1", range::any, "required unless coefficients is a name",
-                      "C of C_D = A + B cos(C alpha + D)"},
-                     [](auto& c) -> auto& { return c.drag.rate; }),
-      wave_number<S>({"aerodynamics.coefficients.drag.phase", "rad", range::any,
-                      "required unless coefficients is a name", "D of C_D = A + B cos(C alpha + D)"},
-                     [](auto& c) -> auto& { return c.drag.phase; }),
+      wave_number<S>(
+          {"aerodynamics.coefficients.drag.rate", "1", range::any, "required", "C of C_D = A + B cos(C alpha + D)"},
+          [](auto& c) -> auto& { return c.drag.rate; }),
+      wave_number<S>(
+          {"aerodynamics.coefficients.drag.phase", "rad", range::any, "required", "D of C_D = A + B cos(C alpha + D)"},
+          [](auto& c) -> auto& { return c.drag.phase; }),
       table<S>({"aerodynamics.coefficients.table",
                 "",
                 {"name of a CSV file, or three or more rows, angles growing"},

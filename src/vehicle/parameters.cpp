@@ -58,6 +58,11 @@ struct Nearest {
 std::string default_text(const ParameterText& parameter) {
   std::string text(parameter.fallback);
   if (text == "required" && parameter.has_alternative()) text += " or " + std::string(parameter.alternatives[0]);
+  if (const std::string_view other = parameter.required_unless; is_section(other)) {
+    text += " unless " + std::string(leaf_of(other)) + " is a name";
+  } else if (!other.empty()) {
+    text += " unless " + std::string(other);
+  }
   return text;
 }
 

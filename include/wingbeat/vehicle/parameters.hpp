@@ -32,6 +32,9 @@ struct ParameterText {
   /// The choice this parameter belongs to, "friction.type = viscous" with "|" between values, or a parameter that must
   /// be given too, "motor.gear_ratio"; empty: belongs everywhere.
   std::string_view only_with = {};
+  /// The parameter that makes a required one unnecessary: where it is given, or, for the numbers of a section whose
+  /// name it is, where it holds a name.
+  std::string_view required_unless = {};
 
   bool has_alternative() const { return !alternatives[0].empty(); }
 };
@@ -63,7 +66,7 @@ const Parameter<S>* find_parameter(std::string_view path) {
   return nullptr;
 }
 
-/// "required or stroke_amplitude", or the default.
+/// "required or stroke_amplitude", "required unless pitch.stiffness", or the default.
 std::string default_text(const ParameterText& parameter);
 
 /// True for two paths of which a design has one, such as transmission.hinge_offset and .stroke_amplitude.

@@ -6,6 +6,7 @@
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/files/waveform_file.hpp"
+#include "wingbeat/parts/mechanism_pose.hpp"
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/vehicle/drive.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
@@ -131,40 +132,38 @@ const Description<TransientResult>& start_up_description() {
   return description;
 }
 
+const Description<MechanismPose::Joint>& joint_description() {
+  using R = MechanismPose::Joint;
+  static const Description<R> description =
+      Description<R>()
+          .always("name", "", "its places are the columns NAME_x and NAME_y", &R::name)
+          .always("fixed", "", "to the ground", &R::fixed);
+  return description;
+}
+
+const Description<MechanismPose::Link>& link_description() {
+  using R = MechanismPose::Link;
+  static const Description<R> description = Description<R>()
+                                                .always("role", "", "", &R::role)
+                                                .always("from", "", "a joint", &R::from)
+                                                .always("to", "", "a joint", &R::to);
+  return description;
+}
+
 const Description<Vehicle<double>>& mechanism_description() {
   using R = Vehicle<double>;
-  static const Description<R> description = [] {
-    Description<R> d;
-    d.always("type", "", "", [](const R& r) { return r.transmission.type; })
-        .always("rotates", "", "a crank turns", [](const R& r) { return drive_of(r).rotates; })
-        .always("springs", "", "", [](const R& r) { return r.spring.stiffness > 0.0; })
-        .always("pitch_hinge", "", "wings pitch on hinges", [](const R& r) { return pitches(r); })
-        .always("wing_count", "", "", [](const R& r) { return r.wing_count; }, schema::any_count);
-    using Crank = SliderCrank<double>;
-    using Bar = FourBar<double>;
-    const auto length = [&](const char* key, const char* unit, const char* meaning, double Crank::* crank,
-                            double Bar::* bar) {
-      d.sometimes(
-          key, unit, meaning,
-          [crank, bar](const R& r) {
-            const auto& t = r.transmission;
-            if (crank && t.type == TransmissionType::slider_crank) return std::optional(t.slider_crank.*crank);
-            if (bar && t.type == TransmissionType::four_bar) return std::optional(t.four_bar.*bar);
-            return std::optional<double>();
-          },
-          schema::any_number);
-    };
-    length("crank_radius", "m", "", &Crank::crank_radius, &Bar::crank_radius);
-    length("rod_length", "m", "of a slider-crank", &Crank::rod_length, nullptr);
-    length("hinge_offset", "m", "of a slider-crank", &Crank::hinge_offset, nullptr);
-    length("mid_stroke_height", "m", "of a slider-crank", &Crank::mid_stroke_height, nullptr);
-    length("coupler_length", "m", "of a four-bar", nullptr, &Bar::coupler_length);
-    length("rocker_length", "m", "of a four-bar", nullptr, &Bar::rocker_length);
-    length("ground_length", "m", "of a four-bar", nullptr, &Bar::ground_length);
-    length("ground_angle", "rad", "of a four-bar", nullptr, &Bar::ground_angle);
-    length("stroke_ratio", "1", "of a four-bar", nullptr, &Bar::stroke_ratio);
-    return d;
-  }();
+  const auto pose = [](const R& r) { return pose_of(r.transmission, 0.0, 0.0, drawn_wing_length(r.transmission)); };
+  static const Description<R> description =
+      Description<R>()
+          .always("type", "", "", [](const R& r) { return r.transmission.type; })
+          .always("rotates", "", "a crank turns", [](const R& r) { return drive_of(r).rotates; })
+          .always("springs", "", "", [](const R& r) { return r.spring.stiffness > 0.0; })
+          .always("pitch_hinge", "", "wings pitch on hinges", [](const R& r) { return pitches(r); })
+          .always(
+              "wing_count", "", "", [](const R& r) { return r.wing_count; }, schema::any_count)
+          .parts("joints", "", joint_description(), [pose](const R& r) { return pose(r).joints; })
+          .parts("links", "in the order in which they are drawn", link_description(),
+                 [pose](const R& r) { return pose(r).links; });
   return description;
 }
 

@@ -8,6 +8,7 @@
 #include "answers.hpp"
 #include "report/report_tools.hpp"
 #include "wingbeat/files/waveform_file.hpp"
+#include "wingbeat/parts/mechanism_pose.hpp"
 #include "wingbeat/vehicle/drive.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
@@ -133,19 +134,26 @@ Json differentiated(const Design<double>& design, const std::vector<std::string>
 Json mechanism_of(const Design<double>& design, const std::vector<double>& angles, Columns& columns) {
   const Vehicle<double> vehicle = resolve(design, Condition::air);
   const AnyTransmission<double>& transmission = vehicle.transmission;
-  Json json = mechanism_answer(vehicle);
-  if (!drive_of(vehicle).rotates) return json;
-  std::vector<double> stroke, height;
-  for (const double theta : angles) {
-    const double s = std::sin(theta), c = std::cos(theta);
-    stroke.push_back(stroke_angle(crank_kinematics(transmission, s, c)));
-    if (transmission.type == TransmissionType::slider_crank) {
-      height.push_back(slider_height(transmission.slider_crank, s, c));
-    }
+  const bool rotates = drive_of(vehicle).rotates;
+  const double wing = drawn_wing_length(transmission);
+  std::vector<double> stroke;
+  std::vector<MechanismPose> poses;
+  for (const double angle : angles) {
+    stroke.push_back(rotates ? stroke_angle(crank_kinematics(transmission, std::sin(angle), std::cos(angle))) : angle);
+    poses.push_back(pose_of(transmission, angle, stroke.back(), wing));
   }
   columns.emplace_back("stroke_angle_rad", std::move(stroke));
-  if (!height.empty()) columns.emplace_back("slider_height_m", std::move(height));
-  return json;
+  for (std::size_t joint = 0; !poses.empty() && joint < poses.front().joints.size(); ++joint) {
+    std::vector<double> x, y;
+    for (const MechanismPose& pose : poses) {
+      x.push_back(pose.joints[joint].at.x);
+      y.push_back(pose.joints[joint].at.y);
+    }
+    const std::string name(poses.front().joints[joint].name);
+    columns.emplace_back(name + "_x", std::move(x));
+    columns.emplace_back(name + "_y", std::move(y));
+  }
+  return mechanism_answer(vehicle);
 }
 
 Json solved_together(const Design<double>& design, const std::vector<std::string>& keys,

@@ -46,8 +46,8 @@ Json started(const Design<double>& design, const RunOptions& options, Columns& c
 /// {"status", "detail", "gradients": {key: [by metric, SI]}}, null where there is none.
 Json differentiated(const Design<double>& design, const std::vector<std::string>& keys, const RunOptions& options);
 
-/// Kind and lengths [m] of the mechanism; columns over the crank angles given [rad]: stroke_angle_rad, of a
-/// slider-crank slider_height_m.
+/// Kind, joints and links of the mechanism; columns over the angles given [rad], of the crank or, of a direct drive, of
+/// the stroke: stroke_angle_rad and the places of joints [m], NAME_x and NAME_y.
 Json mechanism_of(const Design<double>& design, const std::vector<double>& angles, Columns& columns);
 
 /// The designs whose keys have the values given, row by row: {"statuses": names by number}; columns: status, domain (0

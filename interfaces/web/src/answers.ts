@@ -240,24 +240,20 @@ export type Mechanism = {
   /** wings pitch on hinges */
   pitch_hinge: boolean;
   wing_count: number;
-  /** [m] */
-  crank_radius?: number;
-  /** of a slider-crank [m] */
-  rod_length?: number;
-  /** of a slider-crank [m] */
-  hinge_offset?: number;
-  /** of a slider-crank [m] */
-  mid_stroke_height?: number;
-  /** of a four-bar [m] */
-  coupler_length?: number;
-  /** of a four-bar [m] */
-  rocker_length?: number;
-  /** of a four-bar [m] */
-  ground_length?: number;
-  /** of a four-bar [rad] */
-  ground_angle?: number;
-  /** of a four-bar */
-  stroke_ratio?: number;
+  joints: {
+    /** its places are the columns NAME_x and NAME_y */
+    name: string;
+    /** to the ground */
+    fixed: boolean;
+  }[];
+  /** in the order in which they are drawn */
+  links: {
+    role: 'ground' | 'wing' | 'lever' | 'rocker' | 'rod' | 'crank';
+    /** a joint */
+    from: string;
+    /** a joint */
+    to: string;
+  }[];
 };
 
 export type Gradients = {

@@ -10,8 +10,7 @@ export type Columns = Record<string, Float64Array>;
 export type Values = Record<string, number | string | boolean | null>;
 export type Solved = answers.Solved & {columns: Columns};
 export type StartUp = answers.StartUp & {columns: Columns};
-/** Lengths are there that the kind of mechanism has. */
-export type Mechanism = Required<answers.Mechanism> & {columns: Columns};
+export type Mechanism = answers.Mechanism & {columns: Columns};
 export interface RunOptions {
   condition?: string;
   tolerance?: number;

@@ -36,7 +36,7 @@ class Sketch {
   readonly group = svg('g');
   constructor(
     private readonly centre: Point,
-    private readonly scale: number,
+    readonly scale: number,
   ) {}
   at([x, y]: Point): Point {
     return [width / 2 + (x - this.centre[0]) * this.scale, height / 2 - (y - this.centre[1]) * this.scale];
@@ -129,126 +129,90 @@ function interpolated(numbers: Float64Array, angle: number): number {
 /** The stroke angle that the transmission gives at a crank angle. */
 export const strokeAt = (m: Mechanism, angle: number) => interpolated(m.columns.stroke_angle_rad, angle);
 
-function sliderCrank(m: Mechanism, i: Instant, range: [number, number], names: boolean): Sketch {
-  const r = m.crank_radius,
-    wing = 1.3 * m.rod_length,
-    y0 = m.mid_stroke_height;
-  const reach = Math.max(m.hinge_offset + wing, 1.5 * r);
-  const low = Math.min(-1.5 * r, y0 - 0.8 * wing),
-    high = Math.max(y0 + 0.8 * wing, y0 + 1.8 * r);
-  const scale = Math.min((width - 40) / (2 * reach), (height - 34) / (high - low));
-  const s = new Sketch([0, (low + high) / 2], scale);
-  const axis: Point = [0, 0],
-    pin = onCircle(axis, r, i.crankAngle);
-  const slider: Point = [0, interpolated(m.columns.slider_height_m, i.crankAngle)];
-  s.line([0, -1.3 * r], [0, y0 + 1.7 * r], 'faint dashed');
-  s.ring(axis, r, 'faint');
-  for (const side of [1, -1]) {
-    const hinge: Point = [side * m.hinge_offset, y0],
-      zero = side > 0 ? 0 : Math.PI;
-    for (const end of range) s.line(hinge, onCircle(hinge, wing, zero - side * end), 'faint');
-    const tip = onCircle(hinge, wing, zero - side * i.strokeAngle);
-    s.line(hinge, tip, 'wing');
-    s.line(slider, hinge, 'lever');
-    if (m.springs) s.spring(hinge);
-    s.ground(hinge);
-    s.arrow(onCircle(hinge, 0.7 * wing, zero - side * i.strokeAngle), 0, -55 * i.lift, 'lift');
-    if (names && side < 0) s.name('wing', tip, 'middle', 0, 20);
-    if (names && side > 0 && m.springs) s.name('spring', hinge, 'start', 20, 6);
-  }
-  s.circle(pin, 9 + 14 * Math.abs(i.friction), 'glow', Math.abs(i.friction));
-  s.line(pin, slider, 'rod glow-rod', Math.abs(i.rodForce));
-  s.line(pin, slider, 'rod');
-  s.line(axis, pin, 'crank');
-  s.square(slider, 7);
-  s.ground(axis);
-  s.circle(pin, 3.5, 'joint');
-  const up = Math.sign(i.rodForce);
-  const length = Math.hypot(slider[0] - pin[0], slider[1] - pin[1]) || 1;
-  s.arrow(
-    slider,
-    (up * 50 * Math.abs(i.rodForce) * (slider[0] - pin[0])) / length,
-    (-up * 50 * Math.abs(i.rodForce) * (slider[1] - pin[1])) / length,
-    'force',
+const jointAt = (m: Mechanism, name: string, angle: number): Point => [
+  interpolated(m.columns[`${name}_x`], angle),
+  interpolated(m.columns[`${name}_y`], angle),
+];
+const between = (a: Point, b: Point, share: number): Point => [
+  a[0] + share * (b[0] - a[0]),
+  a[1] + share * (b[1] - a[1]),
+];
+
+/** Angles, of the crank or of a direct drive's stroke, at which the stroke ends. */
+function strokeEnds(m: Mechanism, range: [number, number]): number[] {
+  if (!m.rotates) return range;
+  const stroke = m.columns.stroke_angle_rad;
+  return [Math.min(...stroke), Math.max(...stroke)].map(
+    (end) => (2 * Math.PI * stroke.indexOf(end)) / (stroke.length - 1),
   );
-  s.torque(axis, Math.max(16, 0.55 * r * scale), i.motorTorque);
-  if (names) {
-    s.name('crank', [-r, 0], 'end', -10, 4);
-    s.name('slider', slider, 'start', 12, -8);
-    s.name('rod', [(pin[0] + slider[0]) / 2, (pin[1] + slider[1]) / 2], 'start', 10, 4);
-  }
-  return s;
 }
 
-function fourBar(m: Mechanism, i: Instant, range: [number, number], names: boolean): Sketch {
-  const r = m.crank_radius,
-    d = m.ground_length,
-    p = m.rocker_length,
-    wing = 0.9 * (d + p);
-  const scale = Math.min((width - 40) / (1.6 * r + d + wing), (height - 40) / (2.2 * wing));
-  const s = new Sketch([(d + wing - 1.6 * r) / 2, 0], scale);
-  const axis: Point = [0, 0],
-    pin = onCircle(axis, r, i.crankAngle),
-    hinge: Point = [d, 0];
-  const rocker = onCircle(hinge, p, m.ground_angle + i.strokeAngle / m.stroke_ratio);
-  s.line(axis, hinge, 'faint dashed');
-  s.ring(axis, r, 'faint');
-  for (const end of range) s.line(hinge, onCircle(hinge, wing, end), 'faint');
-  s.line(hinge, onCircle(hinge, wing, i.strokeAngle), 'wing');
-  s.line(hinge, rocker, 'rocker');
-  s.circle(pin, 9 + 14 * Math.abs(i.friction), 'glow', Math.abs(i.friction));
-  s.line(pin, rocker, 'rod glow-rod', Math.abs(i.rodForce));
-  s.line(pin, rocker, 'rod');
-  s.line(axis, pin, 'crank');
-  if (m.springs) s.spring(hinge);
-  s.ground(axis);
-  s.ground(hinge);
-  s.circle(pin, 3.5, 'joint');
-  s.circle(rocker, 3.5, 'joint');
-  const length = Math.hypot(rocker[0] - pin[0], rocker[1] - pin[1]) || 1,
-    size = 50 * i.rodForce;
-  s.arrow(rocker, (size * (rocker[0] - pin[0])) / length, (-size * (rocker[1] - pin[1])) / length, 'force');
-  s.arrow(onCircle(hinge, 0.7 * wing, i.strokeAngle), 0, -55 * i.lift, 'lift');
-  s.torque(axis, 16 + r * scale, i.motorTorque);
-  if (names) {
-    s.name('crank', [-r, 0], 'middle', 0, 34);
-    s.name('coupler', [(pin[0] + rocker[0]) / 2, (pin[1] + rocker[1]) / 2], 'middle', 0, -10);
-    s.name('rocker', rocker, 'start', 8, -6);
-    s.name('wing', onCircle(hinge, wing, i.strokeAngle), 'end', -6, -8);
-  }
-  return s;
+/** A sketch in which all that moves has room. */
+function roomFor(m: Mechanism, ends: number[], crank: number): Sketch {
+  const turn = Array.from({length: 45}, (_, n) =>
+    m.rotates ? (2 * Math.PI * n) / 45 : between([ends[0], 0], [ends[1], 0], n / 44)[0],
+  );
+  const points = m.joints.flatMap((j) => turn.map((angle) => jointAt(m, j.name, angle)));
+  const x = points.map((p) => p[0]),
+    y = points.map((p) => p[1]);
+  const high = Math.max(...y, 1.2 * crank),
+    low = Math.min(...y, -1.2 * crank),
+    left = Math.min(...x, -1.2 * crank),
+    right = Math.max(...x);
+  // A single wing has its motor or its table's crank beside it.
+  const size = m.links.some((l) => l.role === 'rod') ? 0 : 2.4;
+  const scale = Math.min((width - 110) / Math.max(right - left, size), (height - 80) / Math.max(high - low, size));
+  return new Sketch([(left + right) / 2, (low + high) / 2], scale);
 }
 
-/** A shaft with a wing: of a direct drive the motor's own, of a tabulated stroke a crank beside it. */
-function shaftAndWing(m: Mechanism, i: Instant, range: [number, number], names: boolean): Sketch {
-  const direct = m.type === 'direct',
-    wing = direct ? 1.6 : 1.2;
-  const s = new Sketch(direct ? [0.2, 0] : [0.1, 0], Math.min((width - 60) / (direct ? 2.6 : 3), (height - 40) / 2.9));
-  const hinge: Point = direct ? [-0.8, 0] : [0.1, 0],
-    axis: Point = direct ? hinge : [-0.9, 0];
-  for (const end of range) s.line(hinge, onCircle(hinge, wing, end), 'faint');
-  if (!direct) {
-    const pin = onCircle(axis, 0.35, i.crankAngle);
-    s.ring(axis, 0.35, 'faint');
-    s.line(axis, hinge, 'faint dashed');
+function sketchOf(m: Mechanism, i: Instant, range: [number, number], names: boolean): Sketch {
+  const angle = m.rotates ? i.crankAngle : i.strokeAngle,
+    ends = strokeEnds(m, range);
+  const at = (name: string) => jointAt(m, name, angle);
+  const turns = m.joints.some((j) => j.name === 'pin'),
+    axis: Point = turns ? at('axis') : at('hinge'),
+    pin = turns ? at('pin') : null,
+    crank = pin ? Math.hypot(pin[0] - axis[0], pin[1] - axis[1]) : 0;
+  const s = roomFor(m, ends, crank);
+  const labels: (() => void)[] = [];
+  const label = (...text: Parameters<Sketch['name']>) => labels.push(() => s.name(...text));
+  if (pin) {
+    s.ring(axis, crank, 'faint');
     s.circle(pin, 9 + 14 * Math.abs(i.friction), 'glow', Math.abs(i.friction));
-    s.line(axis, pin, 'crank');
-    s.ground(axis);
-    s.circle(pin, 3.5, 'joint');
+    label('crank', [axis[0] - crank, axis[1]], 'end', -10, 4);
   } else {
-    s.circle(hinge, 24, 'motor');
-    s.circle(hinge, 26, 'glow', Math.abs(i.friction));
+    s.circle(axis, 24, 'motor');
+    s.circle(axis, 26, 'glow', Math.abs(i.friction));
+    label('motor', axis, 'middle', 0, 56);
   }
-  s.line(hinge, onCircle(hinge, wing, i.strokeAngle), 'wing');
-  if (m.springs) s.spring(hinge);
-  s.circle(hinge, 3.5, 'joint');
-  s.arrow(onCircle(hinge, 0.7 * wing, i.strokeAngle), 0, -55 * i.lift, 'lift');
-  s.torque(axis, direct ? 34 : 40, i.motorTorque);
-  if (names) {
-    s.name(direct ? 'motor' : 'crank', axis, 'middle', 0, direct ? 56 : 76);
-    s.name('wing', onCircle(hinge, wing, i.strokeAngle), 'end', -6, -10);
-    if (!direct) s.name('stroke from a table', [-0.4, 0], 'middle', 0, 16);
+  if (m.type === 'tabulated') label('stroke from a table', between(axis, at('hinge'), 0.5), 'middle', 0, 16);
+  for (const {role, from, to} of m.links) {
+    const a = at(from),
+      b = at(to);
+    if (role === 'wing') {
+      for (const end of ends) s.line(a, jointAt(m, to, end), 'faint');
+      if (m.springs) s.spring(a);
+      s.arrow(between(a, b, 0.7), 0, -55 * i.lift, 'lift');
+      if (to === 'tip') label('wing', b, 'end', -6, -10);
+      if (m.springs && to === 'tip') label('spring', a, 'start', 20, 26);
+    }
+    if (role === 'rod') {
+      s.line(a, b, 'rod glow-rod', Math.abs(i.rodForce));
+      const length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1,
+        size = (50 * i.rodForce) / length;
+      s.arrow(b, size * (b[0] - a[0]), -size * (b[1] - a[1]), 'force');
+      label(m.type === 'four-bar' ? 'coupler' : 'rod', between(a, b, 0.5), 'start', 10, -6);
+      label(to, b, 'start', 12, -8);
+    }
+    s.line(a, b, role === 'ground' ? 'faint dashed' : role);
   }
+  for (const {name, fixed} of m.joints) {
+    if (name === 'slider') s.square(at(name), 7);
+    else if (fixed && pin) s.ground(at(name));
+    else if (fixed || name === 'pin' || name === 'rocker') s.circle(at(name), 3.5, 'joint');
+  }
+  s.torque(axis, pin ? Math.max(16, 0.55 * crank * s.scale) : 34, i.motorTorque);
+  if (names) for (const write of labels) write();
   return s;
 }
 
@@ -268,11 +232,6 @@ function chord(i: Instant): SVGGElement {
     svg('text', {x, y: y + 44, 'text-anchor': 'middle'}, `wing section, α ${i.angleOfAttack.toFixed(0)}°`),
   );
   return group;
-}
-
-function sketchOf(m: Mechanism, i: Instant, range: [number, number], names: boolean): Sketch {
-  if (m.type === 'slider-crank') return sliderCrank(m, i, range, names);
-  return m.type === 'four-bar' ? fourBar(m, i, range, names) : shaftAndWing(m, i, range, names);
 }
 
 export function drawMechanism(
